@@ -1,0 +1,28 @@
+# Every library is a Debian 12 package; scripts/setup installs them.
+find_package(PkgConfig REQUIRED)
+find_package(MPI REQUIRED COMPONENTS C CXX)
+find_package(fmt REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+# The headers of these libraries are theirs: as system headers they do not fail our warnings.
+function(whirl_pkg name module)
+  pkg_check_modules(${name} REQUIRED IMPORTED_TARGET ${module})
+  get_target_property(dirs PkgConfig::${name} INTERFACE_INCLUDE_DIRECTORIES)
+  add_library(${name}::${name} INTERFACE IMPORTED)
+  target_link_libraries(${name}::${name} INTERFACE PkgConfig::${name})
+  if(dirs)
+    target_include_directories(${name}::${name} SYSTEM INTERFACE ${dirs})
+  endif()
+endfunction()
+
+whirl_pkg(PETSc PETSc)
+whirl_pkg(SLEPc SLEPc)
+whirl_pkg(HDF5 hdf5-openmpi)
+whirl_pkg(UDUNITS udunits)
+whirl_pkg(OpenBLAS openblas)
+target_link_libraries(PETSc::PETSc INTERFACE MPI::MPI_CXX)
+# Open MPI's C++ bindings are gone from the standard and drag in a second library.
+target_compile_definitions(PETSc::PETSc INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+target_link_libraries(HDF5::HDF5 INTERFACE MPI::MPI_CXX)

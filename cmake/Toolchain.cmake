@@ -1,0 +1,17 @@
+# Compiler flags, ccache and the linker. Warnings are errors in our own code.
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(whirl_flags INTERFACE)
+target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+                       -Wno-error=maybe-uninitialized -Werror)
+if(WHIRL_NATIVE)
+  target_compile_options(whirl_flags INTERFACE -march=native)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+if(WHIRL_SANITIZE)
+  target_compile_options(whirl_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(whirl_flags INTERFACE -fsanitize=address,undefined)
+endif()

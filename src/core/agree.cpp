@@ -1,0 +1,96 @@
+#include "whirl/core/agree.hpp"
+
+#include <string>
+#include <vector>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::core {
+namespace {
+
+enum Kind : int { none = 0, domain, not_converged, input, error, bug };
+
+Kind kind_of(const std::exception_ptr& e) {
+  if (!e) return none;
+  try {
+    std::rethrow_exception(e);
+  } catch (const DomainError&) {
+    return domain;
+  } catch (const NotConverged&) {
+    return not_converged;
+  } catch (const InputError&) {
+    return input;
+  } catch (const Bug&) {
+    return bug;
+  } catch (const Error&) {
+    return error;
+  } catch (...) {
+    return bug;
+  }
+}
+
+std::string text_of(const std::exception_ptr& e) {
+  try {
+    std::rethrow_exception(e);
+  } catch (const std::exception& x) {
+    return x.what();
+  } catch (...) {
+    return "unknown exception";
+  }
+}
+
+template <class E>
+[[noreturn]] void throw_agreed(const std::string& text) {
+  E e(text);
+  e.mark_agreed();
+  throw e;
+}
+
+}  // namespace
+
+void agree(MPI_Comm comm, const std::function<void()>& local) {
+  std::exception_ptr caught;
+  try {
+    local();
+  } catch (...) {
+    caught = std::current_exception();
+  }
+  int mine = kind_of(caught), worst = none;
+  MPI_Allreduce(&mine, &worst, 1, MPI_INT, MPI_MAX, comm);
+  if (worst == none) return;
+
+  int rank = 0, size = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &size);
+  int candidate = mine == worst ? rank : size, source = size;
+  MPI_Allreduce(&candidate, &source, 1, MPI_INT, MPI_MIN, comm);
+  std::string text = rank == source ? text_of(caught) : std::string();
+  int length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, source, comm);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, source, comm);
+  switch (worst) {
+    case domain:
+      throw_agreed<DomainError>(text);
+    case not_converged:
+      throw_agreed<NotConverged>(text);
+    case input:
+      throw_agreed<InputError>(text);
+    case error:
+      throw_agreed<Error>(text);
+    default:
+      throw_agreed<Bug>(text);
+  }
+}
+
+bool is_agreed(const std::exception_ptr& e) {
+  try {
+    std::rethrow_exception(e);
+  } catch (const Error& x) {
+    return x.agreed();
+  } catch (...) {
+    return false;
+  }
+}
+
+}  // namespace whirl::core

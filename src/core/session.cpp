@@ -1,0 +1,50 @@
+#include "whirl/core/session.hpp"
+
+#include <fmt/core.h>
+#include <petscsys.h>
+#include <slepcsys.h>
+
+#include "whirl/core/petsc.hpp"
+
+namespace whirl::core {
+namespace {
+
+// PETSc's error handler is a C hook of the whole process, so its text has to live in one place of the process.
+std::string& trace() {
+  static std::string text;
+  return text;
+}
+
+PetscErrorCode keep_text(MPI_Comm, int line, const char* function, const char* file, PetscErrorCode code,
+                         PetscErrorType type, const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL) trace().clear();
+  if (trace().size() < 2000)
+    trace() += fmt::format("  {} ({}:{}){}{}\n", function, file, line, message && *message ? ": " : "",
+                           message ? message : "");
+  return code;
+}
+
+}  // namespace
+
+Session::Session(int argc, char** argv, const std::vector<std::string>& petsc_options) {
+  int one = argc > 0 ? 1 : 0;
+  check(SlepcInitialize(&one, &argv, nullptr, nullptr));
+  for (std::size_t i = 0; i < petsc_options.size(); ++i) {
+    const bool has_value =
+        i + 1 < petsc_options.size() && (petsc_options[i + 1].empty() || petsc_options[i + 1][0] != '-');
+    check(PetscOptionsSetValue(nullptr, petsc_options[i].c_str(), has_value ? petsc_options[i + 1].c_str() : nullptr));
+    if (has_value) ++i;
+  }
+  check(PetscPushErrorHandler(keep_text, nullptr));
+}
+
+Session::~Session() {
+  (void)PetscPopErrorHandler();
+  (void)SlepcFinalize();
+}
+
+std::string Session::take_trace() {
+  return std::exchange(trace(), std::string());
+}
+
+}  // namespace whirl::core
