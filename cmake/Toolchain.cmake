@@ -6,7 +6,11 @@ endif()
 
 add_library(whirl_flags INTERFACE)
 target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
-                       -Wno-error=maybe-uninitialized -Werror)
+                       -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 reports its own AVX-512 intrinsics as uninitialised.
+  target_compile_options(whirl_flags INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized)
+endif()
 if(WHIRL_NATIVE)
   target_compile_options(whirl_flags INTERFACE -march=native)
 endif()

@@ -1,0 +1,54 @@
+#pragma once
+// The one equation of Whirl: F(angle, x, dx/dt; p) = 0.
+
+#include <petscmat.h>
+#include <petscvec.h>
+
+#include <string>
+
+#include "whirl/core/petsc.hpp"
+#include "whirl/problem/structure.hpp"
+
+namespace whirl::problem {
+
+/// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.
+///
+/// The state x is distributed by rows in natural order: entry k means the same on any number of ranks. Forcing depends on the shaft angle
+/// and the speed, never on time itself, so that dF/dp stays bounded on a cycle whose period follows the speed. `p` is the active
+/// parameter: the speed [rad/s] unless the system was made with another one. All members are collective on comm() unless they say not.
+class System {
+ public:
+  System() = default;
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+  virtual ~System() = default;
+
+  [[nodiscard]] virtual MPI_Comm comm() const = 0;
+  /// Number of states over all ranks / on this rank. Not collective.
+  [[nodiscard]] virtual PetscInt size() const = 0;
+  [[nodiscard]] virtual PetscInt local_size() const = 0;
+
+  /// Active parameter and shaft speed [rad/s]. Not collective.
+  [[nodiscard]] virtual double parameter() const = 0;
+  virtual void set_parameter(double p) = 0;
+  [[nodiscard]] virtual double speed() const = 0;
+  /// True if the parameter is the speed, so that a forced cycle's period changes with it. Not collective.
+  [[nodiscard]] virtual bool parameter_is_speed() const = 0;
+
+  /// f = F(angle [rad], x, xdot). Throws core::DomainError on all ranks outside the validity of a film.
+  virtual void residual(double angle, Vec x, Vec xdot, Vec f) = 0;
+  /// A matrix with the nonzero pattern of dF/dx + sigma dF/d(dx/dt).
+  [[nodiscard]] virtual core::Matrix make_jacobian() = 0;
+  /// j = alpha dF/dx + sigma dF/d(dx/dt) at (angle, x, xdot).
+  virtual void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) = 0;
+  /// f = dF/dp at fixed angle, x and xdot.
+  virtual void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) = 0;
+
+  /// Typical magnitude of each state and of each row of F, all positive, in SI: solvers work on x/state_scale and F/residual_scale.
+  virtual void scales(Vec state_scale, Vec residual_scale) = 0;
+
+  /// Linear blocks and thin couplings if this rank holds the whole system (communicator of size 1) and it has them, else nullptr. Not collective.
+  [[nodiscard]] virtual Structure* structure() { return nullptr; }
+};
+
+}  // namespace whirl::problem

@@ -1,0 +1,106 @@
+#pragma once
+// Periodic solutions by orthogonal collocation, parallel over the intervals.
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/cycle.hpp"
+#include "whirl/solve/extended_problem.hpp"
+#include "whirl/solve/interval.hpp"
+
+namespace whirl::solve {
+
+struct CycleOptions {
+  int degree = 2;
+  Points points = Points::radau;
+  int turns = 1;            ///< shaft turns per period of a forced cycle
+  bool autonomous = false;  ///< no forcing: the period is an unknown and a phase condition is added
+  double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
+  double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
+  bool use_structure = true;   ///< condense by low-rank updates where the system tells its structure
+  bool assembled = false;      ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
+  double mesh_tolerance = 0;   ///< error per interval for adapt(); 0 keeps the mesh
+  int max_intervals = 400;
+};
+
+/// Equations F(2 pi k s, x(s), x'(s)/T; p) = 0 at the collocation points of all intervals, with x(0) = x(1).
+///
+/// Each rank of `time` holds a whole System on a communicator of size 1 and a run of intervals. Unknowns per interval: X_1..X_m at its nodes;
+/// its start is its left neighbour's X_m. The condensation eliminates each interval to x_(i+1) = Gamma_i x_i + ..., multiplies these along the
+/// rank's run, gathers one small system from all ranks and solves it together with the border (parameter, period, added rows), so that folds
+/// are regular. Products of Gamma lose log10 of the largest multiplier in digits, which GMRES around it restores.
+class CycleProblem : public ExtendedProblem {
+ public:
+  /// `local` lives on a communicator of size 1 and outlives this.
+  CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh);
+  ~CycleProblem() override;
+
+  [[nodiscard]] MPI_Comm comm() const override { return comm_; }
+  [[nodiscard]] core::Vector make_unknown() const override;
+  [[nodiscard]] Vec weights() const override { return weights_.get(); }
+  [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
+  void residual(Vec u, Vec r) override;
+  void linearise(Vec u, Vec row) override;
+  void multiply(Vec v, Vec y) override;
+  void solve(Vec rhs, Vec x) override;
+  bool adapt(core::Vector& u, core::Vector& tangent) override;
+
+  [[nodiscard]] const Scheme& scheme() const { return scheme_; }
+  [[nodiscard]] const std::vector<double>& mesh() const { return mesh_; }
+  [[nodiscard]] const CycleOptions& options() const { return options_; }
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const { return state_scale_; }
+
+  /// Between the distributed unknown and the replicated cycle. Collective.
+  [[nodiscard]] Cycle gather(Vec u) const;
+  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const;
+  /// Phase reference of an autonomous cycle: integral <x - ref, ref'> = 0 from now on.
+  void set_phase_reference(const Cycle& reference);
+  /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
+  [[nodiscard]] const Eigen::MatrixXd& monodromy() const { return monodromy_; }
+
+ private:
+  struct Point;
+  void layout(std::vector<double> mesh);
+  [[nodiscard]] double period_of(const Eigen::VectorXd& border) const;
+  [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
+  [[nodiscard]] Eigen::VectorXd previous_end(const double* local) const;
+  void set_parameter(const Eigen::VectorXd& border);
+  [[nodiscard]] std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* x, const Eigen::VectorXd& start, double period,
+                                                             Eigen::MatrixXd& columns);
+  void compose(const std::vector<Eigen::MatrixXd>& rows);
+  void assemble(const std::vector<Eigen::MatrixXd>& rows);
+
+  MPI_Comm comm_;
+  int rank_, size_;
+  problem::System& system_;
+  problem::Structure* structure_;
+  CycleOptions options_;
+  Scheme scheme_;
+  Eigen::Index n_, borders_;
+  Eigen::VectorXd state_scale_, residual_scale_;
+  double period_scale_ = 0;
+
+  std::vector<double> mesh_;
+  Eigen::Index first_ = 0, count_ = 0;  // this rank's intervals
+  core::Vector weights_;
+  Eigen::MatrixXd phase_row_;      // [n x local nodes], autonomous only
+  double phase_offset_ = 0;
+
+  // The linearisation: scaled structure blocks, intervals, border columns, and the composed small system.
+  Eigen::MatrixXd l1_, l0_, dl0_, b_, c_;
+  std::map<double, std::shared_ptr<const LinearPart>> parts_;
+  std::vector<std::unique_ptr<Interval>> intervals_;
+  std::vector<Eigen::MatrixXd> columns_, eliminated_;  // dR/d(border) [mn x nb] and A^-1 of it
+  std::vector<Eigen::MatrixXd> rows_;                  // added rows per interval [nb x mn]
+  Eigen::MatrixXd corner_;                             // added rows on the border unknowns [nb x nb]
+  std::vector<Eigen::MatrixXd> to_rank_;               // state entering each rank per (x_0, border) [n x (n + nb)]
+  std::vector<Eigen::MatrixXd> rank_maps_;             // gathered [(n + nb) x (n + nb)] of each rank
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  Eigen::MatrixXd monodromy_;
+  core::Matrix assembled_;
+  core::LinearSolver assembled_solver_;
+};
+
+}  // namespace whirl::solve

@@ -1,0 +1,301 @@
+#include "whirl/solve/continuation.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::solve {
+namespace {
+
+using core::check;
+
+// Twelve significant digits: the last ones may differ between rank counts and must not decide anything.
+double rounded(double x) {
+  if (x == 0 || !std::isfinite(x)) return x;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 9);
+  return std::round(x / unit) * unit;
+}
+
+struct State {
+  core::Vector u, tangent;
+  BranchPoint point;
+};
+
+core::Vector copy(Vec v) {
+  core::Vector c = core::duplicate(v);
+  check(VecCopy(v, c.get()));
+  return c;
+}
+
+class Follower {
+ public:
+  Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
+      : problem_(problem), options_(options), callbacks_(callbacks), direction_(options.to >= options.from ? 1 : -1) {}
+
+  BranchEnd run(core::Vector u, std::optional<Restart> restart);
+
+ private:
+  // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
+  void inspect(State& s, Vec along);
+  NewtonResult correct(Vec u, Vec row, double offset) { return newton(problem_, u, row, offset, options_.newton); }
+  NewtonResult correct_at(core::Vector& u, double parameter);
+  // The point at arclength ds from `from`.
+  bool advance(const State& from, double ds, State& to, NewtonResult& result);
+  void events(const State& a, const State& b);
+  using Test = std::function<double(const State&)>;
+  // The zero of a test function between two points; false if the location did not converge, then `at` is the nearest point found.
+  bool locate(const State& a, const State& b, const Test& test, LocatedEvent& found, State& at);
+  void crossings(const State& a, const State& b, int depth);
+  bool accept(State& s);
+
+  ExtendedProblem& problem_;
+  const ContinuationOptions& options_;
+  const BranchCallbacks& callbacks_;
+  int direction_;
+};
+
+NewtonResult Follower::correct_at(core::Vector& u, double parameter) {
+  core::Vector row = core::duplicate(u.get());
+  parameter_row(problem_, row.get());
+  set_last_entry(problem_.comm(), u.get(), parameter);
+  return correct(u.get(), row.get(), parameter);
+}
+
+void Follower::inspect(State& s, Vec along) {
+  core::Vector row = core::duplicate(s.u.get()), rhs = core::duplicate(s.u.get());
+  if (along)
+    weighted_row(problem_, along, row.get());
+  else
+    parameter_row(problem_, row.get());
+  problem_.linearise(s.u.get(), row.get());
+  check(VecSet(rhs.get(), 0.0));
+  set_last_entry(problem_.comm(), rhs.get(), along ? 1.0 : static_cast<double>(direction_));
+  s.tangent = core::duplicate(s.u.get());
+  solve_linear(problem_, rhs.get(), s.tangent.get(), "tangent_");
+  check(VecScale(s.tangent.get(), 1 / std::sqrt(inner(problem_, s.tangent.get(), s.tangent.get()))));
+  s.point.parameter = last_entry(problem_.comm(), s.u.get());
+  s.point.slope = last_entry(problem_.comm(), s.tangent.get());
+  s.point.stability = callbacks_.stability ? callbacks_.stability(s.u.get()) : Stability{};
+}
+
+bool Follower::advance(const State& from, double ds, State& to, NewtonResult& result) {
+  to.u = copy(from.u.get());
+  check(VecAXPY(to.u.get(), ds, from.tangent.get()));
+  core::Vector row = core::duplicate(to.u.get());
+  weighted_row(problem_, from.tangent.get(), row.get());
+  double offset = 0;
+  check(VecDot(row.get(), to.u.get(), &offset));
+  result = correct(to.u.get(), row.get(), offset);
+  if (!result.converged) return false;
+  to.point = from.point;
+  to.point.step = ds;
+  to.point.newton_iterations = result.iterations;
+  inspect(to, from.tangent.get());
+  // A tangent turned by more than 60 degrees: another branch, or a step too long for this one.
+  const double cosine = inner(problem_, from.tangent.get(), to.tangent.get());
+  if (rounded(cosine) < 0.5) {
+    result.reason = "the branch turns too sharply";
+    return false;
+  }
+  return true;
+}
+
+// False position (Illinois variant) of a test function along the arclength from the point a.
+bool Follower::locate(const State& a, const State& b, const Test& test, LocatedEvent& found, State& at) {
+  double s0 = 0, s1 = b.point.step, f0 = test(a), f1 = test(b);
+  const double dp = b.point.parameter - a.point.parameter;
+  found.sensitivity = dp != 0 ? (f1 - f0) / dp : 0;
+  found.bracket = std::abs(dp);
+  at.u = copy(b.u.get());
+  at.point = b.point;
+  double last = b.point.parameter;
+  int side = 0;
+  for (int k = 0; k < 30; ++k) {
+    double s = (s0 * f1 - s1 * f0) / (f1 - f0);
+    if (k > 12) s = (s0 + s1) / 2;
+    s = rounded(std::clamp(s, std::min(s0, s1), std::max(s0, s1)));
+    State trial;
+    NewtonResult result;
+    if (!advance(a, s, trial, result)) return false;
+    const double f = test(trial);
+    at = std::move(trial);
+    found.parameter = at.point.parameter;
+    found.bracket = std::abs(found.parameter - last);
+    if (f == 0 || rounded(found.bracket) <= options_.location_tolerance) return true;
+    last = found.parameter;
+    if (f * f1 < 0) {
+      s0 = s1, f0 = f1;
+      side = 0;
+    } else {
+      if (side == 1) f0 /= 2;
+      side = 1;
+    }
+    s1 = s, f1 = f;
+  }
+  return false;
+}
+
+// Values that crossed the border of stability between two points. One value or one complex pair is located directly; more than that is first
+// separated by halving the step.
+void Follower::crossings(const State& a, const State& b, int depth) {
+  const int from = a.point.stability.unstable(), to = b.point.stability.unstable();
+  if (from == to) return;
+  const auto k = static_cast<std::size_t>(std::min(from, to));
+  const auto split = [&] {
+    State middle;
+    NewtonResult result;
+    if (depth >= 6 || !advance(a, rounded(b.point.step / 2), middle, result)) return false;
+    crossings(a, middle, depth + 1);
+    State rest;
+    rest.u = copy(b.u.get());
+    rest.tangent = copy(b.tangent.get());
+    rest.point = b.point;
+    rest.point.step = rounded(b.point.step - middle.point.step);
+    crossings(middle, rest, depth + 1);
+    return true;
+  };
+  if (std::abs(to - from) > 2 && split()) return;
+
+  const Test test = [k](const State& s) { return s.point.stability.distance[k]; };
+  LocatedEvent found{};
+  State at;
+  found.located = locate(a, b, test, found, at);
+  const std::complex<double> value = at.point.stability.values[k];
+  const bool real = std::abs(value.imag()) < 1e-7 * std::abs(value);
+  if (real && std::abs(to - from) == 2 && split()) return;
+  found.critical = value;
+  if (!real)
+    found.event = callbacks_.cycles ? Event::neimark_sacker : Event::hopf;
+  else if (callbacks_.cycles && value.real() < 0)
+    found.event = Event::flip;
+  else
+    found.event = Event::branch_point;
+  // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such.
+  if (found.event == Event::branch_point && a.point.slope * b.point.slope < 0) return;
+  if (callbacks_.on_event) callbacks_.on_event(found, at.u.get());
+}
+
+void Follower::events(const State& a, const State& b) {
+  if (a.point.slope * b.point.slope < 0) {
+    LocatedEvent found{};
+    State at;
+    found.event = callbacks_.cycles ? Event::cyclic_fold : Event::fold;
+    found.located = locate(a, b, [](const State& s) { return s.point.slope; }, found, at);
+    found.sensitivity = 0;
+    if (callbacks_.on_event) callbacks_.on_event(found, at.u.get());
+  }
+  crossings(a, b, 0);
+}
+
+bool Follower::accept(State& s) {
+  if (callbacks_.on_point) callbacks_.on_point(s.point, s.u.get());
+  return true;
+}
+
+BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
+  State here;
+  double ds = options_.initial_step;
+  if (restart) {
+    here.u = std::move(restart->u);
+    here.tangent = std::move(restart->tangent);
+    here.point = restart->point;
+    ds = restart->step;
+  } else {
+    const NewtonResult first = correct_at(u, options_.from);
+    if (!first.converged) return {fmt::format("no solution at the start of the branch: {}", first.reason), false, 0};
+    here.u = std::move(u);
+    here.point.newton_iterations = first.iterations;
+    inspect(here, nullptr);
+    accept(here);
+    if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
+      return {"stopped on request", false, 1};
+  }
+
+  const auto beyond = [&](double p) { return direction_ * rounded(p - options_.to) >= 0; };
+  while (here.point.index + 1 < options_.max_points) {
+    if (beyond(here.point.parameter)) return {"reached the end of its range", true, here.point.index + 1};
+    if (direction_ * rounded(here.point.parameter - options_.from) < -std::abs(options_.max_step))
+      return {"turned back beyond the start of its range", true, here.point.index + 1};
+    State next;
+    NewtonResult result;
+    bool ok = advance(here, ds, next, result);
+    if (ok && beyond(next.point.parameter) && rounded(next.point.parameter - options_.to) != 0) {
+      // End exactly at the limit: the arclength that leads there, by one secant step, then natural continuation.
+      State last;
+      last.u = copy(next.u.get());
+      const double fraction = (options_.to - here.point.parameter) / (next.point.parameter - here.point.parameter);
+      check(VecAXPBY(last.u.get(), 1 - fraction, fraction, here.u.get()));
+      result = correct_at(last.u, options_.to);
+      if (result.converged) {
+        last.point = here.point;
+        last.point.step = ds * fraction;
+        last.point.newton_iterations = result.iterations;
+        inspect(last, here.tangent.get());
+        next = std::move(last);
+      }
+    }
+    if (!ok) {
+      ds = rounded(ds / 2);
+      if (ds < options_.min_step)
+        return {fmt::format("the step fell below its minimum at {:.6g}: {}", here.point.parameter * problem_.parameter_scale(), result.reason), false,
+                here.point.index + 1};
+      continue;
+    }
+    next.point.index = here.point.index + 1;
+    if (callbacks_.stability) events(here, next);
+    here = std::move(next);
+    const int k = result.iterations;
+    ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
+    ds = std::max(ds, options_.min_step);
+    accept(here);
+    if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 && problem_.adapt(here.u, here.tangent)) {
+      // The carried-over solution is corrected at its parameter, so that the next step starts from the branch of the new mesh.
+      core::Vector along = copy(here.tangent.get());
+      const NewtonResult again = correct_at(here.u, here.point.parameter);
+      if (!again.converged) return {fmt::format("no solution on the adapted mesh: {}", again.reason), false, here.point.index + 1};
+      inspect(here, along.get());
+    }
+    if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
+      return {"stopped on request", false, here.point.index + 1};
+  }
+  if (beyond(here.point.parameter)) return {"reached the end of its range", true, here.point.index + 1};
+  return {"reached the largest number of points", false, here.point.index + 1};
+}
+
+}  // namespace
+
+Stability make_stability(std::vector<std::complex<double>> values, const std::function<double(std::complex<double>)>& distance) {
+  Stability s;
+  s.values = std::move(values);
+  std::stable_sort(s.values.begin(), s.values.end(), [&](const auto& x, const auto& y) { return distance(x) > distance(y); });
+  for (const auto& v : s.values) s.distance.push_back(distance(v));
+  return s;
+}
+
+const char* name_of(Event event) {
+  switch (event) {
+    case Event::fold:
+      return "fold";
+    case Event::hopf:
+      return "hopf";
+    case Event::cyclic_fold:
+      return "cyclic_fold";
+    case Event::flip:
+      return "flip";
+    case Event::neimark_sacker:
+      return "neimark_sacker";
+    case Event::branch_point:
+      return "branch_point";
+  }
+  return "";
+}
+
+BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options, const BranchCallbacks& callbacks,
+                        std::optional<Restart> restart) {
+  return Follower(problem, options, callbacks).run(std::move(u), std::move(restart));
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,152 @@
+#include "whirl/solve/newton.hpp"
+
+#include <petscksp.h>
+#include <petscsnes.h>
+
+#include <cmath>
+
+#include "whirl/core/gate.hpp"
+
+namespace whirl::solve {
+namespace {
+
+using core::check;
+
+// All callbacks of one solve see this.
+struct Context {
+  ExtendedProblem& problem;
+  Vec row = nullptr;
+  double offset = 0;
+  core::Gate gate;
+};
+
+PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
+  auto& c = *static_cast<Context*>(raw);
+  const PetscErrorCode code = c.gate.run([&] {
+    c.problem.residual(u, r);
+    double value = 0;
+    check(VecDot(c.row, u, &value));
+    set_last_entry(c.problem.comm(), r, value - c.offset);
+  });
+  return c.gate.domain_error() ? SNESSetFunctionDomainError(snes) : code;
+}
+
+PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
+  auto& c = *static_cast<Context*>(raw);
+  const PetscErrorCode code = c.gate.run([&] { c.problem.linearise(u, c.row); });
+  return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
+}
+
+PetscErrorCode shell_multiply(Mat m, Vec v, Vec y) {
+  void* raw = nullptr;
+  PetscCall(MatShellGetContext(m, &raw));
+  auto& c = *static_cast<Context*>(raw);
+  return c.gate.run([&] { c.problem.multiply(v, y); });
+}
+
+PetscErrorCode shell_solve(PC pc, Vec rhs, Vec x) {
+  void* raw = nullptr;
+  PetscCall(PCShellGetContext(pc, &raw));
+  auto& c = *static_cast<Context*>(raw);
+  return c.gate.run([&] { c.problem.solve(rhs, x); });
+}
+
+core::Matrix make_shell(Context& c, Vec like) {
+  PetscInt local = 0, global = 0;
+  check(VecGetLocalSize(like, &local));
+  check(VecGetSize(like, &global));
+  core::Matrix m;
+  check(MatCreateShell(c.problem.comm(), local, local, global, global, &c, m.put()));
+  check(MatShellSetOperation(m.get(), MATOP_MULT, reinterpret_cast<void (*)()>(shell_multiply)));
+  return m;
+}
+
+// The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
+void configure(KSP ksp, Context& c) {
+  check(KSPSetType(ksp, KSPGMRES));
+  check(KSPSetPCSide(ksp, PC_RIGHT));
+  check(KSPSetTolerances(ksp, 1e-9, 1e-300, PETSC_DEFAULT, 20));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCSHELL));
+  check(PCShellSetContext(pc, &c));
+  check(PCShellSetApply(pc, shell_solve));
+}
+
+const char* text_of(SNESConvergedReason reason) {
+  switch (reason) {
+    case SNES_CONVERGED_FNORM_ABS:
+    case SNES_CONVERGED_FNORM_RELATIVE:
+      return "residual below tolerance";
+    case SNES_CONVERGED_SNORM_RELATIVE:
+      return "step below tolerance";
+    case SNES_DIVERGED_FUNCTION_DOMAIN:
+      return "a film left its validity";
+    case SNES_DIVERGED_LINEAR_SOLVE:
+      return "the linear solve did not converge";
+    case SNES_DIVERGED_FNORM_NAN:
+      return "the residual is not a number";
+    case SNES_DIVERGED_MAX_IT:
+      return "too many Newton iterations";
+    case SNES_DIVERGED_LINE_SEARCH:
+      return "the line search found no better point";
+    default:
+      return SNESConvergedReasons[reason];
+  }
+}
+
+}  // namespace
+
+NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, const NewtonOptions& options) {
+  Context c{problem, row, offset, core::Gate(problem.comm())};
+  core::Vector r = core::duplicate(u);
+  core::Matrix shell = make_shell(c, u);
+  core::NonlinearSolver snes;
+  check(SNESCreate(problem.comm(), snes.put()));
+  check(SNESSetOptionsPrefix(snes.get(), options.prefix.c_str()));
+  check(SNESSetFunction(snes.get(), r.get(), form_residual, &c));
+  check(SNESSetJacobian(snes.get(), shell.get(), shell.get(), form_jacobian, &c));
+  PetscInt n = 0;
+  check(VecGetSize(u, &n));
+  const double root_n = std::sqrt(static_cast<double>(n));
+  check(SNESSetTolerances(snes.get(), options.tolerance * root_n, 1e-30, options.step_tolerance, options.max_iterations, 1000));
+  check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
+  SNESLineSearch search = nullptr;
+  check(SNESGetLineSearch(snes.get(), &search));
+  check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+  KSP ksp = nullptr;
+  check(SNESGetKSP(snes.get(), &ksp));
+  configure(ksp, c);
+  check(SNESSetFromOptions(snes.get()));
+  c.gate.rethrow(SNESSolve(snes.get(), nullptr, u));
+
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt iterations = 0, linear = 0;
+  double norm = 0;
+  check(SNESGetConvergedReason(snes.get(), &reason));
+  check(SNESGetIterationNumber(snes.get(), &iterations));
+  check(SNESGetLinearSolveIterations(snes.get(), &linear));
+  check(SNESGetFunctionNorm(snes.get(), &norm));
+  NewtonResult result{reason > 0, static_cast<int>(iterations), static_cast<int>(linear), norm / root_n, text_of(reason)};
+  // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls there has arrived.
+  if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options.tolerance) result.converged = true;
+  if (!result.converged && !c.gate.domain_text().empty()) result.reason += ": " + c.gate.domain_text();
+  return result;
+}
+
+int solve_linear(ExtendedProblem& problem, Vec rhs, Vec x, const std::string& prefix) {
+  Context c{problem, nullptr, 0, core::Gate(problem.comm())};
+  core::Matrix shell = make_shell(c, x);
+  core::LinearSolver ksp;
+  check(KSPCreate(problem.comm(), ksp.put()));
+  check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
+  configure(ksp.get(), c);
+  check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
+  check(KSPSetFromOptions(ksp.get()));
+  c.gate.rethrow(KSPSolve(ksp.get(), rhs, x));
+  PetscInt iterations = 0;
+  check(KSPGetIterationNumber(ksp.get(), &iterations));
+  return static_cast<int>(iterations);
+}
+
+}  // namespace whirl::solve
