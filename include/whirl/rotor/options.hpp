@@ -1,0 +1,70 @@
+#pragma once
+// What a user says about a rotor. Plain data in SI; nodes are 1-based, node k is the left end of segment k.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace whirl::rotor {
+
+/// One Timoshenko beam element of circular section. The material outline gives mass and inertia, the (possibly smaller)
+/// stiffness outline bends; added mass has no stiffness and is spread uniformly over the length.
+struct Segment {
+  std::string rotor;                     // name of the rotor it belongs to (HP, GEN, ...)
+  std::string part;                      // name of the shaft portion
+  double length = 0;                     // m
+  double outer_mass_diameter = 0;        // m
+  double inner_mass_diameter = 0;        // m
+  double outer_stiffness_diameter = 0;   // m; 0: both stiffness diameters equal the mass diameters
+  double inner_stiffness_diameter = 0;   // m
+  double added_mass = 0;                 // kg in the whole element
+  double added_mass_inner_diameter = 0;  // m, annulus of the added mass
+  double added_mass_outer_diameter = 0;  // m
+  double temperature = 293.15;           // K
+};
+
+/// A rigid disc at a node. Inertias are given directly, by geometry (outer_diameter > 0), or both: then they add.
+struct Disc {
+  int node = 0;                  // 1-based
+  double mass = 0;               // kg
+  double polar_inertia = 0;      // kg m^2, about the shaft axis
+  double diametral_inertia = 0;  // kg m^2, about a diameter through the node
+  double outer_diameter = 0;     // m; 0: no geometry
+  double inner_diameter = 0;     // m, bore
+  double thickness = 0;          // m
+  double density = 0;            // kg/m^3; 0: that of the shaft material
+};
+
+/// Material of the shaft. The modulus is linear between the points of the table; one point means a constant.
+struct Material {
+  double density = 7850;                           // kg/m^3
+  double poisson = 0.3;                            // -
+  std::vector<std::pair<double, double>> modulus;  // (K, Pa), temperatures ascending
+  double shear_modulus = 0;                        // Pa, at every temperature; 0: E(T) / (2 (1 + poisson))
+};
+
+/// Which shear coefficient kappa enters Phi = 12 E I / (kappa G A L^2).
+enum class Shear {
+  cowper_solid,   // 6 (1 + nu) / (7 + 6 nu), also for hollow sections
+  cowper_hollow,  // Cowper (1966), hollow circle with the bore of the stiffness outline
+  rigid           // Phi = 0: Rayleigh beam
+};
+
+/// Reduction of the coordinates. Masters are both translations of each master node.
+struct Reduction {
+  enum class Type { none, guyan, craig_bampton };
+  Type type = Type::none;
+  std::vector<int> masters;  // 1-based nodes, at least two, any order
+  int modes = 0;             // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
+};
+
+struct Options {
+  std::vector<Segment> segments;
+  std::vector<Disc> discs;
+  Material material;
+  Shear shear = Shear::cowper_solid;
+  double stiffness_damping = 0;  // s, C = stiffness_damping * K in the stationary frame
+  Reduction reduction;
+};
+
+}  // namespace whirl::rotor

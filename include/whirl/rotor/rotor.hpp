@@ -1,0 +1,60 @@
+#pragma once
+// The matrices of a rotor, reduced if asked.
+
+#include <vector>
+
+#include "whirl/core/petsc.hpp"
+#include "whirl/rotor/options.hpp"
+
+namespace whirl::rotor {
+
+/// M q'' + (C + Omega G) q' + K q = f, with q in m and rad, f in N and N m.
+///
+/// All are AIJ matrices on the rotor's communicator. Coordinates come in pairs (x, y) in natural order along the shaft
+/// that does not depend on the number of ranks; each rank owns whole pairs (whole nodes if not reduced).
+struct Matrices {
+  core::Matrix mass;        // M, symmetric
+  core::Matrix gyroscopic;  // G, skew, multiplied by Omega (rad/s); forward whirl is x -> y
+  core::Matrix stiffness;   // K, symmetric
+  core::Matrix damping;     // C = stiffness_damping K
+  core::Vector gravity;     // kg: nodal weights along -y per unit acceleration; multiply by g
+  core::Matrix basis;       // T (4 n_nodes x size), q_full = T q; empty if not reduced. Loads reduce as T^T f_full.
+  core::Vector offset;  // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
+};
+
+/// How good a reduction is: vibration at frequency omega is followed with a relative error of order
+/// (omega/neglected)^2 or better. Frequencies of the shaft with its masters held, rad/s; zero if not reduced.
+struct ReductionQuality {
+  double retained = 0;   // highest kept fixed-interface frequency (zero for Guyan)
+  double neglected = 0;  // lowest fixed-interface frequency left out; infinite if none is left out
+};
+
+/// A rotor assembled from beam elements and discs.
+///
+/// Full coordinates are 4 (node - 1) + direction with directions x, y, dx/dz, dy/dz. Reduced coordinates are the pairs
+/// (x, y) of the master nodes in ascending order of nodes, then pairs of mass-normalised fixed-interface modes in
+/// ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan 1965), with modes Craig & Bampton (1968).
+/// Construction is collective on `comm`; throws core::InputError on all ranks together.
+class Rotor {
+public:
+  Rotor(MPI_Comm comm, const Options& options);
+
+  [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
+  /// Number of coordinates q.
+  [[nodiscard]] PetscInt size() const noexcept { return size_; }
+  [[nodiscard]] int n_nodes() const noexcept { return n_nodes_; }
+  /// Index of the coordinate that is the displacement of `node` (1-based) in `direction` (0: x, 1: y, 2: dx/dz,
+  /// 3: dy/dz); -1 if it is not retained. Not collective; the same on all ranks.
+  [[nodiscard]] PetscInt coordinate(int node, int direction) const;
+  [[nodiscard]] const ReductionQuality& quality() const noexcept { return quality_; }
+
+private:
+  Matrices matrices_;
+  PetscInt size_ = 0;
+  int n_nodes_ = 0;
+  bool reduced_ = false;
+  std::vector<int> masters_;  // ascending
+  ReductionQuality quality_;
+};
+
+}  // namespace whirl::rotor

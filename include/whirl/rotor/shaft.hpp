@@ -1,0 +1,39 @@
+#pragma once
+// Facts of a shaft that need no linear algebra: lengths, masses, material, and the check of the options.
+
+#include "whirl/rotor/options.hpp"
+
+namespace whirl::rotor {
+
+/// Refuses options that describe no shaft. Throws core::InputError that names the segment, disc or master (1-based).
+void validate(const Options& options);
+
+/// Number of nodes: one more than segments.
+[[nodiscard]] int n_nodes(const Options& options);
+
+/// Axial positions of all nodes in m, from 0 at node 1.
+[[nodiscard]] std::vector<double> node_positions(const Options& options);
+
+/// E(T) in Pa by linear interpolation; throws core::DomainError for a temperature (K) outside a table of several
+/// points.
+[[nodiscard]] double modulus(const Material& material, double temperature);
+
+/// Mass of a segment in kg, shaft and added mass.
+[[nodiscard]] double segment_mass(const Segment& segment, const Material& material);
+
+/// The disc with its geometry turned into inertias: m = rho pi (Do^2 - Di^2) t/4, Jp = m (Do^2 + Di^2)/8,
+/// Jd = Jp/2 + m t^2/12, added to those given.
+[[nodiscard]] Disc resolved(const Disc& disc, const Material& material);
+
+/// Mass of the rotor in kg.
+[[nodiscard]] double total_mass(const Options& options);
+
+/// Mass of the segments between nodes `from` < `to` and of the discs with from <= node < to, in kg: adjoining spans
+/// share nothing.
+[[nodiscard]] double mass_between(const Options& options, int from, int to);
+
+/// Slenderness L/D_eq of the span between two nodes, D_eq = sum(D_OS L)/sum(L) the mean of the outer stiffness
+/// diameter. Source: Gavalas (2022), sec. 4.4, A_S read as the area of the longitudinal profile.
+[[nodiscard]] double slenderness(const Options& options, int from, int to);
+
+}  // namespace whirl::rotor

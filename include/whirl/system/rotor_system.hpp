@@ -1,0 +1,107 @@
+#pragma once
+// Rotor, films, pedestals and forcing as one System.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "whirl/film/model.hpp"
+#include "whirl/problem/system.hpp"
+#include "whirl/rotor/rotor.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::system {
+
+/// A parameter other than the speed: the train as a function of it, from which everything that depends on it is rebuilt.
+struct Varying {
+  std::function<Train(double)> train;
+  double value = 0;      ///< start value, SI
+  double magnitude = 1;  ///< typical size, for the step of the difference quotient dF/dp
+};
+
+/// State of a journal in its bearing, journal minus pedestal minus elevation.
+struct JournalState {
+  std::array<double, 2> position{}, velocity{};  ///< [m], [m/s]
+};
+
+/// F(angle, x, xdot; p) = 0 of a train. With q = (rotor coordinates, pedestals) the state is x = (q_1, v_1, q_2, v_2, ...) and
+///
+///     q' - v = 0
+///     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
+///
+/// f_film acts on the journal and with the opposite sign on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank.
+/// Film i is evaluated on rank i mod size, its ten numbers are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+class RotorSystem : public problem::System {
+ public:
+  /// The speed [rad/s] is the parameter.
+  RotorSystem(MPI_Comm comm, Train train, double speed);
+  /// `varying.value` is the parameter and the speed is fixed.
+  RotorSystem(MPI_Comm comm, Varying varying, double speed);
+  ~RotorSystem() override;
+
+  [[nodiscard]] MPI_Comm comm() const override { return comm_; }
+  [[nodiscard]] PetscInt size() const override { return 2 * n_; }
+  [[nodiscard]] PetscInt local_size() const override { return 2 * (end_ - begin_); }
+  [[nodiscard]] double parameter() const override { return varying_.train ? varying_.value : speed_; }
+  void set_parameter(double p) override;
+  [[nodiscard]] double speed() const override { return speed_; }
+  [[nodiscard]] bool parameter_is_speed() const override { return !varying_.train; }
+  void residual(double angle, Vec x, Vec xdot, Vec f) override;
+  [[nodiscard]] core::Matrix make_jacobian() override;
+  void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) override;
+  void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override;
+  void scales(Vec state_scale, Vec residual_scale) override;
+  [[nodiscard]] problem::Structure* structure() override;
+
+  // Facts about the machine, for studies.
+  [[nodiscard]] const Train& train() const { return train_; }
+  [[nodiscard]] const rotor::Rotor& rotor() const { return *rotor_; }
+  [[nodiscard]] int n_bearings() const { return static_cast<int>(train_.supports.size()); }
+  /// Number of coordinates q: rotor and pedestals.
+  [[nodiscard]] PetscInt coordinates() const { return n_; }
+  /// Coordinate of the journal / pedestal of bearing b in direction d (0 x, 1 y); -1: no pedestal.
+  [[nodiscard]] PetscInt journal(int b, int d) const { return bearings_[static_cast<std::size_t>(b)].journal[static_cast<std::size_t>(d)]; }
+  [[nodiscard]] PetscInt pedestal(int b, int d) const { return bearings_[static_cast<std::size_t>(b)].pedestal[static_cast<std::size_t>(d)]; }
+  /// Journal states from a state held as a whole [size()]. Not collective.
+  [[nodiscard]] std::vector<JournalState> journals(const double* x) const;
+  /// Film responses at the states of the journals, each evaluated by its rank; the same answer on all ranks. Collective.
+  [[nodiscard]] std::vector<film::Response> film_responses(const std::vector<JournalState>& journals, film::Need need);
+  [[nodiscard]] film::Model& film(int b) { return *bearings_[static_cast<std::size_t>(b)].film; }
+  /// Whole state on every rank [size()]. Collective.
+  [[nodiscard]] std::vector<double> gather(Vec x) const;
+  /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes q, 1 takes v. Static shapes of a
+  /// reduced rotor need the gravity offset: `with_gravity`. Collective.
+  [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
+  /// Force of unbalance per Omega^2 on each coordinate as cosine and sine parts [coordinates()], whole on every rank.
+  [[nodiscard]] const std::vector<double>& unbalance_cosine() const { return unbalance_c_; }
+  [[nodiscard]] const std::vector<double>& unbalance_sine() const { return unbalance_s_; }
+
+ private:
+  struct Bearing {
+    std::array<PetscInt, 2> journal{-1, -1}, pedestal{-1, -1};
+    std::unique_ptr<film::Model> film;
+  };
+  class Blocks;
+
+  void build();
+  void set_train(Train train);
+  [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
+  /// Journal states on every rank from the distributed state. Collective.
+  [[nodiscard]] std::vector<JournalState> journals_of(Vec x);
+
+  MPI_Comm comm_;
+  Train train_;
+  Varying varying_;
+  double speed_;
+  std::unique_ptr<rotor::Rotor> rotor_;
+  std::vector<Bearing> bearings_;
+  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;  // coordinates: all, of the rotor, this rank's range
+  core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
+  std::vector<double> load_;                             // gravity on this rank's coordinates [N]
+  std::vector<double> unbalance_c_, unbalance_s_;        // whole, per Omega^2
+  core::Scatter gather_inputs_;
+  core::Vector inputs_;
+  std::unique_ptr<Blocks> blocks_;
+};
+
+}  // namespace whirl::system

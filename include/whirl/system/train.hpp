@@ -1,0 +1,37 @@
+#pragma once
+// A machine with every name resolved and every number in SI: what the equations are made of.
+
+#include <array>
+#include <vector>
+
+#include "whirl/film/options.hpp"
+#include "whirl/rotor/options.hpp"
+
+namespace whirl::system {
+
+/// A bearing: film between the journal at `node` and a pedestal (or the rigid ground).
+struct Support {
+  int node = 0;           ///< 1-based
+  double elevation = 0;   ///< of the bearing centre, positive up [m]
+  film::Geometry geometry;
+  film::Options film;
+  film::Lubricant lubricant;
+  bool has_pedestal = false;
+  std::array<double, 2> mass{}, stiffness{}, damping{};  ///< of the pedestal in x and y [kg, N/m, N s/m]
+};
+
+/// An unbalance U at a node: force U Omega^2 (cos, sin)(angle + phase).
+struct UnbalanceMass {
+  int node = 0;
+  double amount = 0;  ///< U [kg m]
+  double phase = 0;   ///< [rad]
+};
+
+struct Train {
+  rotor::Options rotor;
+  double gravity = 9.81;  ///< along -y [m/s^2]
+  std::vector<Support> supports;
+  std::vector<UnbalanceMass> unbalance;
+};
+
+}  // namespace whirl::system

@@ -1,0 +1,58 @@
+#include "eigen.hpp"
+
+#include <fmt/core.h>
+#include <slepceps.h>
+
+#include <algorithm>
+
+#include "planar.hpp"
+
+namespace whirl::rotor {
+
+using core::check;
+
+std::vector<double> lowest_eigenvalues(Mat stiffness, Mat mass, double shift, PetscInt count,
+                                       const std::vector<Vec>& rigid, const std::function<void(PetscInt, Vec)>& take) {
+  PetscInt n = 0;
+  check(MatGetSize(stiffness, &n, nullptr));
+  const PetscInt n_rigid = static_cast<PetscInt>(rigid.size());
+  count = std::min(count, n - n_rigid);
+  if (count <= 0) return {};
+
+  core::Handle<EPS, EPSDestroy> eps;
+  check(EPSCreate(PetscObjectComm(reinterpret_cast<PetscObject>(stiffness)), eps.put()));
+  check(EPSSetOperators(eps.get(), stiffness, mass));
+  check(EPSSetProblemType(eps.get(), EPS_GHEP));
+  check(EPSSetOptionsPrefix(eps.get(), "rotor_"));
+  check(EPSSetTarget(eps.get(), shift));
+  check(EPSSetWhichEigenpairs(eps.get(), EPS_TARGET_MAGNITUDE));
+  check(EPSSetDimensions(eps.get(), count, std::min(n - n_rigid, std::max(2 * count, count + 15)), PETSC_DEFAULT));
+  check(EPSSetTolerances(eps.get(), 1e-13, 1000));
+  ST st = nullptr;
+  KSP ksp = nullptr;
+  check(EPSGetST(eps.get(), &st));
+  check(STSetType(st, STSINVERT));
+  check(STGetKSP(st, &ksp));
+  make_direct(ksp);
+  std::vector<Vec> space(rigid);
+  if (n_rigid > 0) check(EPSSetDeflationSpace(eps.get(), n_rigid, space.data()));
+  check(EPSSetFromOptions(eps.get()));
+  check(EPSSolve(eps.get()));
+
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  if (converged < count)
+    throw core::NotConverged(fmt::format("only {} of {} natural frequencies converged", converged, count));
+  core::Vector v;
+  check(MatCreateVecs(stiffness, v.put(), nullptr));
+  std::vector<double> values;
+  for (PetscInt i = 0; i < count; ++i) {
+    double value = 0;
+    check(EPSGetEigenpair(eps.get(), i, &value, nullptr, v.get(), nullptr));
+    values.push_back(value);
+    if (take) take(i, v.get());
+  }
+  return values;
+}
+
+}  // namespace whirl::rotor

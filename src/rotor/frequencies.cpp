@@ -1,0 +1,95 @@
+#include "whirl/rotor/frequencies.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eigen.hpp"
+#include "planar.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/rotor/element.hpp"
+#include "whirl/rotor/shaft.hpp"
+
+namespace whirl::rotor {
+namespace {
+
+using core::check;
+
+// Order of magnitude of the lowest bending eigenvalue, from the mean of E I and of the mass.
+double bending_scale(const Options& o) {
+  double length = 0, bending = 0;
+  for (const Segment& s : o.segments) {
+    const Beam b = make_beam(s, o.material, o.shear);
+    length += b.length;
+    bending += b.length * b.bending_stiffness;
+  }
+  return bending / (total_mass(o) * length * length * length * length);
+}
+
+// Planar rigid motions of the free shaft that leave the pinned nodes at rest, restricted to `free`.
+std::vector<core::Vector> rigid_motions(Vec layout, IS free, const std::vector<double>& z,
+                                        const std::vector<int>& pinned) {
+  std::vector<core::Vector> motions;
+  PetscInt begin = 0, end = 0, n = 0;
+  check(VecGetOwnershipRange(layout, &begin, &end));
+  check(ISGetLocalSize(free, &n));
+  auto add = [&](double shift, double tilt) {
+    core::Vector whole = core::duplicate(layout);
+    {
+      const core::WriteArray a(whole.get());
+      for (PetscInt i = begin; i < end; ++i)
+        a[i - begin] = i % 2 == 1 ? tilt : shift + tilt * z[static_cast<std::size_t>(i / 2)];
+    }
+    Vec part = nullptr;
+    check(VecGetSubVector(whole.get(), free, &part));
+    core::Vector copy = core::duplicate(part);
+    check(VecCopy(part, copy.get()));
+    check(VecRestoreSubVector(whole.get(), free, &part));
+    motions.push_back(std::move(copy));
+  };
+  if (pinned.empty()) {
+    add(1, 0);
+    add(-z.back() / 2, 1);
+  } else if (pinned.size() == 1) {
+    add(-z[static_cast<std::size_t>(pinned.front() - 1)], 1);
+  }
+  return motions;
+}
+
+}  // namespace
+
+std::vector<double> natural_frequencies(MPI_Comm comm, const Options& o, const std::vector<int>& pinned, int count) {
+  core::agree(comm, [&] {
+    validate(o);
+    for (int node : pinned)
+      if (node < 1 || node > n_nodes(o))
+        throw core::InputError(fmt::format("rotor: pinned node {} is not in 1..{}", node, n_nodes(o)));
+  });
+  std::vector<int> held(pinned);
+  std::sort(held.begin(), held.end());
+  held.erase(std::unique(held.begin(), held.end()), held.end());
+
+  const Planar planar = assemble_planar(comm, o);
+  PetscInt begin = 0, end = 0;
+  check(VecGetOwnershipRange(planar.weight.get(), &begin, &end));
+  std::vector<PetscInt> kept;
+  for (PetscInt i = begin; i < end; ++i)
+    if (i % 2 == 1 || !std::binary_search(held.begin(), held.end(), static_cast<int>(i / 2) + 1)) kept.push_back(i);
+  core::IndexSet free;
+  check(ISCreateGeneral(comm, static_cast<PetscInt>(kept.size()), kept.data(), PETSC_COPY_VALUES, free.put()));
+  core::Matrix k, m;
+  check(MatCreateSubMatrix(planar.stiffness.get(), free.get(), free.get(), MAT_INITIAL_MATRIX, k.put()));
+  check(MatCreateSubMatrix(planar.mass.get(), free.get(), free.get(), MAT_INITIAL_MATRIX, m.put()));
+
+  const std::vector<core::Vector> rigid = rigid_motions(planar.weight.get(), free.get(), node_positions(o), held);
+  std::vector<Vec> raw;
+  for (const core::Vector& r : rigid) raw.push_back(r.get());
+  // A free shaft has a singular K: a negative shift of the order of the first bending eigenvalue makes it definite.
+  const double shift = raw.empty() ? 0.0 : -bending_scale(o);
+  std::vector<double> frequencies = lowest_eigenvalues(k.get(), m.get(), shift, count, raw);
+  for (double& f : frequencies) f = std::sqrt(f);
+  return frequencies;
+}
+
+}  // namespace whirl::rotor

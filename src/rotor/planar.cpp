@@ -1,0 +1,156 @@
+#include "planar.hpp"
+
+#include <array>
+#include <vector>
+
+#include "whirl/rotor/element.hpp"
+#include "whirl/rotor/shaft.hpp"
+
+namespace whirl::rotor {
+namespace {
+
+using core::check;
+
+// A node couples with itself and its two neighbours; neighbours of the first and last owned node may be elsewhere.
+core::Matrix make_chain_matrix(MPI_Comm comm, PetscInt local_nodes, PetscInt first, PetscInt nodes) {
+  std::vector<PetscInt> here, elsewhere;
+  for (PetscInt node = first; node < first + local_nodes; ++node) {
+    PetscInt inside = 2, outside = 0;
+    if (node > 0) (node > first ? inside : outside) += 2;
+    if (node < nodes - 1) (node < first + local_nodes - 1 ? inside : outside) += 2;
+    here.insert(here.end(), 2, inside);
+    elsewhere.insert(elsewhere.end(), 2, outside);
+  }
+  core::Matrix m;
+  check(MatCreateAIJ(comm, 2 * local_nodes, 2 * local_nodes, 2 * nodes, 2 * nodes, 0, here.data(), 0, elsewhere.data(),
+                     m.put()));
+  return m;
+}
+
+void add(Mat m, const std::array<PetscInt, 4>& at, const Eigen::Matrix4d& values) {
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = values;
+  check(MatSetValues(m, 4, at.data(), 4, at.data(), rows.data(), ADD_VALUES));
+}
+
+}  // namespace
+
+Planar assemble_planar(MPI_Comm comm, const Options& o) {
+  PetscInt local = PETSC_DECIDE, nodes = n_nodes(o), end = 0;
+  check(PetscSplitOwnership(comm, &local, &nodes));
+  MPI_Scan(&local, &end, 1, MPIU_INT, MPI_SUM, comm);
+  const PetscInt first = end - local;
+
+  Planar p;
+  for (core::Matrix* m : {&p.mass, &p.gyroscopic, &p.stiffness}) *m = make_chain_matrix(comm, local, first, nodes);
+  p.weight = core::make_vector(comm, 2 * local, 2 * nodes);
+
+  for (PetscInt node = first; node < end && node < nodes - 1; ++node) {
+    const Beam beam = make_beam(o.segments[static_cast<std::size_t>(node)], o.material, o.shear);
+    const std::array<PetscInt, 4> at{2 * node, 2 * node + 1, 2 * node + 2, 2 * node + 3};
+    const Eigen::Matrix4d rotary = rotary_mass(beam);
+    add(p.mass.get(), at, translational_mass(beam) + rotary);
+    add(p.gyroscopic.get(), at, 2 * rotary);
+    add(p.stiffness.get(), at, stiffness(beam));
+    const Eigen::Vector4d f = weight(beam);
+    check(VecSetValues(p.weight.get(), 4, at.data(), f.data(), ADD_VALUES));
+  }
+  for (const Disc& given : o.discs) {
+    const PetscInt node = given.node - 1;
+    if (node < first || node >= end) continue;
+    const Disc disc = resolved(given, o.material);
+    check(MatSetValue(p.mass.get(), 2 * node, 2 * node, disc.mass, ADD_VALUES));
+    check(MatSetValue(p.mass.get(), 2 * node + 1, 2 * node + 1, disc.diametral_inertia, ADD_VALUES));
+    check(MatSetValue(p.gyroscopic.get(), 2 * node + 1, 2 * node + 1, disc.polar_inertia, ADD_VALUES));
+    check(VecSetValue(p.weight.get(), 2 * node, disc.mass, ADD_VALUES));
+  }
+  for (core::Matrix* m : {&p.mass, &p.gyroscopic, &p.stiffness}) {
+    check(MatAssemblyBegin(m->get(), MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(m->get(), MAT_FINAL_ASSEMBLY));
+  }
+  check(VecAssemblyBegin(p.weight.get()));
+  check(VecAssemblyEnd(p.weight.get()));
+  return p;
+}
+
+core::Matrix doubled(Mat planar, const Pattern& t) {
+  PetscInt rows = 0, columns = 0, row_begin = 0, row_end = 0, column_begin = 0, column_end = 0;
+  check(MatGetLocalSize(planar, &rows, &columns));
+  check(MatGetOwnershipRange(planar, &row_begin, &row_end));
+  check(MatGetOwnershipRangeColumn(planar, &column_begin, &column_end));
+  const std::array<std::array<double, 2>, 2> factor{{{t.xx, t.xy}, {t.yx, t.yy}}};
+
+  std::vector<PetscInt> here, elsewhere;
+  for (PetscInt i = row_begin; i < row_end; ++i) {
+    PetscInt n = 0, inside = 0;
+    const PetscInt* at = nullptr;
+    check(MatGetRow(planar, i, &n, &at, nullptr));
+    for (PetscInt k = 0; k < n; ++k) inside += at[k] >= column_begin && at[k] < column_end;
+    for (const auto& f : factor) {
+      const PetscInt per_entry = (f[0] != 0) + (f[1] != 0);
+      here.push_back(per_entry * inside);
+      elsewhere.push_back(per_entry * (n - inside));
+    }
+    check(MatRestoreRow(planar, i, &n, &at, nullptr));
+  }
+
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(planar));
+  core::Matrix m;
+  check(MatCreateAIJ(comm, 2 * rows, 2 * columns, PETSC_DETERMINE, PETSC_DETERMINE, 0, here.data(), 0, elsewhere.data(),
+                     m.put()));
+  std::vector<PetscInt> at;
+  std::vector<double> values;
+  for (PetscInt i = row_begin; i < row_end; ++i) {
+    PetscInt n = 0;
+    const PetscInt* columns_of_row = nullptr;
+    const PetscScalar* a = nullptr;
+    check(MatGetRow(planar, i, &n, &columns_of_row, &a));
+    for (PetscInt d = 0; d < 2; ++d) {
+      at.clear();
+      values.clear();
+      for (PetscInt k = 0; k < n; ++k)
+        for (PetscInt e = 0; e < 2; ++e)
+          if (const double f = factor[static_cast<std::size_t>(d)][static_cast<std::size_t>(e)]; f != 0) {
+            at.push_back(2 * columns_of_row[k] + e);
+            values.push_back(f * a[k]);
+          }
+      const PetscInt row = 2 * i + d;
+      check(MatSetValues(m.get(), 1, &row, static_cast<PetscInt>(at.size()), at.data(), values.data(), INSERT_VALUES));
+    }
+    check(MatRestoreRow(planar, i, &n, &columns_of_row, &a));
+  }
+  check(MatAssemblyBegin(m.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
+  return m;
+}
+
+core::Vector doubled_vertical(Vec planar, double scale) {
+  const core::ReadArray from(planar);
+  core::Vector v =
+      core::make_vector(PetscObjectComm(reinterpret_cast<PetscObject>(planar)), 2 * from.size(), PETSC_DETERMINE);
+  const core::WriteArray to(v.get());
+  for (PetscInt i = 0; i < from.size(); ++i) to[2 * i + 1] = scale * from[i];
+  return v;
+}
+
+void make_direct(KSP ksp) {
+  PC pc = nullptr;
+  check(KSPSetType(ksp, KSPPREONLY));
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCLU));
+  if (core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(ksp))) > 1)
+    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+core::LinearSolver direct_solver(Mat matrix) {
+  core::LinearSolver ksp;
+  check(KSPCreate(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), ksp.put()));
+  make_direct(ksp.get());
+  check(KSPSetOperators(ksp.get(), matrix, matrix));
+  check(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
+  check(KSPSetOptionsPrefix(ksp.get(), "rotor_"));
+  check(KSPSetFromOptions(ksp.get()));
+  check(KSPSetUp(ksp.get()));
+  return ksp;
+}
+
+}  // namespace whirl::rotor

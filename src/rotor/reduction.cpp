@@ -1,0 +1,195 @@
+#include "reduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "eigen.hpp"
+
+namespace whirl::rotor {
+namespace {
+
+using core::check;
+
+MPI_Comm comm_of(Mat m) {
+  return PetscObjectComm(reinterpret_cast<PetscObject>(m));
+}
+
+core::IndexSet make_set(MPI_Comm comm, const std::vector<PetscInt>& indices) {
+  core::IndexSet set;
+  check(ISCreateGeneral(comm, static_cast<PetscInt>(indices.size()), indices.data(), PETSC_COPY_VALUES, set.put()));
+  return set;
+}
+
+core::Matrix block(Mat a, IS rows, IS columns) {
+  core::Matrix b;
+  check(MatCreateSubMatrix(a, rows, columns, MAT_INITIAL_MATRIX, b.put()));
+  return b;
+}
+
+// An eigenvector is known up to its sign. A fixed generic direction decides it, the same for every rank count; the
+// largest entry would not do, since an antisymmetric mode has two of the same size.
+void fix_sign(Vec v) {
+  core::Vector direction = core::duplicate(v);
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(v, &begin, nullptr));
+  {
+    const core::WriteArray d(direction.get());
+    for (PetscInt i = 0; i < d.size(); ++i) d[i] = 1 + std::cos(static_cast<double>(begin + i));
+  }
+  double product = 0;
+  check(VecDot(v, direction.get(), &product));
+  if (product < 0) check(VecScale(v, -1));
+}
+
+// The same small matrix on all ranks, as an AIJ matrix split by PETSc.
+core::Matrix distribute(const Eigen::MatrixXd& a, MPI_Comm comm) {
+  PetscInt local = PETSC_DECIDE, n = a.rows(), begin = 0, end = 0;
+  check(PetscSplitOwnership(comm, &local, &n));
+  core::Matrix m;
+  check(MatCreateAIJ(comm, local, local, n, n, local, nullptr, n - local, nullptr, m.put()));
+  check(MatGetOwnershipRange(m.get(), &begin, &end));
+  for (PetscInt i = begin; i < end; ++i)
+    for (PetscInt j = 0; j < n; ++j) check(MatSetValue(m.get(), i, j, a(i, j), INSERT_VALUES));
+  check(MatAssemblyBegin(m.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
+  return m;
+}
+
+}  // namespace
+
+PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
+  const Mat k = planar.stiffness.get();
+  const MPI_Comm comm = comm_of(k);
+  std::vector<int> masters(reduction.masters);
+  std::sort(masters.begin(), masters.end());
+
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(k, &begin, &end));
+  std::vector<PetscInt> m, s;
+  for (PetscInt i = begin; i < end; ++i) {
+    const bool master = i % 2 == 0 && std::binary_search(masters.begin(), masters.end(), static_cast<int>(i / 2) + 1);
+    (master ? m : s).push_back(i);
+  }
+  const core::IndexSet master_set = make_set(comm, m), slave_set = make_set(comm, s);
+  const core::Matrix k_ss = block(k, slave_set.get(), slave_set.get()),
+                     k_sm = block(k, slave_set.get(), master_set.get());
+  const core::Matrix m_ss = block(planar.mass.get(), slave_set.get(), slave_set.get());
+  const core::LinearSolver solver = direct_solver(k_ss.get());
+
+  const bool with_modes = reduction.type == Reduction::Type::craig_bampton;
+  const PetscInt n_masters = static_cast<PetscInt>(masters.size()), n_modes = with_modes ? reduction.modes : 0;
+  PlanarBasis basis;
+  basis.rows = Eigen::MatrixXd::Zero(end - begin, n_masters + n_modes);
+  basis.offset = Eigen::VectorXd::Zero(end - begin);
+  auto scatter = [&](Vec slave, auto&& column, double scale) {
+    const core::ReadArray a(slave);
+    for (std::size_t i = 0; i < s.size(); ++i) column(s[i] - begin) += scale * a[static_cast<PetscInt>(i)];
+  };
+
+  core::Vector unit, x, f;
+  check(MatCreateVecs(k_sm.get(), unit.put(), f.put()));
+  x = core::duplicate(f.get());
+  PetscInt first_master = 0;
+  check(VecGetOwnershipRange(unit.get(), &first_master, nullptr));
+  for (std::size_t i = 0; i < m.size(); ++i) basis.rows(m[i] - begin, first_master + static_cast<PetscInt>(i)) = 1;
+  for (PetscInt j = 0; j < n_masters; ++j) {
+    check(VecSet(unit.get(), 0));
+    if (j >= first_master && j < first_master + static_cast<PetscInt>(m.size()))
+      check(VecSetValue(unit.get(), j, 1, INSERT_VALUES));
+    check(VecAssemblyBegin(unit.get()));
+    check(VecAssemblyEnd(unit.get()));
+    check(MatMult(k_sm.get(), unit.get(), f.get()));
+    check(KSPSolve(solver.get(), f.get(), x.get()));
+    scatter(x.get(), basis.rows.col(j), -1);
+  }
+
+  {
+    const core::ReadArray w(planar.weight.get());
+    const core::WriteArray a(f.get());
+    for (std::size_t i = 0; i < s.size(); ++i) a[static_cast<PetscInt>(i)] = w[s[i] - begin];
+  }
+  check(KSPSolve(solver.get(), f.get(), x.get()));
+  scatter(x.get(), basis.offset, 1);
+
+  // One mode more than kept tells where the reduced model ends.
+  std::vector<double> values;
+  values = lowest_eigenvalues(k_ss.get(), m_ss.get(), 0.0, n_modes + 1, {}, [&](PetscInt i, Vec v) {
+    if (i >= n_modes) return;
+    fix_sign(v);
+    scatter(v, basis.rows.col(n_masters + i), 1);
+  });
+  // Taken out of the offset: what the modes carry of the static shape.
+  for (PetscInt i = 0; i < n_modes; ++i) {
+    const auto mode = basis.rows.col(n_masters + i);
+    const core::ReadArray w(planar.weight.get());
+    double mine = 0, product = 0;
+    for (PetscInt row = 0; row < w.size(); ++row) mine += mode(row) * w[row];
+    MPI_Allreduce(&mine, &product, 1, MPI_DOUBLE, MPI_SUM, comm);
+    basis.offset -= product / values[static_cast<std::size_t>(i)] * mode;
+  }
+  if (n_modes > 0) basis.quality.retained = std::sqrt(values[static_cast<std::size_t>(n_modes - 1)]);
+  basis.quality.neglected = static_cast<PetscInt>(values.size()) > n_modes ? std::sqrt(values.back())
+                                                                           : std::numeric_limits<double>::infinity();
+  return basis;
+}
+
+core::Matrix to_matrix(const PlanarBasis& basis, MPI_Comm comm) {
+  PetscInt local = PETSC_DECIDE, n = basis.rows.cols(), begin = 0, column_end = 0;
+  check(PetscSplitOwnership(comm, &local, &n));
+  MPI_Scan(&local, &column_end, 1, MPIU_INT, MPI_SUM, comm);
+  std::vector<PetscInt> here, elsewhere;
+  for (Eigen::Index i = 0; i < basis.rows.rows(); ++i) {
+    const auto inside = basis.rows.row(i).segment(column_end - local, local).array() != 0;
+    const PetscInt n_inside = static_cast<PetscInt>(inside.count());
+    here.push_back(n_inside);
+    elsewhere.push_back(static_cast<PetscInt>((basis.rows.row(i).array() != 0).count()) - n_inside);
+  }
+  core::Matrix t;
+  check(MatCreateAIJ(comm, static_cast<PetscInt>(basis.rows.rows()), local, PETSC_DETERMINE, n, 0, here.data(), 0,
+                     elsewhere.data(), t.put()));
+  check(MatGetOwnershipRange(t.get(), &begin, nullptr));
+  for (Eigen::Index i = 0; i < basis.rows.rows(); ++i)
+    for (PetscInt j = 0; j < n; ++j)
+      if (basis.rows(i, j) != 0)
+        check(MatSetValue(t.get(), begin + static_cast<PetscInt>(i), j, basis.rows(i, j), INSERT_VALUES));
+  check(MatAssemblyBegin(t.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(t.get(), MAT_FINAL_ASSEMBLY));
+  return t;
+}
+
+core::Matrix project(Mat a, const PlanarBasis& basis) {
+  const MPI_Comm comm = comm_of(a);
+  const Eigen::Index n = basis.rows.cols();
+  core::Vector x, y;
+  check(MatCreateVecs(a, x.put(), y.put()));
+  Eigen::MatrixXd mine(n, n), sum(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    {
+      const core::WriteArray to(x.get());
+      Eigen::Map<Eigen::VectorXd>(to.data(), to.size()) = basis.rows.col(j);
+    }
+    check(MatMult(a, x.get(), y.get()));
+    const core::ReadArray from(y.get());
+    mine.col(j) = basis.rows.transpose() * Eigen::Map<const Eigen::VectorXd>(from.data(), from.size());
+  }
+  MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(n * n), MPI_DOUBLE, MPI_SUM, comm);
+  return distribute((sum + sum.transpose()) / 2, comm);
+}
+
+core::Vector project(Vec f, const PlanarBasis& basis) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(f));
+  const core::ReadArray from(f);
+  const Eigen::VectorXd mine = basis.rows.transpose() * Eigen::Map<const Eigen::VectorXd>(from.data(), from.size());
+  Eigen::VectorXd sum(mine.size());
+  MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, comm);
+  core::Vector v = core::make_vector(comm, PETSC_DECIDE, static_cast<PetscInt>(sum.size()));
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(v.get(), &begin, nullptr));
+  const core::WriteArray to(v.get());
+  for (PetscInt i = 0; i < to.size(); ++i) to[i] = sum(begin + i);
+  return v;
+}
+
+}  // namespace whirl::rotor

@@ -1,0 +1,160 @@
+#include "whirl/rotor/shaft.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::rotor {
+namespace {
+
+using core::InputError;
+using std::numbers::pi;
+
+void refuse_unless(bool good, const std::string& what) {
+  if (!good) throw InputError("rotor: " + what);
+}
+
+void validate(const Material& m) {
+  refuse_unless(m.density > 0, "the density must be positive");
+  refuse_unless(m.poisson > -1 && m.poisson <= 0.5, "Poisson's ratio must lie in (-1, 0.5]");
+  refuse_unless(m.shear_modulus >= 0, "the shear modulus must not be negative");
+  refuse_unless(!m.modulus.empty(), "the modulus is missing");
+  for (std::size_t i = 0; i < m.modulus.size(); ++i) {
+    refuse_unless(m.modulus[i].second > 0, fmt::format("modulus {}: must be positive", i + 1));
+    refuse_unless(i == 0 || m.modulus[i].first > m.modulus[i - 1].first,
+                  fmt::format("modulus {}: temperatures must ascend", i + 1));
+  }
+}
+
+void validate(const Segment& s, const std::string& name) {
+  refuse_unless(s.length > 0, name + ": the length must be positive");
+  refuse_unless(s.inner_mass_diameter >= 0 && s.outer_mass_diameter > s.inner_mass_diameter,
+                name + ": mass diameters must satisfy outer > inner >= 0");
+  if (s.outer_stiffness_diameter != 0)
+    refuse_unless(s.inner_stiffness_diameter >= 0 && s.outer_stiffness_diameter > s.inner_stiffness_diameter,
+                  name + ": stiffness diameters must satisfy outer > inner >= 0");
+  refuse_unless(s.added_mass >= 0, name + ": the added mass must not be negative");
+  refuse_unless(s.added_mass_inner_diameter >= 0 && s.added_mass_outer_diameter >= s.added_mass_inner_diameter,
+                name + ": diameters of the added mass must satisfy outer >= inner >= 0");
+}
+
+void validate(const Disc& d, int nodes, const std::string& name) {
+  refuse_unless(d.node >= 1 && d.node <= nodes, fmt::format("{}: node {} is not in 1..{}", name, d.node, nodes));
+  refuse_unless(d.mass >= 0 && d.polar_inertia >= 0 && d.diametral_inertia >= 0 && d.density >= 0,
+                name + ": mass, inertias and density must not be negative");
+  if (d.outer_diameter != 0)
+    refuse_unless(d.inner_diameter >= 0 && d.outer_diameter > d.inner_diameter && d.thickness > 0,
+                  name + ": geometry must satisfy outer > inner >= 0 and thickness > 0");
+}
+
+void validate(const Reduction& r, int nodes) {
+  if (r.type == Reduction::Type::none) return;
+  std::set<int> seen;
+  for (int node : r.masters) {
+    refuse_unless(node >= 1 && node <= nodes, fmt::format("master node {} is not in 1..{}", node, nodes));
+    refuse_unless(seen.insert(node).second, fmt::format("master node {} is listed twice", node));
+  }
+  refuse_unless(r.masters.size() >= 2, "a reduction needs at least two master nodes");
+  if (r.type != Reduction::Type::craig_bampton) return;
+  const int slaves = 2 * nodes - static_cast<int>(r.masters.size());
+  refuse_unless(r.modes >= 0 && r.modes <= slaves,
+                fmt::format("{} fixed-interface modes per plane are not in 0..{}", r.modes, slaves));
+}
+
+}  // namespace
+
+void validate(const Options& o) {
+  validate(o.material);
+  refuse_unless(!o.segments.empty(), "there are no segments");
+  refuse_unless(o.stiffness_damping >= 0, "the stiffness damping must not be negative");
+  for (std::size_t i = 0; i < o.segments.size(); ++i) {
+    const std::string name = fmt::format("segment {}", i + 1);
+    validate(o.segments[i], name);
+    try {
+      (void)modulus(o.material, o.segments[i].temperature);
+    } catch (const core::DomainError& e) {
+      throw InputError(fmt::format("rotor: {}: {}", name, e.what()));
+    }
+  }
+  for (std::size_t i = 0; i < o.discs.size(); ++i) validate(o.discs[i], n_nodes(o), fmt::format("disc {}", i + 1));
+  validate(o.reduction, n_nodes(o));
+}
+
+int n_nodes(const Options& o) {
+  return static_cast<int>(o.segments.size()) + 1;
+}
+
+std::vector<double> node_positions(const Options& o) {
+  std::vector<double> z{0.0};
+  for (const Segment& s : o.segments) z.push_back(z.back() + s.length);
+  return z;
+}
+
+double modulus(const Material& m, double temperature) {
+  if (m.modulus.empty()) throw core::DomainError("the modulus is missing");
+  if (m.modulus.size() == 1) return m.modulus.front().second;
+  if (!(temperature >= m.modulus.front().first && temperature <= m.modulus.back().first))
+    throw core::DomainError(fmt::format("temperature {} K is outside the table of the modulus, {} K to {} K",
+                                        temperature, m.modulus.front().first, m.modulus.back().first));
+  auto right = std::lower_bound(m.modulus.begin() + 1, m.modulus.end() - 1, temperature,
+                                [](const auto& point, double t) { return point.first < t; });
+  const auto& [t0, e0] = *(right - 1);
+  const auto& [t1, e1] = *right;
+  return e0 + (e1 - e0) * (temperature - t0) / (t1 - t0);
+}
+
+double segment_mass(const Segment& s, const Material& m) {
+  const double area =
+      pi / 4 * (s.outer_mass_diameter * s.outer_mass_diameter - s.inner_mass_diameter * s.inner_mass_diameter);
+  return m.density * area * s.length + s.added_mass;
+}
+
+Disc resolved(const Disc& d, const Material& m) {
+  Disc r;
+  r.node = d.node;
+  r.mass = d.mass;
+  r.polar_inertia = d.polar_inertia;
+  r.diametral_inertia = d.diametral_inertia;
+  if (d.outer_diameter == 0) return r;
+  const double outer2 = d.outer_diameter * d.outer_diameter, inner2 = d.inner_diameter * d.inner_diameter;
+  const double mass = (d.density > 0 ? d.density : m.density) * pi / 4 * (outer2 - inner2) * d.thickness;
+  const double polar = mass * (outer2 + inner2) / 8;
+  r.mass += mass;
+  r.polar_inertia += polar;
+  r.diametral_inertia += polar / 2 + mass * d.thickness * d.thickness / 12;
+  return r;
+}
+
+double total_mass(const Options& o) {
+  double mass = 0;
+  for (const Segment& s : o.segments) mass += segment_mass(s, o.material);
+  for (const Disc& d : o.discs) mass += resolved(d, o.material).mass;
+  return mass;
+}
+
+double mass_between(const Options& o, int from, int to) {
+  refuse_unless(from >= 1 && from < to && to <= n_nodes(o), fmt::format("nodes {}, {} bound no span", from, to));
+  double mass = 0;
+  for (int k = from; k < to; ++k) mass += segment_mass(o.segments[static_cast<std::size_t>(k - 1)], o.material);
+  for (const Disc& d : o.discs)
+    if (d.node >= from && d.node < to) mass += resolved(d, o.material).mass;
+  return mass;
+}
+
+double slenderness(const Options& o, int from, int to) {
+  refuse_unless(from >= 1 && from < to && to <= n_nodes(o), fmt::format("nodes {}, {} bound no span", from, to));
+  double length = 0, profile = 0;
+  for (int k = from; k < to; ++k) {
+    const Segment& s = o.segments[static_cast<std::size_t>(k - 1)];
+    length += s.length;
+    profile += s.length * (s.outer_stiffness_diameter > 0 ? s.outer_stiffness_diameter : s.outer_mass_diameter);
+  }
+  return length * length / profile;
+}
+
+}  // namespace whirl::rotor
