@@ -1,0 +1,465 @@
+#include "whirl/system/rotor_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "blocks.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/rotor/shaft.hpp"
+
+namespace whirl::system {
+namespace {
+
+using core::check;
+
+// `m` of the rotor with the pedestals' diagonal appended behind it; `local` rows on this rank.
+core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor, const std::vector<std::pair<PetscInt, double>>& diagonal) {
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(m, &begin, &end));
+  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local, 1)), 1);
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt k = 0;
+    check(MatGetRow(m, i, &k, nullptr, nullptr));
+    count[static_cast<std::size_t>(i - begin)] = k;
+    check(MatRestoreRow(m, i, &k, nullptr, nullptr));
+  }
+  core::Matrix out;
+  check(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(m)), out.put()));
+  check(MatSetSizes(out.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(out.get(), MATAIJ));
+  check(MatSeqAIJSetPreallocation(out.get(), 0, count.data()));
+  check(MatMPIAIJSetPreallocation(out.get(), 0, count.data(), 0, count.data()));
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt k = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(m, i, &k, &columns, &values));
+    check(MatSetValues(out.get(), 1, &i, k, columns, values, INSERT_VALUES));
+    check(MatRestoreRow(m, i, &k, &columns, &values));
+  }
+  if (end == n_rotor && local > end - begin)
+    for (const auto& [row, value] : diagonal) check(MatSetValue(out.get(), row, row, value, INSERT_VALUES));
+  check(MatAssemblyBegin(out.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(out.get(), MAT_FINAL_ASSEMBLY));
+  return out;
+}
+
+// All of a distributed vector on every rank.
+std::vector<double> everywhere(Vec v) {
+  core::Scatter scatter;
+  core::Vector whole;
+  check(VecScatterCreateToAll(v, scatter.put(), whole.put()));
+  check(VecScatterBegin(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const core::ReadArray a(whole.get());
+  return {a.data(), a.data() + a.size()};
+}
+
+}  // namespace
+
+RotorSystem::RotorSystem(MPI_Comm comm, Train train, double speed) : comm_(comm), train_(std::move(train)), speed_(speed) { build(); }
+
+RotorSystem::RotorSystem(MPI_Comm comm, Varying varying, double speed)
+    : comm_(comm), train_(varying.train(varying.value)), varying_(std::move(varying)), speed_(speed) {
+  build();
+}
+
+RotorSystem::~RotorSystem() = default;
+
+void RotorSystem::build() {
+  rotor_ = std::make_unique<rotor::Rotor>(comm_, train_.rotor);
+  const rotor::Matrices& m = rotor_->matrices();
+  n_rotor_ = rotor_->size();
+
+  // Pedestals come behind the rotor's coordinates.
+  bearings_.clear();
+  n_ = n_rotor_;
+  for (const Support& s : train_.supports) {
+    Bearing b;
+    for (int d = 0; d < 2; ++d) {
+      b.journal[static_cast<std::size_t>(d)] = rotor_->coordinate(s.node, d);
+      if (b.journal[static_cast<std::size_t>(d)] < 0) throw core::InputError("a bearing's node is not a master node of the reduced rotor");
+      if (s.has_pedestal) b.pedestal[static_cast<std::size_t>(d)] = n_++;
+    }
+    bearings_.push_back(std::move(b));
+  }
+  core::agree(comm_, [&] {
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      const Support& s = train_.supports[i];
+      bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
+    }
+  });
+
+  PetscInt rotor_begin = 0, rotor_end = 0;
+  check(MatGetOwnershipRange(m.mass.get(), &rotor_begin, &rotor_end));
+  const bool last = core::rank_of(comm_) == core::size_of(comm_) - 1;
+  begin_ = rotor_begin;
+  end_ = last ? n_ : rotor_end;
+  std::vector<std::pair<PetscInt, double>> pm, pc, pk, pg;
+  for (std::size_t i = 0; i < bearings_.size(); ++i)
+    for (std::size_t d = 0; d < 2; ++d)
+      if (bearings_[i].pedestal[d] >= 0) {
+        pm.emplace_back(bearings_[i].pedestal[d], train_.supports[i].mass[d]);
+        pc.emplace_back(bearings_[i].pedestal[d], train_.supports[i].damping[d]);
+        pk.emplace_back(bearings_[i].pedestal[d], train_.supports[i].stiffness[d]);
+      }
+  mass_ = with_pedestals(m.mass.get(), end_ - begin_, n_rotor_, pm);
+  damping_ = with_pedestals(m.damping.get(), end_ - begin_, n_rotor_, pc);
+  stiffness_ = with_pedestals(m.stiffness.get(), end_ - begin_, n_rotor_, pk);
+  gyroscopic_ = with_pedestals(m.gyroscopic.get(), end_ - begin_, n_rotor_, pg);
+
+  load_.assign(static_cast<std::size_t>(end_ - begin_), 0.0);
+  {
+    const core::ReadArray g(m.gravity.get());
+    for (PetscInt i = 0; i < g.size(); ++i) load_[static_cast<std::size_t>(i)] = train_.gravity * g[i];
+  }
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    const PetscInt row = bearings_[i].pedestal[1];
+    if (row >= 0 && owns(row)) load_[static_cast<std::size_t>(row - begin_)] -= train_.gravity * train_.supports[i].mass[1];
+  }
+
+  // U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
+  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_end - rotor_begin, PETSC_DETERMINE), s = core::duplicate(c.get());
+  const bool reduced = static_cast<bool>(m.basis);
+  if (reduced) {
+    check(MatCreateVecs(m.basis.get(), nullptr, full_c.put()));
+    full_s = core::duplicate(full_c.get());
+  }
+  Vec tc = reduced ? full_c.get() : c.get(), ts = reduced ? full_s.get() : s.get();
+  check(VecSet(tc, 0.0));
+  check(VecSet(ts, 0.0));
+  if (core::rank_of(comm_) == 0)
+    for (const UnbalanceMass& u : train_.unbalance) {
+      const PetscInt x = 4 * (u.node - 1), y = x + 1;
+      check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
+      check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
+      check(VecSetValue(tc, y, u.amount * std::sin(u.phase), ADD_VALUES));
+      check(VecSetValue(ts, y, u.amount * std::cos(u.phase), ADD_VALUES));
+    }
+  for (Vec v : {tc, ts}) {
+    check(VecAssemblyBegin(v));
+    check(VecAssemblyEnd(v));
+  }
+  if (reduced) {
+    check(MatMultTranspose(m.basis.get(), tc, c.get()));
+    check(MatMultTranspose(m.basis.get(), ts, s.get()));
+  }
+  unbalance_c_ = everywhere(c.get());
+  unbalance_s_ = everywhere(s.get());
+  unbalance_c_.resize(static_cast<std::size_t>(n_), 0.0);
+  unbalance_s_.resize(static_cast<std::size_t>(n_), 0.0);
+
+  // Which entries of the state the films see: journal and pedestal positions and velocities.
+  std::vector<PetscInt> wanted;
+  for (const Bearing& b : bearings_)
+    for (std::size_t d = 0; d < 2; ++d)
+      for (const PetscInt q : {b.journal[d], b.pedestal[d]})
+        for (PetscInt rate = 0; rate < 2; ++rate) wanted.push_back(2 * std::max<PetscInt>(q, 0) + rate);
+  core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
+  core::IndexSet from;
+  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES, from.put()));
+  inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), PETSC_DETERMINE);
+  check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
+  blocks_.reset();
+}
+
+void RotorSystem::set_train(Train train) {
+  train_ = std::move(train);
+  build();
+}
+
+void RotorSystem::set_parameter(double p) {
+  if (p == parameter()) return;
+  if (!varying_.train) {
+    if (!(p > 0)) throw core::DomainError("the speed is not positive");
+    speed_ = p;
+    return;
+  }
+  varying_.value = p;
+  set_train(varying_.train(p));
+}
+
+std::vector<JournalState> RotorSystem::journals_of(Vec x) {
+  check(VecScatterBegin(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const core::ReadArray a(inputs_.get());
+  std::vector<JournalState> out(bearings_.size());
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      const auto k = static_cast<PetscInt>(8 * i + 4 * d);
+      const bool moves = bearings_[i].pedestal[d] >= 0;
+      out[i].position[d] = a[k] - (moves ? a[k + 2] : 0.0);
+      out[i].velocity[d] = a[k + 1] - (moves ? a[k + 3] : 0.0);
+    }
+    out[i].position[1] -= train_.supports[i].elevation;
+  }
+  return out;
+}
+
+std::vector<JournalState> RotorSystem::journals(const double* x) const {
+  std::vector<JournalState> out(bearings_.size());
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt j = bearings_[i].journal[d], p = bearings_[i].pedestal[d];
+      out[i].position[d] = x[2 * j] - (p >= 0 ? x[2 * p] : 0.0);
+      out[i].velocity[d] = x[2 * j + 1] - (p >= 0 ? x[2 * p + 1] : 0.0);
+    }
+    out[i].position[1] -= train_.supports[i].elevation;
+  }
+  return out;
+}
+
+std::vector<film::Response> RotorSystem::film_responses(const std::vector<JournalState>& journals, film::Need need) {
+  const int rank = core::rank_of(comm_), size = core::size_of(comm_);
+  std::vector<film::Response> out(bearings_.size());
+  core::agree(comm_, [&] {
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      if (static_cast<int>(i) % size != rank) continue;
+      film::Motion motion;
+      for (std::size_t d = 0; d < 2; ++d) {
+        motion.position[d] = journals[i].position[d];
+        motion.velocity[d] = journals[i].velocity[d];
+      }
+      motion.speed = speed_;
+      try {
+        bearings_[i].film->evaluate(motion, need, out[i]);
+      } catch (const core::DomainError& e) {
+        throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
+      }
+    }
+  });
+  if (size == 1) return out;
+  constexpr std::size_t width = 2 + 4 + 4 + 2 + 1;
+  std::vector<double> flat(width * out.size(), 0.0);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (static_cast<int>(i) % size != rank) continue;
+    double* f = flat.data() + width * i;
+    for (std::size_t d = 0; d < 2; ++d) {
+      f[d] = out[i].force[d];
+      for (std::size_t e = 0; e < 2; ++e) {
+        f[2 + 2 * d + e] = out[i].d_position[d][e];
+        f[6 + 2 * d + e] = out[i].d_velocity[d][e];
+      }
+      f[10 + d] = out[i].d_speed[d];
+    }
+    f[12] = out[i].min_thickness;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, flat.data(), static_cast<int>(flat.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double* f = flat.data() + width * i;
+    for (std::size_t d = 0; d < 2; ++d) {
+      out[i].force[d] = f[d];
+      for (std::size_t e = 0; e < 2; ++e) {
+        out[i].d_position[d][e] = f[2 + 2 * d + e];
+        out[i].d_velocity[d][e] = f[6 + 2 * d + e];
+      }
+      out[i].d_speed[d] = f[10 + d];
+    }
+    out[i].min_thickness = f[12];
+  }
+  return out;
+}
+
+void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
+  const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::force);
+  // q, v and their rates as vectors of coordinates, for the matrix products.
+  core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()), a = core::duplicate(q.get()), sum = core::duplicate(q.get());
+  {
+    const core::ReadArray xa(x), da(xdot);
+    const core::WriteArray qa(q.get()), va(v.get()), aa(a.get());
+    for (PetscInt i = 0; i < qa.size(); ++i) {
+      qa[i] = xa[2 * i];
+      va[i] = xa[2 * i + 1];
+      aa[i] = da[2 * i + 1];
+    }
+  }
+  check(MatMult(stiffness_.get(), q.get(), sum.get()));
+  check(MatMultAdd(damping_.get(), v.get(), sum.get(), sum.get()));
+  check(MatMultAdd(mass_.get(), a.get(), sum.get(), sum.get()));
+  check(MatMult(gyroscopic_.get(), v.get(), a.get()));
+  check(VecAXPY(sum.get(), speed_, a.get()));
+  const core::ReadArray xa(x), da(xdot), sa(sum.get());
+  const core::WriteArray fa(f);
+  const double c = speed_ * speed_ * std::cos(angle), s = speed_ * speed_ * std::sin(angle);
+  for (PetscInt i = 0; i < sa.size(); ++i) {
+    const auto g = static_cast<std::size_t>(begin_ + i);
+    fa[2 * i] = da[2 * i] - xa[2 * i + 1];
+    fa[2 * i + 1] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_c_[g] - s * unbalance_s_[g];
+  }
+  for (std::size_t b = 0; b < bearings_.size(); ++b)
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt j = bearings_[b].journal[d], p = bearings_[b].pedestal[d];
+      if (owns(j)) fa[2 * (j - begin_) + 1] -= films[b].force[d];
+      if (p >= 0 && owns(p)) fa[2 * (p - begin_) + 1] += films[b].force[d];
+    }
+}
+
+core::Matrix RotorSystem::make_jacobian() {
+  const PetscInt rows = end_ - begin_;
+  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(2 * rows, 1)), 2);
+  for (PetscInt i = 0; i < rows; ++i) {
+    PetscInt k = 0, total = 0;
+    for (Mat m : {mass_.get(), damping_.get(), stiffness_.get(), gyroscopic_.get()}) {
+      check(MatGetRow(m, begin_ + i, &k, nullptr, nullptr));
+      total += 2 * k;
+      check(MatRestoreRow(m, begin_ + i, &k, nullptr, nullptr));
+    }
+    count[static_cast<std::size_t>(2 * i + 1)] = std::min(total + 8, 2 * n_);
+  }
+  core::Matrix j;
+  check(MatCreate(comm_, j.put()));
+  check(MatSetSizes(j.get(), 2 * rows, 2 * rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(j.get(), MATAIJ));
+  check(MatSeqAIJSetPreallocation(j.get(), 0, count.data()));
+  std::vector<PetscInt> local = count;
+  for (auto& k : local) k = std::min(k, 2 * rows);
+  check(MatMPIAIJSetPreallocation(j.get(), 0, local.data(), 0, count.data()));
+  return j;
+}
+
+void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, double sigma, Mat j) {
+  const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::tangents);
+  check(MatZeroEntries(j));
+  std::vector<PetscInt> columns_to;
+  std::vector<PetscScalar> scaled;
+  const auto add = [&](Mat m, PetscInt rate, double factor) {
+    for (PetscInt i = begin_; i < end_; ++i) {
+      PetscInt k = 0;
+      const PetscInt* columns = nullptr;
+      const PetscScalar* values = nullptr;
+      check(MatGetRow(m, i, &k, &columns, &values));
+      columns_to.assign(columns, columns + k);
+      scaled.assign(values, values + k);
+      for (PetscInt e = 0; e < k; ++e) {
+        columns_to[static_cast<std::size_t>(e)] = 2 * columns_to[static_cast<std::size_t>(e)] + rate;
+        scaled[static_cast<std::size_t>(e)] *= factor;
+      }
+      const PetscInt row = 2 * i + 1;
+      check(MatSetValues(j, 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
+      check(MatRestoreRow(m, i, &k, &columns, &values));
+    }
+  };
+  // Every entry is set in every call, also with factor zero, so that the pattern never changes.
+  add(stiffness_.get(), 0, alpha);
+  add(damping_.get(), 1, alpha);
+  add(gyroscopic_.get(), 1, alpha * speed_);
+  add(mass_.get(), 1, sigma);
+  for (PetscInt i = begin_; i < end_; ++i) {
+    check(MatSetValue(j, 2 * i, 2 * i, sigma, ADD_VALUES));
+    check(MatSetValue(j, 2 * i, 2 * i + 1, -alpha, ADD_VALUES));
+    check(MatSetValue(j, 2 * i + 1, 2 * i + 1, 0.0, ADD_VALUES));
+  }
+  for (std::size_t b = 0; b < bearings_.size(); ++b)
+    for (std::size_t d = 0; d < 2; ++d)
+      for (const auto& [row, sign] : {std::pair{bearings_[b].journal[d], -1.0}, std::pair{bearings_[b].pedestal[d], 1.0}}) {
+        if (row < 0 || !owns(row)) continue;
+        for (std::size_t e = 0; e < 2; ++e)
+          for (const auto& [column, side] : {std::pair{bearings_[b].journal[e], 1.0}, std::pair{bearings_[b].pedestal[e], -1.0}}) {
+            if (column < 0) continue;
+            check(MatSetValue(j, 2 * row + 1, 2 * column, alpha * sign * side * films[b].d_position[d][e], ADD_VALUES));
+            check(MatSetValue(j, 2 * row + 1, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
+          }
+      }
+  check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
+}
+
+void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
+  if (varying_.train) {
+    // Everything that depends on the option is rebuilt; meshes and masters stay.
+    const double p = varying_.value, step = 1e-5 * varying_.magnitude;
+    core::Vector minus = core::duplicate(f);
+    set_parameter(p + step);
+    residual(angle, x, xdot, f);
+    set_parameter(p - step);
+    residual(angle, x, xdot, minus.get());
+    set_parameter(p);
+    check(VecAXPBY(f, -1 / (2 * step), 1 / (2 * step), minus.get()));
+    return;
+  }
+  const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::tangents);
+  core::Vector v = core::make_vector(comm_, end_ - begin_, n_), sum = core::duplicate(v.get());
+  {
+    const core::ReadArray xa(x);
+    const core::WriteArray va(v.get());
+    for (PetscInt i = 0; i < va.size(); ++i) va[i] = xa[2 * i + 1];
+  }
+  check(MatMult(gyroscopic_.get(), v.get(), sum.get()));
+  const core::ReadArray sa(sum.get());
+  const core::WriteArray fa(f);
+  const double c = 2 * speed_ * std::cos(angle), s = 2 * speed_ * std::sin(angle);
+  for (PetscInt i = 0; i < sa.size(); ++i) {
+    const auto g = static_cast<std::size_t>(begin_ + i);
+    fa[2 * i] = 0;
+    fa[2 * i + 1] = sa[i] - c * unbalance_c_[g] - s * unbalance_s_[g];
+  }
+  for (std::size_t b = 0; b < bearings_.size(); ++b)
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt j = bearings_[b].journal[d], p = bearings_[b].pedestal[d];
+      if (owns(j)) fa[2 * (j - begin_) + 1] -= films[b].d_speed[d];
+      if (p >= 0 && owns(p)) fa[2 * (p - begin_) + 1] += films[b].d_speed[d];
+    }
+}
+
+// Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the weight.
+void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
+  double clearance = 0;
+  int films = 0;
+  for (const Support& s : train_.supports)
+    if (s.geometry.clearance > 0) {
+      clearance += s.geometry.clearance;
+      ++films;
+    }
+  clearance = films > 0 ? clearance / films : 1e-4;
+  constexpr double frequency = 300;  // rad/s
+  const double mass = rotor::total_mass(train_.rotor), force = std::max(mass * std::abs(train_.gravity), mass * clearance * frequency * frequency) /
+                                                              std::max<double>(1.0, static_cast<double>(bearings_.size()));
+  const bool reduced = train_.rotor.reduction.type != rotor::Reduction::Type::none;
+  const auto masters = static_cast<PetscInt>(2 * train_.rotor.reduction.masters.size());
+  const core::WriteArray s(state_scale), r(residual_scale);
+  for (PetscInt i = 0; i < end_ - begin_; ++i) {
+    const PetscInt g = begin_ + i;
+    double length = clearance, load = force;
+    if (g < n_rotor_ && !reduced && g % 4 > 1) load = force * 0.1;         // slopes: clearance per metre, moments on a lever of 0.1 m
+    if (g < n_rotor_ && reduced && g >= masters) {                           // mass-normalised modes
+      length = clearance * std::sqrt(mass);
+      load = force / std::sqrt(mass);
+    }
+    s[2 * i] = length;
+    s[2 * i + 1] = length * frequency;
+    r[2 * i] = length * frequency;
+    r[2 * i + 1] = load;
+  }
+}
+
+problem::Structure* RotorSystem::structure() {
+  if (core::size_of(comm_) != 1 || varying_.train) return nullptr;
+  if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
+  return blocks_.get();
+}
+
+std::vector<double> RotorSystem::gather(Vec x) const { return everywhere(x); }
+
+std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {
+  const rotor::Matrices& m = rotor_->matrices();
+  if (!m.basis) {
+    std::vector<double> out(static_cast<std::size_t>(n_rotor_));
+    for (PetscInt i = 0; i < n_rotor_; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
+    return out;
+  }
+  core::Vector q, full;
+  check(MatCreateVecs(m.basis.get(), q.put(), full.put()));
+  {
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(q.get(), &begin, nullptr));
+    const core::WriteArray qa(q.get());
+    for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = x[2 * (begin + i) + component];
+  }
+  check(MatMult(m.basis.get(), q.get(), full.get()));
+  if (with_gravity && m.offset) check(VecAXPY(full.get(), train_.gravity, m.offset.get()));
+  return everywhere(full.get());
+}
+
+}  // namespace whirl::system
