@@ -1,0 +1,70 @@
+#pragma once
+// Quasi-static fluid films: journal motion in, film force on the journal and its exact tangents out.
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "whirl/film/options.hpp"
+
+namespace whirl::film {
+
+/// Motion of the journal relative to the bearing centre; x right, y up, shaft turning x -> y.
+struct Motion {
+  std::array<double, 4> position{};  // x, y [m], tilt dx/dz, dy/dz [-] about the mid-plane of the bearing
+  std::array<double, 4> velocity{};  // their rates [m/s, 1/s]
+  double speed = 0.0;                // Omega [rad/s]
+};
+
+/// What the caller of evaluate() wants; `tangents` includes the force.
+enum class Need { force, tangents };
+
+/// Film force on the journal and the derivatives of the discrete force, work-conjugate to Motion::position.
+struct Response {
+  std::array<double, 4> force{};                      // F_x, F_y [N], M_x, M_y [N m]
+  std::array<std::array<double, 4>, 4> d_position{};  // [i][j] = d force_i / d position_j; stiffness K is its negative
+  std::array<std::array<double, 4>, 4> d_velocity{};  // [i][j] = d force_i / d velocity_j; damping C is its negative
+  std::array<double, 4> d_speed{};                    // [i] = d force_i / d Omega
+  double min_thickness = 0.0;  // m, over the nodes and faces of all pads; infinite for a linear film
+};
+
+/// Quantities for reports, computed apart from evaluate() so that they cost nothing inside solvers.
+struct Summary {
+  double min_thickness = 0.0;  // m
+  double max_pressure = 0.0;   // Pa
+  double side_flow = 0.0;      // m^3/s, out of both sides of all pads
+  double power_loss = 0.0;     // W, friction torque on the journal times Omega; full (not striated) film everywhere
+};
+
+/// One array on the grid of one pad, row-major.
+struct Field {
+  int pad;                         // 0 = lower, 1 = upper
+  std::string name;                // theta, z, pressure, thickness
+  std::string unit;                // rad, m, Pa, m
+  std::vector<std::size_t> shape;  // {n_theta}, {n_z} or {n_theta, n_z}
+  std::vector<double> values;
+};
+
+/// A film without own states: force = f(position, velocity, Omega). Not thread-safe (own workspace).
+class Model {
+public:
+  Model() = default;
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+  virtual ~Model() = default;
+  /// Fills `response`; the derivatives are those of the discrete force, zero if only the force is needed.
+  /// Throws core::DomainError where the film thickness is not positive.
+  virtual void evaluate(const Motion& motion, Need need, Response& response) = 0;
+  /// Report quantities at `motion`; throws as evaluate() does.
+  virtual Summary summary(const Motion& motion) = 0;
+  /// Pressure and thickness at the grid nodes of every pad; empty for a linear film; throws as evaluate() does.
+  virtual std::vector<Field> fields(const Motion& motion) = 0;
+  /// True if the force is linear in position and velocity and independent of speed.
+  [[nodiscard]] virtual bool linear() const { return false; }
+};
+
+/// The film described by the options; throws core::InputError on values outside their range.
+std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+
+}  // namespace whirl::film

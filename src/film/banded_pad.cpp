@@ -1,0 +1,334 @@
+// Any pad by a banded factorisation of the five-point equation.
+//
+// Unknowns p_ij, i = 1..n_theta - 1 around and j along the pad, numbered along z first. Per unit of cell area
+//     (A p)_ij + v_j src_ij = 0,   A from conductances v_j a_(i+1/2,j)/(R dtheta)^2 around and b_(i,j+1/2)/dz^2 along.
+// An aligned journal needs only half the length: v_j = 1/2 on a mid-plane row, no flow across the mid-plane.
+// Reynolds cavitation: p >= 0, A p + src >= 0, complementary; primal-dual active set (Hintermueller, Ito, Kunisch
+// 2003), which converges from any start because A is an M-matrix. With lambda = A^-1 dF/dp on the uncavitated nodes
+//     dF = -lambda . (d src + dA p).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "film/band.hpp"
+#include "film/mobility.hpp"
+#include "film/pad.hpp"
+#include "film/truncation.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::film {
+namespace {
+
+class BandedPad final : public PadSolver {
+public:
+  BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  void add(const Motion& motion, Need need, Response& response) override;
+  std::vector<double> pressure(const Motion& motion) override;
+
+private:
+  struct Faces {  // coefficients on faces, with derivatives in h and Omega
+    std::vector<double> h, value, d_h, d_speed;
+    void resize(std::size_t n) {
+      for (auto* v : {&h, &value, &d_h, &d_speed}) v->assign(n, 0.0);
+    }
+  };
+  void coefficients(const Motion& motion);
+  void assemble();
+  void solve();
+  void solve_complementarity();
+  double residual(int i, int j) const;
+  void integrate(Need need, Response& response);
+  void adjoint(const Motion& motion, Response& response);
+
+  std::size_t at(int i, int j) const { return static_cast<std::size_t>((i - 1) * rows_ + j); }
+  std::size_t around(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * rows_ + j : i); }
+  std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
+  double pressure_at(int i, int j) const {
+    return i <= 0 || i >= grid_.n_theta || j < 0 || j >= rows_ ? 0.0 : x_[at(i, j)][0];
+  }
+  double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
+  double row_z(int j) const { return (j + 1) * grid_.dz - 0.5 * pad_.length; }
+
+  Pad pad_;
+  Grid grid_;
+  bool tilt_;
+  Options::Cavitation cavitation_;
+  Resistance resistance_around_, resistance_along_;
+  double viscosity_, density_;
+  int rows_, z_faces_;
+  double last_share_;
+
+  double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
+  Faces a_, b_;                 // [n_theta][rows], [n_theta][z_faces]; one column if aligned
+  std::vector<double> source_;  // v_j src_ij
+  std::vector<char> cavitated_;
+  Band band_;
+  std::vector<Quad> x_, load_;  // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
+};
+
+BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
+    : pad_(pad),
+      grid_(pad, options.cells),
+      tilt_(options.tilt),
+      cavitation_(options.cavitation),
+      resistance_around_(resistance_around(options.turbulence)),
+      resistance_along_(resistance_along(options.turbulence)),
+      viscosity_(lubricant.viscosity),
+      density_(lubricant.density),
+      rows_(tilt_ ? grid_.n_z - 1 : grid_.n_z / 2),
+      z_faces_(tilt_ ? rows_ + 1 : rows_),
+      last_share_(!tilt_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
+      band_((grid_.n_theta - 1) * rows_, rows_) {
+  const auto n = static_cast<std::size_t>(grid_.n_theta);
+  a_.resize(tilt_ ? n * static_cast<std::size_t>(rows_) : n);
+  b_.resize(tilt_ ? n * static_cast<std::size_t>(z_faces_) : n);
+  const auto size = (n - 1) * static_cast<std::size_t>(rows_);
+  source_.assign(size, 0.0);
+  cavitated_.assign(size, 0);
+  x_.assign(size, Quad::zero());
+  load_.assign(size, Quad::zero());
+}
+
+void BandedPad::coefficients(const Motion& motion) {
+  const int n = grid_.n_theta;
+  X_ = motion.position[0] - pad_.centre_x;
+  Y_ = motion.position[1] - pad_.centre_y;
+  tx_ = tilt_ ? motion.position[2] : 0.0;
+  ty_ = tilt_ ? motion.position[3] : 0.0;
+  const double txd = tilt_ ? motion.velocity[2] : 0.0, tyd = tilt_ ? motion.velocity[3] : 0.0;
+  const double c = pad_.clearance, end = 0.5 * pad_.length;
+  // h is linear in z: its minimum lies on a side.
+  h_min_ = std::numeric_limits<double>::infinity();
+  const auto check = [&](double cosine, double sine) {
+    const double middle = c - X_ * cosine - Y_ * sine, tip = end * (tx_ * cosine + ty_ * sine);
+    h_min_ = std::min(h_min_, middle - std::abs(tip));
+  };
+  for (std::size_t i = 0; i < grid_.node_cos.size(); ++i) check(grid_.node_cos[i], grid_.node_sin[i]);
+  for (std::size_t i = 0; i < grid_.face_cos.size(); ++i) check(grid_.face_cos[i], grid_.face_sin[i]);
+  require_thickness(std::isfinite(X_ + Y_ + tx_ + ty_) ? h_min_ : std::numeric_limits<double>::quiet_NaN());
+
+  const int a_columns = tilt_ ? rows_ : 1, b_columns = tilt_ ? z_faces_ : 1;
+  for (int i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    for (int j = 0; j < a_columns; ++j) {
+      const double z = row_z(j);
+      a_.h[around(i, j)] = c - (X_ + z * tx_) * grid_.face_cos[k] - (Y_ + z * ty_) * grid_.face_sin[k];
+    }
+    for (int j = 0; j < b_columns; ++j) {
+      const double z = row_z(j) - 0.5 * grid_.dz;
+      b_.h[along(i, j)] = c - (X_ + z * tx_) * grid_.node_cos[k] - (Y_ + z * ty_) * grid_.node_sin[k];
+    }
+  }
+  const double step = pad_.radius * grid_.dtheta, speed = motion.speed;
+  const double inverse_speed = speed == 0.0 ? 0.0 : 1.0 / speed;
+  const double reynolds_per_h = density_ * std::abs(speed) * pad_.radius / viscosity_;
+  const auto mobilities = [&](Faces& f, const Resistance& resistance, double length) {
+    mobility(resistance, {1.0 / (viscosity_ * length * length), reynolds_per_h, inverse_speed},
+             static_cast<int>(f.h.size()), f.h.data(), f.value.data(), f.d_h.data(), f.d_speed.data());
+  };
+  mobilities(a_, resistance_around_, step);
+  mobilities(b_, resistance_along_, grid_.dz);
+
+  // Exact cell means of (Omega/2) dh/dtheta + dh/dt.
+  for (int i = 1; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    for (int j = 0; j < rows_; ++j) {
+      const double z = row_z(j);
+      const double sine = 0.5 * speed * (X_ + z * tx_) - (motion.velocity[1] + z * tyd);
+      const double cosine = 0.5 * speed * (Y_ + z * ty_) + (motion.velocity[0] + z * txd);
+      source_[at(i, j)] = share(j) * grid_.mean * (sine * grid_.node_sin[k] - cosine * grid_.node_cos[k]);
+    }
+  }
+}
+
+void BandedPad::assemble() {
+  for (int i = 1; i < grid_.n_theta; ++i) {
+    for (int j = 0; j < rows_; ++j) {
+      const std::size_t here = at(i, j);
+      double* row = band_.row(static_cast<int>(here));
+      std::fill(row, row + rows_ + 1, 0.0);
+      if (cavitated_[here]) {
+        row[0] = 1.0;
+        continue;
+      }
+      const double right = share(j) * a_.value[around(i, j)];
+      const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
+      row[0] = share(j) * a_.value[around(i - 1, j)] + right + b_.value[along(i, j)] + up;
+      if (j + 1 < rows_ && !cavitated_[here + 1]) row[1] -= up;
+      if (i + 1 < grid_.n_theta && !cavitated_[at(i + 1, j)]) row[rows_] -= right;
+    }
+  }
+}
+
+void BandedPad::solve() {
+  if (cavitation_ == Options::Cavitation::reynolds) return solve_complementarity();
+  assemble();
+  band_.factor();
+  for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(-source_[k]);
+  band_.solve(x_);
+}
+
+// A p + src at a node.
+double BandedPad::residual(int i, int j) const {
+  const double p = pressure_at(i, j);
+  double r = source_[at(i, j)] + b_.value[along(i, j)] * (p - pressure_at(i, j - 1));
+  r += share(j) * (a_.value[around(i - 1, j)] * (p - pressure_at(i - 1, j)) +
+                   a_.value[around(i, j)] * (p - pressure_at(i + 1, j)));
+  if (j + 1 < z_faces_) r += b_.value[along(i, j + 1)] * (p - pressure_at(i, j + 1));
+  return r;
+}
+
+void BandedPad::solve_complementarity() {
+  constexpr int kMost = 200;
+  constexpr double kRound = 1e-12;  // ties within rounding must not make the set cycle
+  double scale = 0.0;
+  for (double s : source_) scale = std::max(scale, std::abs(s));
+  for (int iteration = 0; iteration < kMost; ++iteration) {
+    assemble();
+    band_.factor();
+    for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -source_[k]);
+    band_.solve(x_);
+    double top = 0.0;
+    for (const Quad& x : x_) top = std::max(top, std::abs(x[0]));
+    int changes = 0;
+    for (int i = 1; i < grid_.n_theta; ++i) {
+      for (int j = 0; j < rows_; ++j) {
+        const std::size_t k = at(i, j);
+        const bool now = cavitated_[k] ? residual(i, j) >= -kRound * scale : x_[k][0] < -kRound * top;
+        changes += now != static_cast<bool>(cavitated_[k]);
+        load_[k].set(0, now ? 1.0 : 0.0);
+      }
+    }
+    if (changes == 0) return;
+    for (std::size_t k = 0; k < x_.size(); ++k) cavitated_[k] = load_[k][0] != 0.0;
+  }
+  throw core::NotConverged("the cavitated region of a film did not settle");
+}
+
+// Force, and its derivatives in the nodal pressures into load_.
+void BandedPad::integrate(Need need, Response& response) {
+  const bool truncated = cavitation_ == Options::Cavitation::half_sommerfeld;
+  const double area = pad_.radius * grid_.dtheta * grid_.dz;
+  const int cells = tilt_ ? grid_.n_z : (grid_.n_z + 1) / 2;
+  std::fill(load_.begin(), load_.end(), Quad::zero());
+  Quad force = Quad::zero();
+  for (int i = 0; i < grid_.n_theta; ++i) {
+    const auto face = static_cast<std::size_t>(i);
+    const double cosine = -area * grid_.mean * grid_.face_cos[face], sine = -area * grid_.mean * grid_.face_sin[face];
+    for (int cell = 0; cell < cells; ++cell) {
+      const bool middle = !tilt_ && cell == rows_;  // straddles the mid-plane: its upper nodes mirror the lower ones
+      const int low = cell - 1, high = middle ? low : cell;
+      const std::array<double, 4> p = {pressure_at(i, low), pressure_at(i, high), pressure_at(i + 1, low),
+                                       pressure_at(i + 1, high)};
+      std::array<double, 4> g = {0.25, 0.25, 0.25, 0.25};
+      const double mean = truncated ? truncated_cell(p, g) : 0.25 * (p[0] + p[1] + p[2] + p[3]);
+      const double times = tilt_ || middle ? 1.0 : 2.0;
+      const double z = tilt_ ? row_z(cell) - 0.5 * grid_.dz : 0.0;
+      const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
+      force += mean * weight;
+      if (need == Need::force) continue;
+      const auto give = [&](int column, int row, double gradient) {
+        if (column > 0 && column < grid_.n_theta && row >= 0 && row < rows_)
+          load_[at(column, row)] += gradient * weight;
+      };
+      give(i, low, g[0]);
+      give(i, high, g[1]);
+      give(i + 1, low, g[2]);
+      give(i + 1, high, g[3]);
+    }
+  }
+  for (int f = 0; f < 4; ++f) response.force[static_cast<std::size_t>(f)] += force[f];
+}
+
+void BandedPad::adjoint(const Motion& motion, Response& response) {
+  for (std::size_t k = 0; k < load_.size(); ++k) {
+    if (cavitated_[k]) load_[k] = Quad::zero();
+  }
+  band_.solve(load_);
+  const auto lambda = [&](int i, int j) {
+    return i <= 0 || i >= grid_.n_theta || j < 0 || j >= rows_ ? Quad::zero() : load_[at(i, j)];
+  };
+  // Sums of e = (jump of lambda)(jump of p) over faces, weighted as dh = -cos (dx + z dtx) - sin (dy + z dty) asks, and
+  // of lambda over cells as d src asks; lanes are F_x, F_y, M_x, M_y.
+  std::array<Quad, 4> position = {Quad::zero(), Quad::zero(), Quad::zero(), Quad::zero()}, source = position;
+  Quad speed = Quad::zero();
+  const auto spread = [](std::array<Quad, 4>& sums, Quad level, Quad moment, double cosine, double sine) {
+    sums[0] += cosine * level;
+    sums[1] += sine * level;
+    sums[2] += cosine * moment;
+    sums[3] += sine * moment;
+  };
+  for (int i = 0; i < grid_.n_theta; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Quad level = Quad::zero(), moment = Quad::zero();
+    for (int j = 0; j < rows_; ++j) {
+      const Quad e = (share(j) * (pressure_at(i + 1, j) - pressure_at(i, j))) * (lambda(i + 1, j) - lambda(i, j));
+      const Quad slope = a_.d_h[around(i, j)] * e;
+      level += slope;
+      moment += row_z(j) * slope;
+      speed += a_.d_speed[around(i, j)] * e;
+    }
+    spread(position, level, moment, grid_.face_cos[k], grid_.face_sin[k]);
+    if (i == 0) continue;
+    level = moment = Quad::zero();
+    for (int j = 0; j < z_faces_; ++j) {
+      const Quad e = (pressure_at(i, j) - pressure_at(i, j - 1)) * (lambda(i, j) - lambda(i, j - 1));
+      const Quad slope = b_.d_h[along(i, j)] * e;
+      level += slope;
+      moment += (row_z(j) - 0.5 * grid_.dz) * slope;
+      speed += b_.d_speed[along(i, j)] * e;
+    }
+    spread(position, level, moment, grid_.node_cos[k], grid_.node_sin[k]);
+    level = moment = Quad::zero();
+    for (int j = 0; j < rows_; ++j) {
+      const Quad e = (share(j) * grid_.mean) * lambda(i, j);
+      level += e;
+      moment += row_z(j) * e;
+    }
+    spread(source, level, moment, grid_.node_cos[k], grid_.node_sin[k]);
+  }
+  const double half = 0.5 * motion.speed;
+  const std::size_t components = tilt_ ? 4 : 2;
+  for (std::size_t f = 0; f < components; ++f) {
+    const int lane = static_cast<int>(f);
+    for (std::size_t j = 0; j < components; ++j) {
+      const std::size_t other = j ^ 1;  // x is driven by sin, y by -cos
+      const double wedge = (j % 2 == 0 ? half : -half) * source[other][lane];
+      response.d_position[f][j] += position[j][lane] - wedge;
+      response.d_velocity[f][j] += source[j][lane];
+    }
+    response.d_speed[f] -= speed[lane] + 0.5 * (X_ * source[1][lane] + tx_ * source[3][lane] - Y_ * source[0][lane] -
+                                                ty_ * source[2][lane]);
+  }
+}
+
+void BandedPad::add(const Motion& motion, Need need, Response& response) {
+  coefficients(motion);
+  solve();
+  integrate(need, response);
+  response.min_thickness = std::min(response.min_thickness, h_min_);
+  if (need == Need::tangents) adjoint(motion, response);
+}
+
+std::vector<double> BandedPad::pressure(const Motion& motion) {
+  coefficients(motion);
+  solve();
+  const bool truncated = cavitation_ != Options::Cavitation::none;
+  std::vector<double> values;
+  for (int i = 0; i <= grid_.n_theta; ++i) {
+    for (int j = 0; j <= grid_.n_z; ++j) {
+      const int row = (tilt_ ? j : std::min(j, grid_.n_z - j)) - 1;
+      const double p = pressure_at(i, row);
+      values.push_back(truncated ? std::max(p, 0.0) : p);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Options& options, const Lubricant& lubricant) {
+  return std::make_unique<BandedPad>(pad, options, lubricant);
+}
+
+}  // namespace whirl::film

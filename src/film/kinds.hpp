@@ -1,0 +1,15 @@
+#pragma once
+// The kinds of film that make_model() chooses from.
+
+#include <memory>
+
+#include "whirl/film/model.hpp"
+
+namespace whirl::film {
+
+/// Reynolds' equation on the pads of a bore; throws core::InputError on values outside their range.
+std::unique_ptr<Model> make_reynolds(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+/// force = -K d - C d' in x and y.
+std::unique_ptr<Model> make_linear(const Options& options);
+
+}  // namespace whirl::film

@@ -1,0 +1,353 @@
+// Aligned pad by sine modes along z.
+//
+// h does not depend on z, so p_ij = sum_k S_kj q_ik with S_kj = c_k sin(k pi j/n_z), k odd, turns the five-point
+// equation into one tridiagonal system per mode around the pad,
+//     A_k q_k = -src,   (A_k q)_i = G [a_(i-1/2) (q_i - q_(i-1)) - a_(i+1/2) (q_(i+1) - q_i)] + s_k b_i q_i,
+// G = 1/(R dtheta)^2, s_k = (2/dz sin(k pi/(2 n_z)))^2, c_k = (2/n_z) cot(k pi/(2 n_z)) (the sine coefficients of 1).
+// Eight modes share a Pack. With m_k = A_k^-1 dF/dq_k the derivative of any force in any parameter is
+//     dF = -sum_k m_k . (d src + dA_k q_k).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "film/mobility.hpp"
+#include "film/pack.hpp"
+#include "film/pad.hpp"
+#include "film/truncation.hpp"
+
+namespace whirl::film {
+namespace {
+
+class ModalPad final : public PadSolver {
+public:
+  ModalPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  void add(const Motion& motion, Need need, Response& response) override;
+  std::vector<double> pressure(const Motion& motion) override;
+
+private:
+  enum class Strip : unsigned char { full, empty, mixed };
+  void thickness(const Motion& motion);
+  void factor_and_solve();
+  void synthesise();
+  void truncate(bool gradient);
+  void integrate_mixed(int strip, bool gradient);
+  void adjoint(const Motion& motion, Response& response);
+  double node(int i, int j) const {
+    return scalars(p_)[static_cast<std::size_t>(i) * stride_ + static_cast<std::size_t>(j)];
+  }
+
+  Pad pad_;
+  Grid grid_;
+  bool truncated_;
+  Resistance around_, along_;
+  double viscosity_, density_;
+  int n_modes_;          // odd modes = nodes in half the length
+  std::size_t n_packs_;  // packs of modes, and of half-length nodes
+  std::size_t stride_;   // doubles per column of nodes
+  double cell_area_;     // R dtheta dz
+
+  std::vector<Pack> s_;           // [pack] eigenvalues s_k; 1 in unused lanes
+  std::vector<Pack> synthesis_;   // [mode][pack of nodes] S_kj
+  std::vector<Pack> analysis_;    // [node][pack of modes] S_kj
+  std::vector<Pack> strip_load_;  // [pack of modes] derivative of the integral over a full strip in one of its columns
+
+  // Per evaluation, around the pad. Faces lie at i + 1/2.
+  double X_ = 0.0, Y_ = 0.0, h_min_ = 0.0;
+  std::vector<double> h_face_, h_node_, a_, a_h_, a_speed_, b_, b_h_, b_speed_, source_;
+  std::vector<Pack> q_, multiplier_, inverse_;  // [pack of modes][n_theta + 1]
+  std::vector<Pack> p_;                         // [n_theta + 1][pack of half-length nodes]
+  std::vector<Strip> strip_;                    // [n_theta]
+  std::vector<double> integral_;                // [n_theta] of max(p, 0) over mixed strips
+  std::vector<Pack> load_left_, load_right_;    // [n_theta][pack of modes] derivatives of the strip integrals
+};
+
+ModalPad::ModalPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
+    : pad_(pad),
+      grid_(pad, options.cells),
+      truncated_(options.cavitation == Options::Cavitation::half_sommerfeld),
+      around_(resistance_around(options.turbulence)),
+      along_(resistance_along(options.turbulence)),
+      viscosity_(lubricant.viscosity),
+      density_(lubricant.density),
+      n_modes_(grid_.n_z / 2),
+      n_packs_(packs(n_modes_)),
+      stride_(n_packs_ * kLanes),
+      cell_area_(pad.radius * grid_.dtheta * grid_.dz) {
+  const auto n_faces = static_cast<std::size_t>(grid_.n_theta);
+  const auto n_nodes = n_faces + 1;
+  const auto modes = static_cast<std::size_t>(n_modes_);
+  s_.assign(n_packs_, Pack::fill(1.0));
+  synthesis_.assign(modes * n_packs_, Pack::zero());
+  analysis_.assign(modes * n_packs_, Pack::zero());
+  strip_load_.assign(n_packs_, Pack::zero());
+  for (std::size_t m = 0; m < modes; ++m) {
+    const double angle = (2.0 * static_cast<double>(m) + 1.0) * std::numbers::pi / grid_.n_z;
+    const double root = 2.0 / grid_.dz * std::sin(0.5 * angle);
+    const double c = 2.0 / grid_.n_z / std::tan(0.5 * angle);
+    scalars(s_)[m] = root * root;
+    for (std::size_t j = 0; j < modes; ++j) {
+      const double value = c * std::sin(angle * static_cast<double>(j + 1));
+      scalars(synthesis_)[m * stride_ + j] = value;
+      scalars(analysis_)[j * stride_ + m] = value;
+      const bool middle = grid_.n_z % 2 == 0 && j + 1 == modes;
+      scalars(strip_load_)[m] += 0.5 * cell_area_ * value * (middle ? 1.0 : 2.0);
+    }
+  }
+  for (auto* v : {&h_face_, &a_, &a_h_, &a_speed_, &integral_}) v->assign(n_faces, 0.0);
+  for (auto* v : {&h_node_, &b_, &b_h_, &b_speed_, &source_}) v->assign(n_nodes, 0.0);
+  for (auto* v : {&q_, &multiplier_, &inverse_, &p_}) v->assign(n_nodes * n_packs_, Pack::zero());
+  for (auto* v : {&load_left_, &load_right_}) v->assign(n_faces * n_packs_, Pack::zero());
+  strip_.assign(n_faces, Strip::full);
+}
+
+void ModalPad::thickness(const Motion& motion) {
+  const int n = grid_.n_theta;
+  X_ = motion.position[0] - pad_.centre_x;
+  Y_ = motion.position[1] - pad_.centre_y;
+  const double X = X_, Y = Y_, c = pad_.clearance;
+  const double *nc = grid_.node_cos.data(), *ns = grid_.node_sin.data();
+  const double *fc = grid_.face_cos.data(), *fs = grid_.face_sin.data();
+  double low = c - X * nc[n] - Y * ns[n];
+  h_node_[static_cast<std::size_t>(n)] = low;
+  for (int i = 0; i < n; ++i) {
+    h_node_[static_cast<std::size_t>(i)] = c - X * nc[i] - Y * ns[i];
+    h_face_[static_cast<std::size_t>(i)] = c - X * fc[i] - Y * fs[i];
+  }
+  for (double h : h_node_) low = h < low ? h : low;
+  for (double h : h_face_) low = h < low ? h : low;
+  h_min_ = low;
+  require_thickness(std::isfinite(X + Y) ? h_min_ : std::numeric_limits<double>::quiet_NaN());
+
+  const double speed = motion.speed;
+  const double step = pad_.radius * grid_.dtheta;
+  const double inverse_speed = speed == 0.0 ? 0.0 : 1.0 / speed;
+  const double reynolds_per_h = density_ * std::abs(speed) * pad_.radius / viscosity_;
+  mobility(around_, {1.0 / (viscosity_ * step * step), reynolds_per_h, inverse_speed}, n, h_face_.data(), a_.data(),
+           a_h_.data(), a_speed_.data());
+  mobility(along_, {1.0 / viscosity_, reynolds_per_h, inverse_speed}, n + 1, h_node_.data(), b_.data(), b_h_.data(),
+           b_speed_.data());
+
+  // Exact cell means of (Omega/2) dh/dtheta + dh/dt: a half-speed whirl of h gives no source at all.
+  const double along_sin = grid_.mean * (0.5 * speed * X - motion.velocity[1]);
+  const double along_cos = -grid_.mean * (0.5 * speed * Y + motion.velocity[0]);
+  for (int i = 0; i <= n; ++i) source_[static_cast<std::size_t>(i)] = along_sin * ns[i] + along_cos * nc[i];
+}
+
+void ModalPad::factor_and_solve() {
+  const int n = grid_.n_theta;
+  for (std::size_t pack = 0; pack < n_packs_; ++pack) {
+    const Pack s = s_[pack];
+    Pack* const q = &q_[pack * static_cast<std::size_t>(n + 1)];
+    Pack* const l = &multiplier_[pack * static_cast<std::size_t>(n + 1)];
+    Pack* const inverse = &inverse_[pack * static_cast<std::size_t>(n + 1)];
+    const double *a = a_.data(), *b = b_.data(), *f = source_.data();
+    Pack inv = 1.0 / ((a[0] + a[1]) + b[1] * s);
+    inverse[1] = inv;
+    q[1] = Pack::fill(-f[1]);
+    for (int i = 2; i < n; ++i) {
+      const Pack d = ((a[i - 1] + a[i]) + b[i] * s) - (a[i - 1] * a[i - 1]) * inv;
+      l[i] = a[i - 1] * inv;
+      q[i] = l[i] * q[i - 1] - Pack::fill(f[i]);
+      inv = 1.0 / d;
+      inverse[i] = inv;
+    }
+    q[n - 1] = q[n - 1] * inv;
+    for (int i = n - 2; i > 0; --i) q[i] = q[i] * inverse[i] + l[i + 1] * q[i + 1];
+  }
+}
+
+void ModalPad::synthesise() {
+  const int n = grid_.n_theta;
+  for (int i = 1; i < n; ++i) {
+    for (std::size_t pack = 0; pack < n_packs_; ++pack) {
+      Pack even = Pack::zero(), odd = Pack::zero();
+      for (std::size_t source = 0; source < n_packs_; ++source) {
+        const double* q =
+            scalars(q_) + (source * static_cast<std::size_t>(n + 1) + static_cast<std::size_t>(i)) * kLanes;
+        const int count = std::min(kLanes, n_modes_ - static_cast<int>(source) * kLanes);
+        const Pack* S = &synthesis_[source * kLanes * n_packs_ + pack];
+        int k = 0;
+        for (; k + 1 < count; k += 2) {
+          even += q[k] * S[static_cast<std::size_t>(k) * n_packs_];
+          odd += q[k + 1] * S[static_cast<std::size_t>(k + 1) * n_packs_];
+        }
+        if (k < count) even += q[k] * S[static_cast<std::size_t>(k) * n_packs_];
+      }
+      p_[static_cast<std::size_t>(i) * n_packs_ + pack] = even + odd;
+    }
+  }
+}
+
+void ModalPad::truncate(bool gradient) {
+  const int n = grid_.n_theta;
+  if (!truncated_) {
+    std::fill(strip_.begin(), strip_.end(), Strip::full);
+    return;
+  }
+  synthesise();
+  double low_left = 0.0, high_left = 0.0;
+  for (int i = 1; i <= n; ++i) {
+    Pack low = p_[static_cast<std::size_t>(i) * n_packs_], high = low;
+    for (std::size_t pack = 1; pack < n_packs_; ++pack) {
+      low = min(low, p_[static_cast<std::size_t>(i) * n_packs_ + pack]);
+      high = max(high, p_[static_cast<std::size_t>(i) * n_packs_ + pack]);
+    }
+    const double low_right = lowest(low), high_right = highest(high);
+    auto& strip = strip_[static_cast<std::size_t>(i - 1)];
+    strip = std::min(low_left, low_right) >= 0.0     ? Strip::full
+            : std::max(high_left, high_right) <= 0.0 ? Strip::empty
+                                                     : Strip::mixed;
+    if (strip == Strip::mixed) integrate_mixed(i - 1, gradient);
+    low_left = low_right;
+    high_left = high_right;
+  }
+}
+
+// Integral over the cells between columns `strip` and `strip` + 1, and its derivatives in the modes of both columns.
+void ModalPad::integrate_mixed(int strip, bool gradient) {
+  const bool even = grid_.n_z % 2 == 0;
+  const int rows = even ? n_modes_ : n_modes_ + 1;
+  Pack* const left = &load_left_[static_cast<std::size_t>(strip) * n_packs_];
+  Pack* const right = &load_right_[static_cast<std::size_t>(strip) * n_packs_];
+  std::fill(left, left + n_packs_, Pack::zero());
+  std::fill(right, right + n_packs_, Pack::zero());
+  double total = 0.0, p_low_left = 0.0, p_low_right = 0.0;
+  double g_low_left = 0.0, g_low_right = 0.0;  // derivatives already found for the lower nodes of the cell
+  const auto spread = [&](int j, double gl, double gr) {
+    const Pack* S = &analysis_[static_cast<std::size_t>(j) * n_packs_];
+    for (std::size_t pack = 0; pack < n_packs_; ++pack) {
+      left[pack] += gl * S[pack];
+      right[pack] += gr * S[pack];
+    }
+  };
+  for (int row = 0; row < rows; ++row) {
+    const int upper = std::min(row, n_modes_ - 1);  // beyond the middle the pressure is its mirror image
+    const double weight = cell_area_ * (row == n_modes_ ? 1.0 : 2.0);
+    const double p_left = node(strip, upper), p_right = node(strip + 1, upper);
+    std::array<double, 4> g;
+    total += weight * truncated_cell({p_low_left, p_left, p_low_right, p_right}, g);
+    if (gradient && row > 0) spread(row - 1, g_low_left + weight * g[0], g_low_right + weight * g[2]);
+    g_low_left = weight * g[1];
+    g_low_right = weight * g[3];
+    p_low_left = p_left;
+    p_low_right = p_right;
+  }
+  if (gradient) spread(n_modes_ - 1, g_low_left, g_low_right);
+  integral_[static_cast<std::size_t>(strip)] = total;
+}
+
+void ModalPad::add(const Motion& motion, Need need, Response& response) {
+  thickness(motion);
+  factor_and_solve();
+  truncate(need == Need::tangents);
+  const int n = grid_.n_theta;
+  const auto nodes = static_cast<std::size_t>(n + 1);
+  double fx = 0.0, fy = 0.0;
+  Pack sum_x = Pack::zero(), sum_y = Pack::zero();
+  for (int i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (strip_[at] == Strip::empty) continue;
+    if (strip_[at] == Strip::mixed) {
+      fx += grid_.face_cos[at] * integral_[at];
+      fy += grid_.face_sin[at] * integral_[at];
+      continue;
+    }
+    for (std::size_t pack = 0; pack < n_packs_; ++pack) {
+      const Pack* q = &q_[pack * nodes + at];
+      const Pack I = strip_load_[pack] * (q[0] + q[1]);
+      sum_x += grid_.face_cos[at] * I;
+      sum_y += grid_.face_sin[at] * I;
+    }
+  }
+  response.force[0] -= grid_.mean * (fx + sum(sum_x));
+  response.force[1] -= grid_.mean * (fy + sum(sum_y));
+  response.min_thickness = std::min(response.min_thickness, h_min_);
+  if (need == Need::tangents) adjoint(motion, response);
+}
+
+void ModalPad::adjoint(const Motion& motion, Response& response) {
+  const int n = grid_.n_theta;
+  const auto nodes = static_cast<std::size_t>(n + 1);
+  struct Sums {
+    Pack face_cos = Pack::zero(), face_sin = Pack::zero(), speed = Pack::zero();
+    Pack source_cos = Pack::zero(), source_sin = Pack::zero();
+  };
+  std::array<Sums, 2> sums;
+  static thread_local std::vector<Pack> yx, yy;
+  yx.resize(nodes);
+  yy.resize(nodes);
+  for (std::size_t pack = 0; pack < n_packs_; ++pack) {
+    const Pack* const q = &q_[pack * nodes];
+    const Pack* const l = &multiplier_[pack * nodes];
+    const Pack* const inverse = &inverse_[pack * nodes];
+    const Pack zero = Pack::zero(), full = strip_load_[pack];
+    const auto load = [&](int strip, const std::vector<Pack>& mixed) {
+      const auto at = static_cast<std::size_t>(strip);
+      return strip_[at] == Strip::full ? full : strip_[at] == Strip::empty ? zero : mixed[at * n_packs_ + pack];
+    };
+    Pack previous_x = zero, previous_y = zero;
+    for (int i = 1; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const Pack from_left = load(i - 1, load_right_), from_right = load(i, load_left_);
+      previous_x = grid_.face_cos[at - 1] * from_left + grid_.face_cos[at] * from_right + l[i] * previous_x;
+      previous_y = grid_.face_sin[at - 1] * from_left + grid_.face_sin[at] * from_right + l[i] * previous_y;
+      yx[at] = previous_x;
+      yy[at] = previous_y;
+    }
+    std::array<Pack, 2> right = {zero, zero};
+    for (int i = n - 1; i >= 0; --i) {
+      const auto at = static_cast<std::size_t>(i);
+      std::array<Pack, 2> m = {zero, zero};
+      if (i > 0) {
+        m[0] = yx[at] * inverse[i] + l[i + 1] * right[0];
+        m[1] = yy[at] * inverse[i] + l[i + 1] * right[1];
+      }
+      const Pack jump = q[i + 1] - q[i];
+      const Pack level = s_[pack] * q[i];
+      for (std::size_t f = 0; f < 2; ++f) {
+        Sums& S = sums[f];
+        const Pack across = (right[f] - m[f]) * jump, along = m[f] * level;
+        S.face_cos += (a_h_[at] * grid_.face_cos[at]) * across + (b_h_[at] * grid_.node_cos[at]) * along;
+        S.face_sin += (a_h_[at] * grid_.face_sin[at]) * across + (b_h_[at] * grid_.node_sin[at]) * along;
+        S.speed += a_speed_[at] * across + b_speed_[at] * along;
+        S.source_cos += grid_.node_cos[at] * m[f];
+        S.source_sin += grid_.node_sin[at] * m[f];
+        right[f] = m[f];
+      }
+    }
+  }
+  // F = -mean sum(load q), and m = A^-1 load: dF = mean sum m (d src + dA q); dh = -cos dx - sin dy.
+  for (std::size_t f = 0; f < 2; ++f) {
+    const double source_cos = grid_.mean * sum(sums[f].source_cos), source_sin = grid_.mean * sum(sums[f].source_sin);
+    const double half = 0.5 * motion.speed, mean = grid_.mean;
+    response.d_position[f][0] += mean * (half * source_sin - sum(sums[f].face_cos));
+    response.d_position[f][1] += mean * (-half * source_cos - sum(sums[f].face_sin));
+    response.d_velocity[f][0] -= mean * source_cos;
+    response.d_velocity[f][1] -= mean * source_sin;
+    response.d_speed[f] += mean * (0.5 * (X_ * source_sin - Y_ * source_cos) + sum(sums[f].speed));
+  }
+}
+
+std::vector<double> ModalPad::pressure(const Motion& motion) {
+  thickness(motion);
+  factor_and_solve();
+  synthesise();
+  std::vector<double> values;
+  for (int i = 0; i <= grid_.n_theta; ++i) {
+    for (int j = 0; j <= grid_.n_z; ++j) {
+      const int from_side = std::min(j, grid_.n_z - j);
+      const double p = from_side == 0 ? 0.0 : node(i, from_side - 1);
+      values.push_back(truncated_ ? std::max(p, 0.0) : p);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+std::unique_ptr<PadSolver> make_modal_pad(const Pad& pad, const Options& options, const Lubricant& lubricant) {
+  return std::make_unique<ModalPad>(pad, options, lubricant);
+}
+
+}  // namespace whirl::film

@@ -1,0 +1,52 @@
+#pragma once
+// One pad: its arc, its grid, and the motion of the journal relative to it.
+
+#include <vector>
+
+#include "whirl/film/model.hpp"
+
+namespace whirl::film {
+
+/// A circular arc. h(theta, z) = clearance - X cos(theta) - Y sin(theta), X = x + z dx/dz - centre_x (Y alike).
+struct Pad {
+  double radius, length;
+  double clearance;           // m, machined clearance c_p
+  double start, arc;          // rad
+  double centre_x, centre_y;  // m, centre of the arc relative to the bearing centre
+};
+
+/// The pads of a bore, lower pad first (errata of Gavalas 2022, eq. 2.10, items 18-19).
+std::vector<Pad> make_pads(const Geometry& geometry);
+
+/// Uniform grid of a pad: n_theta x n_z cells, nodes on all edges, faces midway between nodes along theta.
+struct Grid {
+  Grid(const Pad& pad, const std::array<int, 2>& cells);
+  int n_theta, n_z;
+  double dtheta, dz;
+  double mean;  // exact cell mean of cos(theta) over its mid-point value, 2 sin(dtheta/2)/dtheta
+  std::vector<double> node_cos, node_sin;  // [n_theta + 1]
+  std::vector<double> face_cos, face_sin;  // [n_theta]
+};
+
+/// Part of a film that answers for one pad.
+class PadSolver {
+public:
+  PadSolver() = default;
+  PadSolver(const PadSolver&) = delete;
+  PadSolver& operator=(const PadSolver&) = delete;
+  virtual ~PadSolver() = default;
+  /// Adds force and derivatives of this pad to `response` and lowers its min_thickness.
+  virtual void add(const Motion& motion, Need need, Response& response) = 0;
+  /// Truncated nodal pressure [n_theta + 1][n_z + 1], Pa.
+  virtual std::vector<double> pressure(const Motion& motion) = 0;
+};
+
+/// Aligned pad without complementarity: sine modes along z, tridiagonal systems along theta.
+std::unique_ptr<PadSolver> make_modal_pad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+/// Any pad: banded factorisation; half the pad if the journal stays aligned.
+std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+
+/// Throws core::DomainError unless h_min > 0.
+void require_thickness(double h_min);
+
+}  // namespace whirl::film

@@ -1,0 +1,133 @@
+// Reynolds' equation pad by pad: chooses the solver of each pad, adds the pads up, and reports fields.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "film/kinds.hpp"
+#include "film/mobility.hpp"
+#include "film/pad.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::film {
+namespace {
+
+void demand(bool condition, const char* what) {
+  if (!condition) throw core::InputError(std::string("film: ") + what);
+}
+
+void check(const Geometry& g, const Options& o, const Lubricant& l) {
+  demand(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
+  const double limit = (g.type == Geometry::Bore::lemon_bore ? 1.0 : 2.0) * std::numbers::pi;
+  demand(g.arc > 0.0 && g.arc <= limit, "the arc must be positive and its pads must not overlap");
+  demand(g.preload < 1.0, "the preload must be below 1");
+  demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
+  demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");
+  demand(l.viscosity > 0.0, "the viscosity must be positive");
+  demand(l.density >= 0.0 && (l.density > 0.0 || o.turbulence == Options::Turbulence::laminar),
+         "a turbulent film needs a positive density");
+}
+
+class ReynoldsFilm final : public Model {
+public:
+  ReynoldsFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
+      : options_(options), lubricant_(lubricant), pads_(make_pads(geometry)) {
+    const bool modal = !options.tilt && options.cavitation != Options::Cavitation::reynolds;
+    for (const Pad& pad : pads_) {
+      solvers_.push_back(modal ? make_modal_pad(pad, options, lubricant) : make_banded_pad(pad, options, lubricant));
+    }
+  }
+
+  void evaluate(const Motion& motion, Need need, Response& response) override {
+    response = {};
+    response.min_thickness = std::numeric_limits<double>::infinity();
+    for (auto& solver : solvers_) solver->add(motion, need, response);
+  }
+
+  Summary summary(const Motion& motion) override;
+  std::vector<Field> fields(const Motion& motion) override;
+
+private:
+  double thickness(const Pad& pad, const Motion& motion, double theta, double z) const {
+    const double tx = options_.tilt ? motion.position[2] : 0.0, ty = options_.tilt ? motion.position[3] : 0.0;
+    return pad.clearance - (motion.position[0] + z * tx - pad.centre_x) * std::cos(theta) -
+           (motion.position[1] + z * ty - pad.centre_y) * std::sin(theta);
+  }
+
+  Options options_;
+  Lubricant lubricant_;
+  std::vector<Pad> pads_;
+  std::vector<std::unique_ptr<PadSolver>> solvers_;
+};
+
+// Side flow through both ends, h^3/(mu k_z) p_z with one-sided slopes; friction torque of the journal from the shear
+// mu U/h tau_c + (h/2) p_theta/R with tau_c = 1 + 0.0012 Re^0.94 in turbulence (Constantinescu's Couette factor).
+Summary ReynoldsFilm::summary(const Motion& motion) {
+  Summary result;
+  result.min_thickness = std::numeric_limits<double>::infinity();
+  const Resistance along = resistance_along(options_.turbulence);
+  const bool laminar = options_.turbulence == Options::Turbulence::laminar;
+  const double mu = lubricant_.viscosity;
+  for (std::size_t n = 0; n < pads_.size(); ++n) {
+    const Pad& pad = pads_[n];
+    const Grid grid(pad, options_.cells);
+    const auto columns = static_cast<std::size_t>(grid.n_z + 1);
+    const std::vector<double> p = solvers_[n]->pressure(motion);
+    const double U = motion.speed * pad.radius;
+    double shear = 0.0;
+    for (int i = 0; i <= grid.n_theta; ++i) {
+      const double theta = pad.start + i * grid.dtheta;
+      const double* row = &p[static_cast<std::size_t>(i) * columns];
+      const double share = pad.radius * grid.dtheta * (i == 0 || i == grid.n_theta ? 0.5 : 1.0);
+      for (int j = 0; j <= grid.n_z; ++j) {
+        const double h = thickness(pad, motion, theta, j * grid.dz - 0.5 * pad.length);
+        const double Re = lubricant_.density * std::abs(U) * h / mu;
+        const bool side = j == 0 || j == grid.n_z;
+        if (side) {
+          const double inner = row[j == 0 ? 1 : grid.n_z - 1];
+          result.side_flow += share * h * h * h / (mu * film::evaluate(along, Re)) * inner / grid.dz;
+        }
+        const double area = share * grid.dz * (side ? 0.5 : 1.0);
+        const double couette = laminar ? 1.0 : 1.0 + 0.0012 * std::pow(Re, 0.94);
+        double slope = 0.0;
+        if (i > 0 && i < grid.n_theta)
+          slope = (row[columns + static_cast<std::size_t>(j)] - *(row - columns + j)) / (2.0 * grid.dtheta);
+        shear += area * (mu * U / h * couette + 0.5 * h * slope / pad.radius);
+        result.min_thickness = std::min(result.min_thickness, h);
+        result.max_pressure = std::max(result.max_pressure, row[j]);
+      }
+    }
+    result.power_loss += shear * U;
+  }
+  return result;
+}
+
+std::vector<Field> ReynoldsFilm::fields(const Motion& motion) {
+  std::vector<Field> all;
+  for (std::size_t n = 0; n < pads_.size(); ++n) {
+    const Pad& pad = pads_[n];
+    const Grid grid(pad, options_.cells);
+    const auto rows = static_cast<std::size_t>(grid.n_theta + 1), columns = static_cast<std::size_t>(grid.n_z + 1);
+    const int index = static_cast<int>(n);
+    Field theta{index, "theta", "rad", {rows}, {}}, z{index, "z", "m", {columns}, {}};
+    Field pressure{index, "pressure", "Pa", {rows, columns}, solvers_[n]->pressure(motion)};
+    Field h{index, "thickness", "m", {rows, columns}, {}};
+    for (int i = 0; i <= grid.n_theta; ++i) theta.values.push_back(pad.start + i * grid.dtheta);
+    for (int j = 0; j <= grid.n_z; ++j) z.values.push_back(j * grid.dz - 0.5 * pad.length);
+    for (double t : theta.values) {
+      for (double at : z.values) h.values.push_back(thickness(pad, motion, t, at));
+    }
+    for (Field* f : {&theta, &z, &pressure, &h}) all.push_back(std::move(*f));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::unique_ptr<Model> make_reynolds(const Geometry& geometry, const Options& options, const Lubricant& lubricant) {
+  check(geometry, options, lubricant);
+  return std::make_unique<ReynoldsFilm>(geometry, options, lubricant);
+}
+
+}  // namespace whirl::film

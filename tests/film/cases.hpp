@@ -1,0 +1,42 @@
+#pragma once
+// Bearings and motions that several film tests share.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "whirl/film/model.hpp"
+
+namespace whirl::film::testing {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;
+
+inline Geometry lemon() {
+  return {Geometry::Bore::lemon_bore, 0.2, 0.36, 0.0004, 160.0 * kDegree, 0.5, 0.0};
+}
+inline Geometry arc() {
+  return {Geometry::Bore::partial_arc, 0.1, 0.1, 0.0002, 60.0 * kDegree, 0.0, 0.0};
+}
+inline Lubricant oil() {
+  return {0.0067, 850.0};
+}
+
+/// Position in clearances, velocity in clearances times speed, tilt in clearances per length.
+inline Motion motion(const Geometry& g, std::array<double, 4> position, std::array<double, 4> velocity, double speed) {
+  const double tilt = g.clearance / g.length;
+  Motion m{position, velocity, speed};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double scale = i < 2 ? g.clearance : tilt;
+    m.position[i] *= scale;
+    m.velocity[i] *= scale * speed;
+  }
+  return m;
+}
+
+inline Response evaluate(Model& model, const Motion& m, Need need = Need::tangents) {
+  Response r;
+  model.evaluate(m, need, r);
+  return r;
+}
+
+}  // namespace whirl::film::testing

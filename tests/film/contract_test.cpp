@@ -1,0 +1,154 @@
+// Every film: Taylor tests of all derivatives, errors, and what callers rely on.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "film/cases.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::film::testing {
+namespace {
+
+struct Case {
+  std::string name;
+  Geometry geometry;
+  Options options;
+  std::array<double, 4> position, velocity;
+};
+
+Options options(Options::Cavitation cavitation, Options::Turbulence turbulence, bool tilt, std::array<int, 2> cells) {
+  Options o;
+  o.cavitation = cavitation;
+  o.turbulence = turbulence;
+  o.tilt = tilt;
+  o.cells = cells;
+  return o;
+}
+
+std::vector<Case> cases() {
+  using C = Options::Cavitation;
+  using T = Options::Turbulence;
+  const std::array<double, 4> loaded = {0.9, -0.4, 0.2, -0.15}, moving = {0.05, -0.08, 0.03, 0.02};
+  const std::array<double, 4> shallow = {0.2, -0.6, 0.1, 0.1};
+  Options linear;
+  linear.kind = Options::Kind::linear;
+  linear.stiffness = {4e8, -1e8, -1e9, 1.6e9};
+  linear.damping = {1e6, -1.5e6, -2e6, 6e6};
+  Geometry offset = lemon();
+  offset.offset = 0.5 * offset.clearance;
+  return {
+      {"lemon_half_sommerfeld", lemon(), options(C::half_sommerfeld, T::constantinescu, false, {60, 16}), loaded,
+       moving},
+      {"lemon_odd_rows", lemon(), options(C::half_sommerfeld, T::constantinescu, false, {37, 19}), loaded, moving},
+      {"lemon_many_modes", lemon(), options(C::half_sommerfeld, T::laminar, false, {40, 44}), loaded, moving},
+      {"lemon_offset", offset, options(C::half_sommerfeld, T::constantinescu, false, {60, 16}), loaded, moving},
+      {"lemon_uncavitated", lemon(), options(C::none, T::constantinescu, false, {30, 10}), loaded, moving},
+      {"lemon_reynolds", lemon(), options(C::reynolds, T::constantinescu, false, {60, 16}), loaded, moving},
+      {"lemon_reynolds_odd_rows", lemon(), options(C::reynolds, T::constantinescu, false, {31, 11}), loaded, moving},
+      {"lemon_tilted", lemon(), options(C::half_sommerfeld, T::constantinescu, true, {60, 16}), loaded, moving},
+      {"lemon_tilted_reynolds", lemon(), options(C::reynolds, T::constantinescu, true, {60, 16}), loaded, moving},
+      {"lemon_tilted_uncavitated", lemon(), options(C::none, T::laminar, true, {23, 9}), loaded, moving},
+      {"arc_half_sommerfeld", arc(), options(C::half_sommerfeld, T::constantinescu, false, {60, 16}), shallow, moving},
+      {"arc_tilted", arc(), options(C::half_sommerfeld, T::constantinescu, true, {41, 13}), shallow, moving},
+      {"linear", arc(), linear, shallow, moving},
+  };
+}
+
+class Contract : public ::testing::TestWithParam<Case> {};
+
+// |F(s + e d) - F(s) - e dF d| must fall as e^2. Reynolds cavitation is piecewise smooth: the steps stay so small that
+// no node changes sides.
+TEST_P(Contract, TaylorRemainderIsSecondOrder) {
+  const Case& c = GetParam();
+  const bool kinked = c.options.cavitation == Options::Cavitation::reynolds && c.options.kind != Options::Kind::linear;
+  auto model = make_model(c.geometry, c.options, oil());
+  const Motion base = motion(c.geometry, c.position, c.velocity, 377.0);
+  const Response at = evaluate(*model, base);
+  const std::size_t components = c.options.tilt ? 4 : 2;
+  const auto scale = [&](std::size_t j) {
+    return j < 2 ? c.geometry.clearance : c.geometry.clearance / c.geometry.length;
+  };
+  for (std::size_t variable = 0; variable < 9; ++variable) {
+    const std::size_t j = variable % 4;
+    if (variable < 8 && j >= components) continue;
+    std::array<double, 2> remainder{};
+    double slope_size = 0.0;
+    const double first = kinked ? 4e-5 : 4e-3;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double e = k == 0 ? first : 0.5 * first;
+      Motion moved = base;
+      double step = e * 377.0;
+      if (variable < 4)
+        moved.position[j] += step = e * scale(j);
+      else if (variable < 8)
+        moved.velocity[j] += step = e * scale(j) * 377.0;
+      else
+        moved.speed += step;
+      const Response there = evaluate(*model, moved, Need::force);
+      for (std::size_t i = 0; i < components; ++i) {
+        const double slope = variable < 4 ? at.d_position[i][j] : variable < 8 ? at.d_velocity[i][j] : at.d_speed[i];
+        const double size = i < 2 ? 1.0 : 1.0 / c.geometry.length;
+        remainder[k] += std::abs(there.force[i] - at.force[i] - slope * step) * size;
+        if (k == 1) slope_size += std::abs(slope * step) * size;
+      }
+    }
+    const double load = std::abs(at.force[0]) + std::abs(at.force[1]);
+    if (c.options.kind != Options::Kind::linear) {
+      EXPECT_TRUE(slope_size > 0.0) << "variable " << variable;
+    }
+    if (remainder[1] < 1e-11 * load) continue;  // exactly linear up to rounding
+    EXPECT_GE(std::log2(remainder[0] / remainder[1]), 1.85) << c.name << " variable " << variable;
+    EXPECT_LT(remainder[1], 0.2 * slope_size) << c.name << " variable " << variable;
+  }
+}
+
+TEST_P(Contract, ForceDoesNotDependOnNeedOrHistory) {
+  const Case& c = GetParam();
+  auto model = make_model(c.geometry, c.options, oil());
+  auto fresh = make_model(c.geometry, c.options, oil());
+  const Motion here = motion(c.geometry, c.position, c.velocity, 377.0);
+  const Motion elsewhere = motion(c.geometry, {-0.3, 0.2, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}, 200.0);
+  evaluate(*model, elsewhere);
+  const Response a = evaluate(*model, here, Need::force), b = evaluate(*fresh, here, Need::tangents);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-10 * std::abs(b.force[1])) << i;
+  EXPECT_EQ(a.d_position[0][0], 0.0);
+}
+
+TEST_P(Contract, ThicknessMustBePositive) {
+  const Case& c = GetParam();
+  auto model = make_model(c.geometry, c.options, oil());
+  if (model->linear()) GTEST_SKIP();
+  Response r;
+  EXPECT_THROW(model->evaluate(motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0), Need::force, r),
+               core::DomainError);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(model->evaluate(motion(c.geometry, {nan, 0.0, 0.0, 0.0}, {}, 377.0), Need::force, r), core::DomainError);
+}
+
+TEST_P(Contract, RestWithoutMotionGivesNoForce) {
+  const Case& c = GetParam();
+  auto model = make_model(c.geometry, c.options, oil());
+  if (model->linear()) GTEST_SKIP();
+  const Response r = evaluate(*model, motion(c.geometry, c.position, {}, 0.0));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(r.force[i], 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Films, Contract, ::testing::ValuesIn(cases()),
+                         [](const auto& which) { return which.param.name; });
+
+TEST(Film, ImpossibleOptionsAreInputErrors) {
+  Geometry g = arc();
+  g.preload = 1.0;
+  EXPECT_THROW(make_model(g, {}, oil()), core::InputError);
+  g = arc();
+  g.offset = 1e-5;
+  EXPECT_THROW(make_model(g, {}, oil()), core::InputError);
+  Options coarse;
+  coarse.cells = {2, 16};
+  EXPECT_THROW(make_model(arc(), coarse, oil()), core::InputError);
+  EXPECT_THROW(make_model(arc(), {}, {0.0067, 0.0}), core::InputError);
+}
+
+}  // namespace
+}  // namespace whirl::film::testing
