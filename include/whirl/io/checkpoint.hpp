@@ -1,0 +1,41 @@
+#pragma once
+// Checkpoints that survive a kill at any moment.
+
+#include <filesystem>
+#include <string>
+
+#include "whirl/io/record.hpp"
+
+namespace whirl::io {
+
+/// A checkpoint file and its predecessor `<path>.prev`.
+///
+/// After a kill at any moment at least one of the two is complete. Serial: call on one rank and broadcast what matters.
+class Checkpoint {
+public:
+  explicit Checkpoint(std::filesystem::path path) : path_(std::move(path)) {}
+
+  /// Writes `state` with its checksum, keeps the last checkpoint as `.prev`, then renames. Attributes of `state` whose
+  /// name starts with "checkpoint_" are reserved.
+  void save(const Group& state) const;
+
+  struct Loaded {
+    Group state;
+    bool from_previous = false;
+    std::string reason;  ///< why the newest file was not used, if so
+  };
+  /// The newest readable state. core::Error naming both files and what is wrong with them if neither can be used.
+  [[nodiscard]] Loaded load() const;
+
+  /// True if there is something to load, readable or not.
+  [[nodiscard]] bool exists() const;
+  /// Removes both files.
+  void remove() const;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+  [[nodiscard]] std::filesystem::path previous() const;
+  std::filesystem::path path_;
+};
+
+}  // namespace whirl::io

@@ -1,0 +1,80 @@
+#pragma once
+// Results and checkpoints in memory: a tree of groups with attributes and typed, unit-bearing datasets.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace whirl::io {
+
+using Attribute = std::variant<std::string, double, std::int64_t>;
+using Shape = std::vector<std::size_t>;
+using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>;
+
+/// An array of rank shape.size() in row-major order; an empty shape is one scalar.
+struct Dataset {
+  Shape shape;
+  Values values;
+  std::string unit;         ///< UDUNITS text, "1" if dimensionless, empty for names and counts
+  std::string description;  ///< what a reader of the file should know
+
+  [[nodiscard]] std::size_t size() const;  ///< number of values
+  bool operator==(const Dataset&) const = default;
+};
+
+/// A node of the tree: attributes, datasets and subgroups, each under a unique name (no '/', not empty).
+///
+/// Setting a name twice replaces its value; a name is either a dataset or a subgroup. Misuse raises core::Bug; a
+/// missing or mistyped entry raises core::Error with its name, because the tree may come from a file.
+class Group {
+public:
+  // Attributes.
+  void set(const std::string& name, std::string value);
+  void set(const std::string& name, const char* value) { set(name, std::string(value)); }
+  void set(const std::string& name, double value);
+  void set(const std::string& name, std::int64_t value);
+  void set(const std::string& name, int value) { set(name, std::int64_t{value}); }
+  [[nodiscard]] const std::string& text(const std::string& name) const;
+  [[nodiscard]] double real(const std::string& name) const;
+  [[nodiscard]] std::int64_t integer(const std::string& name) const;
+  [[nodiscard]] bool has_attribute(const std::string& name) const { return attributes_.contains(name); }
+
+  // Datasets; the shorter forms store one axis.
+  void put(const std::string& name, Dataset data);
+  void put(const std::string& name, std::vector<double> values, std::string unit, std::string description);
+  void put(const std::string& name, Shape shape, std::vector<double> values, std::string unit, std::string description);
+  void put(const std::string& name, std::vector<std::int64_t> values, std::string description);
+  void put(const std::string& name, std::vector<std::string> values, std::string description);
+  [[nodiscard]] bool has_dataset(const std::string& name) const { return datasets_.contains(name); }
+  [[nodiscard]] const Dataset& dataset(const std::string& name) const;
+  [[nodiscard]] const std::vector<double>& reals(const std::string& name) const;
+  [[nodiscard]] const std::vector<std::int64_t>& integers(const std::string& name) const;
+  [[nodiscard]] const std::vector<std::string>& strings(const std::string& name) const;
+
+  // Subgroups: `child` makes what is missing, `group` does not.
+  Group& child(const std::string& name);
+  [[nodiscard]] bool has_group(const std::string& name) const { return groups_.contains(name); }
+  [[nodiscard]] const Group& group(const std::string& name) const;
+  void erase_group(const std::string& name) { groups_.erase(name); }
+
+  [[nodiscard]] const std::map<std::string, Attribute>& attributes() const { return attributes_; }
+  [[nodiscard]] const std::map<std::string, Dataset>& datasets() const { return datasets_; }
+  [[nodiscard]] const std::map<std::string, Group>& groups() const { return groups_; }
+  bool operator==(const Group&) const = default;
+
+private:
+  std::map<std::string, Attribute> attributes_;
+  std::map<std::string, Dataset> datasets_;
+  std::map<std::string, Group> groups_;
+};
+
+/// Name in a file for any text of a user: '/' becomes '_', an empty name or "." becomes "_".
+[[nodiscard]] std::string safe_name(const std::string& text);
+
+/// 64-bit FNV-1a hash of all names, shapes, units and values of the tree (descriptions too); equal trees have equal
+/// hashes.
+[[nodiscard]] std::uint64_t checksum(const Group& group);
+
+}  // namespace whirl::io

@@ -1,0 +1,72 @@
+#pragma once
+// summary.json: the contract with scripts and users' own tools.
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace whirl::io {
+
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+/// A number with its unit; NaN and infinity become null in the file.
+struct Quantity {
+  double value = no_value;
+  std::string unit;
+};
+
+enum class BifurcationType { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };
+[[nodiscard]] const char* name_of(BifurcationType type);
+
+/// A located bifurcation: `value` and `uncertainty` in `unit` of `parameter`.
+struct Bifurcation {
+  BifurcationType type = BifurcationType::fold;
+  std::string parameter = {};
+  double value = no_value;
+  std::string unit = {};
+  double period_s = no_value;               ///< of the cycle, or 2 pi/omega of a Hopf point
+  double uncertainty = no_value;            ///< estimated absolute error of `value`
+  std::string criticality = {};             ///< "supercritical", "subcritical", or empty if not computed
+  std::map<std::string, double> more = {};  ///< further numbers, e.g. "whirl_frequency_rad_s", "angle_rad"
+};
+
+/// One eigenvalue real + i imag (rad/s) at a speed (in the unit of the study's range).
+struct ModeEntry {
+  double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
+  std::string whirl = {};  ///< forward, backward, mixed
+};
+
+/// What one study delivered.
+struct StudySummary {
+  std::string name = {}, kind = {};
+  std::string status = "completed";  ///< or why it ended early
+  double wall_seconds = 0;
+  std::vector<std::pair<std::string, Quantity>> values = {};  ///< dotted names, in the order they were set
+  std::vector<Bifurcation> bifurcations = {};
+  std::vector<ModeEntry> modes = {};
+  long points = 0;
+
+  /// Sets values[key], replacing an earlier one.
+  void set(const std::string& key, double value, const std::string& unit);
+};
+
+/// The whole file; write it again after each study.
+struct Summary {
+  std::string title = {}, version = {};
+  int ranks = 1;
+  double wall_seconds = 0;
+  std::vector<StudySummary> studies = {};
+
+  /// Replaces the study of the same name or appends it.
+  void set(StudySummary study);
+  [[nodiscard]] std::string to_json() const;
+  /// Atomic: temporary name, sync, rename. Call on one rank.
+  void write(const std::filesystem::path& path) const;
+  /// Reads what `write` wrote; core::Error with the place if the file is missing or not ours.
+  [[nodiscard]] static Summary read(const std::filesystem::path& path);
+};
+
+}  // namespace whirl::io

@@ -1,0 +1,43 @@
+#pragma once
+// XDMF beside an HDF5 file, so that ParaView opens its meshes.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+
+namespace whirl::io {
+
+/// A structured mesh of n0 x n1 (x n2) nodes whose coordinates and nodal fields are datasets of that shape.
+struct StructuredGrid {
+  struct Field {
+    std::string name;     ///< as ParaView shows it, with its unit
+    std::string dataset;  ///< path in the HDF5 file
+  };
+  std::string name;
+  Shape nodes;                 ///< two or three extents, slowest index first
+  std::string coordinates[3];  ///< dataset paths of x, y, z
+  std::vector<Field> fields;
+};
+
+/// Writes `path` (atomic) that refers to `hdf5_name`, a file in the same folder. The grids appear as one block each.
+void write_xdmf(const std::filesystem::path& path, const std::string& hdf5_name,
+                const std::vector<StructuredGrid>& grids);
+
+/// Where the film of a pad lies in space.
+struct FilmPlace {
+  double radius = 0;                  ///< m, of the wrapped surface
+  double centre_x = 0, centre_y = 0;  ///< m, bearing centre
+  double centre_z = 0;                ///< m, axial position of the film's z = 0
+};
+
+/// Prepares one pad for ParaView: adds node coordinates to `pad` and returns its grids "<name>" (wrapped around the
+/// shaft) and "<name> unwrapped" (x = radius * theta, y = z).
+///
+/// `pad` holds theta[n_theta] (rad), z[n_z] (m) and fields of shape [n_theta][n_z]; `path` is the place of `pad` in the
+/// file, "/studies/..."; every such field becomes a field of both grids.
+[[nodiscard]] std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, const std::string& name,
+                                                     const FilmPlace& place);
+
+}  // namespace whirl::io

@@ -1,0 +1,286 @@
+#include "whirl/io/hdf5.hpp"
+
+#include <hdf5.h>
+
+#include "io/atomic_file.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::io {
+namespace {
+
+// Innermost HDF5 message of the failure in flight.
+std::string reason() {
+  std::string text;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_DOWNWARD,
+      [](unsigned, const H5E_error2_t* e, void* out) -> herr_t {
+        if (e->desc && *e->desc) *static_cast<std::string*>(out) = e->desc;
+        return 0;
+      },
+      &text);
+  return text.empty() ? "HDF5 failed" : text;
+}
+
+void check(herr_t code) {
+  if (code < 0) throw core::Error(reason());
+}
+
+// HDF5 prints its errors by default; ours travel as exceptions.
+class Quiet {
+public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+template <herr_t (*Close)(hid_t)>
+class Id {
+public:
+  Id(hid_t id) : id_(id) {
+    if (id < 0) throw core::Error(reason());
+  }
+  Id(const Id&) = delete;
+  Id& operator=(const Id&) = delete;
+  ~Id() { Close(id_); }
+  operator hid_t() const { return id_; }
+  void release_checked() {
+    const hid_t id = id_;
+    id_ = H5I_INVALID_HID;
+    check(Close(id));
+  }
+
+private:
+  hid_t id_;
+};
+
+herr_t close_if_open(hid_t file) {
+  return file == H5I_INVALID_HID ? 0 : H5Fclose(file);
+}
+
+using File = Id<close_if_open>;
+using GroupId = Id<H5Gclose>;
+using Data = Id<H5Dclose>;
+using Attr = Id<H5Aclose>;
+using Space = Id<H5Sclose>;
+using Type = Id<H5Tclose>;
+using List = Id<H5Pclose>;
+
+hid_t utf8() {
+  const hid_t t = H5Tcopy(H5T_C_S1);
+  if (t >= 0 && (H5Tset_size(t, H5T_VARIABLE) < 0 || H5Tset_cset(t, H5T_CSET_UTF8) < 0)) {
+    H5Tclose(t);
+    return -1;
+  }
+  return t;
+}
+
+void write_attribute(hid_t at, const std::string& name, const Attribute& value) {
+  const Space scalar(H5Screate(H5S_SCALAR));
+  if (const auto* s = std::get_if<std::string>(&value)) {
+    const Type type(utf8());
+    const Attr a(H5Acreate2(at, name.c_str(), type, scalar, H5P_DEFAULT, H5P_DEFAULT));
+    const char* c = s->c_str();
+    check(H5Awrite(a, type, &c));
+  } else if (const auto* d = std::get_if<double>(&value)) {
+    const Attr a(H5Acreate2(at, name.c_str(), H5T_IEEE_F64LE, scalar, H5P_DEFAULT, H5P_DEFAULT));
+    check(H5Awrite(a, H5T_NATIVE_DOUBLE, d));
+  } else {
+    const Attr a(H5Acreate2(at, name.c_str(), H5T_STD_I64LE, scalar, H5P_DEFAULT, H5P_DEFAULT));
+    check(H5Awrite(a, H5T_NATIVE_INT64, &std::get<std::int64_t>(value)));
+  }
+}
+
+void write_dataset(hid_t at, const std::string& name, const Dataset& data) {
+  const std::vector<hsize_t> extents(data.shape.begin(), data.shape.end());
+  const Space space(extents.empty() ? H5Screate(H5S_SCALAR)
+                                    : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr));
+  const auto store = [&](hid_t file_type, hid_t memory_type, const void* values) {
+    const Data d(H5Dcreate2(at, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    if (data.size() > 0) check(H5Dwrite(d, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    if (!data.unit.empty()) write_attribute(d, "unit", data.unit);
+    if (!data.description.empty()) write_attribute(d, "description", data.description);
+  };
+  if (const auto* x = std::get_if<std::vector<double>>(&data.values)) {
+    store(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, x->data());
+  } else if (const auto* i = std::get_if<std::vector<std::int64_t>>(&data.values)) {
+    store(H5T_STD_I64LE, H5T_NATIVE_INT64, i->data());
+  } else {
+    std::vector<const char*> texts;
+    for (const std::string& s : std::get<std::vector<std::string>>(data.values)) texts.push_back(s.c_str());
+    const Type type(utf8());
+    store(type, type, texts.data());
+  }
+}
+
+void write_group(hid_t at, const Group& group) {
+  for (const auto& [name, value] : group.attributes()) write_attribute(at, name, value);
+  for (const auto& [name, data] : group.datasets()) write_dataset(at, name, data);
+  for (const auto& [name, sub] : group.groups()) {
+    const GroupId g(H5Gcreate2(at, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    write_group(g, sub);
+  }
+}
+
+Attribute read_attribute(hid_t at, const char* name) {
+  const Attr a(H5Aopen(at, name, H5P_DEFAULT));
+  const Type type(H5Aget_type(a));
+  switch (H5Tget_class(type)) {
+    case H5T_STRING: {
+      const Type memory(utf8());
+      char* c = nullptr;
+      check(H5Aread(a, memory, static_cast<void*>(&c)));
+      std::string s = c ? c : "";
+      H5free_memory(c);
+      return s;
+    }
+    case H5T_FLOAT: {
+      double d = 0;
+      check(H5Aread(a, H5T_NATIVE_DOUBLE, &d));
+      return d;
+    }
+    case H5T_INTEGER: {
+      std::int64_t i = 0;
+      check(H5Aread(a, H5T_NATIVE_INT64, &i));
+      return i;
+    }
+    default:
+      throw core::Error(std::string("attribute '") + name + "' has a type that is not ours");
+  }
+}
+
+Dataset read_dataset(hid_t at, const char* name) {
+  Dataset data;
+  const Data d(H5Dopen2(at, name, H5P_DEFAULT));
+  const Space space(H5Dget_space(d));
+  std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
+  check(H5Sget_simple_extent_dims(space, extents.data(), nullptr));
+  data.shape.assign(extents.begin(), extents.end());
+  const auto n = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+  const auto load = [&](hid_t memory, void* values) {
+    if (n > 0) check(H5Dread(d, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  };
+  const Type type(H5Dget_type(d));
+  switch (H5Tget_class(type)) {
+    case H5T_FLOAT:
+      load(H5T_NATIVE_DOUBLE, data.values.emplace<std::vector<double>>(n).data());
+      break;
+    case H5T_INTEGER:
+      load(H5T_NATIVE_INT64, data.values.emplace<std::vector<std::int64_t>>(n).data());
+      break;
+    case H5T_STRING: {
+      const Type memory(utf8());
+      std::vector<char*> texts(n, nullptr);
+      load(memory, static_cast<void*>(texts.data()));
+      auto& out = data.values.emplace<std::vector<std::string>>();
+      for (char* c : texts) {
+        out.emplace_back(c ? c : "");
+        H5free_memory(c);
+      }
+      break;
+    }
+    default:
+      throw core::Error(std::string("dataset '") + name + "' has a type that is not ours");
+  }
+  const auto text = [&](const char* attribute) {
+    if (H5Aexists(d, attribute) <= 0) return std::string();
+    const Attribute a = read_attribute(d, attribute);
+    return std::holds_alternative<std::string>(a) ? std::get<std::string>(a) : std::string();
+  };
+  data.unit = text("unit");
+  data.description = text("description");
+  return data;
+}
+
+Group read_group(hid_t at) {
+  // Callbacks only collect names, so that no exception crosses HDF5's frames.
+  std::vector<std::string> attributes, links;
+  check(H5Aiterate2(
+      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
+        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+        return 0;
+      },
+      &attributes));
+  check(H5Literate(
+      at, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+        static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+        return 0;
+      },
+      &links));
+  Group group;
+  for (const std::string& name : attributes)
+    std::visit([&](const auto& v) { group.set(name, v); }, read_attribute(at, name.c_str()));
+  for (const std::string& name : links) {
+    H5O_info_t info;
+    check(H5Oget_info_by_name2(at, name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT));
+    if (info.type == H5O_TYPE_DATASET) {
+      group.put(name, read_dataset(at, name.c_str()));
+    } else if (info.type == H5O_TYPE_GROUP) {
+      const GroupId g(H5Gopen2(at, name.c_str(), H5P_DEFAULT));
+      group.child(name) = read_group(g);
+    }
+  }
+  return group;
+}
+
+// Locks fail on some network file systems, and an atomic rename needs none.
+hid_t access() {
+  const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
+  if (list >= 0) H5Pset_file_locking(list, false, true);
+  return list;
+}
+
+}  // namespace
+
+void write_hdf5(const std::filesystem::path& path, const Group& root) {
+  const Quiet quiet;
+  replace_file(path, [&](const std::filesystem::path& part) {
+    try {
+      const List how(access());
+      File file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, how));
+      write_group(file, root);
+      file.release_checked();
+    } catch (const core::Error& e) {
+      throw core::Error("cannot write " + path.string() + ": " + e.what());
+    }
+  });
+}
+
+Group read_hdf5(const std::filesystem::path& path) {
+  const Quiet quiet;
+  if (!std::filesystem::exists(path)) throw core::Error("cannot read " + path.string() + ": there is no such file");
+  try {
+    const List how(access());
+    const File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, how));
+    return read_group(file);
+  } catch (const core::Bug&) {
+    throw core::Error("cannot read " + path.string() + ": its contents do not fit together");
+  } catch (const core::Error& e) {
+    throw core::Error("cannot read " + path.string() + ": " + e.what());
+  }
+}
+
+void describe_results(Group& root, const std::string& title, const std::string& version) {
+  root.set("title", title);
+  root.set("version", version);
+  root.set("program", "whirl");
+  root.set("format", 1);
+  root.set(
+      "frames",
+      "x right, y up, z along the shaft, rotation from x to y; theta from +x counter-clockwise; gravity along -y. "
+      "Journal positions are journal minus pedestal minus elevation, relative to the bearing centre. "
+      "K = -dF_journal/dx, C = -dF_journal/d(dx/dt). Loads are journal on bearing, positive down. Nodes are 1-based.");
+  root.set("amplitudes", "0-peak unless the name says peak_to_peak");
+  root.set("units", "attribute `unit` of each dataset; SI unless the study's range has a unit of its own");
+}
+
+}  // namespace whirl::io

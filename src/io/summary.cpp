@@ -1,0 +1,163 @@
+#include "whirl/io/summary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 6> bifurcation_names = {"fold", "hopf",           "cyclic_fold",
+                                                          "flip", "neimark_sacker", "branch_point"};
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+double number(const Json& j) {
+  return j.is_null() ? no_value : j.get<double>();
+}
+
+Json text_or_null(const std::string& s) {
+  return s.empty() ? Json(nullptr) : Json(s);
+}
+
+Json to_json(const Bifurcation& b) {
+  Json j = {{"type", name_of(b.type)},
+            {"parameter", b.parameter},
+            {"value", number(b.value)},
+            {"unit", b.unit},
+            {"period_s", number(b.period_s)},
+            {"uncertainty", number(b.uncertainty)},
+            {"criticality", text_or_null(b.criticality)}};
+  for (const auto& [name, value] : b.more) j[name] = number(value);
+  return j;
+}
+
+Bifurcation bifurcation(const Json& j) {
+  Bifurcation b;
+  for (const auto& [key, v] : j.items()) {
+    if (key == "type") {
+      const auto it = std::find(bifurcation_names.begin(), bifurcation_names.end(), v.get<std::string>());
+      if (it == bifurcation_names.end()) throw core::Error("unknown bifurcation type " + v.dump());
+      b.type = static_cast<BifurcationType>(it - bifurcation_names.begin());
+    } else if (key == "parameter") {
+      v.get_to(b.parameter);
+    } else if (key == "value") {
+      b.value = number(v);
+    } else if (key == "unit") {
+      v.get_to(b.unit);
+    } else if (key == "period_s") {
+      b.period_s = number(v);
+    } else if (key == "uncertainty") {
+      b.uncertainty = number(v);
+    } else if (key == "criticality") {
+      b.criticality = v.is_null() ? "" : v.get<std::string>();
+    } else {
+      b.more[key] = number(v);
+    }
+  }
+  return b;
+}
+
+Json to_json(const StudySummary& s) {
+  Json values = Json::object();
+  for (const auto& [name, q] : s.values) values[name] = {{"value", number(q.value)}, {"unit", q.unit}};
+  Json bifurcations = Json::array(), modes = Json::array();
+  for (const Bifurcation& b : s.bifurcations) bifurcations.push_back(to_json(b));
+  for (const ModeEntry& m : s.modes)
+    modes.push_back({{"speed", number(m.speed)},
+                     {"real", number(m.real)},
+                     {"imag", number(m.imag)},
+                     {"log_decrement", number(m.log_decrement)},
+                     {"whirl", text_or_null(m.whirl)}});
+  return {{"name", s.name},
+          {"kind", s.kind},
+          {"status", s.status},
+          {"wall_seconds", number(s.wall_seconds)},
+          {"values", std::move(values)},
+          {"bifurcations", std::move(bifurcations)},
+          {"modes", std::move(modes)},
+          {"points", s.points}};
+}
+
+StudySummary study(const Json& j) {
+  StudySummary s;
+  s.name = j.at("name");
+  s.kind = j.at("kind");
+  s.status = j.at("status");
+  s.wall_seconds = number(j.at("wall_seconds"));
+  for (const auto& [name, q] : j.at("values").items()) s.set(name, number(q.at("value")), q.at("unit"));
+  for (const Json& b : j.at("bifurcations")) s.bifurcations.push_back(bifurcation(b));
+  for (const Json& m : j.at("modes"))
+    s.modes.push_back({number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
+                       m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>()});
+  s.points = j.at("points");
+  return s;
+}
+
+}  // namespace
+
+const char* name_of(BifurcationType type) {
+  return bifurcation_names[static_cast<std::size_t>(type)];
+}
+
+void StudySummary::set(const std::string& key, double value, const std::string& unit) {
+  for (auto& [known, quantity] : values)
+    if (known == key) {
+      quantity = {value, unit};
+      return;
+    }
+  values.emplace_back(key, Quantity{value, unit});
+}
+
+void Summary::set(StudySummary study) {
+  for (StudySummary& s : studies)
+    if (s.name == study.name) {
+      s = std::move(study);
+      return;
+    }
+  studies.push_back(std::move(study));
+}
+
+std::string Summary::to_json() const {
+  Json list = Json::array();
+  for (const StudySummary& s : studies) list.push_back(io::to_json(s));
+  const Json j = {{"title", title},
+                  {"version", version},
+                  {"ranks", ranks},
+                  {"wall_seconds", number(wall_seconds)},
+                  {"studies", std::move(list)}};
+  // Texts come from users' decks; a byte that is not UTF-8 must not cost the results.
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void Summary::write(const std::filesystem::path& path) const {
+  replace_file(path, to_json());
+}
+
+Summary Summary::read(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw core::Error("cannot read " + path.string());
+  try {
+    const Json j = Json::parse(in);
+    Summary s;
+    s.title = j.at("title");
+    s.version = j.at("version");
+    s.ranks = j.at("ranks");
+    s.wall_seconds = number(j.at("wall_seconds"));
+    for (const Json& one : j.at("studies")) s.studies.push_back(study(one));
+    return s;
+  } catch (const Json::exception& e) {
+    throw core::Error("cannot read " + path.string() + ": " + e.what());
+  }
+}
+
+}  // namespace whirl::io

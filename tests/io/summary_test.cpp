@@ -1,0 +1,117 @@
+#include "whirl/io/summary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "io/temporary.hpp"
+#include "whirl/core/error.hpp"
+
+using namespace whirl;
+using namespace whirl::io;
+
+namespace {
+
+Summary example() {
+  StudySummary s;
+  s.name = "pair, G2.5";
+  s.kind = "cycle_branch";
+  s.status = "ended at 5400 rpm: film thickness is negative";
+  s.wall_seconds = 12.5;
+  s.set("mass.total", 42165.66, "kg");
+  s.set("load.B3", NAN, "N");
+  s.set("alpha.last", 1, "1");
+  s.set("mass.total", 42000.0, "kg");
+  s.bifurcations.push_back({.type = BifurcationType::neimark_sacker,
+                            .parameter = "speed",
+                            .value = 5057,
+                            .unit = "rpm",
+                            .period_s = 60 / 5057.0,
+                            .uncertainty = 40,
+                            .more = {{"angle_rad", 0.93}, {"error.film", INFINITY}}});
+  s.modes.push_back({.speed = 3600, .real = -0.583, .imag = 81.678, .log_decrement = 0.0448, .whirl = "forward"});
+  s.points = 73;
+  Summary whole;
+  whole.title = "Train \"A\"";
+  whole.version = "0.1.0";
+  whole.ranks = 2;
+  whole.wall_seconds = 20;
+  whole.set(s);
+  return whole;
+}
+
+}  // namespace
+
+TEST(Summary, HasTheFieldsThatScriptsReadInOrder) {
+  const auto j = nlohmann::ordered_json::parse(example().to_json());
+  std::vector<std::string> keys;
+  for (const auto& [k, v] : j.items()) keys.push_back(k);
+  EXPECT_EQ(keys, (std::vector<std::string>{"title", "version", "ranks", "wall_seconds", "studies"}));
+  const auto& s = j["studies"][0];
+  keys.clear();
+  for (const auto& [k, v] : s.items()) keys.push_back(k);
+  EXPECT_EQ(keys, (std::vector<std::string>{"name", "kind", "status", "wall_seconds", "values", "bifurcations", "modes",
+                                            "points"}));
+  EXPECT_EQ(s["values"].begin().key(), "mass.total");
+  EXPECT_EQ(s["values"]["mass.total"]["value"], 42000.0);
+  EXPECT_EQ(s["values"]["mass.total"]["unit"], "kg");
+  EXPECT_EQ(s["bifurcations"][0]["type"], "neimark_sacker");
+  EXPECT_EQ(s["bifurcations"][0]["angle_rad"], 0.93);
+  EXPECT_TRUE(s["bifurcations"][0]["criticality"].is_null());
+  EXPECT_EQ(s["modes"][0]["whirl"], "forward");
+  EXPECT_EQ(s["points"], 73);
+}
+
+TEST(Summary, NumbersThatAreNotFiniteBecomeNull) {
+  const std::string text = example().to_json();
+  const auto j = nlohmann::json::parse(text);  // strict: NaN or Infinity would not parse
+  EXPECT_TRUE(j["studies"][0]["values"]["load.B3"]["value"].is_null());
+  EXPECT_TRUE(j["studies"][0]["bifurcations"][0]["error.film"].is_null());
+}
+
+TEST(Summary, AnEmptyStudyHasEmptyTables) {
+  Summary s;
+  s.set({.name = "static", .kind = "static"});
+  const auto j = nlohmann::json::parse(s.to_json());
+  EXPECT_TRUE(j["studies"][0]["values"].is_object());
+  EXPECT_TRUE(j["studies"][0]["bifurcations"].is_array());
+  EXPECT_TRUE(j["studies"][0]["modes"].is_array());
+}
+
+TEST(Summary, ReadsBackWhatItWrote) {
+  const test::Temporary folder;
+  const Summary s = example();
+  s.write(folder / "summary.json");
+  const Summary back = Summary::read(folder / "summary.json");
+  EXPECT_EQ(back.to_json(), s.to_json());
+  EXPECT_TRUE(std::isnan(back.studies[0].values[1].second.value));
+}
+
+TEST(Summary, AStudyOfTheSameNameIsReplaced) {
+  Summary s = example();
+  StudySummary again;
+  again.name = "pair, G2.5";
+  s.set(again);
+  EXPECT_EQ(s.studies.size(), 1u);
+  EXPECT_EQ(s.studies[0].points, 0);
+}
+
+TEST(Summary, TextThatIsNotUtf8IsWrittenAnyway) {
+  Summary s = example();
+  s.title = "bad \xff byte";
+  EXPECT_TRUE(nlohmann::json::accept(s.to_json()));
+}
+
+TEST(Summary, ADamagedFileIsAnErrorWithItsName) {
+  const test::Temporary folder;
+  std::ofstream(folder / "summary.json") << "{\"title\": \"x\"";
+  try {
+    (void)Summary::read(folder / "summary.json");
+    FAIL();
+  } catch (const core::Error& e) {
+    EXPECT_NE(std::string(e.what()).find("summary.json"), std::string::npos);
+  }
+  EXPECT_THROW((void)Summary::read(folder / "none.json"), core::Error);
+}

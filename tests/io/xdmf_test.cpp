@@ -1,0 +1,88 @@
+#include "whirl/io/xdmf.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "io/temporary.hpp"
+
+using namespace whirl;
+using namespace whirl::io;
+
+namespace {
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Every element is closed in order, every attribute is quoted, no bare < or & is left.
+void expect_well_formed(const std::string& xml) {
+  static const std::regex tag(R"re(<\?[^?]*\?>|<(/?)([A-Za-z0-9_]+)((?: [A-Za-z]+="[^"<]*")*)(/?)>)re");
+  std::vector<std::string> open;
+  std::size_t at = 0;
+  for (std::sregex_iterator i(xml.begin(), xml.end(), tag), end; i != end; ++i) {
+    const std::string between = xml.substr(at, static_cast<std::size_t>(i->position()) - at);
+    EXPECT_EQ(between.find_first_of("<>"), std::string::npos) << between;
+    at = static_cast<std::size_t>(i->position() + i->length());
+    const std::string name = (*i)[2];
+    if (name.empty() || (*i)[4] == "/") continue;
+    if ((*i)[1] == "/") {
+      ASSERT_FALSE(open.empty());
+      EXPECT_EQ(open.back(), name);
+      open.pop_back();
+    } else {
+      open.push_back(name);
+    }
+  }
+  EXPECT_TRUE(open.empty());
+  EXPECT_EQ(std::regex_replace(xml, std::regex("&(amp|lt|gt|quot);"), "").find('&'), std::string::npos);
+}
+
+Group pad() {
+  Group p;
+  p.put("theta", {-2.0, -1.5, -1.0}, "rad", "");
+  p.put("z", {-0.01, 0.01}, "m", "");
+  p.put("pressure", {3, 2}, {0, 0, 1, 2, 0, 0}, "Pa", "");
+  p.put("thickness", {3, 2}, std::vector<double>(6, 1e-4), "m", "");
+  p.put("count", std::vector<std::int64_t>{1}, "");
+  return p;
+}
+
+}  // namespace
+
+TEST(Xdmf, AFilmHasAWrappedAndAnUnwrappedGrid) {
+  Group p = pad();
+  const auto grids = film_grids(p, "/studies/s/films/B1/pad1", "B1 pad 1", {0.09, 0.001, -0.002, 3.5});
+  ASSERT_EQ(grids.size(), 2u);
+  EXPECT_EQ(grids[0].nodes, (Shape{3, 2}));
+  ASSERT_EQ(grids[0].fields.size(), 2u);
+  EXPECT_EQ(grids[0].fields[0].name, "pressure [Pa]");
+  EXPECT_EQ(grids[0].fields[0].dataset, "/studies/s/films/B1/pad1/pressure");
+  EXPECT_DOUBLE_EQ(p.reals("node_x")[2], 0.001 + 0.09 * std::cos(-1.5));
+  EXPECT_DOUBLE_EQ(p.reals("node_y")[5], -0.002 + 0.09 * std::sin(-1.0));
+  EXPECT_DOUBLE_EQ(p.reals("node_z")[0], 3.49);
+  EXPECT_DOUBLE_EQ(p.reals("node_arc")[2], 0.09 * -1.5);
+  EXPECT_EQ(film_grids(p, "/p", "again", {})[0].fields.size(), 2u);  // coordinates are no fields
+}
+
+TEST(Xdmf, IsWellFormedAndNamesOnlyDatasetsThatExist) {
+  const test::Temporary folder;
+  Group p = pad();
+  auto grids = film_grids(p, "/films/B1", "B1 <\"1 & 2\">", {0.09, 0, 0, 0});
+  grids.push_back({"solid", {2, 3, 4}, {"/x", "/y", "/z"}, {{"temperature", "/t"}}});
+  write_xdmf(folder / "films.xdmf", "results.h5", grids);
+  const std::string xml = content(folder / "films.xdmf");
+  expect_well_formed(xml);
+  EXPECT_NE(xml.find("3DSMesh\" Dimensions=\"2 3 4\""), std::string::npos);
+  static const std::regex reference("results.h5:/films/B1/([a-z_]+)<");
+  int n = 0;
+  for (std::sregex_iterator i(xml.begin(), xml.end(), reference), end; i != end; ++i, ++n) {
+    EXPECT_TRUE(p.has_dataset((*i)[1])) << (*i)[1];
+    EXPECT_EQ(p.dataset((*i)[1]).shape, (Shape{3, 2}));
+  }
+  EXPECT_EQ(n, 2 * (3 + 2));
+}
