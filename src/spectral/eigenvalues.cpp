@@ -1,0 +1,172 @@
+#include "whirl/spectral/eigenvalues.hpp"
+
+#include <fmt/core.h>
+#include <slepceps.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/core/error.hpp"
+#include "whirl/core/petsc.hpp"
+
+namespace whirl::spectral {
+namespace {
+
+using core::check;
+using EigenSolver = core::Handle<EPS, EPSDestroy>;
+
+std::vector<double> everywhere(Vec v) {
+  core::Scatter scatter;
+  core::Vector whole;
+  check(VecScatterCreateToAll(v, scatter.put(), whole.put()));
+  check(VecScatterBegin(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const core::ReadArray a(whole.get());
+  return {a.data(), a.data() + a.size()};
+}
+
+// The whole of a small distributed matrix, dense on this rank.
+core::Matrix redundant_dense(Mat m) {
+  core::Matrix whole, dense;
+  const int size = core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(m)));
+  if (size == 1) {
+    check(MatConvert(m, MATSEQDENSE, MAT_INITIAL_MATRIX, dense.put()));
+    return dense;
+  }
+  check(MatCreateRedundantMatrix(m, size, MPI_COMM_NULL, MAT_INITIAL_MATRIX, whole.put()));
+  check(MatConvert(whole.get(), MATSEQDENSE, MAT_INITIAL_MATRIX, dense.put()));
+  return dense;
+}
+
+// Real SLEPc keeps a complex pair as two entries and its vector as real and imaginary part: hidden here once.
+struct Pair {
+  Complex value;
+  std::vector<double> real, imaginary;
+};
+
+Pair pair_of(EPS eps, PetscInt i, Vec re, Vec im, bool vectors) {
+  PetscScalar a = 0, b = 0;
+  Pair p;
+  if (vectors) {
+    check(EPSGetEigenpair(eps, i, &a, &b, re, im));
+    p.real = everywhere(re);
+    p.imaginary = everywhere(im);
+  } else {
+    check(EPSGetEigenvalue(eps, i, &a, &b));
+  }
+  p.value = {a, b};
+  return p;
+}
+
+}  // namespace
+
+std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options) {
+  core::Vector rest = core::duplicate(x), xs = core::duplicate(x), fs = core::duplicate(x);
+  check(VecSet(rest.get(), 0.0));
+  system.scales(xs.get(), fs.get());
+  const std::vector<double> scale = everywhere(xs.get());
+  check(VecReciprocal(fs.get()));
+  core::Matrix a = system.make_jacobian(), b = system.make_jacobian();
+  system.jacobian(0, x, rest.get(), 1, 0, a.get());
+  system.jacobian(0, x, rest.get(), 0, -1, b.get());  // dF/dx u = lambda (-dF/dxdot) u
+  check(MatDiagonalScale(a.get(), fs.get(), xs.get()));
+  check(MatDiagonalScale(b.get(), fs.get(), xs.get()));
+
+  const bool dense = system.size() <= options.dense_below;
+  MPI_Comm comm = dense ? PETSC_COMM_SELF : system.comm();
+  if (dense) {
+    a = redundant_dense(a.get());
+    b = redundant_dense(b.get());
+  }
+  EigenSolver eps;
+  check(EPSCreate(comm, eps.put()));
+  check(EPSSetOptionsPrefix(eps.get(), "modes_"));
+  check(EPSSetOperators(eps.get(), a.get(), b.get()));
+  check(EPSSetProblemType(eps.get(), EPS_GNHEP));
+  if (dense) {
+    check(EPSSetType(eps.get(), EPSLAPACK));
+  } else {
+    check(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
+    const PetscInt wanted = std::min<PetscInt>(options.count, system.size() - 2);
+    check(EPSSetDimensions(eps.get(), wanted, std::min<PetscInt>(system.size(), 2 * wanted + 20), PETSC_DEFAULT));
+    check(EPSSetTolerances(eps.get(), 1e-10, 200));
+    check(EPSSetTarget(eps.get(), options.target));
+    check(EPSSetWhichEigenpairs(eps.get(), EPS_TARGET_MAGNITUDE));
+    ST st = nullptr;
+    KSP ksp = nullptr;
+    PC pc = nullptr;
+    check(EPSGetST(eps.get(), &st));
+    check(STSetType(st, STSINVERT));
+    check(STGetKSP(st, &ksp));
+    check(KSPSetType(ksp, KSPPREONLY));
+    check(KSPGetPC(ksp, &pc));
+    check(PCSetType(pc, PCLU));
+    if (core::size_of(comm) > 1) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    // The same start vector on any number of ranks.
+    core::Vector start;
+    check(MatCreateVecs(a.get(), start.put(), nullptr));
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(start.get(), &begin, nullptr));
+    {
+      const core::WriteArray s(start.get());
+      for (PetscInt i = 0; i < s.size(); ++i) s[i] = 1 + std::sin(0.7 * static_cast<double>(begin + i));
+    }
+    Vec first = start.get();
+    check(EPSSetInitialSpace(eps.get(), 1, &first));
+  }
+  check(EPSSetFromOptions(eps.get()));
+  check(EPSSolve(eps.get()));
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  if (converged < std::min<PetscInt>(options.count, system.size() - 2))
+    throw core::NotConverged(fmt::format("only {} of {} eigenvalues converged", converged, options.count));
+
+  core::Vector re, im;
+  check(MatCreateVecs(a.get(), re.put(), im.put()));
+  std::vector<Mode> out;
+  for (PetscInt i = 0; i < converged; ++i) {
+    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes);
+    if (p.value.imag() < 0 || !std::isfinite(p.value.real())) continue;
+    Mode m{p.value, {}};
+    if (options.shapes) {
+      m.shape.resize(p.real.size());
+      Complex largest = 0;
+      for (std::size_t k = 0; k < p.real.size(); ++k) {
+        const Complex value(p.real[k], p.value.imag() != 0 ? p.imaginary[k] : 0.0);
+        if (std::abs(value) > std::abs(largest)) largest = value;
+        m.shape[k] = value * scale[k];
+      }
+      for (Complex& v : m.shape) v /= largest;
+    }
+    out.push_back(std::move(m));
+  }
+  std::sort(out.begin(), out.end(), [](const Mode& m, const Mode& n) {
+    return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
+  });
+  return out;
+}
+
+std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
+  Eigen::MatrixXd copy = matrix;
+  const auto n = static_cast<PetscInt>(matrix.rows());
+  core::Matrix m;
+  check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, copy.data(), m.put()));
+  check(MatAssemblyBegin(m.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
+  EigenSolver eps;
+  check(EPSCreate(PETSC_COMM_SELF, eps.put()));
+  check(EPSSetOptionsPrefix(eps.get(), "floquet_"));
+  check(EPSSetOperators(eps.get(), m.get(), nullptr));
+  check(EPSSetProblemType(eps.get(), EPS_NHEP));
+  check(EPSSetType(eps.get(), EPSLAPACK));
+  check(EPSSetFromOptions(eps.get()));
+  check(EPSSolve(eps.get()));
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  std::vector<Complex> out;
+  for (PetscInt i = 0; i < converged; ++i) out.push_back(pair_of(eps.get(), i, nullptr, nullptr, false).value);
+  std::stable_sort(out.begin(), out.end(), [](Complex a, Complex b) { return std::abs(a) > std::abs(b); });
+  return out;
+}
+
+}  // namespace whirl::spectral
