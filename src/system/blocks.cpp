@@ -9,7 +9,7 @@ namespace {
 
 using core::check;
 
-// Adds the entries of m [N x N] at (2 i + 1, 2 j + rate).
+// Adds the entries of m [N x N] at (2 i, 2 j + rate).
 void scatter(Mat m, PetscInt rate, Eigen::MatrixXd& out) {
   PetscInt rows = 0;
   check(MatGetSize(m, &rows, nullptr));
@@ -18,7 +18,7 @@ void scatter(Mat m, PetscInt rate, Eigen::MatrixXd& out) {
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;
     check(MatGetRow(m, i, &k, &columns, &values));
-    for (PetscInt e = 0; e < k; ++e) out(2 * i + 1, 2 * columns[e] + rate) += values[e];
+    for (PetscInt e = 0; e < k; ++e) out(2 * i, 2 * columns[e] + rate) += values[e];
     check(MatRestoreRow(m, i, &k, &columns, &values));
   }
 }
@@ -33,19 +33,19 @@ RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
   scatter(system.damping_.get(), 1, l0_at_rest_);
   scatter(system.gyroscopic_.get(), 1, gyroscopic_);
   for (Eigen::Index i = 0; i < n / 2; ++i) {
-    l1_(2 * i, 2 * i) = 1;
-    l0_at_rest_(2 * i, 2 * i + 1) = -1;
+    l1_(2 * i + 1, 2 * i) = 1;
+    l0_at_rest_(2 * i + 1, 2 * i + 1) = -1;
   }
   b_ = Eigen::MatrixXd::Zero(n, 2 * bearings);
   c_ = Eigen::MatrixXd::Zero(4 * bearings, n);
   for (int i = 0; i < bearings; ++i)
     for (int d = 0; d < 2; ++d) {
       const PetscInt j = system.journal(i, d), p = system.pedestal(i, d);
-      b_(2 * j + 1, 2 * i + d) = 1;
+      b_(2 * j, 2 * i + d) = 1;
       c_(4 * i + d, 2 * j) = 1;
       c_(4 * i + 2 + d, 2 * j + 1) = 1;
       if (p < 0) continue;
-      b_(2 * p + 1, 2 * i + d) = -1;
+      b_(2 * p, 2 * i + d) = -1;
       c_(4 * i + d, 2 * p) = -1;
       c_(4 * i + 2 + d, 2 * p + 1) = -1;
     }
@@ -71,8 +71,8 @@ void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load, Eigen::Vecto
   for (Eigen::Index i = 0; i < size() / 2; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double u = c * system_.unbalance_c_[k] + s * system_.unbalance_s_[k];
-    load(2 * i + 1) = system_.load_[k] + omega * omega * u;
-    if (d_load) (*d_load)(2 * i + 1) = 2 * omega * u;
+    load(2 * i) = system_.load_[k] + omega * omega * u;
+    if (d_load) (*d_load)(2 * i) = 2 * omega * u;
   }
 }
 

@@ -285,14 +285,14 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   const double c = speed_ * speed_ * std::cos(angle), s = speed_ * speed_ * std::sin(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
-    fa[2 * i] = da[2 * i] - xa[2 * i + 1];
-    fa[2 * i + 1] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_c_[g] - s * unbalance_s_[g];
+    fa[2 * i + 1] = da[2 * i] - xa[2 * i + 1];
+    fa[2 * i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_c_[g] - s * unbalance_s_[g];
   }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt j = bearings_[b].journal[d], p = bearings_[b].pedestal[d];
-      if (owns(j)) fa[2 * (j - begin_) + 1] -= films[b].force[d];
-      if (p >= 0 && owns(p)) fa[2 * (p - begin_) + 1] += films[b].force[d];
+      if (owns(j)) fa[2 * (j - begin_)] -= films[b].force[d];
+      if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].force[d];
     }
 }
 
@@ -306,7 +306,7 @@ core::Matrix RotorSystem::make_jacobian() {
       total += 2 * k;
       check(MatRestoreRow(m, begin_ + i, &k, nullptr, nullptr));
     }
-    count[static_cast<std::size_t>(2 * i + 1)] = std::min(total + 8, 2 * n_);
+    count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, 2 * n_);
   }
   core::Matrix j;
   check(MatCreate(comm_, j.put()));
@@ -336,7 +336,7 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, 
         columns_to[static_cast<std::size_t>(e)] = 2 * columns_to[static_cast<std::size_t>(e)] + rate;
         scaled[static_cast<std::size_t>(e)] *= factor;
       }
-      const PetscInt row = 2 * i + 1;
+      const PetscInt row = 2 * i;
       check(MatSetValues(j, 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
       check(MatRestoreRow(m, i, &k, &columns, &values));
     }
@@ -347,9 +347,8 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, 
   add(gyroscopic_.get(), 1, alpha * speed_);
   add(mass_.get(), 1, sigma);
   for (PetscInt i = begin_; i < end_; ++i) {
-    check(MatSetValue(j, 2 * i, 2 * i, sigma, ADD_VALUES));
-    check(MatSetValue(j, 2 * i, 2 * i + 1, -alpha, ADD_VALUES));
-    check(MatSetValue(j, 2 * i + 1, 2 * i + 1, 0.0, ADD_VALUES));
+    check(MatSetValue(j, 2 * i + 1, 2 * i, sigma, ADD_VALUES));
+    check(MatSetValue(j, 2 * i + 1, 2 * i + 1, -alpha, ADD_VALUES));
   }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     for (std::size_t d = 0; d < 2; ++d)
@@ -358,8 +357,8 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, 
         for (std::size_t e = 0; e < 2; ++e)
           for (const auto& [column, side] : {std::pair{bearings_[b].journal[e], 1.0}, std::pair{bearings_[b].pedestal[e], -1.0}}) {
             if (column < 0) continue;
-            check(MatSetValue(j, 2 * row + 1, 2 * column, alpha * sign * side * films[b].d_position[d][e], ADD_VALUES));
-            check(MatSetValue(j, 2 * row + 1, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
+            check(MatSetValue(j, 2 * row, 2 * column, alpha * sign * side * films[b].d_position[d][e], ADD_VALUES));
+            check(MatSetValue(j, 2 * row, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
           }
       }
   check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
@@ -392,14 +391,14 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   const double c = 2 * speed_ * std::cos(angle), s = 2 * speed_ * std::sin(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
-    fa[2 * i] = 0;
-    fa[2 * i + 1] = sa[i] - c * unbalance_c_[g] - s * unbalance_s_[g];
+    fa[2 * i + 1] = 0;
+    fa[2 * i] = sa[i] - c * unbalance_c_[g] - s * unbalance_s_[g];
   }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt j = bearings_[b].journal[d], p = bearings_[b].pedestal[d];
-      if (owns(j)) fa[2 * (j - begin_) + 1] -= films[b].d_speed[d];
-      if (p >= 0 && owns(p)) fa[2 * (p - begin_) + 1] += films[b].d_speed[d];
+      if (owns(j)) fa[2 * (j - begin_)] -= films[b].d_speed[d];
+      if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].d_speed[d];
     }
 }
 
@@ -429,8 +428,8 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
     }
     s[2 * i] = length;
     s[2 * i + 1] = length * frequency;
-    r[2 * i] = length * frequency;
-    r[2 * i + 1] = load;
+    r[2 * i + 1] = length * frequency;
+    r[2 * i] = load;
   }
 }
 

@@ -26,10 +26,10 @@ struct JournalState {
 
 /// F(angle, x, xdot; p) = 0 of a train. With q = (rotor coordinates, pedestals) the state is x = (q_1, v_1, q_2, v_2, ...) and
 ///
-///     q' - v = 0
-///     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
+///     row 2i:     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
+///     row 2i + 1: q' - v = 0
 ///
-/// f_film acts on the journal and with the opposite sign on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank.
+/// in this order, so that no diagonal entry of dF/dx is zero. /// f_film acts on the journal and with the opposite sign on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank.
 /// Film i is evaluated on rank i mod size, its ten numbers are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public problem::System {
  public:

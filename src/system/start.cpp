@@ -1,0 +1,41 @@
+#include "whirl/system/start.hpp"
+
+#include <petscksp.h>
+
+namespace whirl::system {
+
+using core::check;
+
+core::Vector static_guess(RotorSystem& system) {
+  Train train = system.train();
+  train.unbalance.clear();
+  for (Support& s : train.supports) {
+    if (s.film.kind == film::Options::Kind::linear) continue;
+    // Stiff against the film and soft against the shaft's elements, so that the solve keeps its digits.
+    s.film.kind = film::Options::Kind::linear;
+    s.film.stiffness = {1e11, 0, 0, 1e11};
+    s.film.damping = {0, 0, 0, 0};
+    s.elevation -= 0.45 * s.geometry.clearance;
+  }
+  RotorSystem springs(system.comm(), std::move(train), system.speed());
+  core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE), f = core::duplicate(x.get()), rest = core::duplicate(x.get());
+  core::Matrix j = springs.make_jacobian();
+  springs.residual(0, x.get(), rest.get(), f.get());
+  springs.jacobian(0, x.get(), rest.get(), 1, 0, j.get());
+  core::LinearSolver ksp;
+  check(KSPCreate(system.comm(), ksp.put()));
+  check(KSPSetOptionsPrefix(ksp.get(), "start_"));
+  check(KSPSetOperators(ksp.get(), j.get(), j.get()));
+  check(KSPSetType(ksp.get(), KSPPREONLY));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp.get(), &pc));
+  check(PCSetType(pc, PCLU));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check(KSPSetFromOptions(ksp.get()));
+  check(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
+  check(KSPSolve(ksp.get(), f.get(), x.get()));
+  check(VecScale(x.get(), -1));
+  return x;
+}
+
+}  // namespace whirl::system
