@@ -1,0 +1,126 @@
+#include "common.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/start.hpp"
+
+namespace whirl::study {
+
+using core::check;
+
+bool Walker::attempt(double speed) {
+  system_.set_parameter(speed);
+  trial_ = core::duplicate(x_.get());
+  check(VecCopy(x_.get(), trial_.get()));
+  solve::NewtonOptions options;
+  options.max_iterations = 30;
+  const auto result = solve::find_equilibrium(system_, trial_.get(), options);
+  reason_ = result.reason;
+  if (!result.converged) return false;
+  std::swap(x_, trial_);
+  last_ = speed;
+  return true;
+}
+
+Vec Walker::at(double speed) {
+  if (!x_) {
+    system_.set_parameter(speed);
+    x_ = system::static_guess(system_);
+    // A thick film is easier to hit than a thin one: start at a higher speed if need be and come down.
+    double start = speed;
+    for (int k = 0; !attempt(start); ++k) {
+      if (k == 12) throw core::NotConverged(fmt::format("no equilibrium near {:.6g} rad/s: {}", speed, reason_));
+      start *= 1.4;
+      system_.set_parameter(start);
+      x_ = system::static_guess(system_);
+    }
+  }
+  double step = speed - last_;
+  while (last_ != speed) {
+    const double next = std::abs(step) >= std::abs(speed - last_) ? speed : last_ + step;
+    if (attempt(next)) continue;
+    step = (next - last_) / 2;
+    if (std::abs(step) < 1e-4 * std::max(1.0, speed))
+      throw core::NotConverged(fmt::format("the equilibrium could not be followed from {:.6g} to {:.6g} rad/s: {}", last_, speed, reason_));
+  }
+  system_.set_parameter(speed);
+  return x_.get();
+}
+
+solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x) {
+  spectral::EigenOptions options;
+  options.count = 60;
+  options.shapes = false;
+  std::vector<std::complex<double>> values;
+  for (const auto& mode : spectral::modes(system, x, options)) {
+    values.push_back(mode.lambda);
+    if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
+  }
+  return solve::make_stability(std::move(values), [](std::complex<double> v) { return v.real(); });
+}
+
+std::vector<std::string> names_of_bearings(const system::Machine& machine) { return system::bearing_names(machine); }
+
+void put_bearings(io::Group& group, const system::Machine& machine) {
+  std::vector<double> clearance, preload, node;
+  for (const auto& b : machine.bearings) {
+    clearance.push_back(b.geometry ? b.geometry->clearance : 0.0);
+    preload.push_back(b.geometry && b.geometry->type == film::Geometry::Bore::lemon_bore ? b.geometry->preload : 0.0);
+  }
+  auto& bearings = group.child("bearings");
+  bearings.put("name", names_of_bearings(machine), "bearings in the order of the deck");
+  bearings.put("clearance", clearance, "m", "assembled radial clearance c_b; zero for a linear film");
+  bearings.put("preload", preload, "1", "m = 1 - c_b/c_p");
+}
+
+std::string number_text(double value_si, const std::string& unit) { return fmt::format("{:.6g}", deck::from_si(value_si, unit)); }
+
+void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {
+  std::vector<std::string> type;
+  std::vector<double> parameter, uncertainty, angle;
+  for (const auto& b : all) {
+    type.emplace_back(io::name_of(b.type));
+    parameter.push_back(b.value);
+    uncertainty.push_back(b.uncertainty);
+    const auto at = b.more.find("angle_rad");
+    angle.push_back(at == b.more.end() ? 0.0 : at->second);
+  }
+  const std::string unit = all.empty() ? "1" : all.front().unit;
+  auto& g = group.child("bifurcations");
+  g.put("type", type, "kind of bifurcation");
+  g.put("parameter", parameter, unit, "where");
+  g.put("uncertainty", uncertainty, unit, "estimated error from film mesh, time mesh and location");
+  g.put("angle", angle, "rad", "angle of the critical multiplier");
+}
+
+io::BifurcationType type_of(solve::Event event) {
+  switch (event) {
+    case solve::Event::fold:
+      return io::BifurcationType::fold;
+    case solve::Event::hopf:
+      return io::BifurcationType::hopf;
+    case solve::Event::cyclic_fold:
+      return io::BifurcationType::cyclic_fold;
+    case solve::Event::flip:
+      return io::BifurcationType::flip;
+    case solve::Event::neimark_sacker:
+      return io::BifurcationType::neimark_sacker;
+    default:
+      return io::BifurcationType::branch_point;
+  }
+}
+
+system::Train with_half_film_mesh(system::Train train) {
+  for (auto& s : train.supports)
+    for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = std::max(4, s.film.cells[d] / 2);
+  return train;
+}
+
+}  // namespace whirl::study

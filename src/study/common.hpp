@@ -1,0 +1,47 @@
+#pragma once
+// What the studies share.
+
+#include <string>
+#include <vector>
+
+#include "results.hpp"
+#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/newton.hpp"
+#include "whirl/study/study.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+/// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is approached by halved steps.
+class Walker {
+ public:
+  explicit Walker(system::RotorSystem& system) : system_(system) {}
+  /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
+  Vec at(double speed);
+
+ private:
+  bool attempt(double speed);
+  system::RotorSystem& system_;
+  core::Vector x_, trial_;
+  double last_ = 0;
+  std::string reason_;
+};
+
+/// Eigenvalues of the system at x, as stability facts with distance Re(lambda).
+[[nodiscard]] solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x);
+
+/// Names and clearances of the bearings, into `group`/bearings.
+void put_bearings(io::Group& group, const system::Machine& machine);
+[[nodiscard]] std::vector<std::string> names_of_bearings(const system::Machine& machine);
+
+/// "3600" for 376.99 rad/s in rpm: the shortest text with six digits, for dotted names.
+[[nodiscard]] std::string number_text(double value_si, const std::string& unit);
+
+/// A table of bifurcations: type, parameter, uncertainty, angle.
+void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);
+[[nodiscard]] io::BifurcationType type_of(solve::Event event);
+
+/// The train with its film meshes halved in both directions, to estimate the error of the film mesh.
+[[nodiscard]] system::Train with_half_film_mesh(system::Train train);
+
+}  // namespace whirl::study

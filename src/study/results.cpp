@@ -1,0 +1,104 @@
+#include "results.hpp"
+
+#include <algorithm>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/io/hdf5.hpp"
+
+namespace whirl::study {
+
+namespace fs = std::filesystem;
+
+Results::Results(MPI_Comm comm, fs::path directory, const std::string& title, const std::string& version, Say say, bool resume)
+    : comm_(comm), rank_(core::rank_of(comm)), directory_(std::move(directory)), say_(std::move(say)), started_run_(std::chrono::steady_clock::now()) {
+  started_ = started_run_;
+  if (rank_ != 0) say_ = nullptr;
+  core::agree(comm_, [&] {
+    // Every rank reads the same files; only rank 0 ever writes them.
+    if (!resume || !fs::exists(directory_ / "summary.json")) return;
+    all_ = io::Summary::read(directory_ / "summary.json");
+    earlier_run_seconds_ = all_.wall_seconds;
+    if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5");
+    for (const auto& s : all_.studies)
+      if (root_.child("studies").has_group(io::safe_name(s.name))) finished_.push_back(s.name);
+  });
+  io::describe_results(root_, title, version);
+  root_.child("studies");
+  all_.title = title;
+  all_.version = version;
+  all_.ranks = core::size_of(comm);
+}
+
+bool Results::finished(const std::string& name) const { return std::find(finished_.begin(), finished_.end(), name) != finished_.end(); }
+
+io::Group& Results::group() { return root_.child("studies").child(io::safe_name(current_.name)); }
+
+void Results::begin(const std::string& name, const std::string& kind) {
+  current_ = {};
+  current_.name = name;
+  current_.kind = kind;
+  started_ = std::chrono::steady_clock::now();
+  earlier_seconds_ = 0;
+  root_.child("studies").erase_group(io::safe_name(name));
+  group().set("kind", kind);
+  group().set("title", name);
+}
+
+void Results::restore(io::Group group, io::StudySummary summary) {
+  root_.child("studies").child(io::safe_name(current_.name)) = std::move(group);
+  const std::string name = current_.name, kind = current_.kind;
+  current_ = std::move(summary);
+  current_.name = name;
+  current_.kind = kind;
+}
+
+void Results::finish(const std::string& status, bool delivered) {
+  current_.status = status;
+  current_.wall_seconds = seconds();
+  group().set("status", status);
+  if (!delivered) missing_ = true;
+  all_.set(current_);
+  write();
+  if (rank_ == 0) io::Checkpoint(checkpoint_path()).remove();
+  if (say_) say_("", false);
+}
+
+void Results::write() {
+  all_.wall_seconds = earlier_run_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_run_).count();
+  core::agree(comm_, [&] {
+    if (rank_ != 0) return;
+    io::write_hdf5(directory_ / "results.h5", root_);
+    all_.write(directory_ / "summary.json");
+  });
+}
+
+void Results::progress(const std::string& line) {
+  if (!say_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_line_ < std::chrono::milliseconds(100)) return;
+  last_line_ = now;
+  say_(line, true);
+}
+
+fs::path Results::checkpoint_path() const { return directory_ / (io::safe_name(current_.name) + ".checkpoint.h5"); }
+
+void Results::save_checkpoint(const io::Group& state) const {
+  core::agree(comm_, [&] {
+    if (rank_ == 0) io::Checkpoint(checkpoint_path()).save(state);
+  });
+}
+
+bool Results::has_checkpoint() const {
+  int there = rank_ == 0 && io::Checkpoint(checkpoint_path()).exists();
+  MPI_Bcast(&there, 1, MPI_INT, 0, comm_);
+  return there != 0;
+}
+
+io::Group Results::load_checkpoint() const {
+  io::Group state;
+  core::agree(comm_, [&] { state = io::Checkpoint(checkpoint_path()).load().state; });
+  return state;
+}
+
+}  // namespace whirl::study
