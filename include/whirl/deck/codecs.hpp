@@ -228,12 +228,19 @@ typename Description<S>::Line Description<S>::table(std::string key, std::vector
 }
 
 template <class S>
-template <class R>
+template <class R, class Row>
 typename Description<S>::Line Description<S>::table_or_scalar(std::string key, std::vector<R> S::*member,
-                                                              std::string scalar, std::string text,
+                                                              std::string scalar, const Row& row, std::string text,
                                                               std::string source) {
-  return push(std::move(key), member, table_codec(structure_of<R>(), vector_access<R>(), std::move(scalar)),
-              std::move(text), std::move(source));
+  static const Structure structure = [&row] {
+    Structure x;
+    x.defaults = std::make_shared<R>();
+    Description<R> d(x);
+    row(d);
+    return x;
+  }();
+  return push(std::move(key), member, table_codec(structure, vector_access<R>(), std::move(scalar)), std::move(text),
+              std::move(source));
 }
 
 template <class S>

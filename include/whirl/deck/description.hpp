@@ -209,8 +209,9 @@ public:
   template <class R>
   Line table(std::string key, std::vector<R> S::*member, std::string text, std::string source = {});
   /// A table of which a single quantity is a short form: one row with only `scalar` set.
-  template <class R>
-  Line table_or_scalar(std::string key, std::vector<R> S::*member, std::string scalar, std::string text,
+  /// `row` describes the rows.
+  template <class R, class Row>
+  Line table_or_scalar(std::string key, std::vector<R> S::*member, std::string scalar, const Row& row, std::string text,
                        std::string source = {});
   /// A map NAME -> struct kept in the order of the deck; the name goes into `name`.
   template <class R>

@@ -1,0 +1,41 @@
+#pragma once
+// What a fluid film is made of: bore, lubricant, and how its pressure is computed. Plain data, SI and radians.
+
+#include <array>
+
+namespace whirl::film {
+
+/// Bore of a bearing. Every pad is a circular arc; a partial arc is centred at 270 deg, the lobes of a lemon bore at
+/// 270 deg (lower) and 90 deg (upper).
+struct Geometry {
+  enum class Bore { partial_arc, lemon_bore };
+  Bore type = Bore::partial_arc;
+  double radius = 0.0;     // m, journal radius R
+  double length = 0.0;     // m, axial length L
+  double clearance = 0.0;  // m, assembled radial clearance c_b: thickness at the pad centre for a centred journal
+  double arc = 0.0;        // rad, angular extent of each pad
+  double preload = 0.0;    // -, m = 1 - c_b/c_p with c_p the machined (pad) clearance
+  double offset = 0.0;     // m, horizontal distance between the lobe centres: lower +offset/2, upper -offset/2
+};
+
+/// How the film is modelled and discretised.
+struct Options {
+  enum class Kind { reynolds, linear };
+  enum class Cavitation { half_sommerfeld, reynolds, none };
+  enum class Turbulence { laminar, constantinescu };
+  Kind kind = Kind::reynolds;
+  Cavitation cavitation = Cavitation::half_sommerfeld;
+  Turbulence turbulence = Turbulence::constantinescu;
+  std::array<int, 2> cells = {60, 16};                     // -, intervals around x along each pad
+  bool tilt = false;                                       // -, false: tilt is ignored and moments are zero
+  std::array<double, 4> stiffness = {0.0, 0.0, 0.0, 0.0};  // N/m, xx xy yx yy; linear film: force = -K d - C d'
+  std::array<double, 4> damping = {0.0, 0.0, 0.0, 0.0};    // N s/m, xx xy yx yy
+};
+
+/// Isoviscous incompressible lubricant.
+struct Lubricant {
+  double viscosity = 0.0;  // Pa s, dynamic
+  double density = 0.0;    // kg/m^3, enters only the Reynolds number of the turbulent film
+};
+
+}  // namespace whirl::film
