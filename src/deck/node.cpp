@@ -80,7 +80,7 @@ void Problems::raise() const {
 Place Report::place(std::string_view path) const {
   const Node* node = root_;
   Place best = root_->place;
-  for (const std::string& step : split_path(path)) {
+  for (const std::string& step : split_path(prefix_ + std::string(path))) {
     const Node* next = nullptr;
     if (node->kind == Node::Kind::list) {
       std::size_t i = 0;
@@ -94,6 +94,12 @@ Place Report::place(std::string_view path) const {
     if (node->place.source) best = node->place;
   }
   return best;
+}
+
+Report Report::below(std::string_view path) const {
+  Report r = *this;
+  r.prefix_ += std::string(path) + ".";
+  return r;
 }
 
 void Report::fail(std::string_view path, const std::string& message) const {

@@ -28,7 +28,8 @@ double least_thickness(const Geometry& g) {
 std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore) {
   static constexpr deck::Name<Geometry::Bore> table[] = {
       {Geometry::Bore::partial_arc, "partial_arc", "one pad centred at 270 deg"},
-      {Geometry::Bore::lemon_bore, "lemon_bore", "two pads centred at 90 and 270 deg, moved towards each other by the preload"}};
+      {Geometry::Bore::lemon_bore, "lemon_bore",
+       "two pads centred at 90 and 270 deg, moved towards each other by the preload"}};
   return table;
 }
 
@@ -50,7 +51,8 @@ std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
 std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence) {
   static constexpr deck::Name<Options::Turbulence> table[] = {
       {Options::Turbulence::laminar, "laminar", "flow coefficients 12"},
-      {Options::Turbulence::constantinescu, "constantinescu", "mixing length; coefficients grow with the local Reynolds number"}};
+      {Options::Turbulence::constantinescu, "constantinescu",
+       "mixing length; coefficients grow with the local Reynolds number"}};
   return table;
 }
 
@@ -85,10 +87,13 @@ void describe(deck::Description<Geometry>& d) {
 void describe(deck::Description<Options>& d) {
   using enum Options::Kind;
   d.add("type", &Options::kind, "model of the film");
-  d.add("cavitation", &Options::cavitation, "what happens where the pressure would be negative").only(&Options::kind, {reynolds});
-  d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15").only(&Options::kind, {reynolds});
+  d.add("cavitation", &Options::cavitation, "what happens where the pressure would be negative")
+      .only(&Options::kind, {reynolds});
+  d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15")
+      .only(&Options::kind, {reynolds});
   d.add("cells", &Options::cells, at_least(4), "intervals around and along each pad").only(&Options::kind, {reynolds});
-  d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero").only(&Options::kind, {reynolds});
+  d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
+      .only(&Options::kind, {reynolds});
   d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
       .continuable()
       .only(&Options::kind, {linear});

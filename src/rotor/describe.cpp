@@ -51,7 +51,8 @@ void describe(deck::Description<Segment>& d) {
     };
     fits(s.inner_mass_diameter, s.outer_mass_diameter, "inner_mass_diameter", "outer_mass_diameter");
     if (s.outer_stiffness_diameter > 0)
-      fits(s.inner_stiffness_diameter, s.outer_stiffness_diameter, "inner_stiffness_diameter", "outer_stiffness_diameter");
+      fits(s.inner_stiffness_diameter, s.outer_stiffness_diameter, "inner_stiffness_diameter",
+           "outer_stiffness_diameter");
     if (s.added_mass_inner_diameter > s.added_mass_outer_diameter)
       r.fail("added_mass_inner_diameter", "'added_mass_inner_diameter' exceeds 'added_mass_outer_diameter'");
   });
@@ -69,7 +70,8 @@ void describe(deck::Description<Disc>& d) {
   d.check([](const Disc& x, const deck::Report& r) {
     if (x.outer_diameter > 0 && x.inner_diameter >= x.outer_diameter)
       r.fail("inner_diameter", "'inner_diameter' must be smaller than 'outer_diameter'");
-    if (x.outer_diameter > 0 && x.thickness <= 0) r.fail("thickness", "'thickness' must be positive for a disc with a diameter");
+    if (x.outer_diameter > 0 && x.thickness <= 0)
+      r.fail("thickness", "'thickness' must be positive for a disc with a diameter");
     if (x.outer_diameter <= 0 && x.mass <= 0) r.fail("", "a disc needs a mass, or a diameter and a thickness");
   });
 }
@@ -114,7 +116,8 @@ void describe(deck::Description<Reduction>& d) {
 }
 
 void describe(deck::Description<Options>& d) {
-  d.table("segments", &Options::segments, "beam elements along the shaft; node k is the left end of segment k").required();
+  d.table("segments", &Options::segments, "beam elements along the shaft; node k is the left end of segment k")
+      .required();
   d.add("discs", &Options::discs, "rigid discs at nodes");
   d.add("material", &Options::material, "material of the shaft").required();
   d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5");
@@ -136,9 +139,8 @@ void describe(deck::Description<Options>& d) {
     for (std::size_t i = 0; i < o.segments.size(); ++i) {
       const double t = o.segments[i].temperature;
       if (t >= table.front().first && t <= table.back().first) continue;
-      return r.fail("material.modulus",
-                    fmt::format("the modulus is known from {} K to {} K, but segment {} is at {} K", table.front().first,
-                                table.back().first, i + 1, t));
+      return r.fail("material.modulus", fmt::format("the modulus is known from {} K to {} K, but segment {} is at {} K",
+                                                    table.front().first, table.back().first, i + 1, t));
     }
   });
 }

@@ -119,10 +119,10 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
       r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && !name->empty() && !m.lubricants.contains(*name))
-      r.fail(path + ".lubricant", fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean(*name, lubricants)));
+      r.fail(path + ".lubricant",
+             fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean(*name, lubricants)));
   }
-  if (m.bearings.size() < 2)
-    r.fail("bearings", "a shaft needs at least two bearings");
+  if (m.bearings.size() < 2) r.fail("bearings", "a shaft needs at least two bearings");
 }
 
 void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {

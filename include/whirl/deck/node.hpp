@@ -68,10 +68,13 @@ public:
   /// nearest enclosing value. An empty path is the root.
   void fail(std::string_view path, const std::string& message) const;
   [[nodiscard]] Place place(std::string_view path) const;
+  /// The same problems, with paths that start at `path`.
+  [[nodiscard]] Report below(std::string_view path) const;
 
 private:
   const Node* root_;
   Problems* problems_;
+  std::string prefix_;
 };
 
 /// The candidate closest to `word` by edit distance, empty if none is near enough to be what was meant.

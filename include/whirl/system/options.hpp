@@ -25,12 +25,13 @@ struct Pedestal {
 
 struct Bearing {
   std::string name;
-  int node = 0;          ///< 1-based
-  double elevation = 0;  ///< of the bearing centre, positive up [m]
+  int node = 0;                            ///< 1-based
+  double elevation = 0;                    ///< of the bearing centre, positive up [m]
   std::optional<film::Geometry> geometry;  ///< absent only for a linear film
   film::Options film;
-  std::variant<std::string, film::Lubricant> lubricant;  ///< a name of Machine::lubricants, or its own; unused by a linear film
-  std::optional<Pedestal> pedestal;                      ///< rigid if absent
+  std::variant<std::string, film::Lubricant>
+      lubricant;                     ///< a name of Machine::lubricants, or its own; unused by a linear film
+  std::optional<Pedestal> pedestal;  ///< rigid if absent
 };
 
 /// Permissible e Omega of ISO 21940-11 (G2.5 is 2.5 mm/s).
@@ -61,7 +62,7 @@ struct Machine {
   rotor::Options rotor;
   double gravity = 9.81;  ///< along -y [m/s^2]
   std::map<std::string, film::Lubricant> lubricants;
-  std::vector<Bearing> bearings;    ///< in the order of the deck
+  std::vector<Bearing> bearings;     ///< in the order of the deck
   std::vector<Unbalance> unbalance;  ///< in the order of the deck
 };
 
@@ -79,13 +80,14 @@ void describe(deck::Description<Machine>& d);
 
 /// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies; empty if
 /// there is no such rotor or no such pair.
-[[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine, std::string_view rotor);
+[[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine,
+                                                                           std::string_view rotor);
 
 /// Masses of one unbalance, U = fraction M_k e_u or the given amounts, for a machine that was checked.
 [[nodiscard]] std::vector<UnbalanceMass> unbalance_masses(const Machine& machine, const Unbalance& unbalance);
 
-/// The machine with all names resolved and the named unbalances applied (all at once), for the equations. Supports stand
-/// in the order of the deck.
+/// The machine with all names resolved and the named unbalances applied (all at once), for the equations. Supports
+/// stand in the order of the deck.
 [[nodiscard]] Train train_of(const Machine& machine, const std::vector<std::string>& unbalance = {});
 
 }  // namespace whirl::system
