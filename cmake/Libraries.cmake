@@ -5,6 +5,7 @@ find_package(fmt REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
 
 # The headers of these libraries are theirs: as system headers they do not fail our warnings.
 function(whirl_pkg name module)

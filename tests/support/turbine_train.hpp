@@ -45,20 +45,20 @@ inline rotor::Options train_rotor(const std::string& segments = "segments.csv") 
   o.material.poisson = 0.3;
   o.stiffness_damping = 1e-5;
   for (auto& row : read_csv(train_folder + "steel_modulus.csv"))
-    o.material.modulus.emplace_back(std::stod(row["temperature_degC"]) + 273.15, std::stod(row["youngs_modulus_Pa"]));
+    o.material.modulus.emplace_back(std::stod(row["temperature [degC]"]) + 273.15, std::stod(row["modulus [Pa]"]));
   for (auto& row : read_csv(train_folder + segments)) {
     rotor::Segment s;
     s.rotor = row["rotor"];
     s.part = row["part"];
-    s.length = std::stod(row["length_m"]);
-    s.outer_mass_diameter = std::stod(row["outer_mass_diameter_m"]);
-    s.inner_mass_diameter = std::stod(row["inner_mass_diameter_m"]);
-    s.outer_stiffness_diameter = std::stod(row["outer_stiffness_diameter_m"]);
-    s.inner_stiffness_diameter = std::stod(row["inner_stiffness_diameter_m"]);
-    s.added_mass = std::stod(row["added_mass_kg"]);
-    s.added_mass_inner_diameter = std::stod(row["added_mass_inner_diameter_m"]);
-    s.added_mass_outer_diameter = std::stod(row["added_mass_outer_diameter_m"]);
-    s.temperature = std::stod(row["temperature_degC"]) + 273.15;
+    s.length = std::stod(row["length [m]"]);
+    s.outer_mass_diameter = std::stod(row["outer_mass_diameter [m]"]);
+    s.inner_mass_diameter = std::stod(row["inner_mass_diameter [m]"]);
+    s.outer_stiffness_diameter = std::stod(row["outer_stiffness_diameter [m]"]);
+    s.inner_stiffness_diameter = std::stod(row["inner_stiffness_diameter [m]"]);
+    s.added_mass = std::stod(row["added_mass [kg]"]);
+    s.added_mass_inner_diameter = std::stod(row["added_mass_inner_diameter [m]"]);
+    s.added_mass_outer_diameter = std::stod(row["added_mass_outer_diameter [m]"]);
+    s.temperature = std::stod(row["temperature [degC]"]) + 273.15;
     o.segments.push_back(s);
   }
   return o;

@@ -1,0 +1,88 @@
+#pragma once
+// A deck as a tree in which every value knows where it was written.
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace whirl::deck {
+
+/// Where a value was written: a position in a file (1-based), or an argument of the command line (line 0).
+struct Place {
+  std::shared_ptr<const std::string> source;  ///< file name or argument; shared by all values of the file
+  int line = 0;
+  int column = 0;
+
+  /// `file:line:column`, or the argument itself; empty for values that nobody wrote (defaults).
+  [[nodiscard]] std::string text() const;
+  /// Directory that relative file names in this source start from; "." for arguments.
+  [[nodiscard]] std::string directory() const;
+};
+
+/// One value of a deck: nothing, a scalar (its text), a list, or a map in the order of the deck.
+struct Node {
+  enum class Kind { none, scalar, list, map };
+
+  Kind kind = Kind::none;
+  std::string text;         ///< of a scalar
+  bool quoted = false;      ///< the scalar stood in quotes
+  bool table_row = false;   ///< came from a row of a table
+  std::string key;          ///< if this is an entry of a map
+  Place key_place;          ///< if this is an entry of a map
+  Place place;              ///< of the value
+  std::vector<Node> items;  ///< entries of a list or a map
+
+  [[nodiscard]] static Node scalar(std::string text, bool quoted = false);
+  [[nodiscard]] static Node list();
+  [[nodiscard]] static Node map();
+
+  /// Entry `name` of a map, null if there is none.
+  [[nodiscard]] const Node* find(std::string_view name) const;
+  [[nodiscard]] Node* find(std::string_view name);
+  /// Appends entry `name` to a map and returns it.
+  Node& set(std::string name, Node value);
+  /// Appends an item to a list and returns it.
+  Node& push(Node value);
+};
+
+/// What is wrong with a deck, in the order found.
+class Problems {
+public:
+  /// `place: message`, one line.
+  void add(const Place& place, const std::string& message);
+  [[nodiscard]] std::size_t size() const noexcept { return lines_.size(); }
+  [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
+  /// Throws one core::InputError with a line per problem (the first 20), if there is any.
+  void raise() const;
+
+private:
+  std::vector<std::string> lines_;
+};
+
+/// Reports problems of a value that was read already, by the path of the offending key below `root`.
+class Report {
+public:
+  Report(const Node& root, Problems& problems) : root_(&root), problems_(&problems) {}
+  /// Adds a problem at `path` (`bearings.B1.node`, list items 1-based); where the deck does not have the path, at the
+  /// nearest enclosing value. An empty path is the root.
+  void fail(std::string_view path, const std::string& message) const;
+  [[nodiscard]] Place place(std::string_view path) const;
+  /// The same problems, with paths that start at `path`.
+  [[nodiscard]] Report below(std::string_view path) const;
+
+private:
+  const Node* root_;
+  Problems* problems_;
+  std::string prefix_;
+};
+
+/// The candidate closest to `word` by edit distance, empty if none is near enough to be what was meant.
+[[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+/// ` (did you mean 'x'?)`, or nothing.
+[[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `path` split at its dots.
+[[nodiscard]] std::vector<std::string> split_path(std::string_view path);
+
+}  // namespace whirl::deck

@@ -1,0 +1,56 @@
+#pragma once
+// Quantities with units. SI inside: the unit of an option is a coherent SI unit ("m", "Pa s", "rad/s", "1").
+
+#include <string>
+#include <string_view>
+
+namespace whirl::deck {
+
+/// A value in SI together with the unit in which it was written, for options whose results are reported in that unit.
+struct Quantity {
+  double value = 0;
+  std::string unit;
+};
+
+/// An interval in SI together with the unit of its start, in which results are reported.
+struct Range {
+  double from = 0;
+  double to = 0;
+  std::string unit;
+};
+
+/// Number and unit of `text` ("180 um"); the unit is empty if there is none. Throws core::InputError (without a place)
+/// if there is no finite number in front.
+struct Split {
+  double number = 0;
+  std::string unit;
+};
+[[nodiscard]] Split split_quantity(std::string_view text);
+
+/// Value in SI of `text` for an option of unit `si`: "180 um" for "m" is 180e-6.
+///
+/// The kind of quantity must be that of `si`, angles included: a speed ("rad/s") takes rpm, rad/s, deg/s, but neither
+/// Hz nor 1/min; "1" takes bare numbers only, every other unit requires one; "K" is an absolute temperature and takes
+/// degC, "delta K" a temperature difference and does not; "*" takes any unit.
+/// Throws core::InputError without a place, saying what was expected.
+[[nodiscard]] double to_si(std::string_view text, std::string_view si);
+
+/// `value` (SI) as a number in `unit`; throws core::InputError if `unit` is not one.
+[[nodiscard]] double from_si(double value, std::string_view unit);
+
+/// Value in SI of `number` in `unit`.
+[[nodiscard]] double number_to_si(double number, std::string_view unit);
+
+/// True if both units measure the same kind of quantity.
+[[nodiscard]] bool same_kind(std::string_view unit, std::string_view other);
+
+/// Throws core::InputError (without a place) unless a value written in `unit` suits an option of SI unit `si`.
+void check_kind(std::string_view unit, std::string_view si);
+
+/// Shortest text `number unit` that reads back to exactly `value` (SI).
+[[nodiscard]] std::string write_quantity(double value, std::string_view unit);
+
+/// Shortest decimal that reads back to exactly `value`.
+[[nodiscard]] std::string write_number(double value);
+
+}  // namespace whirl::deck

@@ -1,0 +1,18 @@
+#pragma once
+// Deck keys of the film room.
+
+#include "whirl/deck/description.hpp"
+#include "whirl/film/options.hpp"
+
+namespace whirl::film {
+
+[[nodiscard]] std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore);
+[[nodiscard]] std::span<const deck::Name<Options::Kind>> names(Options::Kind);
+[[nodiscard]] std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation);
+[[nodiscard]] std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence);
+
+void describe(deck::Description<Geometry>& d);
+void describe(deck::Description<Options>& d);
+void describe(deck::Description<Lubricant>& d);
+
+}  // namespace whirl::film

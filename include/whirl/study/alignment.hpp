@@ -1,0 +1,26 @@
+#pragma once
+// Elevations of bearings that give zero bending moments and wanted loads on rigid supports.
+
+#include <map>
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct AlignmentOptions {
+  std::string name;
+  std::vector<int> zero_moment;         ///< nodes (1-based) without bending moment
+  std::map<std::string, double> loads;  ///< wanted load by bearing, positive down [N]
+  std::vector<std::string> adjust;      ///< bearings whose elevation is sought
+};
+void describe(deck::Description<AlignmentOptions>& d);
+
+class Alignment final : public StudyWith<AlignmentOptions> {
+public:
+  static constexpr std::string_view key = "alignment";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,41 @@
+#pragma once
+// Forced limit cycles over a parameter by orthogonal collocation, with multipliers and bifurcations.
+
+#include <optional>
+
+#include "whirl/study/parameter.hpp"
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct CycleBranchOptions {
+  enum class Points { radau, gauss };
+  std::string name;
+  std::vector<std::string> unbalance;  ///< names of the machine's unbalances, applied together
+  Parameter parameter;
+  std::optional<deck::Quantity> start;  ///< value of the parameter to start at; that of range.from if absent
+  std::optional<deck::Quantity> speed;  ///< [rad/s], where the parameter is not the speed
+  int intervals = 60;                   ///< of the time mesh
+  int degree = 2;                       ///< of the polynomials
+  Points points = Points::radau;        ///< of collocation
+  bool adapt_mesh = true;
+  double tolerance = 1e-8;  ///< of Newton's method, relative
+  int multipliers = 6;      ///< Floquet multipliers to report, the largest
+  int period = 1;           ///< revolutions per cycle
+  int max_points = 500;
+  std::vector<Event> detect{Event::cyclic_fold, Event::flip, Event::neimark_sacker};
+  int orbits = 20;  ///< cycles whose time history is stored, spread over the branch
+  bool checkpoint = true;
+};
+[[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points);
+void describe(deck::Description<CycleBranchOptions>& d);
+
+class CycleBranch final : public StudyWith<CycleBranchOptions> {
+public:
+  static constexpr std::string_view key = "cycle_branch";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,26 @@
+#pragma once
+// Equilibria over a parameter, with folds and Hopf bifurcations located.
+
+#include "whirl/study/parameter.hpp"
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct EquilibriumBranchOptions {
+  std::string name;
+  Parameter parameter;
+  std::optional<deck::Quantity> speed;  ///< [rad/s], where the parameter is not the speed
+  int max_points = 500;
+  std::vector<Event> detect{Event::hopf, Event::fold};
+};
+void describe(deck::Description<EquilibriumBranchOptions>& d);
+
+class EquilibriumBranch final : public StudyWith<EquilibriumBranchOptions> {
+public:
+  static constexpr std::string_view key = "equilibrium_branch";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,36 @@
+#pragma once
+// Eigenvalues of the machine over speed.
+
+#include <optional>
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct ModesOptions {
+  /// What holds the journals: the linearised films, a rigid pin, or nothing.
+  enum class Supports { films, pinned, free };
+  std::string name;
+  Supports supports = Supports::films;
+  std::optional<deck::Range> range;     ///< of speed [rad/s]
+  int points = 40;                      ///< speeds in the range, evenly spaced with both ends
+  std::vector<deck::Quantity> speeds;   ///< [rad/s], instead of a range
+  int count = 14;                       ///< modes to find, those of lowest frequency
+  std::optional<double> max_frequency;  ///< |imaginary part| up to which modes are reported [rad/s]
+
+  /// All speeds in rad/s, and the unit in which they were written.
+  [[nodiscard]] std::vector<double> all_speeds() const;
+  [[nodiscard]] std::string unit() const;
+};
+[[nodiscard]] std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports);
+void describe(deck::Description<ModesOptions>& d);
+
+class Modes final : public StudyWith<ModesOptions> {
+public:
+  static constexpr std::string_view key = "modes";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,47 @@
+#pragma once
+// The parameter that a branch follows.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "whirl/deck/description.hpp"
+#include "whirl/system/options.hpp"
+
+namespace whirl::study {
+
+/// Bifurcations that a study can be asked to locate.
+enum class Event { fold, hopf, branch_point, cyclic_fold, flip, neimark_sacker };
+[[nodiscard]] std::span<const deck::Name<Event>> names(Event);
+
+/// Lengths of steps along a branch, in units of the parameter (SI; as written in the unit of the range).
+struct Step {
+  deck::Quantity initial;
+  deck::Quantity min;
+  deck::Quantity max;
+};
+
+/// `speed`, or the path of a continuable option, and the interval to cover.
+struct Parameter {
+  std::string path = "speed";
+  deck::Range range;         ///< SI; direction is from -> to
+  std::optional<Step> step;  ///< the study's own choice if absent
+};
+
+/// Coherent SI unit of the parameter; "rad/s" for speed. Throws core::InputError if there is no such option or if
+/// studies may not vary it.
+[[nodiscard]] std::string parameter_unit(const system::Machine& machine, std::string_view path);
+
+/// A copy of `machine` in which the option at `path` (not speed) has the value `value` (SI).
+[[nodiscard]] system::Machine with_parameter(const system::Machine& machine, std::string_view path, double value);
+
+void describe(deck::Description<Step>& d);
+void describe(deck::Description<Parameter>& d);
+
+/// The parameter exists and may be varied, range and step have its unit, and `speed` is given exactly where the
+/// parameter is another one.
+void check_parameter(const Parameter& parameter, const std::optional<deck::Quantity>& speed,
+                     const system::Machine& machine, const deck::Report& report);
+
+}  // namespace whirl::study

@@ -1,0 +1,23 @@
+#pragma once
+// Where the machine sits: equilibrium at one speed.
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct StaticOptions {
+  std::string name;
+  deck::Quantity speed;  ///< [rad/s], and the unit of the deck
+  bool fields = true;    ///< write pressure and thickness of every film
+};
+void describe(deck::Description<StaticOptions>& d);
+
+class Static final : public StudyWith<StaticOptions> {
+public:
+  static constexpr std::string_view key = "static";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

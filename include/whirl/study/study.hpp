@@ -1,0 +1,64 @@
+#pragma once
+// What every analysis is to the rest of the program.
+
+#include <mpi.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "whirl/deck/description.hpp"
+#include "whirl/system/options.hpp"
+
+namespace whirl::study {
+
+class Results;
+
+/// What a study gets to work with.
+struct Context {
+  MPI_Comm comm;
+  const system::Machine& machine;
+  std::string directory;  ///< of the results; exists
+  Results& results;       ///< where the study puts what it found
+  bool progress = false;  ///< tell how far the work is
+  bool resume = false;    ///< go on from the checkpoint of this study, if there is one
+};
+
+/// One analysis of a deck.
+class Study {
+public:
+  Study() = default;
+  Study(const Study&) = delete;
+  Study& operator=(const Study&) = delete;
+  virtual ~Study() = default;
+  /// Its key in decks.
+  [[nodiscard]] virtual std::string_view kind() const = 0;
+  /// Its name in results: that of the deck, or the kind.
+  [[nodiscard]] virtual std::string name() const = 0;
+  /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
+  virtual void validate(const system::Machine& machine, const deck::Report& report) const = 0;
+  /// Collective.
+  virtual void run(Context& context) = 0;
+};
+
+/// What all kinds share: options with a `name`.
+template <class Options>
+class StudyWith : public Study {
+public:
+  Options options;
+  [[nodiscard]] std::string name() const override { return options.name.empty() ? std::string(kind()) : options.name; }
+};
+
+/// All kinds, in the order in which they are listed.
+[[nodiscard]] const std::vector<deck::Kind<Study>>& kinds();
+
+// Checks that several studies share.
+
+/// Names of unbalances must exist in the machine.
+void check_unbalance(const std::vector<std::string>& names, const system::Machine& machine, const deck::Report& report);
+/// Nodes must exist in the shaft.
+void check_nodes(const std::string& key, const std::vector<int>& nodes, const system::Machine& machine,
+                 const deck::Report& report);
+
+}  // namespace whirl::study

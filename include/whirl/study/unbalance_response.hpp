@@ -1,0 +1,29 @@
+#pragma once
+// Linear response to unbalance over speed, about the equilibrium at each speed.
+
+#include <optional>
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct UnbalanceResponseOptions {
+  std::string name;
+  std::vector<std::string> unbalance;             ///< names of the machine's unbalances, applied together
+  deck::Range range;                              ///< of speed [rad/s]
+  int points = 200;                               ///< speeds in the range, evenly spaced with both ends
+  std::vector<int> nodes;                         ///< nodes to report; bearings and unbalance planes if empty
+  std::optional<deck::Quantity> operating_speed;  ///< [rad/s], for the separation margin
+  bool refine = true;                             ///< add speeds at peaks until their height is settled
+};
+void describe(deck::Description<UnbalanceResponseOptions>& d);
+
+class UnbalanceResponse final : public StudyWith<UnbalanceResponseOptions> {
+public:
+  static constexpr std::string_view key = "unbalance_response";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

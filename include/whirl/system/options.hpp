@@ -1,0 +1,100 @@
+#pragma once
+// What a deck says about a machine: rotor, bearings, lubricants, unbalance. Plain data in SI, names not yet resolved.
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "whirl/deck/description.hpp"
+#include "whirl/film/options.hpp"
+#include "whirl/rotor/options.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::system {
+
+/// What stands under a bearing, in x and y, uncoupled: M u'' + C u' + K u = film force on the bearing - M g in y.
+struct Pedestal {
+  std::array<double, 2> mass{};       ///< [kg]
+  std::array<double, 2> stiffness{};  ///< [N/m]
+  std::array<double, 2> damping{};    ///< [N s/m]
+};
+
+struct Bearing {
+  std::string name;
+  int node = 0;                            ///< 1-based
+  double elevation = 0;                    ///< of the bearing centre, positive up [m]
+  std::optional<film::Geometry> geometry;  ///< absent only for a linear film
+  film::Options film;
+  std::variant<std::string, film::Lubricant>
+      lubricant;                     ///< a name of Machine::lubricants, or its own; unused by a linear film
+  std::optional<Pedestal> pedestal;  ///< rigid if absent
+};
+
+/// Permissible e Omega of ISO 21940-11 (G2.5 is 2.5 mm/s).
+struct BalanceGrade {
+  double velocity = 0;  ///< [m/s]
+};
+
+/// A balancing plane. Either a fraction of the unbalance of the grade, or an own amount.
+struct Plane {
+  int node = 0;                    ///< 1-based
+  std::optional<double> fraction;  ///< of M_k e_u
+  std::optional<double> amount;    ///< U [kg m]
+  double phase = 0;                ///< [rad]
+};
+
+/// A named unbalance. With a grade: U = fraction M_k e_u, e_u = grade / service_speed, M_k the mass between the two
+/// neighbouring bearings between which the middle of `rotor` lies. Source: Gavalas (2022), eq. (2.2).
+struct Unbalance {
+  std::string name;
+  std::optional<BalanceGrade> grade;
+  std::optional<double> service_speed;  ///< [rad/s]
+  std::string rotor;
+  std::vector<Plane> planes;
+};
+
+struct Machine {
+  std::string title;
+  rotor::Options rotor;
+  double gravity = 9.81;  ///< along -y [m/s^2]
+  std::map<std::string, film::Lubricant> lubricants;
+  std::vector<Bearing> bearings;     ///< in the order of the deck
+  std::vector<Unbalance> unbalance;  ///< in the order of the deck
+};
+
+void describe(deck::Description<Pedestal>& d);
+void describe(deck::Description<Bearing>& d);
+void describe(deck::Description<Plane>& d);
+void describe(deck::Description<Unbalance>& d);
+void describe(deck::Description<Machine>& d);
+
+/// Position of the bearing or unbalance `name`; empty if there is none.
+[[nodiscard]] std::optional<std::size_t> find_bearing(const Machine& machine, std::string_view name);
+[[nodiscard]] std::optional<std::size_t> find_unbalance(const Machine& machine, std::string_view name);
+[[nodiscard]] std::vector<std::string> bearing_names(const Machine& machine);
+[[nodiscard]] std::vector<std::string> unbalance_names(const Machine& machine);
+
+/// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies; empty if
+/// there is no such rotor or no such pair.
+[[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine,
+                                                                           std::string_view rotor);
+
+/// Masses of one unbalance, U = fraction M_k e_u or the given amounts, for a machine that was checked.
+[[nodiscard]] std::vector<UnbalanceMass> unbalance_masses(const Machine& machine, const Unbalance& unbalance);
+
+/// The machine with all names resolved and the named unbalances applied (all at once), for the equations. Supports
+/// stand in the order of the deck.
+[[nodiscard]] Train train_of(const Machine& machine, const std::vector<std::string>& unbalance = {});
+
+}  // namespace whirl::system
+
+namespace whirl::deck {
+template <>
+struct CodecOf<system::BalanceGrade> {
+  static std::shared_ptr<const Codec> make(const Spec&);
+};
+}  // namespace whirl::deck

@@ -1,0 +1,64 @@
+#include "commands.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "directory.hpp"
+#include "whirl/deck/output.hpp"
+#include "whirl/study/deck.hpp"
+
+namespace whirl::app {
+namespace {
+
+// An InputError that does not depend on the rank is one that all ranks have.
+[[noreturn]] void refuse(const std::string& text) {
+  core::InputError e(text);
+  e.mark_agreed();
+  throw e;
+}
+
+}  // namespace
+
+core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
+  const study::Deck deck = study::load(comm, request.deck.path, request.deck.overrides);
+  if (deck.studies.empty()) refuse(fmt::format("{}: the deck asks for no study (`studies: [...]`)", request.deck.path));
+  if (request.resume && request.force) refuse("--resume goes on with earlier results, --force replaces them: choose one");
+  const std::string directory = request.directory.empty()
+                                    ? "results/" + std::filesystem::path(request.deck.path).stem().string()
+                                    : request.directory;
+  const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
+  prepare_directory(comm, directory, study::resolved_text(deck), earlier);
+  const core::Exit exit = study::run(comm, deck, {directory, request.progress, request.resume});
+  text = fmt::format("results in {}\n", directory);
+  return exit;
+}
+
+std::string check(MPI_Comm comm, const DeckRequest& request) {
+  const study::Deck deck = study::load(comm, request.path, request.overrides);
+  std::string text = fmt::format("{}: no errors; {} segments, {} bearings, {} studies\n", request.path,
+                                 deck.machine.rotor.segments.size(), deck.machine.bearings.size(), deck.studies.size());
+  for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
+  return text;
+}
+
+std::string list() {
+  std::string text;
+  for (const auto& k : study::kinds()) text += fmt::format("{:<20} {}\n", k.name, k.text);
+  return text;
+}
+
+std::string describe(const std::string& key) {
+  try {
+    return deck::reference_text(deck::structure_of<study::Deck>(), key);
+  } catch (core::InputError& e) {
+    e.mark_agreed();
+    throw;
+  }
+}
+
+std::string schema() {
+  return deck::schema_text(deck::structure_of<study::Deck>(), "Input deck of Whirl");
+}
+
+}  // namespace whirl::app

@@ -1,0 +1,68 @@
+#include "directory.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::app {
+namespace {
+
+namespace fs = std::filesystem;
+using core::InputError;
+
+std::string contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_whole(const fs::path& path, const std::string& text) {
+  const fs::path temporary = path.string() + ".new";
+  std::ofstream out(temporary, std::ios::binary);
+  out << text << std::flush;
+  out.close();
+  if (!out) throw core::Error(fmt::format("cannot write '{}'", temporary.string()));
+  fs::rename(temporary, path);
+}
+
+void prepare(const fs::path& directory, const std::string& resolved, Earlier earlier) {
+  if (fs::exists(directory) && !fs::is_directory(directory))
+    throw InputError(fmt::format("'{}' is a file; -o names a directory", directory.string()));
+  const bool used = fs::exists(directory) && !fs::is_empty(directory);
+  const fs::path deck = directory / "resolved.yaml";
+  if (used) {
+    if (!fs::exists(deck))
+      throw InputError(fmt::format("'{}' holds files that are not results of whirl", directory.string()));
+    if (earlier == Earlier::refuse)
+      throw InputError(fmt::format("'{}' holds results already: choose another directory with -o, go on with --resume, or "
+                                   "replace them with --force",
+                                   directory.string()));
+    if (earlier == Earlier::resume && contents(deck) != resolved)
+      throw InputError(fmt::format("'{}' holds results of another deck: --resume needs the same one", directory.string()));
+    if (earlier == Earlier::replace)
+      for (const auto& entry : fs::directory_iterator(directory)) fs::remove_all(entry.path());
+  }
+  fs::create_directories(directory);
+  write_whole(deck, resolved);
+}
+
+}  // namespace
+
+void prepare_directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  core::agree(comm, [&] {
+    if (rank != 0) return;
+    try {
+      prepare(directory, resolved, earlier);
+    } catch (const fs::filesystem_error& e) {
+      throw InputError(fmt::format("cannot use '{}' for results: {}", directory, e.code().message()));
+    }
+  });
+}
+
+}  // namespace whirl::app

@@ -1,0 +1,116 @@
+// The program: splits the command line, owns MPI and PETSc, and is the only place that turns errors into exit codes.
+
+#include <fmt/core.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/core/session.hpp"
+
+namespace {
+
+using namespace whirl;
+
+struct CommandLine {
+  std::vector<std::string> words;  // ours, reversed as the parser wants them
+  std::vector<std::string> petsc;  // behind `--`
+};
+
+CommandLine split(int argc, char** argv) {
+  CommandLine c;
+  bool ours = true;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (ours && word == "--")
+      ours = false;
+    else
+      (ours ? c.words : c.petsc).push_back(word);
+  }
+  std::reverse(c.words.begin(), c.words.end());
+  return c;
+}
+
+core::Exit dispatch(CommandLine line, bool prints) {
+  CLI::App cli{"Nonlinear dynamics of rotors in fluid films", "whirl"};
+  cli.set_version_flag("--version", "whirl " WHIRL_VERSION);
+  cli.require_subcommand(1);
+  cli.footer("Words behind `--` are options of PETSc: whirl run deck.yaml -- -eq_snes_monitor");
+
+  app::RunRequest run;
+  app::DeckRequest check;
+  std::string key;
+  auto deck_options = [](CLI::App* c, app::DeckRequest& r) {
+    c->add_option("DECK", r.path, "input deck (YAML)")->required();
+    c->add_option("--set", r.overrides, "PATH=VALUE: override a value; list items count from 1")
+        ->allow_extra_args(false)
+        ->type_name("PATH=VALUE");
+  };
+  CLI::App* run_command = cli.add_subcommand("run", "compute the studies of a deck");
+  deck_options(run_command, run.deck);
+  run_command->add_option("-o,--output", run.directory, "directory of the results (results/NAME OF DECK if not given)")
+      ->type_name("DIR");
+  run_command->add_flag("--resume", run.resume, "go on from the checkpoints in the directory");
+  run_command->add_flag("--force", run.force, "replace results of an earlier run");
+  run_command->add_flag("--progress", run.progress, "tell how far the work is");
+  CLI::App* check_command = cli.add_subcommand("check", "check a deck without computing");
+  deck_options(check_command, check);
+  CLI::App* list_command = cli.add_subcommand("list", "list the kinds of studies");
+  CLI::App* describe_command = cli.add_subcommand("describe", "explain the options of decks");
+  describe_command->add_option("KEY", key, "option or group of options, such as bearings.geometry");
+  CLI::App* schema_command = cli.add_subcommand("schema", "print the JSON Schema of decks, for editors");
+
+  try {
+    cli.parse(std::move(line.words));
+  } catch (const CLI::ParseError& e) {
+    const bool asked = e.get_exit_code() == 0;
+    if (prints) (void)cli.exit(e);
+    return asked ? core::Exit::success : core::Exit::input;
+  }
+  std::string text;
+  core::Exit exit = core::Exit::success;
+  if (*run_command) exit = app::run(MPI_COMM_WORLD, run, text);
+  if (*check_command) text = app::check(MPI_COMM_WORLD, check);
+  if (*list_command) text = app::list();
+  if (*describe_command) text = app::describe(key);
+  if (*schema_command) text = app::schema();
+  if (prints) (void)std::fputs(text.c_str(), stdout);
+  return exit;
+}
+
+// An error that all ranks have leaves in order; one that only this rank has would leave the others waiting.
+int leave(const std::string& text, core::Exit exit, bool agreed, bool prints) {
+  int size = 1, rank = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const bool alone = size > 1 && !agreed;
+  if (prints || alone) {
+    (void)std::fflush(stdout);
+    (void)std::fprintf(stderr, "whirl: %s%s\n", alone ? fmt::format("rank {}: ", rank).c_str() : "", text.c_str());
+    (void)std::fflush(stderr);
+  }
+  if (alone) MPI_Abort(MPI_COMM_WORLD, static_cast<int>(exit));
+  return static_cast<int>(exit);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine line = split(argc, argv);
+  const core::Session session(argc, argv, line.petsc);
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const bool prints = rank == 0;
+  try {
+    return static_cast<int>(dispatch(std::move(line), prints));
+  } catch (const core::Error& e) {
+    return leave(e.what(), e.exit(), e.agreed(), prints);
+  } catch (const std::exception& e) {
+    return leave(fmt::format("internal error: {}", e.what()), core::Exit::bug, false, prints);
+  }
+}

@@ -1,0 +1,342 @@
+// Codecs of values with parts: lists, tables, maps, optional values, names or values, lists of choices.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "schema.hpp"
+#include "whirl/deck/description.hpp"
+#include "whirl/deck/load.hpp"
+
+namespace whirl::deck {
+namespace {
+
+using core::InputError;
+
+std::string name_of_value(const Node& n) {
+  return n.key.empty() ? std::string("this value") : fmt::format("'{}'", n.key);
+}
+
+// Item `step` (1-based) of a list of n; throws if there is none.
+std::size_t index_of(const std::string& step, std::size_t n) {
+  std::size_t k = 0;
+  const auto [end, code] = std::from_chars(step.data(), step.data() + step.size(), k);
+  if (code != std::errc() || end != step.data() + step.size() || k < 1 || k > n)
+    throw InputError(fmt::format("the list has items 1 to {}, not '{}'", n, step));
+  return k - 1;
+}
+
+void* mutable_part(const void* value) {
+  return const_cast<void*>(value);
+}
+
+class ListCodec : public Codec {
+public:
+  ListCodec(CodecPtr item, ListAccess a) : item_(std::move(item)), a_(std::move(a)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (node.kind != Node::Kind::list)
+      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+    if (!a_.resize(value, node.items.size()))
+      return r.problems.add(
+          node.place, fmt::format("{} must have {} items, not {}", name_of_value(node), a_.fixed, node.items.size()));
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
+      Node item = node.items[i];
+      if (item.key.empty()) item.key = node.key;
+      item_->read(item, a_.at(value, i), r);
+    }
+  }
+  Node write(const void* value) const override {
+    Node n = Node::list();
+    for (std::size_t i = 0; i < a_.size(value); ++i) n.push(item_->write(a_.at(mutable_part(value), i)));
+    return n;
+  }
+  Node schema() const override {
+    Node n = typed_schema("array");
+    n.set("items", item_->schema());
+    if (a_.fixed > 0) {
+      n.set("minItems", Node::scalar(fmt::format("{}", a_.fixed)));
+      n.set("maxItems", Node::scalar(fmt::format("{}", a_.fixed)));
+    }
+    return n;
+  }
+  std::string type() const override {
+    return a_.fixed > 0 ? fmt::format("a list of {}, each a {}", a_.fixed, item_->type())
+                        : fmt::format("a list, each item a {}", item_->type());
+  }
+  const Structure* structure() const override { return item_->structure(); }
+  std::string step() const override { return "1"; }
+  Access find(void* value, std::span<const std::string> path) const override {
+    if (path.empty()) return {};
+    return item_->find(a_.at(value, index_of(path.front(), a_.size(value))), path.subspan(1));
+  }
+
+private:
+  CodecPtr item_;
+  ListAccess a_;
+};
+
+class TableCodec : public Codec {
+public:
+  TableCodec(const Structure& row, ListAccess a, std::string scalar)
+      : row_(row), a_(std::move(a)), scalar_(std::move(scalar)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (names_table(node)) {
+      try {
+        read_rows(load_table(node, r.files), value, r);
+      } catch (const InputError& e) {
+        r.problems.add({}, e.what());
+      }
+    } else if (node.kind == Node::Kind::list) {
+      read_rows(node, value, r);
+    } else if (node.kind == Node::Kind::scalar && !scalar_.empty()) {
+      a_.resize(value, 1);
+      const Option& o = *row_.option(scalar_);
+      o.codec->read(node, o.member(a_.at(value, 0)), r);
+    } else {
+      r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+    }
+  }
+  Node write(const void* value) const override {
+    if (!scalar_.empty() && a_.size(value) == 1) {
+      const Option& o = *row_.option(scalar_);
+      return o.codec->write(o.member(a_.at(mutable_part(value), 0)));
+    }
+    Node n = Node::list();
+    for (std::size_t i = 0; i < a_.size(value); ++i) n.push(row_.write(a_.at(mutable_part(value), i)));
+    return n;
+  }
+  Node schema() const override {
+    Node file = typed_schema("string");
+    file.set("pattern", Node::scalar("\\.csv$", true));
+    Node rows = typed_schema("array");
+    rows.set("items", row_.schema());
+    Node both = either_schema(std::move(file), std::move(rows));
+    if (!scalar_.empty()) both.find("anyOf")->push(row_.option(scalar_)->codec->schema());
+    return both;
+  }
+  std::string type() const override {
+    const std::string table = "a table (.csv file or list of maps)";
+    return scalar_.empty() ? table : fmt::format("a {} or {}", row_.option(scalar_)->codec->type(), table);
+  }
+  const Structure* structure() const override { return &row_; }
+  std::string step() const override { return "1"; }
+  Access find(void*, std::span<const std::string>) const override { return {}; }
+
+private:
+  // The rows of one file fail alike, so the first row with a problem speaks for the rest.
+  void read_rows(const Node& rows, void* value, Reading& r) const {
+    a_.resize(value, rows.items.size());
+    const std::size_t before = r.problems.size();
+    for (std::size_t i = 0; i < rows.items.size() && r.problems.size() == before; ++i)
+      row_.read(rows.items[i], a_.at(value, i), r);
+    if (rows.items.empty()) r.problems.add(rows.place, fmt::format("{} has no rows", name_of_value(rows)));
+  }
+  const Structure& row_;
+  ListAccess a_;
+  std::string scalar_;
+};
+
+// Names appear in paths and in names of results.
+bool is_name(const std::string& s) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  return !s.empty() && letter(s[0]) &&
+         std::all_of(s.begin(), s.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-'; });
+}
+
+class MapCodec : public Codec {
+public:
+  MapCodec(CodecPtr item, MapAccess a) : item_(std::move(item)), a_(std::move(a)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (node.kind != Node::Kind::map)
+      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+    a_.clear(value);
+    for (const Node& i : node.items) {
+      if (!is_name(i.key))
+        r.problems.add(i.key_place,
+                       fmt::format("'{}' is not a name: letters, digits, _ and -, starting with a letter", i.key));
+      else
+        item_->read(i, a_.insert(value, i.key), r);
+    }
+  }
+  Node write(const void* value) const override {
+    Node n = Node::map();
+    for (const auto& [name, v] : a_.entries(mutable_part(value))) n.set(name, item_->write(v));
+    return n;
+  }
+  Node schema() const override {
+    Node n = typed_schema("object");
+    n.set("additionalProperties", item_->schema());
+    return n;
+  }
+  std::string type() const override { return fmt::format("a map NAME: {}", item_->type()); }
+  const Structure* structure() const override { return item_->structure(); }
+  std::string step() const override { return "NAME"; }
+  Access find(void* value, std::span<const std::string> path) const override {
+    if (path.empty()) return {};
+    std::vector<std::string> names;
+    for (const auto& [name, v] : a_.entries(value)) {
+      if (name == path.front()) return item_->find(v, path.subspan(1));
+      names.push_back(name);
+    }
+    throw InputError(fmt::format("there is no '{}'{}", path.front(), did_you_mean(path.front(), names)));
+  }
+
+private:
+  CodecPtr item_;
+  MapAccess a_;
+};
+
+class OptionalCodec : public Codec {
+public:
+  OptionalCodec(CodecPtr item, OptionalAccess a) : item_(std::move(item)), a_(std::move(a)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (node.kind == Node::Kind::none)
+      a_.reset(value);
+    else
+      item_->read(node, a_.emplace(value), r);
+  }
+  Node write(const void* value) const override {
+    const void* v = a_.get(mutable_part(value));
+    return v ? item_->write(v) : Node{};
+  }
+  Node schema() const override { return item_->schema(); }
+  std::string type() const override { return item_->type(); }
+  const Structure* structure() const override { return item_->structure(); }
+  std::string step() const override { return item_->step(); }
+  Access find(void* value, std::span<const std::string> path) const override {
+    void* v = a_.get(value);
+    if (!v) throw InputError("the deck does not give this option");
+    return item_->find(v, path);
+  }
+
+private:
+  CodecPtr item_;
+  OptionalAccess a_;
+};
+
+class NameOrCodec : public Codec {
+public:
+  NameOrCodec(CodecPtr value, NameOrAccess a) : value_(std::move(value)), a_(std::move(a)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (node.kind == Node::Kind::scalar)
+      a_.set_name(value, node.text);
+    else
+      value_->read(node, a_.set_value(value), r);
+  }
+  Node write(const void* value) const override {
+    if (const std::string* name = a_.name(value)) return Node::scalar(*name, true);
+    return value_->write(a_.value(mutable_part(value)));
+  }
+  Node schema() const override { return either_schema(typed_schema("string"), value_->schema()); }
+  std::string type() const override { return "a name, or a map"; }
+  const Structure* structure() const override { return value_->structure(); }
+  Access find(void* value, std::span<const std::string> path) const override {
+    if (const std::string* name = a_.name(value))
+      throw InputError(fmt::format("it is the name '{}'; vary what it names", *name));
+    return value_->find(a_.value(value), path);
+  }
+
+private:
+  CodecPtr value_;
+  NameOrAccess a_;
+};
+
+class ChoicesCodec : public Codec {
+public:
+  ChoicesCodec(std::vector<ChoiceKind> k, ChoiceAccess a) : kinds_(std::move(k)), a_(std::move(a)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (node.kind != Node::Kind::list)
+      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+    a_.clear(value);
+    std::vector<std::string> names;
+    for (const ChoiceKind& k : kinds_) names.push_back(k.name);
+    for (const Node& item : node.items) {
+      if (item.kind != Node::Kind::map || item.items.size() != 1) {
+        r.problems.add(item.place, "each item is one `- kind: {...}`; the options stand below the kind");
+        continue;
+      }
+      const Node& only = item.items.front();
+      const auto at = std::find(names.begin(), names.end(), only.key);
+      if (at == names.end()) {
+        const std::string hint = did_you_mean(only.key, names);
+        r.problems.add(only.key_place,
+                       fmt::format("unknown kind '{}'{}", only.key,
+                                   hint.empty() ? fmt::format("; there are {}", fmt::join(names, ", ")) : hint));
+        continue;
+      }
+      const auto kind = static_cast<std::size_t>(at - names.begin());
+      Node options = only;
+      if (options.kind == Node::Kind::none) options.kind = Node::Kind::map;  // `- static:` takes every default
+      kinds_[kind].options->read(options, a_.append(value, kind), r);
+    }
+  }
+  Node write(const void* value) const override {
+    Node n = Node::list();
+    for (std::size_t i = 0; i < a_.size(value); ++i) {
+      const ChoiceKind& k = kinds_[a_.kind(value, i)];
+      Node item = Node::map();
+      item.set(k.name, k.options->write(a_.options(mutable_part(value), i)));
+      n.push(std::move(item));
+    }
+    return n;
+  }
+  Node schema() const override {
+    Node n = typed_schema("array");
+    Node item = Node::map();
+    Node& one_of = item.set("oneOf", Node::list());
+    for (const ChoiceKind& k : kinds_) {
+      Node o = object_schema();
+      Node options = k.options->schema();
+      options.set("description", Node::scalar(k.text, true));
+      o.find("properties")->set(k.name, std::move(options));
+      Node required = Node::list();
+      required.push(Node::scalar(k.name, true));
+      o.set("required", std::move(required));
+      one_of.push(std::move(o));
+    }
+    n.set("items", std::move(item));
+    return n;
+  }
+  std::string type() const override { return "a list of `- kind: {...}`"; }
+  std::vector<std::pair<std::string, const Structure*>> kinds() const override {
+    std::vector<std::pair<std::string, const Structure*>> all;
+    for (const ChoiceKind& k : kinds_) all.emplace_back(k.name, k.options);
+    return all;
+  }
+  std::string step() const override { return "1"; }
+  Access find(void* value, std::span<const std::string> path) const override {
+    if (path.size() < 2) return {};
+    const std::size_t i = index_of(path.front(), a_.size(value));
+    const ChoiceKind& k = kinds_[a_.kind(value, i)];
+    if (path[1] != k.name) throw InputError(fmt::format("item {} is of kind '{}'", path.front(), k.name));
+    return k.options->find(a_.options(value, i), path.subspan(2));
+  }
+
+private:
+  std::vector<ChoiceKind> kinds_;
+  ChoiceAccess a_;
+};
+
+}  // namespace
+
+CodecPtr list_codec(CodecPtr item, ListAccess access) {
+  return std::make_shared<ListCodec>(std::move(item), std::move(access));
+}
+CodecPtr table_codec(const Structure& row, ListAccess access, std::string scalar) {
+  return std::make_shared<TableCodec>(row, std::move(access), std::move(scalar));
+}
+CodecPtr map_codec(CodecPtr item, MapAccess access) {
+  return std::make_shared<MapCodec>(std::move(item), std::move(access));
+}
+CodecPtr optional_codec(CodecPtr item, OptionalAccess access) {
+  return std::make_shared<OptionalCodec>(std::move(item), std::move(access));
+}
+CodecPtr name_or_codec(CodecPtr value, NameOrAccess access) {
+  return std::make_shared<NameOrCodec>(std::move(value), std::move(access));
+}
+CodecPtr choices_codec(std::vector<ChoiceKind> kinds, ChoiceAccess access) {
+  return std::make_shared<ChoicesCodec>(std::move(kinds), std::move(access));
+}
+
+}  // namespace whirl::deck

@@ -1,0 +1,165 @@
+#include "whirl/deck/node.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <numeric>
+#include <utility>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::deck {
+
+std::string Place::text() const {
+  if (!source) return {};
+  return line > 0 ? fmt::format("{}:{}:{}", *source, line, column) : *source;
+}
+
+std::string Place::directory() const {
+  if (!source || line <= 0) return ".";
+  const std::string parent = std::filesystem::path(*source).parent_path().string();
+  return parent.empty() ? "." : parent;
+}
+
+Node Node::scalar(std::string text, bool quoted) {
+  Node n;
+  n.kind = Kind::scalar;
+  n.text = std::move(text);
+  n.quoted = quoted;
+  return n;
+}
+
+Node Node::list() {
+  Node n;
+  n.kind = Kind::list;
+  return n;
+}
+
+Node Node::map() {
+  Node n;
+  n.kind = Kind::map;
+  return n;
+}
+
+const Node* Node::find(std::string_view name) const {
+  if (kind != Kind::map) return nullptr;
+  const auto it = std::find_if(items.begin(), items.end(), [&](const Node& n) { return n.key == name; });
+  return it == items.end() ? nullptr : &*it;
+}
+
+Node* Node::find(std::string_view name) {
+  return const_cast<Node*>(std::as_const(*this).find(name));
+}
+
+Node& Node::set(std::string name, Node value) {
+  value.key = std::move(name);
+  return items.emplace_back(std::move(value));
+}
+
+Node& Node::push(Node value) {
+  return items.emplace_back(std::move(value));
+}
+
+void Problems::add(const Place& place, const std::string& message) {
+  const std::string where = place.text();
+  std::string line = where.empty() ? message : where + ": " + message;
+  if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) lines_.push_back(std::move(line));
+}
+
+void Problems::raise() const {
+  if (lines_.empty()) return;
+  constexpr std::size_t most = 20;
+  std::string all;
+  for (std::size_t i = 0; i < std::min(most, lines_.size()); ++i) all += (i ? "\n" : "") + lines_[i];
+  if (lines_.size() > most) all += fmt::format("\nand {} more", lines_.size() - most);
+  throw core::InputError(all);
+}
+
+Place Report::place(std::string_view path) const {
+  const Node* node = root_;
+  Place best = root_->place;
+  for (const std::string& step : split_path(prefix_ + std::string(path))) {
+    const Node* next = nullptr;
+    if (node->kind == Node::Kind::list) {
+      std::size_t i = 0;
+      const auto [end, code] = std::from_chars(step.data(), step.data() + step.size(), i);
+      if (code == std::errc() && i >= 1 && i <= node->items.size()) next = &node->items[i - 1];
+    } else {
+      next = node->find(step);
+    }
+    if (!next) break;
+    node = next;
+    if (node->place.source) best = node->place;
+  }
+  return best;
+}
+
+Report Report::below(std::string_view path) const {
+  Report r = *this;
+  r.prefix_ += std::string(path) + ".";
+  return r;
+}
+
+void Report::fail(std::string_view path, const std::string& message) const {
+  problems_->add(place(path), message);
+}
+
+std::vector<std::string> split_path(std::string_view path) {
+  std::vector<std::string> steps;
+  while (!path.empty()) {
+    const std::size_t dot = path.find('.');
+    steps.emplace_back(path.substr(0, dot));
+    path = dot == std::string_view::npos ? std::string_view() : path.substr(dot + 1);
+  }
+  return steps;
+}
+
+namespace {
+
+// Optimal string alignment: insertions, deletions, changes and swaps of neighbours each cost one.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before = last;
+    last = row;
+  }
+  return last[b.size()];
+}
+
+std::string lower(std::string_view s) {
+  std::string t(s);
+  for (char& c : t)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return t;
+}
+
+}  // namespace
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& c : candidates) {
+    const bool part = word.size() >= 4 && c.size() > word.size() && c.compare(0, word.size(), word) == 0;
+    const std::size_t d = part ? 1 : distance(lower(word), lower(c));
+    if (d < least) {
+      least = d;
+      best = c;
+    }
+  }
+  return best;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string n = nearest(word, candidates);
+  return n.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", n);
+}
+
+}  // namespace whirl::deck

@@ -1,0 +1,197 @@
+#include "whirl/deck/output.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "schema.hpp"
+
+namespace whirl::deck {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// True if `s` reads back as the same string without quotes, also between flow brackets.
+bool is_plain(const std::string& s) {
+  const auto alnum = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/' ||
+           c == '.';
+  };
+  if (s.empty() || s.back() == ' ' || s == "null" || s == "~") return false;
+  if (!alnum(s[0]) && !((s[0] == '-' || s[0] == '+') && s.size() > 1 && alnum(s[1]))) return false;
+  return std::all_of(s.begin(), s.end(), [&](char c) {
+    return alnum(c) || c == ' ' || c == '-' || c == '+' || c == '^' || c == '*' || c == '(' || c == ')' || c == '%';
+  });
+}
+
+std::string scalar_text(const Node& n) {
+  if (n.kind == Node::Kind::none) return "null";
+  return is_plain(n.text) ? n.text : Json(n.text).dump();
+}
+
+bool is_leaf(const Node& n) {
+  return n.kind == Node::Kind::scalar || n.kind == Node::Kind::none;
+}
+
+bool all_leaves(const Node& n) {
+  return std::all_of(n.items.begin(), n.items.end(), is_leaf);
+}
+
+std::string flow(const Node& n) {
+  if (is_leaf(n)) return scalar_text(n);
+  const bool map = n.kind == Node::Kind::map;
+  std::string s = map ? "{" : "[";
+  for (const Node& i : n.items) {
+    if (s.size() > 1) s += ", ";
+    if (map) s += i.key + ": ";
+    s += flow(i);
+  }
+  return s + (map ? "}" : "]");
+}
+
+// Lists of leaves and maps of leaves inside lists stay on one line.
+void block(const Node& n, const std::string& indent, std::string& out) {
+  for (const Node& i : n.items) {
+    const bool in_list = n.kind == Node::Kind::list;
+    out += indent + (in_list ? "-" : i.key + ":");
+    const bool short_list = i.kind == Node::Kind::list && all_leaves(i);
+    const bool row = i.kind == Node::Kind::map && (i.items.empty() || (in_list && all_leaves(i)));
+    if (is_leaf(i) || short_list || row) {
+      out += " " + flow(i) + "\n";
+    } else {
+      out += "\n";
+      block(i, indent + "  ", out);
+    }
+  }
+}
+
+Json json_of(const Node& n) {
+  switch (n.kind) {
+    case Node::Kind::none:
+      return nullptr;
+    case Node::Kind::list: {
+      Json j = Json::array();
+      for (const Node& i : n.items) j.push_back(json_of(i));
+      return j;
+    }
+    case Node::Kind::map: {
+      Json j = Json::object();
+      for (const Node& i : n.items) j[i.key] = json_of(i);
+      return j;
+    }
+    case Node::Kind::scalar:
+      break;
+  }
+  if (n.quoted) return n.text;
+  if (n.text == "true" || n.text == "false") return n.text == "true";
+  const char* last = n.text.data() + n.text.size();
+  long long whole = 0;
+  if (const auto [end, code] = std::from_chars(n.text.data(), last, whole); code == std::errc() && end == last)
+    return whole;
+  double real = 0;
+  if (const auto [end, code] = std::from_chars(n.text.data(), last, real); code == std::errc() && end == last)
+    return real;
+  return n.text;
+}
+
+std::string join_path(const std::string& a, const std::string& b) {
+  return a.empty() ? b : b.empty() ? a : a + "." + b;
+}
+
+std::string default_text(const Option& o, const Structure& s) {
+  if (o.required) return "required";
+  const Node value = o.codec->write(o.member(s.defaults.get()));
+  if (value.kind == Node::Kind::none) return "optional";
+  if (o.codec->structure() && o.codec->step().empty()) return {};
+  if (!is_leaf(value) && value.items.empty()) return {};
+  if (value.kind == Node::Kind::scalar && value.text.empty()) return {};
+  return "default " + flow(value);
+}
+
+// Calls `visit(path, option, structure)` for every option below, depth first.
+template <class Visit>
+void walk(const Structure& s, const std::string& path, const Visit& visit) {
+  for (const Option& o : s.options) {
+    const std::string here = join_path(path, o.key);
+    visit(here, o, s);
+    const std::string inside = join_path(here, o.codec->step());
+    if (o.codec->structure()) walk(*o.codec->structure(), inside, visit);
+    for (const auto& [kind, options] : o.codec->kinds()) walk(*options, join_path(inside, kind), visit);
+  }
+}
+
+// True if `path` names `key` or something above it; steps such as NAME and 1 may be left out or be any word.
+bool is_below(const std::string& key, std::string_view path) {
+  const std::vector<std::string> k = split_path(key), p = split_path(path);
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < k.size() && j < p.size(); ++i) {
+    if (k[i] == p[j])
+      ++j;
+    else if (k[i] != "NAME" && k[i] != "1")
+      return false;
+    else if (i + 1 < k.size() && p[j] != k[i + 1])
+      ++j;
+  }
+  return j == p.size();
+}
+
+}  // namespace
+
+std::string to_yaml(const Node& node) {
+  if (is_leaf(node) || node.items.empty()) return flow(node) + "\n";
+  std::string out;
+  block(node, "", out);
+  return out;
+}
+
+std::string to_json(const Node& node) {
+  return json_of(node).dump(2) + "\n";
+}
+
+std::string schema_text(const Structure& structure, std::string_view title) {
+  Node n = Node::map();
+  n.set("$schema", Node::scalar("https://json-schema.org/draft/2020-12/schema", true));
+  n.set("title", Node::scalar(std::string(title), true));
+  for (Node& i : structure.schema().items) n.set(i.key, std::move(i));
+  Node base = typed_schema("string");
+  base.set("description", Node::scalar("deck to start from; maps merge, lists replace", true));
+  if (Node* p = n.find("properties")) p->set("base", std::move(base));
+  return to_json(n);
+}
+
+std::string reference_text(const Structure& structure, std::string_view path) {
+  std::string out;
+  std::vector<std::string> keys;
+  walk(structure, {}, [&](const std::string& key, const Option& o, const Structure& s) {
+    keys.push_back(key);
+    // The last words of a path are enough.
+    if (!path.empty() && !is_below(key, path) && !(path.find('.') == std::string_view::npos && o.key == path)) return;
+    const std::string value = default_text(o, s);
+    out += fmt::format("{}\n    {}{}{}\n    {}{}\n", key, o.codec->type(), value.empty() ? "" : "; ", value, o.text,
+                       o.source.empty() ? "" : " [" + o.source + "]");
+    if (!o.selector.empty()) {
+      out += fmt::format("    applies where {} is", o.selector);
+      for (std::size_t i = 0; i < o.selected.size(); ++i) out += (i ? " or " : " ") + o.selected[i];
+      out += "\n";
+    }
+    if (o.continuable) out += "    studies may vary it\n";
+  });
+  if (out.empty()) {
+    std::vector<std::string> last = keys;
+    for (const std::string& k : keys) last.push_back(split_path(k).back());
+    throw core::InputError(fmt::format("there is no option '{}'{}", path, did_you_mean(path, last)));
+  }
+  return out;
+}
+
+std::vector<std::string> undocumented(const Structure& structure) {
+  std::vector<std::string> bare;
+  walk(structure, {}, [&](const std::string& key, const Option& o, const Structure&) {
+    if (o.text.size() < 8) bare.push_back(key);
+  });
+  return bare;
+}
+
+}  // namespace whirl::deck

@@ -1,0 +1,166 @@
+// Reading and writing of described structs.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "schema.hpp"
+#include "whirl/deck/description.hpp"
+
+namespace whirl::deck {
+
+using core::InputError;
+
+Access Codec::find(void*, std::span<const std::string>) const {
+  return {};
+}
+
+const Option* Structure::option(std::string_view key) const {
+  const auto it = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.key == key; });
+  return it == options.end() ? nullptr : &*it;
+}
+
+std::vector<std::string> Structure::keys() const {
+  std::vector<std::string> k;
+  for (const Option& o : options) k.push_back(o.key);
+  return k;
+}
+
+bool Structure::applies(const Option& o, const void* object) const {
+  if (o.selector.empty()) return true;
+  const Option* s = option(o.selector);
+  const std::string value = s->codec->write(s->member(const_cast<void*>(object))).text;
+  return std::find(o.selected.begin(), o.selected.end(), value) != o.selected.end();
+}
+
+void Structure::read(const Node& node, void* object, Reading& r) const {
+  const std::string name = node.key.empty() ? "this value" : fmt::format("'{}'", node.key);
+  if (node.kind == Node::Kind::none)
+    return r.problems.add(node.place, fmt::format("{} has no value: expected {}", name, fmt::join(keys(), ", ")));
+  if (node.kind != Node::Kind::map)
+    return r.problems.add(node.place, fmt::format("{} must be a map with the keys {}", name, fmt::join(keys(), ", ")));
+  const std::size_t before = r.problems.size();
+  for (const Node& entry : node.items) {
+    if (option(entry.key)) continue;
+    const std::string hint = did_you_mean(entry.key, keys());
+    r.problems.add(entry.key_place,
+                   fmt::format("unknown key '{}'{}", entry.key,
+                               hint.empty() ? fmt::format("; valid keys are {}", fmt::join(keys(), ", ")) : hint));
+  }
+  for (const Option& o : options) {
+    const Node* value = node.find(o.key);
+    if (!applies(o, object)) {
+      if (value)
+        r.problems.add(value->key_place,
+                       fmt::format("'{}' does not apply where {} is {}", o.key, o.selector,
+                                   option(o.selector)->codec->write(option(o.selector)->member(object)).text));
+    } else if (value) {
+      o.codec->read(*value, o.member(object), r);
+    } else if (o.required) {
+      r.problems.add(node.place,
+                     fmt::format("{}'{}' is missing ({})", node.key.empty() ? "" : name + ": ", o.key, o.text));
+    }
+  }
+  if (r.problems.size() != before) return;
+  const Report report(node, r.problems);
+  for (const Checker& c : checks) c(object, report);
+}
+
+Node Structure::write(const void* object) const {
+  Node n = Node::map();
+  for (const Option& o : options) {
+    if (!applies(o, object)) continue;
+    Node value = o.codec->write(o.member(const_cast<void*>(object)));
+    if (value.kind != Node::Kind::none) n.set(o.key, std::move(value));
+  }
+  return n;
+}
+
+namespace {
+
+// The schema of one set of options; `selector` has the value `choice` in it.
+Node plain_schema(const Structure& s, const std::string& selector, const std::string& choice) {
+  Node n = object_schema();
+  Node required = Node::list();
+  Node& properties = *n.find("properties");
+  for (const Option& o : s.options) {
+    const bool selects = !selector.empty() && o.key == selector;
+    if (!selector.empty() && o.selector == selector &&
+        std::find(o.selected.begin(), o.selected.end(), choice) == o.selected.end())
+      continue;
+    Node p = o.codec->schema();
+    if (selects) {
+      p = Node::map();
+      p.set("const", Node::scalar(choice, true));
+    }
+    p.set("description", Node::scalar(o.text, true));
+    const Node value = o.codec->write(o.member(s.defaults.get()));
+    if (!o.required && !selects && value.kind == Node::Kind::scalar) p.set("default", value);
+    properties.set(o.key, std::move(p));
+    // A choice that is not the default one must be written for its keys to apply.
+    const bool written = selects && o.codec->write(o.member(s.defaults.get())).text != choice;
+    if (o.required || written) required.push(Node::scalar(o.key, true));
+  }
+  if (!required.items.empty()) n.set("required", std::move(required));
+  return n;
+}
+
+}  // namespace
+
+Node Structure::schema() const {
+  std::string selector;
+  for (const Option& o : options)
+    if (selector.empty()) selector = o.selector;
+  if (selector.empty()) return plain_schema(*this, {}, {});
+  Node n = Node::map();
+  Node& one_of = n.set("oneOf", Node::list());
+  const Node choices = option(selector)->codec->schema();
+  for (const Node& c : choices.find("enum")->items) one_of.push(plain_schema(*this, selector, c.text));
+  return n;
+}
+
+Access Structure::find(void* object, std::span<const std::string> path) const {
+  if (path.empty()) return {};
+  const Option* o = option(path.front());
+  if (!o) throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), keys())));
+  if (!applies(*o, object)) throw InputError(fmt::format("option '{}' does not apply here", path.front()));
+  Access a = o->codec->find(o->member(object), path.subspan(1));
+  a.continuable = a.continuable || o->continuable;
+  return a;
+}
+
+Access find_in(const Structure& structure, void* object, std::string_view path) {
+  const std::vector<std::string> steps = split_path(path);
+  Access a;
+  try {
+    a = structure.find(object, steps);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("'{}': {}", path, e.what()));
+  }
+  if (!a.value) throw InputError(fmt::format("'{}' is not a number of the deck", path));
+  return a;
+}
+
+namespace {
+
+class StructCodec : public Codec {
+public:
+  explicit StructCodec(const Structure& s) : structure_(s) {}
+  void read(const Node& node, void* value, Reading& r) const override { structure_.read(node, value, r); }
+  Node write(const void* value) const override { return structure_.write(value); }
+  Node schema() const override { return structure_.schema(); }
+  std::string type() const override { return "map"; }
+  const Structure* structure() const override { return &structure_; }
+  Access find(void* value, std::span<const std::string> path) const override { return structure_.find(value, path); }
+
+private:
+  const Structure& structure_;
+};
+
+}  // namespace
+
+CodecPtr struct_codec(const Structure& structure) {
+  return std::make_shared<StructCodec>(structure);
+}
+
+}  // namespace whirl::deck

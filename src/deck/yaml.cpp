@@ -1,0 +1,164 @@
+#include <fmt/core.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "whirl/core/error.hpp"
+#include "whirl/deck/load.hpp"
+
+namespace whirl::deck {
+namespace {
+
+using core::InputError;
+
+constexpr std::size_t most_nodes = 1000000;  // aliases of aliases could ask for more than there is memory
+
+// Builds our tree from the parser's events. The parser's own tree keeps duplicate keys and cyclic aliases and loses the
+// place of aliases; its events do not.
+class Builder : public YAML::EventHandler {
+public:
+  Builder(std::shared_ptr<const std::string> source) : source_(std::move(source)) {}
+
+  Node take() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(leaf(mark, Node{}), anchor); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto it = anchors_.find(anchor);
+    if (it == anchors_.end()) fail(mark, "an alias cannot stand inside the value that it names");
+    Node copy = it->second;
+    copy.key.clear();
+    copy.place = place(mark);
+    count(size_of(copy), mark);
+    add(std::move(copy), 0);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    if (tag != "?" && tag != "!" && !tag.empty())
+      fail(mark, fmt::format("tags such as '{}' have no meaning here", tag));
+    const bool quoted = tag == "!";
+    // The parser reports an empty or `~` value as a plain scalar in some places.
+    if (!quoted && (value.empty() || value == "~" || value == "null")) return OnNull(mark, anchor);
+    add(leaf(mark, Node::scalar(value, quoted)), anchor);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, Node::list(), anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, Node::map(), anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+private:
+  struct Open {
+    Node node;
+    YAML::anchor_t anchor = 0;
+    bool has_key = false;
+    std::string key;
+    Place key_place;
+  };
+
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
+    throw InputError(place(mark).text() + ": " + message);
+  }
+  Place place(const YAML::Mark& mark) const { return {source_, mark.line + 1, mark.column + 1}; }
+  Node leaf(const YAML::Mark& mark, Node n) {
+    count(1, mark);
+    n.place = place(mark);
+    return n;
+  }
+  static std::size_t size_of(const Node& n) {
+    std::size_t s = 1;
+    for (const Node& i : n.items) s += size_of(i);
+    return s;
+  }
+  void count(std::size_t more, const YAML::Mark& mark) {
+    n_nodes_ += more;
+    if (n_nodes_ > most_nodes) fail(mark, "the deck is too large once its aliases are expanded");
+  }
+  bool wants_key() const {
+    return !stack_.empty() && stack_.back().node.kind == Node::Kind::map && !stack_.back().has_key;
+  }
+
+  void open(const YAML::Mark& mark, const std::string& tag, Node n, YAML::anchor_t anchor) {
+    if (wants_key()) fail(mark, "a key must be a single word");
+    if (tag != "?" && !tag.empty()) fail(mark, fmt::format("tags such as '{}' have no meaning here", tag));
+    stack_.push_back({leaf(mark, std::move(n)), anchor, false, {}, {}});
+  }
+  void close() {
+    Open top = std::move(stack_.back());
+    stack_.pop_back();
+    add(std::move(top.node), top.anchor);
+  }
+  void add(Node n, YAML::anchor_t anchor) {
+    if (wants_key()) return take_key(n);
+    if (anchor != 0) anchors_[anchor] = n;
+    if (stack_.empty()) {
+      root_ = std::move(n);
+      return;
+    }
+    Open& top = stack_.back();
+    if (top.node.kind == Node::Kind::map) {
+      n.key = std::move(top.key);
+      n.key_place = top.key_place;
+      top.has_key = false;
+    }
+    top.node.items.push_back(std::move(n));
+  }
+  void take_key(const Node& n) {
+    Open& top = stack_.back();
+    const std::string where = n.place.text() + ": ";
+    if (n.kind != Node::Kind::scalar) throw InputError(where + "a key must be a single word");
+    if (n.text == "<<")
+      throw InputError(where + "merge keys ('<<') are not supported; use `base:` or repeat the values");
+    if (const Node* first = top.node.find(n.text))
+      throw InputError(
+          fmt::format("{}key '{}' is given twice, first in line {}", where, n.text, first->key_place.line));
+    top.key = n.text;
+    top.key_place = n.place;
+    top.has_key = true;
+  }
+
+  std::shared_ptr<const std::string> source_;
+  std::vector<Open> stack_;
+  std::map<YAML::anchor_t, Node> anchors_;
+  Node root_;
+  std::size_t n_nodes_ = 0;
+};
+
+}  // namespace
+
+Node parse_yaml(std::string_view text, const std::string& source) {
+  const auto name = std::make_shared<const std::string>(source);
+  std::istringstream in{std::string(text)};
+  try {
+    YAML::Parser parser(in);
+    Builder builder(name);
+    if (!parser.HandleNextDocument(builder)) return Node{};
+    Node root = builder.take();
+    Builder rest(name);
+    if (parser.HandleNextDocument(rest))
+      throw InputError(fmt::format("{}: there is a second document; a deck is one document", rest.take().place.text()));
+    return root;
+  } catch (const YAML::Exception& e) {
+    // A tab in the indentation is the usual reason for a complaint that names something else.
+    const int line = std::max(e.mark.line, 0);
+    std::string_view rest = text;
+    for (int i = 0; i < line && !rest.empty(); ++i) rest.remove_prefix(std::min(rest.size(), rest.find('\n') + 1));
+    const std::size_t indent = std::min(rest.find_first_not_of(" \t"), rest.size());
+    const std::size_t tab = rest.substr(0, indent).find('\t');
+    if (tab != std::string_view::npos)
+      throw InputError(fmt::format("{}:{}:{}: a tab in the indentation; use spaces", source, line + 1, tab + 1));
+    throw InputError(fmt::format("{}:{}:{}: {}", source, line + 1, std::max(e.mark.column, 0) + 1, e.msg));
+  }
+}
+
+}  // namespace whirl::deck

@@ -1,0 +1,114 @@
+#include "whirl/film/describe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace whirl::film {
+namespace {
+
+using deck::at_least;
+using deck::positive;
+using std::numbers::pi;
+
+// Smallest thickness of the lower lobe for a centred journal, h = c_p + (offset/2) cos(theta) + (c_p - c_b) sin(theta)
+// over the pad's arc about 270 deg; the upper lobe is its mirror image.
+double least_thickness(const Geometry& g) {
+  const double pad = g.clearance / (1 - g.preload);
+  const double a = g.offset / 2, b = pad - g.clearance;
+  const auto h = [&](double theta) { return pad + a * std::cos(theta) + b * std::sin(theta); };
+  const double lowest = std::atan2(-b, -a), from_middle = std::remainder(lowest - 1.5 * pi, 2 * pi);
+  double least = std::min(h(1.5 * pi - g.arc / 2), h(1.5 * pi + g.arc / 2));
+  if (std::abs(from_middle) < g.arc / 2) least = std::min(least, h(lowest));
+  return least;
+}
+
+}  // namespace
+
+std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore) {
+  static constexpr deck::Name<Geometry::Bore> table[] = {
+      {Geometry::Bore::partial_arc, "partial_arc", "one pad centred at 270 deg"},
+      {Geometry::Bore::lemon_bore, "lemon_bore",
+       "two pads centred at 90 and 270 deg, moved towards each other by the preload"}};
+  return table;
+}
+
+std::span<const deck::Name<Options::Kind>> names(Options::Kind) {
+  static constexpr deck::Name<Options::Kind> table[] = {
+      {Options::Kind::reynolds, "reynolds", "two-dimensional Reynolds equation, pressure condensed"},
+      {Options::Kind::linear, "linear", "constant stiffness and damping"}};
+  return table;
+}
+
+std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
+  static constexpr deck::Name<Options::Cavitation> table[] = {
+      {Options::Cavitation::half_sommerfeld, "half_sommerfeld", "negative pressure is cut off after the solution"},
+      {Options::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
+      {Options::Cavitation::none, "none", "negative pressure stays"}};
+  return table;
+}
+
+std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence) {
+  static constexpr deck::Name<Options::Turbulence> table[] = {
+      {Options::Turbulence::laminar, "laminar", "flow coefficients 12"},
+      {Options::Turbulence::constantinescu, "constantinescu",
+       "mixing length; coefficients grow with the local Reynolds number"}};
+  return table;
+}
+
+void describe(deck::Description<Geometry>& d) {
+  using enum Geometry::Bore;
+  d.add("type", &Geometry::type, "shape of the bore");
+  d.add("radius", &Geometry::radius, "m", positive, "radius of the journal").required();
+  d.add("length", &Geometry::length, "m", positive, "axial length of the pads").required();
+  d.add("clearance", &Geometry::clearance, "m", positive,
+        "radial clearance of the assembled bearing, the film thickness at the middle of a pad for a centred journal",
+        "004 table 2.2")
+      .required()
+      .continuable();
+  d.add("arc", &Geometry::arc, "rad", deck::Check{.min = 0, .max = 2 * pi, .min_open = true},
+        "angle that each pad covers, centred at 270 deg (and 90 deg)")
+      .required();
+  d.add("preload", &Geometry::preload, deck::Check{.min = 0, .max = 1, .max_open = true},
+        "1 - clearance / pad clearance", "004 table 2.2")
+      .continuable()
+      .only(&Geometry::type, {lemon_bore});
+  d.add("offset", &Geometry::offset, "m", deck::any,
+        "horizontal distance between the lobe centres, the lower to the right", "004 errata 18")
+      .continuable()
+      .only(&Geometry::type, {lemon_bore});
+  d.check([](const Geometry& g, const deck::Report& r) {
+    if (g.type == lemon_bore && g.arc > pi) r.fail("arc", "'arc' must be at most 180 deg where type is lemon_bore");
+    if (g.type == lemon_bore && least_thickness(g) <= 0)
+      r.fail("offset", "'offset' closes the film of the centred journal: it leaves no thickness at a pad's edge");
+  });
+}
+
+void describe(deck::Description<Options>& d) {
+  using enum Options::Kind;
+  d.add("type", &Options::kind, "model of the film");
+  d.add("cavitation", &Options::cavitation, "what happens where the pressure would be negative")
+      .only(&Options::kind, {reynolds});
+  d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15")
+      .only(&Options::kind, {reynolds});
+  d.add("cells", &Options::cells, at_least(4), "intervals around and along each pad").only(&Options::kind, {reynolds});
+  d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
+      .only(&Options::kind, {reynolds});
+  d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
+      .continuable()
+      .only(&Options::kind, {linear});
+  d.add("damping", &Options::damping, "N s/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
+      .continuable()
+      .only(&Options::kind, {linear});
+}
+
+void describe(deck::Description<Lubricant>& d) {
+  d.add("viscosity", &Lubricant::viscosity, "Pa s", positive, "dynamic viscosity at the temperature of the film")
+      .required()
+      .continuable();
+  d.add("density", &Lubricant::density, "kg/m^3", positive, "density, for the Reynolds number of a turbulent film")
+      .required()
+      .continuable();
+}
+
+}  // namespace whirl::film

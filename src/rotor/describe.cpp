@@ -1,0 +1,148 @@
+#include "whirl/rotor/describe.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace whirl::rotor {
+
+using deck::non_negative;
+using deck::positive;
+
+std::span<const deck::Name<Shear>> names(Shear) {
+  static constexpr deck::Name<Shear> table[] = {
+      {Shear::cowper_solid, "cowper_solid", "6 (1 + nu)/(7 + 6 nu), also for hollow sections"},
+      {Shear::cowper_hollow, "cowper_hollow", "Cowper (1966) for the hollow circle"},
+      {Shear::rigid, "rigid", "no shear deformation"}};
+  return table;
+}
+
+std::span<const deck::Name<Reduction::Type>> names(Reduction::Type) {
+  using enum Reduction::Type;
+  static constexpr deck::Name<Reduction::Type> table[] = {
+      {none, "none", "every node keeps its four freedoms"},
+      {guyan, "guyan", "static condensation onto the translations of the masters"},
+      {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"}};
+  return table;
+}
+
+void describe(deck::Description<Segment>& d) {
+  d.add("rotor", &Segment::rotor, "name of the rotor that the segment belongs to (HP, GEN, ...)");
+  d.add("part", &Segment::part, "name of the portion of the shaft");
+  d.add("length", &Segment::length, "m", positive, "length of the element").required();
+  d.add("outer_mass_diameter", &Segment::outer_mass_diameter, "m", positive, "outer diameter of the material",
+        "004 table 2.1")
+      .required();
+  d.add("inner_mass_diameter", &Segment::inner_mass_diameter, "m", non_negative, "bore of the material");
+  d.add("outer_stiffness_diameter", &Segment::outer_stiffness_diameter, "m", non_negative,
+        "outer diameter of the part that bends; 0: both stiffness diameters are the mass diameters", "004 table 2.1");
+  d.add("inner_stiffness_diameter", &Segment::inner_stiffness_diameter, "m", non_negative,
+        "bore of the part that bends");
+  d.add("added_mass", &Segment::added_mass, "kg", non_negative,
+        "blades, windings, rings: mass without stiffness, spread over the length");
+  d.add("added_mass_inner_diameter", &Segment::added_mass_inner_diameter, "m", non_negative,
+        "inner diameter of the annulus of the added mass");
+  d.add("added_mass_outer_diameter", &Segment::added_mass_outer_diameter, "m", non_negative,
+        "outer diameter of the annulus of the added mass");
+  d.add("temperature", &Segment::temperature, "K", positive, "temperature, for the modulus");
+  d.check([](const Segment& s, const deck::Report& r) {
+    auto fits = [&](double inner, double outer, const char* key, const char* other) {
+      if (inner >= outer) r.fail(key, fmt::format("'{}' must be smaller than '{}'", key, other));
+    };
+    fits(s.inner_mass_diameter, s.outer_mass_diameter, "inner_mass_diameter", "outer_mass_diameter");
+    if (s.outer_stiffness_diameter > 0)
+      fits(s.inner_stiffness_diameter, s.outer_stiffness_diameter, "inner_stiffness_diameter",
+           "outer_stiffness_diameter");
+    if (s.added_mass_inner_diameter > s.added_mass_outer_diameter)
+      r.fail("added_mass_inner_diameter", "'added_mass_inner_diameter' exceeds 'added_mass_outer_diameter'");
+  });
+}
+
+void describe(deck::Description<Disc>& d) {
+  d.add("node", &Disc::node, positive, "node that carries the disc").required();
+  d.add("mass", &Disc::mass, "kg", non_negative, "mass, beside that of the geometry").continuable();
+  d.add("polar_inertia", &Disc::polar_inertia, "kg m^2", non_negative, "moment of inertia about the shaft axis");
+  d.add("diametral_inertia", &Disc::diametral_inertia, "kg m^2", non_negative, "moment of inertia about a diameter");
+  d.add("outer_diameter", &Disc::outer_diameter, "m", non_negative, "outer diameter; 0: no geometry");
+  d.add("inner_diameter", &Disc::inner_diameter, "m", non_negative, "diameter of the bore");
+  d.add("thickness", &Disc::thickness, "m", non_negative, "axial thickness");
+  d.add("density", &Disc::density, "kg/m^3", non_negative, "density; 0: that of the shaft");
+  d.check([](const Disc& x, const deck::Report& r) {
+    if (x.outer_diameter > 0 && x.inner_diameter >= x.outer_diameter)
+      r.fail("inner_diameter", "'inner_diameter' must be smaller than 'outer_diameter'");
+    if (x.outer_diameter > 0 && x.thickness <= 0)
+      r.fail("thickness", "'thickness' must be positive for a disc with a diameter");
+    if (x.outer_diameter <= 0 && x.mass <= 0) r.fail("", "a disc needs a mass, or a diameter and a thickness");
+  });
+}
+
+void describe(deck::Description<Material>& d) {
+  using Point = std::pair<double, double>;
+  d.add("density", &Material::density, "kg/m^3", positive, "density of the shaft");
+  d.add("poisson", &Material::poisson, deck::Check{.min = 0, .max = 0.5, .max_open = true}, "Poisson's ratio");
+  d.table_or_scalar(
+       "modulus", &Material::modulus, "modulus",
+       [](deck::Description<Point>& row) {
+         row.add("temperature", &Point::first, "K", positive, "temperature of the point").required();
+         row.add("modulus", &Point::second, "Pa", positive, "Young's modulus there").required();
+       },
+       "Young's modulus, one value or linear between the points of a table over temperature")
+      .required();
+  d.add("shear_modulus", &Material::shear_modulus, "Pa", non_negative, "shear modulus; 0: E/(2 (1 + poisson))");
+  d.check([](const Material& m, const deck::Report& r) {
+    for (std::size_t i = 1; i < m.modulus.size(); ++i)
+      if (m.modulus[i].first <= m.modulus[i - 1].first)
+        r.fail(fmt::format("modulus.{}", i + 1), "temperatures of the modulus must ascend");
+  });
+}
+
+void describe(deck::Description<Reduction>& d) {
+  using enum Reduction::Type;
+  d.add("type", &Reduction::type, "which freedoms of the shaft are kept");
+  d.add("masters", &Reduction::masters, positive, "nodes whose translations are kept")
+      .required()
+      .only(&Reduction::type, {guyan, craig_bampton});
+  d.add("modes", &Reduction::modes, positive, "modes per plane of the shaft with its masters held")
+      .required()
+      .only(&Reduction::type, {craig_bampton});
+  d.check([](const Reduction& x, const deck::Report& r) {
+    if (x.type == none) return;
+    if (x.masters.size() < 2) r.fail("masters", "'masters' needs at least two nodes");
+    for (std::size_t i = 0; i < x.masters.size(); ++i)
+      if (std::find(x.masters.begin(), x.masters.begin() + static_cast<std::ptrdiff_t>(i), x.masters[i]) !=
+          x.masters.begin() + static_cast<std::ptrdiff_t>(i))
+        r.fail(fmt::format("masters.{}", i + 1), fmt::format("node {} is a master twice", x.masters[i]));
+  });
+}
+
+void describe(deck::Description<Options>& d) {
+  d.table("segments", &Options::segments, "beam elements along the shaft; node k is the left end of segment k")
+      .required();
+  d.add("discs", &Options::discs, "rigid discs at nodes");
+  d.add("material", &Options::material, "material of the shaft").required();
+  d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5");
+  d.add("stiffness_damping", &Options::stiffness_damping, "s", non_negative,
+        "damping per stiffness in the stationary frame, C = value K", "004 errata 8")
+      .continuable();
+  d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms");
+  d.check([](const Options& o, const deck::Report& r) {
+    const int n_nodes = static_cast<int>(o.segments.size()) + 1;
+    auto node = [&](int k, const std::string& path) {
+      if (k > n_nodes) r.fail(path, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", k, n_nodes));
+    };
+    for (std::size_t i = 0; i < o.discs.size(); ++i) node(o.discs[i].node, fmt::format("discs.{}.node", i + 1));
+    if (o.reduction.type != Reduction::Type::none)
+      for (std::size_t i = 0; i < o.reduction.masters.size(); ++i)
+        node(o.reduction.masters[i], fmt::format("reduction.masters.{}", i + 1));
+    const auto& table = o.material.modulus;
+    if (table.size() < 2) return;
+    for (std::size_t i = 0; i < o.segments.size(); ++i) {
+      const double t = o.segments[i].temperature;
+      if (t >= table.front().first && t <= table.back().first) continue;
+      return r.fail("material.modulus", fmt::format("the modulus is known from {} K to {} K, but segment {} is at {} K",
+                                                    table.front().first, table.back().first, i + 1, t));
+    }
+  });
+}
+
+}  // namespace whirl::rotor

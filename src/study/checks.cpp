@@ -1,0 +1,26 @@
+#include <fmt/core.h>
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+void check_unbalance(const std::vector<std::string>& names, const system::Machine& machine,
+                     const deck::Report& report) {
+  if (names.empty()) report.fail("unbalance", "'unbalance' is empty");
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!system::find_unbalance(machine, names[i]))
+      report.fail(fmt::format("unbalance.{}", i + 1),
+                  fmt::format("there is no unbalance '{}'{}", names[i],
+                              deck::did_you_mean(names[i], system::unbalance_names(machine))));
+}
+
+void check_nodes(const std::string& key, const std::vector<int>& nodes, const system::Machine& machine,
+                 const deck::Report& report) {
+  const int n_nodes = static_cast<int>(machine.rotor.segments.size()) + 1;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i] > n_nodes)
+      report.fail(fmt::format("{}.{}", key, i + 1),
+                  fmt::format("node {} does not exist: the shaft has nodes 1 to {}", nodes[i], n_nodes));
+}
+
+}  // namespace whirl::study

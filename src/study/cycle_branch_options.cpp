@@ -1,0 +1,54 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "whirl/study/cycle_branch.hpp"
+
+namespace whirl::study {
+
+std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points) {
+  using enum CycleBranchOptions::Points;
+  static constexpr deck::Name<CycleBranchOptions::Points> table[] = {
+      {radau, "radau", "Radau points: stiff modes are damped as they should"},
+      {gauss, "gauss", "Gauss points: one order higher, but stiff modes show spurious multipliers"}};
+  return table;
+}
+
+void describe(deck::Description<CycleBranchOptions>& d) {
+  using O = CycleBranchOptions;
+  d.add("name", &O::name, "name in the results; the kind if not given");
+  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once").required();
+  d.embed(&O::parameter);
+  d.add("start", &O::start, "*", deck::any, "value of the parameter to start at; that of range.from if not given");
+  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, where the parameter is another one");
+  d.add("intervals", &O::intervals, deck::at_least(4), "intervals of the time mesh");
+  d.add("degree", &O::degree, deck::in(1, 7), "degree of the polynomials in time");
+  d.add("points", &O::points, "collocation points");
+  d.add("adapt_mesh", &O::adapt_mesh, "move the time mesh to where the cycle changes fast");
+  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2), "relative tolerance of Newton's method");
+  d.add("multipliers", &O::multipliers, deck::positive, "Floquet multipliers to report, the largest");
+  d.add("period", &O::period, deck::positive, "revolutions per cycle");
+  d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
+  d.add("detect", &O::detect, "bifurcations to locate");
+  d.add("orbits", &O::orbits, deck::non_negative, "cycles whose time history is stored, spread over the branch");
+  d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
+  d.check([](const O& o, const deck::Report& r) {
+    for (std::size_t i = 0; i < o.detect.size(); ++i)
+      if (o.detect[i] == Event::fold || o.detect[i] == Event::hopf)
+        r.fail(fmt::format("detect.{}", i + 1), "cycles have cyclic_fold, flip, neimark_sacker and branch_point");
+  });
+}
+
+void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {
+  check_unbalance(options.unbalance, machine, report);
+  check_parameter(options.parameter, options.speed, machine, report);
+  if (!options.start) return;
+  const deck::Range& range = options.parameter.range;
+  if (!deck::same_kind(options.start->unit, range.unit))
+    report.fail("start", fmt::format("'start' has another unit than the range ({})", range.unit));
+  else if (options.start->value < std::min(range.from, range.to) ||
+           options.start->value > std::max(range.from, range.to))
+    report.fail("start", "'start' lies outside the range");
+}
+
+}  // namespace whirl::study

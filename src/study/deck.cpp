@@ -1,0 +1,44 @@
+#include "whirl/study/deck.hpp"
+
+#include <fmt/core.h>
+
+#include "whirl/deck/load.hpp"
+#include "whirl/deck/output.hpp"
+
+namespace whirl::study {
+
+void describe(deck::Description<Deck>& d) {
+  d.embed(&Deck::machine);
+  d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
+  d.check([](const Deck& deck, const deck::Report& r) {
+    for (std::size_t i = 0; i < deck.studies.size(); ++i) {
+      const Study& s = *deck.studies[i];
+      const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());
+      s.validate(deck.machine, r.below(path));
+      for (std::size_t j = 0; j < i; ++j)
+        if (deck.studies[j]->name() == s.name())
+          r.fail(path + ".name",
+                 fmt::format("study {} is called '{}' already: give each a name of its own", j + 1, s.name()));
+    }
+  });
+}
+
+Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides) {
+  const deck::Files files(comm);
+  const deck::Node root = deck::load(path, overrides, files);
+  deck::Problems problems;
+  auto d = deck::read<Deck>(root, files, problems);
+  try {
+    problems.raise();
+  } catch (core::InputError& e) {
+    e.mark_agreed();  // every rank read the same bytes
+    throw;
+  }
+  return d;
+}
+
+std::string resolved_text(const Deck& d) {
+  return deck::to_yaml(deck::write(d));
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,32 @@
+#include "whirl/study/alignment.hpp"
+#include "whirl/study/cycle_branch.hpp"
+#include "whirl/study/equilibrium_branch.hpp"
+#include "whirl/study/modes.hpp"
+#include "whirl/study/static.hpp"
+#include "whirl/study/unbalance_response.hpp"
+
+namespace whirl::study {
+namespace {
+
+template <class S>
+deck::Kind<Study> kind(std::string text) {
+  using Options = decltype(S::options);
+  return {std::string(S::key), std::move(text), &deck::structure_of<Options>(), [] { return std::make_unique<S>(); },
+          [](Study& s) -> void* { return &static_cast<S&>(s).options; }};
+}
+
+}  // namespace
+
+const std::vector<deck::Kind<Study>>& kinds() {
+  static const std::vector<deck::Kind<Study>> all{
+      kind<Static>("where the journals sit in their films at one speed, loads, coefficients, film fields"),
+      kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
+      kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
+      kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
+      kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
+      kind<CycleBranch>("forced limit cycles over a parameter with multipliers and bifurcations"),
+  };
+  return all;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,46 @@
+#include "whirl/study/modes.hpp"
+
+namespace whirl::study {
+
+std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
+  using enum ModesOptions::Supports;
+  static constexpr deck::Name<ModesOptions::Supports> table[] = {{films, "films", "linearised films and pedestals"},
+                                                                 {pinned, "pinned", "journals held, slopes free"},
+                                                                 {free, "free", "no bearings"}};
+  return table;
+}
+
+void describe(deck::Description<ModesOptions>& d) {
+  d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
+  d.add("supports", &ModesOptions::supports, "what holds the journals");
+  d.add("speed", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
+  d.add("points", &ModesOptions::points, deck::at_least(2), "speeds in the range, evenly spaced with both ends");
+  d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
+  d.add("count", &ModesOptions::count, deck::positive, "modes at each speed, those of lowest frequency");
+  d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
+        "whirl frequency up to which modes are reported");
+  d.check([](const ModesOptions& o, const deck::Report& r) {
+    if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'speed' or 'speeds', not both");
+    if (!o.range && o.speeds.empty()) r.fail("", "'speed' is missing (range of speeds), or a list 'speeds'");
+    if (o.supports != ModesOptions::Supports::films) return;
+    for (double s : o.all_speeds())
+      if (s <= 0)
+        return r.fail(o.range ? "speed" : "speeds", "a film carries no load at rest: speeds must be positive");
+  });
+}
+
+std::vector<double> ModesOptions::all_speeds() const {
+  std::vector<double> s;
+  for (const deck::Quantity& q : speeds) s.push_back(q.value);
+  if (range)
+    for (int i = 0; i < points; ++i) s.push_back(range->from + (range->to - range->from) * i / (points - 1));
+  return s;
+}
+
+std::string ModesOptions::unit() const {
+  return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
+}
+
+void Modes::validate(const system::Machine&, const deck::Report&) const {}
+
+}  // namespace whirl::study

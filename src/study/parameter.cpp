@@ -1,0 +1,97 @@
+#include "whirl/study/parameter.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace whirl::study {
+namespace {
+
+deck::Access access(system::Machine& machine, std::string_view path) {
+  const deck::Access a = deck::find_option(machine, path);
+  if (!a.continuable) throw core::InputError(fmt::format("studies may not vary '{}'", path));
+  return a;
+}
+
+}  // namespace
+
+std::span<const deck::Name<Event>> names(Event) {
+  static constexpr deck::Name<Event> table[] = {
+      {Event::fold, "fold", "equilibria turn back in the parameter"},
+      {Event::hopf, "hopf", "a pair of eigenvalues crosses the imaginary axis"},
+      {Event::branch_point, "branch_point", "two branches cross"},
+      {Event::cyclic_fold, "cyclic_fold", "a multiplier passes +1"},
+      {Event::flip, "flip", "a multiplier passes -1"},
+      {Event::neimark_sacker, "neimark_sacker", "a pair of multipliers leaves the unit circle"}};
+  return table;
+}
+
+void describe(deck::Description<Step>& d) {
+  d.add("initial", &Step::initial, "*", deck::positive, "length of the first step").required();
+  d.add("min", &Step::min, "*", deck::positive, "length below which the branch ends").required();
+  d.add("max", &Step::max, "*", deck::positive, "longest step").required();
+  d.check([](const Step& s, const deck::Report& r) {
+    if (s.min.value > s.initial.value) r.fail("min", "'min' is larger than 'initial'");
+    if (s.max.value < s.initial.value) r.fail("max", "'max' is smaller than 'initial'");
+  });
+}
+
+void describe(deck::Description<Parameter>& d) {
+  d.add("parameter", &Parameter::path, "speed, or the path of an option that studies may vary");
+  d.add("range", &Parameter::range, "*", deck::any,
+        "values to cover, from the first towards the second; results carry its unit")
+      .required();
+  d.add("step", &Parameter::step, "lengths of steps, in the unit of the range");
+}
+
+std::string parameter_unit(const system::Machine& machine, std::string_view path) {
+  if (path == "speed") return "rad/s";
+  system::Machine copy = machine;
+  return access(copy, path).unit;
+}
+
+system::Machine with_parameter(const system::Machine& machine, std::string_view path, double value) {
+  system::Machine copy = machine;
+  const deck::Access a = access(copy, path);
+  if (!a.check.holds(value))
+    throw core::DomainError(fmt::format("'{}' must be {}, not {}", path, a.check.text(), value));
+  *a.value = value;
+  return copy;
+}
+
+void check_parameter(const Parameter& p, const std::optional<deck::Quantity>& speed, const system::Machine& machine,
+                     const deck::Report& report) {
+  std::string si = "rad/s";
+  deck::Check check = deck::positive;
+  try {
+    si = parameter_unit(machine, p.path);
+    if (p.path != "speed") {
+      system::Machine copy = machine;
+      check = access(copy, p.path).check;
+    }
+  } catch (const core::InputError& e) {
+    return report.fail("parameter", e.what());
+  }
+  auto fits = [&](const std::string& path, const std::string& unit, double value, const deck::Check& c) {
+    try {
+      if (unit.empty() && si != "1")
+        throw core::InputError(fmt::format("{} needs a unit such as {}", p.path, si == "rad/s" ? "rpm" : si));
+      deck::check_kind(unit, si);
+      if (!c.holds(value)) throw core::InputError(fmt::format("'{}' must be {}", p.path, c.text()));
+    } catch (const core::InputError& e) {
+      report.fail(path, e.what());
+    }
+  };
+  fits("range.from", p.range.unit, p.range.from, check);
+  if (deck::same_kind(p.range.unit, si)) fits("range.to", p.range.unit, p.range.to, check);
+  if (p.step) {
+    fits("step.initial", p.step->initial.unit, p.step->initial.value, deck::positive);
+    fits("step.min", p.step->min.unit, p.step->min.value, deck::positive);
+    fits("step.max", p.step->max.unit, p.step->max.value, deck::positive);
+  }
+  if (p.path == "speed" && speed)
+    report.fail("speed", "'speed' is the parameter of this branch and has no fixed value");
+  if (p.path != "speed" && !speed) report.fail("", "'speed' is missing (shaft speed of the branch)");
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,22 @@
+#include "whirl/study/unbalance_response.hpp"
+
+namespace whirl::study {
+
+void describe(deck::Description<UnbalanceResponseOptions>& d) {
+  using O = UnbalanceResponseOptions;
+  d.add("name", &O::name, "name in the results; the kind if not given");
+  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once").required();
+  d.add("range", &O::range, "rad/s", deck::positive, "range of speeds; results carry its unit").required();
+  d.add("points", &O::points, deck::at_least(2), "speeds in the range, evenly spaced with both ends");
+  d.add("nodes", &O::nodes, deck::positive, "nodes to report; bearings and unbalance planes if empty");
+  d.add("operating_speed", &O::operating_speed, "rad/s", deck::positive,
+        "speed from which separation margins are counted");
+  d.add("refine", &O::refine, "add speeds at peaks until their height is settled");
+}
+
+void UnbalanceResponse::validate(const system::Machine& machine, const deck::Report& report) const {
+  check_unbalance(options.unbalance, machine, report);
+  check_nodes("nodes", options.nodes, machine, report);
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,162 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "whirl/film/describe.hpp"
+#include "whirl/rotor/describe.hpp"
+#include "whirl/system/options.hpp"
+
+namespace whirl::deck {
+namespace {
+
+// `G6.3`: 6.3 mm/s.
+class GradeCodec : public Codec {
+public:
+  void read(const Node& node, void* value, Reading& r) const override {
+    double g = 0;
+    const char* last = node.text.data() + node.text.size();
+    const bool lettered = node.kind == Node::Kind::scalar && node.text.size() > 1 && node.text[0] == 'G';
+    const auto [end, code] = std::from_chars(node.text.data() + (lettered ? 1 : 0), last, g);
+    if (!lettered || code != std::errc() || end != last || !(g > 0) || g > 1e4)
+      return r.problems.add(node.place, fmt::format("'grade' must be a balance grade such as G2.5, not {}", node.text));
+    static_cast<system::BalanceGrade*>(value)->velocity = number_to_si(g, "mm/s");
+  }
+  Node write(const void* value) const override {
+    const std::string text = write_quantity(static_cast<const system::BalanceGrade*>(value)->velocity, "mm/s");
+    return Node::scalar("G" + text.substr(0, text.find(' ')), true);
+  }
+  Node schema() const override {
+    Node n = Node::map();
+    n.set("type", Node::scalar("string", true));
+    n.set("pattern", Node::scalar("^G[0-9]+(\\.[0-9]+)?$", true));
+    return n;
+  }
+  std::string type() const override { return "balance grade such as G2.5 (mm/s)"; }
+  Access find(void* value, std::span<const std::string> path) const override {
+    if (!path.empty()) return {};
+    return {&static_cast<system::BalanceGrade*>(value)->velocity, "m/s", false, positive};
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Codec> CodecOf<system::BalanceGrade>::make(const Spec&) {
+  return std::make_shared<GradeCodec>();
+}
+
+}  // namespace whirl::deck
+
+namespace whirl::system {
+
+using deck::non_negative;
+using deck::positive;
+
+void describe(deck::Description<Pedestal>& d) {
+  d.add("mass", &Pedestal::mass, "kg", non_negative, "mass that moves in x and in y").required();
+  d.add("stiffness", &Pedestal::stiffness, "N/m", positive, "stiffness in x and in y").required().continuable();
+  d.add("damping", &Pedestal::damping, "N s/m", non_negative, "damping in x and in y").required().continuable();
+}
+
+void describe(deck::Description<Bearing>& d) {
+  d.add("node", &Bearing::node, positive, "node of the shaft that is the journal").required();
+  d.add("elevation", &Bearing::elevation, "m", deck::any, "height of the bearing centre, positive up").continuable();
+  d.add("geometry", &Bearing::geometry, "shape of the bore");
+  d.add("film", &Bearing::film, "how the film is modelled and discretised");
+  d.add("lubricant", &Bearing::lubricant, "name of a lubricant of the deck, or a lubricant written in place");
+  d.add("pedestal", &Bearing::pedestal, "what stands under the bearing; rigid if absent");
+  d.check([](const Bearing& b, const deck::Report& r) {
+    if (b.film.kind == film::Options::Kind::linear) return;
+    if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
+    const auto* name = std::get_if<std::string>(&b.lubricant);
+    if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
+  });
+}
+
+void describe(deck::Description<Plane>& d) {
+  d.add("node", &Plane::node, positive, "node of the plane").required();
+  d.add("fraction", &Plane::fraction, "1", positive, "part of the unbalance of the grade that sits in this plane");
+  d.add("amount", &Plane::amount, "kg m", positive, "mass times radius, where there is no grade").continuable();
+  d.add("phase", &Plane::phase, "rad", deck::any, "angle from +x at shaft angle zero, counter-clockwise");
+}
+
+void describe(deck::Description<Unbalance>& d) {
+  d.add("grade", &Unbalance::grade, "balance grade, e Omega at the service speed", "ISO 21940-11").continuable();
+  d.add("service_speed", &Unbalance::service_speed, "rad/s", positive, "speed for which the grade holds");
+  d.add("rotor", &Unbalance::rotor, "rotor to which the grade applies, by the name in its segments");
+  d.add("planes", &Unbalance::planes, "where the unbalance sits").required();
+  d.check([](const Unbalance& u, const deck::Report& r) {
+    if (u.planes.empty()) r.fail("planes", "'planes' is empty");
+    if (u.grade && !u.service_speed) r.fail("grade", "a grade needs 'service_speed'");
+    if (u.grade && u.rotor.empty()) r.fail("grade", "a grade needs 'rotor', the name of the rotor it applies to");
+    if (!u.grade && u.service_speed) r.fail("service_speed", "'service_speed' has no meaning without 'grade'");
+    for (std::size_t i = 0; i < u.planes.size(); ++i) {
+      const std::string path = fmt::format("planes.{}", i + 1);
+      if (u.grade && (!u.planes[i].fraction || u.planes[i].amount))
+        r.fail(path, "a plane of a grade has a 'fraction' and no 'amount'");
+      if (!u.grade && (!u.planes[i].amount || u.planes[i].fraction))
+        r.fail(path, "a plane without a grade has an 'amount' and no 'fraction'");
+    }
+  });
+}
+
+namespace {
+
+void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
+  std::vector<std::string> lubricants;
+  for (const auto& [name, l] : m.lubricants) lubricants.push_back(name);
+  const auto& reduction = m.rotor.reduction;
+  for (std::size_t i = 0; i < m.bearings.size(); ++i) {
+    const Bearing& b = m.bearings[i];
+    const std::string path = "bearings." + b.name;
+    if (b.node > n_nodes)
+      r.fail(path + ".node", fmt::format("node {} does not exist: the shaft has nodes 1 to {}", b.node, n_nodes));
+    for (std::size_t j = 0; j < i; ++j)
+      if (m.bearings[j].node == b.node)
+        r.fail(path + ".node", fmt::format("bearing {} stands at node {} already", m.bearings[j].name, b.node));
+    if (reduction.type != rotor::Reduction::Type::none &&
+        std::find(reduction.masters.begin(), reduction.masters.end(), b.node) == reduction.masters.end())
+      r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));
+    const auto* name = std::get_if<std::string>(&b.lubricant);
+    if (name && !name->empty() && !m.lubricants.contains(*name))
+      r.fail(path + ".lubricant",
+             fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean(*name, lubricants)));
+  }
+  if (m.bearings.size() < 2) r.fail("bearings", "a shaft needs at least two bearings");
+}
+
+void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
+  std::vector<std::string> rotors;
+  for (const rotor::Segment& s : m.rotor.segments)
+    if (!s.rotor.empty() && (rotors.empty() || rotors.back() != s.rotor)) rotors.push_back(s.rotor);
+  for (const Unbalance& u : m.unbalance) {
+    const std::string path = "unbalance." + u.name;
+    for (std::size_t i = 0; i < u.planes.size(); ++i)
+      if (u.planes[i].node > n_nodes)
+        r.fail(fmt::format("{}.planes.{}.node", path, i + 1),
+               fmt::format("node {} does not exist: the shaft has nodes 1 to {}", u.planes[i].node, n_nodes));
+    if (u.rotor.empty()) continue;
+    if (std::find(rotors.begin(), rotors.end(), u.rotor) == rotors.end())
+      r.fail(path + ".rotor", fmt::format("there is no rotor '{}'{}", u.rotor, deck::did_you_mean(u.rotor, rotors)));
+    else if (u.grade && !enclosing_bearings(m, u.rotor))
+      r.fail(path + ".rotor", fmt::format("the middle of rotor '{}' does not lie between two bearings", u.rotor));
+  }
+}
+
+}  // namespace
+
+void describe(deck::Description<Machine>& d) {
+  d.add("title", &Machine::title, "what the deck is about, for the report");
+  d.add("rotor", &Machine::rotor, "the shaft").required();
+  d.add("gravity", &Machine::gravity, "m/s^2", non_negative, "acceleration of gravity, along -y").continuable();
+  d.add("lubricants", &Machine::lubricants, "lubricants by name");
+  d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").required();
+  d.named("unbalance", &Machine::unbalance, &Unbalance::name, "unbalances by name, for studies to choose from");
+  d.check([](const Machine& m, const deck::Report& r) {
+    const int n_nodes = static_cast<int>(m.rotor.segments.size()) + 1;
+    check_bearings(m, n_nodes, r);
+    check_unbalance(m, n_nodes, r);
+  });
+}
+
+}  // namespace whirl::system

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <numeric>
+
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/system/options.hpp"
+
+namespace whirl::system {
+namespace {
+
+template <class T>
+std::optional<std::size_t> position(const std::vector<T>& all, std::string_view name) {
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].name == name) return i;
+  return {};
+}
+
+template <class T>
+std::vector<std::string> names_of(const std::vector<T>& all) {
+  std::vector<std::string> n;
+  for (const T& x : all) n.push_back(x.name);
+  return n;
+}
+
+}  // namespace
+
+std::optional<std::size_t> find_bearing(const Machine& m, std::string_view name) {
+  return position(m.bearings, name);
+}
+
+std::optional<std::size_t> find_unbalance(const Machine& m, std::string_view name) {
+  return position(m.unbalance, name);
+}
+
+std::vector<std::string> bearing_names(const Machine& m) {
+  return names_of(m.bearings);
+}
+
+std::vector<std::string> unbalance_names(const Machine& m) {
+  return names_of(m.unbalance);
+}
+
+std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, std::string_view rotor) {
+  const std::vector<double> z = rotor::node_positions(m.rotor);
+  double from = z.back(), to = z.front();
+  for (std::size_t i = 0; i < m.rotor.segments.size(); ++i) {
+    if (m.rotor.segments[i].rotor != rotor) continue;
+    from = std::min(from, z[i]);
+    to = std::max(to, z[i + 1]);
+  }
+  if (from >= to) return {};
+  std::vector<std::size_t> order(m.bearings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return m.bearings[a].node < m.bearings[b].node; });
+  auto position_of = [&](std::size_t bearing) { return z.at(static_cast<std::size_t>(m.bearings[bearing].node - 1)); };
+  const double middle = (from + to) / 2;
+  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+    if (m.bearings[order[k + 1]].node > static_cast<int>(z.size())) return {};
+    if (position_of(order[k]) < middle && middle <= position_of(order[k + 1])) return {{order[k], order[k + 1]}};
+  }
+  return {};
+}
+
+std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u) {
+  double whole = 0;
+  if (u.grade) {
+    const auto pair = enclosing_bearings(m, u.rotor);
+    core::require(pair.has_value(), "an unbalance whose rotor does not lie between two bearings was not refused");
+    whole = rotor::mass_between(m.rotor, m.bearings[(*pair)[0]].node, m.bearings[(*pair)[1]].node) * u.grade->velocity /
+            *u.service_speed;
+  }
+  std::vector<UnbalanceMass> masses;
+  for (const Plane& p : u.planes) masses.push_back({p.node, u.grade ? *p.fraction * whole : *p.amount, p.phase});
+  return masses;
+}
+
+Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
+  Train t;
+  t.rotor = m.rotor;
+  t.gravity = m.gravity;
+  for (const Bearing& b : m.bearings) {
+    Support s;
+    s.node = b.node;
+    s.elevation = b.elevation;
+    if (b.geometry) s.geometry = *b.geometry;
+    s.film = b.film;
+    if (const auto* own = std::get_if<film::Lubricant>(&b.lubricant))
+      s.lubricant = *own;
+    else if (const std::string& name = std::get<std::string>(b.lubricant); !name.empty())
+      s.lubricant = m.lubricants.at(name);
+    s.has_pedestal = b.pedestal.has_value();
+    if (b.pedestal) {
+      s.mass = b.pedestal->mass;
+      s.stiffness = b.pedestal->stiffness;
+      s.damping = b.pedestal->damping;
+    }
+    t.supports.push_back(s);
+  }
+  for (const std::string& name : unbalance) {
+    const auto i = find_unbalance(m, name);
+    if (!i)
+      throw core::InputError("there is no unbalance '" + name + "'" + deck::did_you_mean(name, unbalance_names(m)));
+    for (const UnbalanceMass& x : unbalance_masses(m, m.unbalance[*i])) t.unbalance.push_back(x);
+  }
+  return t;
+}
+
+}  // namespace whirl::system
