@@ -61,8 +61,9 @@ private:
   std::vector<std::unique_ptr<PadSolver>> solvers_;
 };
 
-// Side flow through both ends, h^3/(mu k_z) p_z with one-sided slopes; friction torque of the journal from the shear
-// mu U/h tau_c + (h/2) p_theta/R with tau_c = 1 + 0.0012 Re^0.94 in turbulence (Constantinescu's Couette factor).
+// Side flow through both ends, h^3/(mu k_z) p_z with one-sided slopes of second order; friction torque of the journal
+// from the shear mu U/h tau_c + (h/2) p_theta/R with tau_c = 1 + 0.0012 Re^0.94 in turbulence (Constantinescu's Couette
+// factor).
 Summary ReynoldsFilm::summary(const Motion& motion) {
   Summary result;
   result.min_thickness = std::numeric_limits<double>::infinity();
@@ -85,8 +86,9 @@ Summary ReynoldsFilm::summary(const Motion& motion) {
         const double Re = lubricant_.density * std::abs(U) * h / mu;
         const bool side = j == 0 || j == grid.n_z;
         if (side) {
-          const double inner = row[j == 0 ? 1 : grid.n_z - 1];
-          result.side_flow += share * h * h * h / (mu * film::evaluate(along, Re)) * inner / grid.dz;
+          const double first = row[j == 0 ? 1 : grid.n_z - 1], second = row[j == 0 ? 2 : grid.n_z - 2];
+          result.side_flow +=
+              share * h * h * h / (mu * film::evaluate(along, Re)) * (4.0 * first - second) / (2.0 * grid.dz);
         }
         const double area = share * grid.dz * (side ? 0.5 : 1.0);
         const double couette = laminar ? 1.0 : 1.0 + 0.0012 * std::pow(Re, 0.94);

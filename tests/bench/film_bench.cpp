@@ -1,0 +1,157 @@
+// Cost of one pad of 60 x 16 cells against one banded factorisation of the same pressure equation.
+// OPENBLAS_NUM_THREADS=1 bench_film; the counter `per_factorisation` is the ratio to dpbtrf measured in the same run.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "whirl/film/model.hpp"
+
+extern "C" {
+void dpbtrf_(const char* uplo, const int* n, const int* kd, double* ab, const int* ldab, int* info);
+void dgbtrf_(const int* m, const int* n, const int* kl, const int* ku, double* ab, const int* ldab, int* pivots,
+             int* info);
+}
+
+namespace {
+
+using namespace whirl::film;
+
+constexpr int kAround = 60, kAlong = 16, kSize = (kAround - 1) * (kAlong - 1), kBand = kAlong - 1;
+
+Geometry one_pad() {
+  return {Geometry::Bore::partial_arc, 0.2, 0.36, 0.0004, 160.0 * std::numbers::pi / 180.0, 0.5, 0.0};
+}
+
+// Half of the pad is cavitated: a rupture line crosses the cells.
+Motion loaded(bool tilted) {
+  Motion m;
+  m.position = {0.9 * 0.0004, -0.4 * 0.0004, tilted ? 1e-4 : 0.0, tilted ? -1e-4 : 0.0};
+  m.velocity = {0.05 * 0.0004 * 377.0, -0.08 * 0.0004 * 377.0, 0.0, 0.0};
+  m.speed = 377.0;
+  return m;
+}
+
+// The five-point operator of a film with h^3 varying by a factor of 30 around the pad, lower band storage.
+std::vector<double> pressure_matrix(int rows_above, int stride) {
+  std::vector<double> ab(static_cast<std::size_t>(stride) * kSize, 0.0);
+  const auto a = [](double i) { return std::pow(1.0 + 0.5 * std::cos(0.05 * i), 3); };
+  for (int i = 1; i < kAround; ++i) {
+    for (int j = 0; j < kBand; ++j) {
+      const int k = (i - 1) * kBand + j;
+      const auto set = [&](int row, int column, double value) {
+        if (row >= kSize || (rows_above == 0 && row < column)) return;
+        ab[static_cast<std::size_t>(column) * static_cast<std::size_t>(stride) +
+           static_cast<std::size_t>(rows_above + row - column)] = value;
+      };
+      set(k, k, a(i - 0.5) + a(i + 0.5) + 2.0 * a(i));
+      set(k + kBand, k, -a(i + 0.5));
+      if (j + 1 < kBand) set(k + 1, k, -a(i));
+      if (rows_above == 0) continue;
+      if (i > 1) set(k - kBand, k, -a(i - 0.5));
+      if (j > 0) set(k - 1, k, -a(i));
+    }
+  }
+  return ab;
+}
+
+void banded_cholesky(benchmark::State& state) {
+  const int stride = kBand + 1;
+  const std::vector<double> original = pressure_matrix(0, stride);
+  std::vector<double> ab;
+  int info = 0;
+  for (auto _ : state) {
+    ab = original;
+    dpbtrf_("L", &kSize, &kBand, ab.data(), &stride, &info);
+    benchmark::DoNotOptimize(ab.data());
+  }
+  if (info != 0) state.SkipWithError("not positive definite");
+}
+
+void banded_lu(benchmark::State& state) {
+  const int stride = 3 * kBand + 1;
+  const std::vector<double> original = pressure_matrix(2 * kBand, stride);
+  std::vector<double> ab;
+  std::vector<int> pivots(kSize);
+  int info = 0;
+  for (auto _ : state) {
+    ab = original;
+    dgbtrf_(&kSize, &kSize, &kBand, &kBand, ab.data(), &stride, pivots.data(), &info);
+    benchmark::DoNotOptimize(ab.data());
+  }
+  if (info != 0) state.SkipWithError("singular");
+}
+
+// Microseconds of one dpbtrf, best of several runs: the yardstick of the ratios below.
+double factorisation_time() {
+  static const double best = [] {
+    const int stride = kBand + 1;
+    const std::vector<double> original = pressure_matrix(0, stride);
+    double least = 1e9;
+    for (int run = 0; run < 50; ++run) {
+      constexpr int kTimes = 20;
+      std::vector<double> ab;
+      const auto start = std::chrono::steady_clock::now();
+      for (int k = 0; k < kTimes; ++k) {
+        int info = 0;
+        ab = original;
+        dpbtrf_("L", &kSize, &kBand, ab.data(), &stride, &info);
+        benchmark::DoNotOptimize(ab.data());
+      }
+      const std::chrono::duration<double> t = std::chrono::steady_clock::now() - start;
+      least = std::min(least, t.count() / kTimes);
+    }
+    return least;
+  }();
+  return best;
+}
+
+void evaluate(benchmark::State& state, Options options, Need need) {
+  options.cells = {kAround, kAlong};
+  auto model = make_model(one_pad(), options, {0.0067, 850.0});
+  Motion m = loaded(options.tilt);
+  Response r;
+  long count = 0;
+  const double start = m.position[0];
+  for (auto _ : state) {
+    m.position[0] = start * (1.0 + 1e-3 * static_cast<double>(++count % 16));  // a moving journal, so a moving rupture
+    model->evaluate(m, need, r);
+    benchmark::DoNotOptimize(r);
+  }
+  state.counters["per_factorisation"] = benchmark::Counter(factorisation_time() * static_cast<double>(count),
+                                                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+Options options(Options::Cavitation cavitation, bool tilt,
+                Options::Turbulence turbulence = Options::Turbulence::constantinescu) {
+  Options o;
+  o.cavitation = cavitation;
+  o.tilt = tilt;
+  o.turbulence = turbulence;
+  return o;
+}
+
+using C = Options::Cavitation;
+BENCHMARK(banded_cholesky)->Unit(benchmark::kMicrosecond);
+BENCHMARK(banded_lu)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, aligned_tangents, options(C::half_sommerfeld, false), Need::tangents)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, aligned_force, options(C::half_sommerfeld, false), Need::force)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, aligned_laminar_tangents, options(C::half_sommerfeld, false, Options::Turbulence::laminar),
+                  Need::tangents)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, aligned_uncavitated_tangents, options(C::none, false), Need::tangents)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, tilted_tangents, options(C::half_sommerfeld, true), Need::tangents)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, reynolds_warm_tangents, options(C::reynolds, false), Need::tangents)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(evaluate, reynolds_tilted_warm_tangents, options(C::reynolds, true), Need::tangents)
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
