@@ -27,3 +27,14 @@ target_link_libraries(PETSc::PETSc INTERFACE MPI::MPI_CXX)
 # Open MPI's C++ bindings are gone from the standard and drag in a second library.
 target_compile_definitions(PETSc::PETSc INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
 target_link_libraries(HDF5::HDF5 INTERFACE MPI::MPI_CXX)
+
+# PETSc, MUMPS and SuperLU_DIST call whatever libblas.so.3 is at run time. Debian's reference BLAS is several times slower.
+find_file(LIBBLAS_FILE libblas.so.3 PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE} NO_DEFAULT_PATH)
+if(LIBBLAS_FILE)
+  file(REAL_PATH ${LIBBLAS_FILE} blas_target)
+  if(NOT blas_target MATCHES "openblas")
+    message(WARNING "libblas.so.3 is ${blas_target}, not OpenBLAS: results are right, but dense algebra is slow. As root:\n"
+            "  update-alternatives --auto libblas.so.3-${CMAKE_LIBRARY_ARCHITECTURE}\n"
+            "  update-alternatives --auto liblapack.so.3-${CMAKE_LIBRARY_ARCHITECTURE}")
+  endif()
+endif()

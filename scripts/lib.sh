@@ -1,0 +1,50 @@
+# Shared by the scripts (source it): where things are, and an environment in which MPI and BLAS behave.
+set -euo pipefail
+whirl_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# Ranks are our parallelism; BLAS threads beside them only get in the way.
+export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
+if [ "$(id -u)" = 0 ]; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+
+say() { printf '%s\n' "$*" >&2; }
+die() {
+  say "$(basename "$0"): $*"
+  exit 1
+}
+
+# The first Python that can read results. Debian's packages belong to /usr/bin/python3, which need not be the first on PATH.
+find_python() {
+  local candidate
+  for candidate in ${WHIRL_PYTHON:-} /usr/bin/python3 python3; do
+    if "$candidate" -c 'import h5py, numpy, matplotlib' 2>/dev/null; then
+      printf '%s\n' "$candidate"
+      return
+    fi
+  done
+  die "no Python with h5py, numpy and matplotlib; run scripts/setup"
+}
+
+# Runs a command with its output in a file, shown only if the command fails.
+quietly() {
+  local log
+  log=$(mktemp)
+  if "$@" >"$log" 2>&1; then
+    rm -f "$log"
+  else
+    local code=$?
+    tail -n 60 "$log" >&2
+    rm -f "$log"
+    say "failed: $*"
+    return "$code"
+  fi
+}
+
+# Configures and builds the release preset in build/.
+build_release() {
+  cd "$whirl_root"
+  quietly cmake --preset release
+  NINJA_STATUS='[%f/%t %es] ' cmake --build --preset release >&2
+  cd - >/dev/null
+}

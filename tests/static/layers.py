@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""Checks that every room includes only the rooms that cmake/rooms.json allows it.
+
+Looks at each `#include "whirl/ROOM/..."` and `#include "ROOM/..."` in include/ and src/, and that the table has no cycle.
+"""
+import json
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
+allowed = json.loads((root / "cmake/rooms.json").read_text())
+include = re.compile(r'^\s*#\s*include\s*["<](?:whirl/)?([a-z_]+)/([^">]+)[">]')
+errors = []
+
+
+def check_cycles():
+    done, path = set(), []
+
+    def visit(room):
+        if room in path:
+            errors.append(f"cmake/rooms.json: cycle {' -> '.join(path[path.index(room):] + [room])}")
+            return
+        if room in done:
+            return
+        path.append(room)
+        for other in allowed.get(room, []):
+            if other not in allowed:
+                errors.append(f"cmake/rooms.json: {room} may include {other}, which is no room")
+            visit(other)
+        path.pop()
+        done.add(room)
+
+    for room in allowed:
+        visit(room)
+
+
+def check_file(path, room):
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = include.match(line)
+        if not match:
+            continue
+        other = match.group(1)
+        if other not in allowed or other == room:
+            if '"whirl/' in line and other not in allowed:
+                errors.append(f"{path.relative_to(root)}:{number}: {other} is no room of cmake/rooms.json")
+            continue
+        if other not in allowed[room]:
+            errors.append(f"{path.relative_to(root)}:{number}: room {room} may not include {other}")
+        elif '"whirl/' not in line:
+            errors.append(f"{path.relative_to(root)}:{number}: a private header of {other}")
+
+
+check_cycles()
+files = 0
+for folder in ("include/whirl", "src"):
+    for path in sorted((root / folder).rglob("*")):
+        if path.suffix not in (".hpp", ".cpp", ".h"):
+            continue
+        files += 1
+        room = path.relative_to(root / folder).parts[0]
+        if room not in allowed:
+            errors.append(f"{path.relative_to(root)}: {room} is no room of cmake/rooms.json")
+        else:
+            check_file(path, room)
+
+print("\n".join(errors) or f"{files} files keep to the table")
+sys.exit(1 if errors or not files else 0)
