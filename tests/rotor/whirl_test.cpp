@@ -31,9 +31,11 @@ rotor::Options friswell_shaft() {
   return o;
 }
 
+// To one unit of the last printed digit.
 template <std::size_t N>
 void expect_magnitudes(const std::vector<test::Whirl>& found, const std::array<double, N>& wanted) {
-  for (std::size_t i = 0; i < N; ++i) EXPECT_NEAR(std::abs(found[i].frequency) / wanted[i], 1, 1.2e-4) << i;
+  for (std::size_t i = 0; i < N; ++i)
+    EXPECT_NEAR(std::abs(found[i].frequency), wanted[i], wanted[i] > 1000 ? 0.1 : 0.01) << i;
 }
 
 // omega of mode n of the pinned Timoshenko beam: E I b^4 - m w^2 - (j + E I m/S) b^2 w^2 + (j m/S) w^4 = 0 with b = n
@@ -55,8 +57,6 @@ TEST(Friswell, Example591) {
   expect_magnitudes(spinning, ref::friswell_591_4000_rpm);
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(spinning[i].frequency > 0, i % 2 == 1) << "backward first, then forward";
-  const auto rest = test::whirl_modes(o, bearings, 0);
-  EXPECT_NEAR(std::abs(rest[4].frequency), 716.78, 0.05);
 }
 
 TEST(Friswell, Example599Overhung) {

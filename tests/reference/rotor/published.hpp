@@ -7,8 +7,9 @@ namespace whirl::reference::rotors {
 
 // Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines (2010), examples 5.9.1 and 5.9.9, as reproduced in the
 // public validation of ROSS (petrobras/ross): shaft 1.5 m x 50 mm, E = 211 GPa, G = 81.2 GPa, 7810 kg/m^3, six
-// Timoshenko elements, discs 70 mm thick. Magnitudes in rad/s, printed to the last figure given.
-inline constexpr std::array friswell_591_rest{86.66, 86.66, 274.31, 274.31};  // then 716.78 twice, axial modes left out
+// Timoshenko elements, discs 70 mm thick. Magnitudes in rad/s; 650.41 of example 5.9.1 is left out:
+// it is the same at 0 and 4000 rpm and no bending mode (axial).
+inline constexpr std::array friswell_591_rest{86.66, 86.66, 274.31, 274.31, 716.78};
 inline constexpr std::array friswell_591_4000_rpm{85.39, 87.80, 251.78, 294.71, 600.18};
 inline constexpr std::array friswell_599_rest{90.14, 90.14, 630.73, 630.73, 830.43, 830.43};
 inline constexpr std::array friswell_599_4000_rpm{76.19, 103.91, 565.99, 634.23, 647.75, 1174.2};
