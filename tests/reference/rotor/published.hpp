@@ -19,7 +19,6 @@ inline constexpr std::array friswell_599_4000_rpm{76.19, 103.91, 565.99, 634.23,
 // reference computation for the trial rotor of a dissertation on aerostatic bearings (see its errata), signed: negative
 // backward. Relative uncertainty 3.3e-7 at most.
 inline constexpr std::array trial_rayleigh_rest{2023.5578, 7221.29493, 13428.4025, 19998.9819, 29554.1516};
-inline constexpr std::array trial_timoshenko_rest{2019.33229, 7175.38683, 13315.8901, 19796.3751, 29014.2775};
 inline constexpr std::array trial_rayleigh_spinning{-2010.29189, 2036.88383,  -7186.89211, 7255.66881, -13373.3502,
                                                     13483.7329,  -19869.7752, 20129.3856,  -29286.397, 29824.1055};
 inline constexpr std::array trial_timoshenko_spinning{-2006.17578, 2032.5465,   -7141.81672, 7208.91935,  -13262.7436,
