@@ -29,7 +29,10 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
                                     : request.directory;
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
   prepare_directory(comm, directory, study::resolved_text(deck), earlier);
-  const core::Exit exit = study::run(comm, deck, {directory, request.progress, request.resume});
+  study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
+  if (request.progress)
+    options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
+  const core::Exit exit = study::run(comm, deck, options);
   text = fmt::format("results in {}\n", directory);
   return exit;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
@@ -143,11 +144,9 @@ void Summary::write(const std::filesystem::path& path) const {
   replace_file(path, to_json());
 }
 
-Summary Summary::read(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw core::Error("cannot read " + path.string());
+Summary Summary::from_json(const std::string& text) {
   try {
-    const Json j = Json::parse(in);
+    const Json j = Json::parse(text);
     Summary s;
     s.title = j.at("title");
     s.version = j.at("version");
@@ -156,6 +155,16 @@ Summary Summary::read(const std::filesystem::path& path) {
     for (const Json& one : j.at("studies")) s.studies.push_back(study(one));
     return s;
   } catch (const Json::exception& e) {
+    throw core::Error(std::string("not a summary of a run: ") + e.what());
+  }
+}
+
+Summary Summary::read(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw core::Error("cannot read " + path.string());
+  try {
+    return from_json({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()});
+  } catch (const core::Error& e) {
     throw core::Error("cannot read " + path.string() + ": " + e.what());
   }
 }

@@ -1,9 +1,315 @@
 #include "whirl/study/cycle_branch.hpp"
 
-namespace whirl::study {
+#include <fmt/core.h>
+#include <fmt/ranges.h>
 
-void CycleBranch::run(Context&) {
-  throw core::Error("study 'cycle_branch' is not part of this build");
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common.hpp"
+#include "cycle_record.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/start.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+double distance_of_multiplier(std::complex<double> mu) { return std::abs(mu) - 1; }
+
+Event event_of(solve::Event e) {
+  switch (e) {
+    case solve::Event::fold:
+      return Event::fold;
+    case solve::Event::hopf:
+      return Event::hopf;
+    case solve::Event::cyclic_fold:
+      return Event::cyclic_fold;
+    case solve::Event::flip:
+      return Event::flip;
+    case solve::Event::neimark_sacker:
+      return Event::neimark_sacker;
+    default:
+      return Event::branch_point;
+  }
 }
+
+// One branch of forced cycles: the solver's problem, what is recorded of it, and how to restart it.
+class Branch {
+ public:
+  Branch(Context& context, const CycleBranchOptions& options);
+  void run();
+
+ private:
+  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
+  [[nodiscard]] solve::CycleOptions cycle_options() const;
+  [[nodiscard]] core::Vector start(solve::CycleProblem& problem) const;
+  [[nodiscard]] solve::Stability stability() const;
+  void on_point(const solve::BranchPoint& point, Vec u);
+  void on_event(const solve::LocatedEvent& found, Vec u);
+  void report_between(const solve::Cycle& a, const solve::Cycle& b);
+  [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh, bool half_film) const;
+  void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
+  [[nodiscard]] std::optional<solve::Restart> restore();
+
+  Context& context_;
+  const CycleBranchOptions& options_;
+  std::string unit_;
+  double scale_;  // SI value of one unit of the range
+  solve::NewtonOptions newton_;
+  solve::ContinuationOptions continuation_;
+  std::unique_ptr<system::RotorSystem> system_;
+  std::unique_ptr<solve::CycleProblem> problem_;
+  CycleRecord record_;
+  std::optional<solve::Cycle> last_;
+  double last_saved_ = -1e9;
+};
+
+Branch::Branch(Context& context, const CycleBranchOptions& options)
+    : context_(context),
+      options_(options),
+      unit_(options.parameter.range.unit),
+      scale_(deck::number_to_si(1, unit_)),
+      record_(names_of_bearings(context.machine), unit_, options.multipliers) {
+  const auto& range = options.parameter.range;
+  const double width = std::abs(range.to - range.from) / scale_;
+  continuation_.from = (options.start ? options.start->value : range.from) / scale_;
+  continuation_.to = range.to / scale_;
+  continuation_.initial_step = options.parameter.step ? options.parameter.step->initial.value / scale_ : width / 200;
+  continuation_.min_step = options.parameter.step ? options.parameter.step->min.value / scale_ : width / 1e6;
+  continuation_.max_step = options.parameter.step ? options.parameter.step->max.value / scale_ : width / 30;
+  continuation_.max_points = options.max_points;
+  continuation_.adapt_every = options.adapt_mesh ? 5 : 0;
+  continuation_.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
+  newton_.tolerance = options.tolerance;
+  continuation_.newton = newton_;
+  system_ = make_system(false);
+}
+
+std::unique_ptr<system::RotorSystem> Branch::make_system(bool half_film) const {
+  const double value = options_.start ? options_.start->value : options_.parameter.range.from;
+  const auto train_at = [this, half_film](const system::Machine& machine) {
+    system::Train t = system::train_of(machine, options_.unbalance);
+    return half_film ? with_half_film_mesh(std::move(t)) : t;
+  };
+  if (options_.parameter.path == "speed") return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(context_.machine), value);
+  system::Varying varying;
+  varying.train = [this, train_at](double p) { return train_at(with_parameter(context_.machine, options_.parameter.path, p)); };
+  varying.value = value;
+  varying.magnitude = std::max(std::abs(options_.parameter.range.from), std::abs(options_.parameter.range.to));
+  return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), options_.speed->value);
+}
+
+solve::CycleOptions Branch::cycle_options() const {
+  solve::CycleOptions o;
+  o.degree = options_.degree;
+  o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
+  o.turns = options_.period;
+  o.parameter_scale = scale_;
+  // A change of the root mean square state by half a clearance counts as one longest step.
+  o.state_weight = std::pow(continuation_.max_step / 0.5, 2);
+  o.mesh_tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
+  return o;
+}
+
+// The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
+core::Vector Branch::start(solve::CycleProblem& problem) const {
+  core::Vector x = system::static_guess(*system_);
+  Walker walker(*system_);
+  std::vector<double> whole;
+  const double parameter = system_->parameter();
+  if (system_->parameter_is_speed()) {
+    whole = system_->gather(walker.at(parameter));
+  } else {
+    solve::NewtonOptions newton;
+    newton.max_iterations = 40;
+    const auto result = solve::find_equilibrium(*system_, x.get(), newton);
+    if (!result.converged) throw core::NotConverged("no equilibrium to start from: " + result.reason);
+    whole = system_->gather(x.get());
+  }
+  solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), parameter};
+  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size()).replicate(1, guess.intervals() * problem.scheme().degree);
+  return problem.scatter(guess);
+}
+
+solve::Stability Branch::stability() const { return solve::make_stability(spectral::eigenvalues(problem_->monodromy()), distance_of_multiplier); }
+
+void Branch::on_point(const solve::BranchPoint& point, Vec u) {
+  const solve::Cycle cycle = problem_->gather(u);
+  record_.append(point, cycle, problem_->scheme(), *system_, scale_);
+  if (last_) report_between(*last_, cycle);
+  last_ = cycle;
+  const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
+  context_.results.progress(fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
+                                        context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_, point.step,
+                                        point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
+}
+
+// Cycles asked for at given parameters, solved there and not interpolated.
+void Branch::report_between(const solve::Cycle& a, const solve::Cycle& b) {
+  for (const auto& wanted : options_.at) {
+    const double p = wanted.value;
+    if ((p - a.parameter) * (p - b.parameter) > 0 || p == a.parameter) continue;
+    const std::string key = number_text(p, unit_);
+    if (record_.reported(key)) continue;
+    const double w = b.parameter == a.parameter ? 1 : (p - a.parameter) / (b.parameter - a.parameter);
+    solve::Cycle guess = b;
+    guess.x = (1 - w) * a.on(problem_->scheme(), b.mesh).x + w * b.x;
+    guess.parameter = p;
+    core::Vector u = problem_->scatter(guess), row = core::duplicate(u.get());
+    solve::parameter_row(*problem_, row.get());
+    const auto result = solve::newton(*problem_, u.get(), row.get(), p / scale_, newton_);
+    if (!result.converged) continue;
+    problem_->linearise(u.get(), row.get());
+    record_.report(key, problem_->gather(u.get()), problem_->scheme(), *system_, stability(), context_.results.summary());
+  }
+}
+
+// How far the bifurcation moves when the discretisation changes: one corrected cycle at the same parameter, and the distance from the border there
+// over its slope along the branch. Folds have no such slope; there the branch itself is moved and its parameter read off.
+double Branch::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh, bool half_film) const {
+  const auto other = half_film ? make_system(true) : nullptr;
+  system::RotorSystem& system = other ? *other : *system_;
+  solve::CycleProblem problem(context_.comm, system, cycle_options(), doubled_mesh ? solve::doubled(cycle.mesh) : cycle.mesh);
+  core::Vector u = problem.scatter(cycle), row = core::duplicate(u.get());
+  const bool fold = found.event == solve::Event::cyclic_fold;
+  double offset = found.parameter;
+  if (fold) {
+    core::Vector tangent = core::duplicate(u.get()), rhs = core::duplicate(u.get());
+    check(VecCopy(u.get(), tangent.get()));
+    solve::set_last_entry(context_.comm, tangent.get(), 0);
+    solve::weighted_row(problem, tangent.get(), row.get());
+    problem.linearise(u.get(), row.get());
+    check(VecSet(rhs.get(), 0.0));
+    solve::set_last_entry(context_.comm, rhs.get(), 1);
+    (void)solve::solve_linear(problem, rhs.get(), tangent.get(), "tangent_");
+    solve::weighted_row(problem, tangent.get(), row.get());
+    check(VecScale(row.get(), 1 / std::sqrt(solve::inner(problem, tangent.get(), tangent.get()))));
+    check(VecDot(row.get(), u.get(), &offset));
+  } else {
+    solve::parameter_row(problem, row.get());
+  }
+  const auto result = solve::newton(problem, u.get(), row.get(), offset, newton_);
+  if (!result.converged) return std::numeric_limits<double>::quiet_NaN();
+  if (fold) return std::abs(solve::last_entry(context_.comm, u.get()) - found.parameter);
+  problem.linearise(u.get(), row.get());
+  double nearest = std::numeric_limits<double>::infinity(), distance = 0;
+  for (const auto& mu : spectral::eigenvalues(problem.monodromy())) {
+    const double apart = std::min(std::abs(mu - found.critical), std::abs(mu - std::conj(found.critical)));
+    if (apart < nearest) {
+      nearest = apart;
+      distance = distance_of_multiplier(mu);
+    }
+  }
+  return found.sensitivity != 0 ? std::abs(distance / found.sensitivity) : std::numeric_limits<double>::quiet_NaN();
+}
+
+void Branch::on_event(const solve::LocatedEvent& found, Vec u) {
+  const auto& wanted = options_.detect;
+  if (std::find(wanted.begin(), wanted.end(), event_of(found.event)) == wanted.end() && found.event != solve::Event::branch_point) return;
+  const solve::Cycle cycle = problem_->gather(u);
+  io::Bifurcation b;
+  b.type = type_of(found.event);
+  b.parameter = options_.parameter.path;
+  b.value = found.parameter;
+  b.unit = unit_;
+  b.period_s = cycle.period;
+  b.more["angle_rad"] = std::abs(std::arg(found.critical));
+  b.more["multiplier_modulus"] = std::abs(found.critical);
+  if (found.event == solve::Event::neimark_sacker) {
+    const double frequency = std::abs(std::arg(found.critical)) / cycle.period;
+    b.more["whirl_frequency_rad_s"] = frequency;
+  }
+  if (found.located) {
+    const double time = shift(found, cycle, true, false), film = shift(found, cycle, false, true);
+    // Twice the change to the doubled time mesh; the film is of second order, so a third of the change to the halved mesh is the error of this one.
+    b.more["uncertainty_time_mesh"] = 2 * time;
+    b.more["uncertainty_film_mesh"] = film / 3;
+    b.uncertainty = 2 * time + film / 3 + found.bracket;
+  } else {
+    b.more["bracket"] = found.bracket;
+    b.criticality = "not located: lies within the bracket";
+    b.uncertainty = found.bracket;
+  }
+  context_.results.summary().bifurcations.push_back(b);
+}
+
+void Branch::save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step) {
+  if (!options_.checkpoint) return;
+  // At least once a second of work, so that a kill costs no more than that; the decision is rank 0's, for all.
+  int due = context_.results.seconds() - last_saved_ >= 1;
+  MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
+  if (!due) return;
+  const solve::Cycle cycle = problem_->gather(u), direction = problem_->gather(tangent);
+  io::Group state;
+  record_.write(state.child("record"), true);
+  write_cycle(state.child("cycle"), cycle);
+  write_cycle(state.child("tangent"), direction);
+  write_point(state.child("point"), point);
+  state.set("next_step", next_step);
+  state.set("seconds", context_.results.seconds());
+  write_summary(state.child("summary"), context_.results.summary());
+  context_.results.save_checkpoint(state);
+  last_saved_ = context_.results.seconds();
+}
+
+std::optional<solve::Restart> Branch::restore() {
+  if (!context_.resume || !context_.results.has_checkpoint()) return std::nullopt;
+  const io::Group state = context_.results.load_checkpoint();
+  record_.read(state.group("record"));
+  const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
+  problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), cycle.mesh);
+  read_summary(state.group("summary"), context_.results.summary());
+  context_.results.add_earlier_seconds(state.real("seconds"));
+  solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"), read_point(state.group("point"))};
+  restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);
+  last_ = cycle;
+  return restart;
+}
+
+void Branch::run() {
+  std::optional<solve::Restart> restart = restore();
+  core::Vector u;
+  if (!restart) {
+    problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), solve::uniform_mesh(options_.intervals));
+    u = start(*problem_);
+  }
+  solve::BranchCallbacks callbacks;
+  callbacks.cycles = true;
+  callbacks.stability = [this](Vec) { return stability(); };
+  callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
+  callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
+  callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
+    save(p, v, t, step);
+    return true;
+  };
+  const solve::BranchEnd end = solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
+
+  auto& results = context_.results;
+  auto& group = results.group();
+  record_.write(group, false);
+  record_.write_orbits(group.child("orbits"), options_.orbits);
+  put_bearings(group, context_.machine);
+  put_bifurcations(group, results.summary().bifurcations);
+  group.set("parameter", options_.parameter.path);
+  group.set("parameter_unit", unit_);
+  group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
+  group.set("period_turns", options_.period);
+  results.summary().points = end.points;
+  results.finish(end.completed ? "completed" : end.reason, end.points > 0);
+}
+
+}  // namespace
+
+void CycleBranch::run(Context& context) { Branch(context, options).run(); }
 
 }  // namespace whirl::study

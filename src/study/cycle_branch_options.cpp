@@ -24,8 +24,10 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("intervals", &O::intervals, deck::at_least(4), "intervals of the time mesh");
   d.add("degree", &O::degree, deck::in(1, 7), "degree of the polynomials in time");
   d.add("points", &O::points, "collocation points");
-  d.add("adapt_mesh", &O::adapt_mesh, "move the time mesh to where the cycle changes fast");
-  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2), "relative tolerance of Newton's method");
+  d.add("adapt_mesh", &O::adapt_mesh, "split and merge intervals of the time mesh as the cycle changes along the branch");
+  d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive, "estimated error per interval above which it is split, relative to the orbit");
+  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2), "root mean square of the scaled residual at which Newton's method stops");
+  d.add("at", &O::at, "*", deck::any, "parameter values inside the range at which the cycle is solved and reported as at.VALUE.*");
   d.add("multipliers", &O::multipliers, deck::positive, "Floquet multipliers to report, the largest");
   d.add("period", &O::period, deck::positive, "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
@@ -42,8 +44,11 @@ void describe(deck::Description<CycleBranchOptions>& d) {
 void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {
   check_unbalance(options.unbalance, machine, report);
   check_parameter(options.parameter, options.speed, machine, report);
-  if (!options.start) return;
   const deck::Range& range = options.parameter.range;
+  for (std::size_t i = 0; i < options.at.size(); ++i)
+    if (!deck::same_kind(options.at[i].unit, range.unit))
+      report.fail(fmt::format("at.{}", i + 1), fmt::format("'at' has another unit than the range ({})", range.unit));
+  if (!options.start) return;
   if (!deck::same_kind(options.start->unit, range.unit))
     report.fail("start", fmt::format("'start' has another unit than the range ({})", range.unit));
   else if (options.start->value < std::min(range.from, range.to) ||

@@ -1,9 +1,149 @@
 #include "whirl/study/equilibrium_branch.hpp"
 
-namespace whirl::study {
+#include <fmt/core.h>
 
-void EquilibriumBranch::run(Context&) {
-  throw core::Error("study 'equilibrium_branch' is not part of this build");
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/start.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+
+std::unique_ptr<system::RotorSystem> make_system(const Context& context, const EquilibriumBranchOptions& o, bool half_film) {
+  const auto train_at = [half_film](const system::Machine& machine) {
+    system::Train t = system::train_of(machine);
+    return half_film ? with_half_film_mesh(std::move(t)) : t;
+  };
+  if (o.parameter.path == "speed") return std::make_unique<system::RotorSystem>(context.comm, train_at(context.machine), o.parameter.range.from);
+  system::Varying varying;
+  varying.train = [&context, &o, train_at](double p) { return train_at(with_parameter(context.machine, o.parameter.path, p)); };
+  varying.value = o.parameter.range.from;
+  varying.magnitude = std::max(std::abs(o.parameter.range.from), std::abs(o.parameter.range.to));
+  return std::make_unique<system::RotorSystem>(context.comm, std::move(varying), o.speed->value);
+}
+
+}  // namespace
+
+void EquilibriumBranch::run(Context& context) {
+  const auto& range = options.parameter.range;
+  const std::string unit = range.unit;
+  const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
+  solve::ContinuationOptions continuation;
+  continuation.from = range.from / scale;
+  continuation.to = range.to / scale;
+  const auto& step = options.parameter.step;
+  continuation.initial_step = step ? step->initial.value / scale : width / 100;
+  continuation.min_step = step ? step->min.value / scale : width / 1e6;
+  continuation.max_step = step ? step->max.value / scale : width / 25;
+  continuation.max_points = options.max_points;
+  continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
+  continuation.newton.max_iterations = 20;
+
+  const auto system = make_system(context, options, false);
+  // A change of the root mean square state by half a clearance counts as one longest step.
+  solve::EquilibriumProblem problem(*system, scale, std::pow(continuation.max_step / 0.5, 2));
+  core::Vector u = problem.make_unknown(), x = core::make_vector(context.comm, system->local_size(), PETSC_DETERMINE);
+  if (system->parameter_is_speed()) {
+    Walker walker(*system);
+    check(VecCopy(walker.at(range.from), x.get()));
+  } else {
+    x = system::static_guess(*system);
+  }
+  problem.from_state(x.get(), range.from, u.get());
+
+  const auto names = names_of_bearings(context.machine);
+  io::Table table({{"parameter", unit, "parameter of the branch"},
+                   {"stable", "1", "1 if no eigenvalue has a positive real part"},
+                   {"unstable_count", "1", "eigenvalues with positive real part"},
+                   {"step", unit, "arclength from the previous point"},
+                   {"leading_real", "1/s", "real part of the least stable eigenvalue"},
+                   {"leading_imag", "rad/s", "its imaginary part"},
+                   {"x", "m", "journal relative to the bearing centre", {names.size()}},
+                   {"y", "m", "journal relative to the bearing centre", {names.size()}}});
+  auto& results = context.results;
+  solve::BranchCallbacks callbacks;
+  callbacks.stability = [&](Vec v) {
+    problem.to_state(v, x.get());
+    return equilibrium_stability(*system, x.get());
+  };
+  callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
+    problem.to_state(v, x.get());
+    std::vector<double> px, py;
+    for (const auto& j : system->journals(system->gather(x.get()).data())) {
+      px.push_back(j.position[0]);
+      py.push_back(j.position[1]);
+    }
+    const auto& s = point.stability;
+    const std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
+    table.append({{point.parameter}, {s.unstable() == 0 ? 1.0 : 0.0}, {static_cast<double>(s.unstable())}, {point.step}, {leading.real()},
+                  {std::abs(leading.imag())}, px, py});
+    results.progress(fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
+                                 results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
+                                 point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
+    const Event kind = found.event == solve::Event::hopf ? Event::hopf : found.event == solve::Event::fold ? Event::fold : Event::branch_point;
+    if (kind != Event::branch_point && std::find(options.detect.begin(), options.detect.end(), kind) == options.detect.end()) return;
+    io::Bifurcation b;
+    b.type = type_of(found.event);
+    b.parameter = options.parameter.path;
+    b.value = found.parameter;
+    b.unit = unit;
+    b.uncertainty = found.bracket;
+    const double omega = std::abs(found.critical.imag());
+    if (found.event == solve::Event::hopf) {
+      b.period_s = 2 * std::numbers::pi / omega;
+      b.more["whirl_frequency_rad_s"] = omega;
+      b.more["whirl_frequency_rpm"] = omega * 30 / std::numbers::pi;
+    }
+    // The same equilibrium on the halved film mesh: how far the border of stability moves, a third of which is the error of this mesh.
+    if (found.located && found.sensitivity != 0) {
+      const auto coarse = make_system(context, options, true);
+      coarse->set_parameter(found.parameter * scale);
+      core::Vector xc = core::duplicate(x.get());
+      problem.to_state(v, xc.get());
+      if (solve::find_equilibrium(*coarse, xc.get(), continuation.newton).converged) {
+        const auto s = equilibrium_stability(*coarse, xc.get());
+        double nearest = std::numeric_limits<double>::infinity(), distance = 0;
+        for (std::size_t k = 0; k < s.values.size(); ++k) {
+          const double apart = std::abs(std::abs(s.values[k].imag()) - omega) + std::abs(s.values[k].real());
+          if (apart < nearest) {
+            nearest = apart;
+            distance = s.distance[k];
+          }
+        }
+        b.more["uncertainty_film_mesh"] = std::abs(distance / found.sensitivity) / 3;
+        b.uncertainty += b.more["uncertainty_film_mesh"];
+      }
+    }
+    results.summary().bifurcations.push_back(b);
+  };
+  const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
+
+  auto& group = results.group();
+  table.write(group.child("branch"));
+  put_bearings(group, context.machine);
+  put_bifurcations(group, results.summary().bifurcations);
+  group.set("parameter", options.parameter.path);
+  group.set("parameter_unit", unit);
+  int k = 0;
+  for (const auto& b : results.summary().bifurcations)
+    if (b.type == io::BifurcationType::hopf && k++ == 0) {
+      results.summary().set("threshold", b.value * scale, deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path));
+      results.summary().set("whirl_frequency", b.more.at("whirl_frequency_rad_s"), "rad/s");
+    }
+  results.summary().points = end.points;
+  results.finish(end.completed ? "completed" : end.reason, end.points > 0);
 }
 
 }  // namespace whirl::study

@@ -1,9 +1,216 @@
 #include "whirl/study/modes.hpp"
 
-namespace whirl::study {
+#include <fmt/core.h>
 
-void Modes::run(Context&) {
-  throw core::Error("study 'modes' is not part of this build");
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/rotor/frequencies.hpp"
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+// A mode with its shape along the shaft.
+struct ShaftMode {
+  Complex lambda;
+  std::vector<Complex> x, y;  // per node
+  int id = -1;                // the same for the same mode at other speeds
+
+  [[nodiscard]] std::vector<Complex> both() const {
+    std::vector<Complex> all = x;
+    all.insert(all.end(), y.begin(), y.end());
+    return all;
+  }
+};
+
+std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency) {
+  spectral::EigenOptions options;
+  options.count = 2 * count + 40;
+  std::vector<ShaftMode> out;
+  for (const auto& mode : spectral::modes(system, equilibrium, options)) {
+    if (mode.lambda.imag() <= 0 || mode.lambda.imag() > max_frequency) continue;
+    if (static_cast<int>(out.size()) == count) break;
+    std::vector<double> part[2];
+    for (int k = 0; k < 2; ++k) {
+      std::vector<double> state(mode.shape.size());
+      for (std::size_t i = 0; i < state.size(); ++i) state[i] = k == 0 ? mode.shape[i].real() : mode.shape[i].imag();
+      part[k] = system.shaft(state.data(), 0, false);
+    }
+    ShaftMode m;
+    m.lambda = mode.lambda;
+    Complex largest = 0;
+    for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
+      m.x.emplace_back(part[0][i], part[1][i]);
+      m.y.emplace_back(part[0][i + 1], part[1][i + 1]);
+      for (const Complex& v : {m.x.back(), m.y.back()})
+        if (std::abs(v) > std::abs(largest)) largest = v;
+    }
+    if (largest != 0.0)
+      for (auto* side : {&m.x, &m.y})
+        for (Complex& v : *side) v /= largest;
+    out.push_back(std::move(m));
+  }
+  return out;
+}
+
+// Gives the modes of one speed the identities of those of the speed before: the best pairs of like shape and near eigenvalue first.
+void follow(const std::vector<ShaftMode>& before, std::vector<ShaftMode>& now, int& next_id) {
+  struct Pair {
+    double score;
+    std::size_t a, b;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t a = 0; a < before.size(); ++a)
+    for (std::size_t b = 0; b < now.size(); ++b) {
+      const double apart = std::abs(before[a].lambda - now[b].lambda) / std::max(std::abs(before[a].lambda), 1.0);
+      if (apart < 0.5) pairs.push_back({spectral::mac(before[a].both(), now[b].both()) - 2 * apart, a, b});
+    }
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.score > q.score; });
+  std::vector<bool> taken(before.size(), false);
+  for (const Pair& p : pairs)
+    if (!taken[p.a] && now[p.b].id < 0 && p.score > 0) {
+      taken[p.a] = true;
+      now[p.b].id = before[p.a].id;
+    }
+  for (ShaftMode& m : now)
+    if (m.id < 0) m.id = next_id++;
+}
+
+// Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
+void rigid_modes(Context& context, const ModesOptions& options) {
+  rotor::Options shaft = context.machine.rotor;
+  shaft.reduction = {};
+  std::vector<int> pinned;
+  if (options.supports == ModesOptions::Supports::pinned)
+    for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
+  const auto frequencies = rotor::natural_frequencies(context.comm, shaft, pinned, options.count);
+  auto& summary = context.results.summary();
+  for (std::size_t k = 0; k < frequencies.size(); ++k) {
+    summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
+    summary.modes.push_back({0, 0, frequencies[k], 0, "planar"});
+  }
+  context.results.group().child("spectrum").put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
+  summary.points = 1;
+  context.results.finish("completed", true);
+}
+
+}  // namespace
+
+void Modes::run(Context& context) {
+  if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
+  const std::vector<double> speeds = options.all_speeds();
+  const std::string unit = options.unit();
+  const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
+  system::RotorSystem system(context.comm, system::train_of(context.machine), speeds.front());
+  Walker walker(system);
+  auto& results = context.results;
+  auto& summary = results.summary();
+  auto& group = results.group();
+
+  std::vector<double> speed_column, frequency, real, decrement, factor;
+  std::vector<std::int64_t> id_column;
+  std::vector<std::string> sense_column;
+  std::vector<ShaftMode> before;
+  int next_id = 1, ready = 0;
+  double last_speed = 0;
+  struct Critical {
+    double speed;
+    int id;
+  };
+  std::vector<Critical> criticals;
+  for (const double speed : speeds) {
+    auto modes = shaft_modes(system, walker.at(speed), options.count, limit);
+    follow(before, modes, next_id);
+    for (const ShaftMode& m : modes) {
+      const auto sense = spectral::name_of(spectral::sense_of_whirl(m.x, m.y));
+      speed_column.push_back(speed);
+      id_column.push_back(m.id);
+      frequency.push_back(m.lambda.imag());
+      real.push_back(m.lambda.real());
+      decrement.push_back(spectral::log_decrement(m.lambda));
+      factor.push_back(spectral::stability_factor(m.lambda));
+      sense_column.emplace_back(sense);
+      summary.modes.push_back({deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense});
+    }
+    // Damped frequency meets the speed between two speeds: where the chords cross, refined by solving there.
+    for (const ShaftMode& m : modes)
+      for (const ShaftMode& b : before) {
+        if (m.id != b.id) continue;
+        double s0 = last_speed, s1 = speed, f0 = b.lambda.imag() - s0, f1 = m.lambda.imag() - s1;
+        if (f0 * f1 >= 0) continue;
+        ShaftMode guide = m;
+        for (int k = 0; k < 6 && std::abs(s1 - s0) > 1e-6 * s1; ++k) {
+          const double s = s1 - f1 * (s1 - s0) / (f1 - f0);
+          const auto there = shaft_modes(system, walker.at(s), options.count, limit);
+          const auto best = std::max_element(there.begin(), there.end(), [&](const ShaftMode& p, const ShaftMode& q) {
+            return spectral::mac(guide.both(), p.both()) < spectral::mac(guide.both(), q.both());
+          });
+          if (best == there.end()) break;
+          guide = *best;
+          const double f = guide.lambda.imag() - s;
+          if (f * f1 < 0) s0 = s1, f0 = f1;
+          s1 = s;
+          f1 = f;
+          if (std::abs(f) < 1e-7 * s) break;
+        }
+        criticals.push_back({s1, m.id});
+      }
+    before = std::move(modes);
+    last_speed = speed;
+    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, ++ready, speeds.size(), deck::from_si(speed, unit), unit,
+                                 results.seconds()));
+  }
+
+  auto& spectrum = group.child("spectrum");
+  spectrum.put("speed", speed_column, "rad/s", "shaft speed");
+  spectrum.put("mode", id_column, "mode followed by its shape");
+  spectrum.put("frequency", frequency, "rad/s", "damped frequency, imaginary part of the eigenvalue");
+  spectrum.put("damping_real", real, "1/s", "real part of the eigenvalue");
+  spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
+  spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
+  spectrum.put("whirl", sense_column, "sense of whirl of the shaft's nodes");
+  group.set("speed_unit", unit);
+
+  std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
+  std::vector<double> critical_speed;
+  std::vector<std::int64_t> critical_mode;
+  for (std::size_t k = 0; k < criticals.size(); ++k) {
+    summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit);
+    critical_speed.push_back(criticals[k].speed);
+    critical_mode.push_back(criticals[k].id);
+  }
+  group.child("critical").put("speed", critical_speed, "rad/s", "speed equal to the damped frequency");
+  group.child("critical").put("mode", critical_mode, "mode followed by its shape");
+
+  // Shapes at the last speed.
+  auto& shapes = group.child("shapes");
+  const auto z = rotor::node_positions(system.train().rotor);
+  std::vector<double> flat[4], at_frequency;
+  for (const ShaftMode& m : before) {
+    at_frequency.push_back(m.lambda.imag());
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      flat[0].push_back(m.x[k].real());
+      flat[1].push_back(m.x[k].imag());
+      flat[2].push_back(m.y[k].real());
+      flat[3].push_back(m.y[k].imag());
+    }
+  }
+  const char* const names[] = {"x_real", "x_imag", "y_real", "y_imag"};
+  for (std::size_t k = 0; k < 4; ++k) shapes.put(names[k], {before.size(), z.size()}, flat[k], "1", "shape [mode][node], largest displacement one");
+  shapes.put("speed", std::vector<double>{last_speed}, "rad/s", "speed of the shapes");
+  shapes.put("z", z, "m", "axial position of the nodes");
+  shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
+  summary.points = static_cast<long>(speeds.size());
+  results.finish("completed", true);
 }
 
 }  // namespace whirl::study

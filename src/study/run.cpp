@@ -1,13 +1,27 @@
+#include <memory>
+
 #include "results.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/study/deck.hpp"
 
 namespace whirl::study {
 
 core::Exit run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
-  Results results;
-  Context context{comm, deck.machine, options.directory, results, options.progress, options.resume};
-  for (const auto& s : deck.studies) s->run(context);
-  return core::Exit::success;
+  Results results(comm, options.directory, deck.machine.title, options.version, options.say, options.resume);
+  Context context{comm, deck.machine, options.directory, results, options.resume};
+  for (const auto& study : deck.studies) {
+    if (options.resume && results.finished(study->name())) continue;
+    results.begin(study->name(), std::string(study->kind()));
+    try {
+      study->run(context);
+    } catch (const core::NotConverged& e) {
+      // An answer that could not be had is a result with a reason; other studies go on.
+      results.finish(e.what(), false);
+    } catch (const core::DomainError& e) {
+      results.finish(e.what(), false);
+    }
+  }
+  return results.anything_missing() ? core::Exit::not_delivered : core::Exit::success;
 }
 
 }  // namespace whirl::study

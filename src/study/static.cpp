@@ -1,9 +1,136 @@
 #include "whirl/study/static.hpp"
 
-namespace whirl::study {
+#include <fmt/core.h>
 
-void Static::run(Context&) {
-  throw core::Error("study 'static' is not part of this build");
+#include "common.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/io/xdmf.hpp"
+#include "whirl/rotor/shaft.hpp"
+
+namespace whirl::study {
+namespace {
+
+film::Motion motion_of(const system::JournalState& j, double speed) {
+  film::Motion m;
+  for (std::size_t d = 0; d < 2; ++d) {
+    m.position[d] = j.position[d];
+    m.velocity[d] = j.velocity[d];
+  }
+  m.speed = speed;
+  return m;
+}
+
+// Pressure and thickness of every pad, and where ParaView finds them.
+void put_films(Context& context, system::RotorSystem& system, const std::vector<system::JournalState>& journals, const std::vector<double>& z) {
+  auto& group = context.results.group();
+  const auto names = names_of_bearings(context.machine);
+  std::vector<io::StructuredGrid> grids;
+  for (int b = 0; b < system.n_bearings(); ++b) {
+    const auto k = static_cast<std::size_t>(b);
+    const auto& support = system.train().supports[k];
+    std::vector<film::Field> fields;
+    core::agree(context.comm, [&] { fields = system.film(b).fields(motion_of(journals[k], system.speed())); });
+    for (const film::Field& f : fields) {
+      auto& pad = group.child("films").child(io::safe_name(names[k])).child(fmt::format("pad{}", f.pad + 1));
+      pad.put(f.name, f.shape, f.values, f.unit, f.name + " at the nodes of the film mesh");
+    }
+    if (fields.empty()) continue;
+    io::FilmPlace place;
+    place.radius = support.geometry.radius;
+    place.centre_y = support.elevation;
+    place.centre_z = z[static_cast<std::size_t>(support.node - 1)];
+    auto& pads = group.child("films").child(io::safe_name(names[k]));
+    const auto groups = pads.groups();
+    for (const auto& entry : groups) {
+      const std::string path = context.results.group_path() + "/films/" + io::safe_name(names[k]) + "/" + entry.first;
+      for (auto& g : io::film_grids(pads.child(entry.first), path, names[k] + " " + entry.first, place)) grids.push_back(std::move(g));
+    }
+  }
+  core::agree(context.comm, [&] {
+    int rank = 0;
+    MPI_Comm_rank(context.comm, &rank);
+    if (rank == 0 && !grids.empty())
+      io::write_xdmf(context.results.directory() / (io::safe_name(context.results.summary().name) + ".xdmf"), "results.h5", grids);
+  });
+}
+
+}  // namespace
+
+void Static::run(Context& context) {
+  system::RotorSystem system(context.comm, system::train_of(context.machine), options.speed.value);
+  Walker walker(system);
+  const std::vector<double> x = system.gather(walker.at(options.speed.value));
+  const auto journals = system.journals(x.data());
+  const auto films = system.film_responses(journals, film::Need::tangents);
+  const auto names = names_of_bearings(context.machine);
+  auto& summary = context.results.summary();
+  auto& group = context.results.group();
+
+  const auto& rotor = system.train().rotor;
+  summary.set("mass.total", rotor::total_mass(rotor), "kg");
+  for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
+    const auto &a = context.machine.bearings[i], &b = context.machine.bearings[i + 1];
+    if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
+  }
+  summary.set("length.total", rotor::node_positions(rotor).back(), "m");
+  std::vector<double> px, py, load;
+  double total_loss = 0;
+  const char* const axis[] = {"x", "y"};
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    const auto& support = system.train().supports[b];
+    const std::string head = "bearing." + names[b] + ".";
+    summary.set("load." + names[b], films[b].force[1], "N");
+    summary.set(head + "force.x", films[b].force[0], "N");
+    summary.set(head + "force.y", films[b].force[1], "N");
+    for (std::size_t d = 0; d < 2; ++d) summary.set(head + axis[d], journals[b].position[d], "m");
+    if (support.geometry.clearance > 0) {
+      for (std::size_t d = 0; d < 2; ++d) summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
+      film::Summary report;
+      core::agree(context.comm, [&] { report = system.film(static_cast<int>(b)).summary(motion_of(journals[b], system.speed())); });
+      summary.set(head + "min_thickness", report.min_thickness, "m");
+      summary.set(head + "min_thickness_ratio", report.min_thickness / support.geometry.clearance, "1");
+      summary.set(head + "max_pressure", report.max_pressure, "Pa");
+      summary.set(head + "side_flow", report.side_flow, "m^3/s");
+      summary.set(head + "power_loss", report.power_loss, "W");
+      total_loss += report.power_loss;
+    }
+    for (std::size_t d = 0; d < 2; ++d)
+      for (std::size_t e = 0; e < 2; ++e) {
+        summary.set(head + "K." + axis[d] + axis[e], -films[b].d_position[d][e], "N/m");
+        summary.set(head + "C." + axis[d] + axis[e], -films[b].d_velocity[d][e], "N s/m");
+      }
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
+      if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");
+    }
+    px.push_back(journals[b].position[0]);
+    py.push_back(journals[b].position[1]);
+    load.push_back(films[b].force[1]);
+  }
+  summary.set("power_loss", total_loss, "W");
+
+  const std::vector<double> shaft = system.shaft(x.data(), 0, true), z = rotor::node_positions(rotor);
+  std::vector<double> sx, sy;
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    sx.push_back(shaft[4 * k]);
+    sy.push_back(shaft[4 * k + 1]);
+  }
+  auto& nodes = group.child("nodes");
+  nodes.put("z", z, "m", "axial position of the shaft's nodes");
+  nodes.put("x", sx, "m", "horizontal position of the shaft");
+  nodes.put("y", sy, "m", "vertical position of the shaft, positive up (sag line)");
+  put_bearings(group, context.machine);
+  auto& bearings = group.child("bearings");
+  bearings.put("x", px, "m", "journal relative to the bearing centre");
+  bearings.put("y", py, "m", "journal relative to the bearing centre");
+  bearings.put("load", load, "N", "journal on bearing, positive down");
+  std::vector<double> bz;
+  for (const auto& s : system.train().supports) bz.push_back(z[static_cast<std::size_t>(s.node - 1)]);
+  bearings.put("z", bz, "m", "axial position");
+  group.set("speed", options.speed.value);
+  if (options.fields) put_films(context, system, journals, z);
+  summary.points = 1;
+  context.results.finish("completed", true);
 }
 
 }  // namespace whirl::study

@@ -1,9 +1,225 @@
 #include "whirl/study/unbalance_response.hpp"
 
-namespace whirl::study {
+#include <fmt/core.h>
+#include <fmt/ranges.h>
 
-void UnbalanceResponse::run(Context&) {
-  throw core::Error("study 'unbalance_response' is not part of this build");
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "common.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/solve/frequency_response.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+// x = Re(z exp(i angle)) of one place.
+struct Motion {
+  Complex x, y;
+
+  // z = x + i y is the sum of a forward circle |f| and a backward circle |g|.
+  [[nodiscard]] double forward() const { return std::abs(x + Complex(0, 1) * y) / 2; }
+  [[nodiscard]] double backward() const { return std::abs(x - Complex(0, 1) * y) / 2; }
+  [[nodiscard]] double semi_major() const { return forward() + backward(); }
+  [[nodiscard]] double semi_minor() const { return forward() - backward(); }  // negative: backward orbit
+};
+
+struct Response {
+  double speed = 0;
+  std::vector<Motion> nodes, bearings;
+};
+
+class Machine {
+ public:
+  Machine(Context& context, const UnbalanceResponseOptions& options, std::vector<int> nodes)
+      : system_(context.comm, system::train_of(context.machine, options.unbalance), options.range.from),
+        walker_(system_),
+        solver_(system_),
+        nodes_(std::move(nodes)) {}
+
+  Response at(double speed) {
+    Vec x = walker_.at(speed);
+    PetscInt begin = 0, end = 0;
+    core::check(VecGetOwnershipRange(x, &begin, &end));
+    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum rows.
+    std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
+    for (PetscInt row = begin; row < end; row += 2) {
+      const auto q = static_cast<std::size_t>(row / 2), at = static_cast<std::size_t>(2 * (row - begin));
+      right[at] = speed * speed * system_.unbalance_cosine()[q];
+      right[at + 1] = -speed * speed * system_.unbalance_sine()[q];
+    }
+    solver_.solve(x, speed, right, amplitude);
+    std::vector<double> state[2], shaft[2];
+    for (std::size_t part = 0; part < 2; ++part) {
+      core::Vector v = core::duplicate(x);
+      {
+        const core::WriteArray a(v.get());
+        for (PetscInt i = 0; i < a.size(); ++i) a[i] = amplitude[static_cast<std::size_t>(2 * i) + part];
+      }
+      state[part] = system_.gather(v.get());
+      shaft[part] = system_.shaft(state[part].data(), 0, false);
+    }
+    Response r;
+    r.speed = speed;
+    for (const int node : nodes_) {
+      const auto k = static_cast<std::size_t>(4 * (node - 1));
+      r.nodes.push_back({{shaft[0][k], shaft[1][k]}, {shaft[0][k + 1], shaft[1][k + 1]}});
+    }
+    for (int b = 0; b < system_.n_bearings(); ++b) {
+      Complex z[2];
+      for (int d = 0; d < 2; ++d) {
+        const PetscInt j = 2 * system_.journal(b, d), p = 2 * system_.pedestal(b, d);
+        const auto value = [&](PetscInt i) { return Complex(state[0][static_cast<std::size_t>(i)], state[1][static_cast<std::size_t>(i)]); };
+        z[d] = value(j) - (p >= 0 ? value(p) : 0.0);
+      }
+      r.bearings.push_back({z[0], z[1]});
+    }
+    return r;
+  }
+
+ private:
+  system::RotorSystem system_;
+  Walker walker_;
+  solve::FrequencyResponse solver_;
+  std::vector<int> nodes_;
+};
+
+struct Peak {
+  int node = 0;
+  double speed = 0, amplitude = 0, amplification = 0;
+};
+
+// Width at 0.707 of the height on the sampled curve, for the amplification factor N/(N2 - N1) (API 684).
+double amplification(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
+  const auto value = [&](std::size_t k) { return curve[k].nodes[node].semi_major(); };
+  const double level = value(top) / std::sqrt(2.0);
+  const auto crossing = [&](std::size_t inside, std::size_t outside) {
+    const double w = (value(inside) - level) / (value(inside) - value(outside));
+    return curve[inside].speed + w * (curve[outside].speed - curve[inside].speed);
+  };
+  std::size_t left = top, right = top;
+  while (left > 0 && value(left) > level) --left;
+  while (right + 1 < curve.size() && value(right) > level) ++right;
+  if (value(left) > level || value(right) > level) return std::numeric_limits<double>::quiet_NaN();
+  return curve[top].speed / (crossing(right - 1, right) - crossing(left + 1, left));
+}
+
+void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place, const std::string& text) {
+  const io::Shape shape{curve.size(), (curve.front().*place).size()};
+  std::map<std::string, std::vector<double>> column;
+  for (const Response& r : curve)
+    for (const Motion& m : r.*place) {
+      column["x_amplitude"].push_back(std::abs(m.x));
+      column["x_phase"].push_back(std::arg(m.x));
+      column["y_amplitude"].push_back(std::abs(m.y));
+      column["y_phase"].push_back(std::arg(m.y));
+      column["semi_major"].push_back(m.semi_major());
+      column["semi_minor"].push_back(m.semi_minor());
+    }
+  for (auto& [name, values] : column) {
+    const bool phase = name.ends_with("phase");
+    g.put(name, shape, std::move(values), phase ? "rad" : "m", text + (phase ? ", phase ahead of the shaft angle" : ", 0-peak"));
+  }
+}
+
+}  // namespace
+
+void UnbalanceResponse::run(Context& context) {
+  std::set<int> wanted(options.nodes.begin(), options.nodes.end());
+  std::vector<int> nodes = options.nodes;
+  if (nodes.empty()) {
+    for (const auto& b : context.machine.bearings) wanted.insert(b.node);
+    for (const auto& name : options.unbalance)
+      for (const auto& plane : context.machine.unbalance[*system::find_unbalance(context.machine, name)].planes) wanted.insert(plane.node);
+    nodes.assign(wanted.begin(), wanted.end());
+  }
+  const std::string unit = options.range.unit;
+  Machine machine(context, options, nodes);
+  auto& results = context.results;
+  auto& summary = results.summary();
+  std::vector<Response> curve;
+  for (int k = 0; k < options.points; ++k) {
+    const double speed = options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1);
+    curve.push_back(machine.at(speed));
+    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, k + 1, options.points, deck::from_si(speed, unit), unit, results.seconds()));
+  }
+
+  // Speeds added around the peaks of each node until the parabola through three neighbours settles the speed to 1e-5.
+  const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
+  std::sort(curve.begin(), curve.end(), by_speed);
+  const auto tops = [&](std::size_t node) {
+    std::vector<std::size_t> found;
+    for (std::size_t k = 1; k + 1 < curve.size(); ++k) {
+      const double a = curve[k - 1].nodes[node].semi_major(), b = curve[k].nodes[node].semi_major(), c = curve[k + 1].nodes[node].semi_major();
+      if (b > a && b >= c) found.push_back(k);
+    }
+    return found;
+  };
+  for (std::size_t node = 0; node < nodes.size() && options.refine; ++node)
+    for (int pass = 0; pass < 8; ++pass) {
+      std::vector<double> speeds;
+      for (const std::size_t k : tops(node)) {
+        const double s0 = curve[k - 1].speed, s1 = curve[k].speed, s2 = curve[k + 1].speed;
+        const double f0 = curve[k - 1].nodes[node].semi_major(), f1 = curve[k].nodes[node].semi_major(), f2 = curve[k + 1].nodes[node].semi_major();
+        const double u = (s1 - s0) * (s1 - s0) * (f1 - f2), v = (s1 - s2) * (s1 - s2) * (f1 - f0), w = (s1 - s0) * (f1 - f2) - (s1 - s2) * (f1 - f0);
+        const double vertex = w != 0 ? s1 - 0.5 * (u - v) / w : s1;
+        if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > 1e-5 * s1) speeds.push_back(vertex);
+      }
+      if (speeds.empty()) break;
+      for (const double s : speeds) curve.push_back(machine.at(s));
+      std::sort(curve.begin(), curve.end(), by_speed);
+    }
+
+  std::vector<Peak> peaks;
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    std::vector<Peak> own;
+    for (const std::size_t k : tops(node)) own.push_back({nodes[node], curve[k].speed, curve[k].nodes[node].semi_major(), amplification(curve, node, k)});
+    std::stable_sort(own.begin(), own.end(), [](const Peak& a, const Peak& b) { return a.amplitude > b.amplitude; });
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
+      summary.set(head + "speed", deck::from_si(own[k].speed, unit), unit);
+      summary.set(head + "semi_major", own[k].amplitude, "m");
+    }
+    if (node == 0) peaks = own;
+  }
+  // The first node named in the deck is the one the report speaks of; its highest peak comes first.
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    const std::string head = fmt::format("peak.{}.", k + 1);
+    summary.set(head + "node", peaks[k].node, "1");
+    summary.set(head + "speed", deck::from_si(peaks[k].speed, unit), unit);
+    summary.set(head + "semi_major", peaks[k].amplitude, "m");
+    summary.set(head + "amplification_factor", peaks[k].amplification, "1");
+    if (options.operating_speed)
+      summary.set(head + "separation_margin", std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
+  }
+  if (options.operating_speed) {
+    const Response r = machine.at(options.operating_speed->value);
+    const auto names = names_of_bearings(context.machine);
+    for (std::size_t b = 0; b < names.size(); ++b) {
+      summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
+      summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
+    }
+    for (std::size_t k = 0; k < nodes.size(); ++k) summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+  }
+
+  auto& group = results.group();
+  auto& response = group.child("response");
+  std::vector<double> speeds;
+  for (const Response& r : curve) speeds.push_back(r.speed);
+  response.put("speed", speeds, "rad/s", "shaft speed");
+  response.put("node", std::vector<std::int64_t>(nodes.begin(), nodes.end()), "shaft nodes, 1-based");
+  put_motion(response, curve, &Response::nodes, "absolute motion of the shaft");
+  put_bearings(group, context.machine);
+  put_motion(group.child("bearings"), curve, &Response::bearings, "journal relative to its pedestal");
+  group.set("speed_unit", unit);
+  group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
+  summary.points = static_cast<long>(curve.size());
+  results.finish("completed", true);
 }
 
 }  // namespace whirl::study

@@ -63,6 +63,8 @@ struct Summary {
   /// Replaces the study of the same name or appends it.
   void set(StudySummary study);
   [[nodiscard]] std::string to_json() const;
+  /// What to_json() made; core::Error if the text is not that.
+  [[nodiscard]] static Summary from_json(const std::string& text);
   /// Atomic: temporary name, sync, rename. Call on one rank.
   void write(const std::filesystem::path& path) const;
   /// Reads what `write` wrote; core::Error with the place if the file is missing or not ours.

@@ -19,7 +19,9 @@ struct CycleBranchOptions {
   int degree = 2;                       ///< of the polynomials
   Points points = Points::radau;        ///< of collocation
   bool adapt_mesh = true;
-  double tolerance = 1e-8;  ///< of Newton's method, relative
+  double mesh_tolerance = 1e-3;          ///< estimated error per interval, relative to the size of the orbit
+  double tolerance = 1e-9;               ///< of Newton's method: root mean square of the scaled residual
+  std::vector<deck::Quantity> at;        ///< parameters at which the cycle is solved and reported
   int multipliers = 6;      ///< Floquet multipliers to report, the largest
   int period = 1;           ///< revolutions per cycle
   int max_points = 500;

@@ -1,6 +1,7 @@
 #pragma once
 // A whole deck: the machine and what is asked about it.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,7 +26,9 @@ void describe(deck::Description<Deck>& d);
 /// How a run is wanted.
 struct RunOptions {
   std::string directory;  ///< of the results; exists
-  bool progress = false;
+  std::string version;
+  /// Shows a progress line on rank 0 (`transient` lines replace each other); empty: silent.
+  std::function<void(const std::string& line, bool transient)> say;
   bool resume = false;
 };
 

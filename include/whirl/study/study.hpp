@@ -21,7 +21,6 @@ struct Context {
   const system::Machine& machine;
   std::string directory;  ///< of the results; exists
   Results& results;       ///< where the study puts what it found
-  bool progress = false;  ///< tell how far the work is
   bool resume = false;    ///< go on from the checkpoint of this study, if there is one
 };
 

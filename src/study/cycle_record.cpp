@@ -1,0 +1,215 @@
+#include "cycle_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr int samples_per_orbit = 128;
+
+struct Extremes {
+  std::vector<double> x_max, x_min, y_max, y_min;
+};
+
+// Journal motion of all bearings at `count` equidistant times: [time][bearing][x, y].
+std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system, int count) {
+  const auto n = static_cast<std::size_t>(system.n_bearings());
+  std::vector<double> out;
+  out.reserve(2 * n * static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    const Eigen::VectorXd x = cycle.at(scheme, static_cast<double>(k) / count);
+    for (const auto& j : system.journals(x.data())) {
+      out.push_back(j.position[0]);
+      out.push_back(j.position[1]);
+    }
+  }
+  return out;
+}
+
+// Extremes of a periodic signal by the parabola through the largest sample and its neighbours.
+double peak(const std::vector<double>& motion, std::size_t bearings, std::size_t column, double sign) {
+  const std::size_t n = motion.size() / (2 * bearings);
+  const auto value = [&](std::size_t k) { return sign * motion[(k % n) * 2 * bearings + column]; };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < n; ++k)
+    if (value(k) > value(best)) best = k;
+  const double a = value(best + n - 1), b = value(best), c = value(best + 1), curvature = a - 2 * b + c;
+  return sign * (curvature < 0 ? b - (a - c) * (a - c) / (8 * curvature) : b);
+}
+
+Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
+  Extremes e;
+  for (std::size_t i = 0; i < bearings; ++i) {
+    e.x_max.push_back(peak(motion, bearings, 2 * i, 1));
+    e.x_min.push_back(peak(motion, bearings, 2 * i, -1));
+    e.y_max.push_back(peak(motion, bearings, 2 * i + 1, 1));
+    e.y_min.push_back(peak(motion, bearings, 2 * i + 1, -1));
+  }
+  return e;
+}
+
+std::vector<io::Table::Column> columns(std::size_t bearings, const std::string& unit, std::size_t multipliers) {
+  const io::Shape b{bearings}, m{multipliers};
+  return {{"parameter", unit, "parameter of the branch"},
+          {"period", "s", "period of the cycle"},
+          {"stable", "1", "1 if no multiplier is outside the unit circle"},
+          {"unstable_count", "1", "multipliers outside the unit circle"},
+          {"step", unit, "arclength from the previous point"},
+          {"newton_iterations", "1", "of the accepted step"},
+          {"intervals", "1", "of the time mesh"},
+          {"x_max", "m", "largest horizontal journal position relative to the bearing centre", b},
+          {"x_min", "m", "smallest", b},
+          {"y_max", "m", "largest vertical journal position relative to the bearing centre", b},
+          {"y_min", "m", "smallest", b},
+          {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
+          {"multipliers_imag", "1", "their imaginary parts", m}};
+}
+
+}  // namespace
+
+CycleRecord::CycleRecord(std::vector<std::string> bearings, std::string unit, int multipliers)
+    : bearings_(std::move(bearings)),
+      unit_(std::move(unit)),
+      multipliers_(multipliers),
+      table_(columns(bearings_.size(), unit_, static_cast<std::size_t>(multipliers))) {}
+
+void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
+                         double scale) {
+  std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
+  const Extremes e = extremes(motion, bearings_.size());
+  std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
+  for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
+    re[k] = point.stability.values[k].real();
+    im[k] = point.stability.values[k].imag();
+  }
+  const int unstable = point.stability.unstable();
+  table_.append({{cycle.parameter / scale},
+                 {cycle.period},
+                 {unstable == 0 ? 1.0 : 0.0},
+                 {static_cast<double>(unstable)},
+                 {point.step},
+                 {static_cast<double>(point.newton_iterations)},
+                 {static_cast<double>(cycle.intervals())},
+                 e.x_max,
+                 e.x_min,
+                 e.y_max,
+                 e.y_min,
+                 re,
+                 im});
+  orbits_.push_back(std::move(motion));
+}
+
+void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
+                         const solve::Stability& stability, io::StudySummary& summary) {
+  const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), bearings_.size());
+  const std::string head = "at." + key + ".";
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    summary.set(head + "peak_to_peak." + bearings_[i] + ".x", e.x_max[i] - e.x_min[i], "m");
+    summary.set(head + "peak_to_peak." + bearings_[i] + ".y", e.y_max[i] - e.y_min[i], "m");
+  }
+  if (!stability.values.empty()) {
+    summary.set(head + "multiplier.modulus", std::abs(stability.values.front()), "1");
+    summary.set(head + "multiplier.angle", std::abs(std::arg(stability.values.front())), "rad");
+  }
+  summary.set(head + "period", cycle.period, "s");
+  reported_.insert(key);
+}
+
+void CycleRecord::write(io::Group& group, bool everything) const {
+  table_.write(group.child("branch"));
+  if (!everything) return;
+  std::vector<double> flat;
+  for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
+  group.put("orbits", {orbits_.size(), samples_per_orbit, bearings_.size(), 2}, std::move(flat), "m", "journal motion of every point");
+  group.put("reported", std::vector<std::string>(reported_.begin(), reported_.end()), "parameters already reported");
+}
+
+void CycleRecord::read(const io::Group& group) {
+  table_.read(group.group("branch"));
+  const auto& flat = group.reals("orbits");
+  const std::size_t width = samples_per_orbit * bearings_.size() * 2;
+  orbits_.clear();
+  for (std::size_t k = 0; k + width <= flat.size(); k += width) orbits_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(k), flat.begin() + static_cast<std::ptrdiff_t>(k + width));
+  for (const auto& key : group.strings("reported")) reported_.insert(key);
+}
+
+void CycleRecord::write_orbits(io::Group& group, int count) const {
+  const std::size_t total = orbits_.size(), n = std::min<std::size_t>(total, static_cast<std::size_t>(std::max(count, 0)));
+  std::vector<double> parameter, x, y;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = n == 1 ? 0 : k * (total - 1) / (n - 1);
+    parameter.push_back(table_.column("parameter")[i]);
+    for (std::size_t v = 0; v < orbits_[i].size(); v += 2) {
+      x.push_back(orbits_[i][v]);
+      y.push_back(orbits_[i][v + 1]);
+    }
+  }
+  const io::Shape shape{n, samples_per_orbit, bearings_.size()};
+  group.put("parameter", parameter, unit_, "where on the branch");
+  group.put("x", shape, x, "m", "horizontal journal position relative to the bearing centre [orbit][time][bearing]");
+  group.put("y", shape, y, "m", "vertical journal position relative to the bearing centre [orbit][time][bearing]");
+}
+
+void write_cycle(io::Group& group, const solve::Cycle& cycle) {
+  group.put("mesh", cycle.mesh, "1", "s = t/T");
+  // Nodes are the slow index.
+  group.put("x", {static_cast<std::size_t>(cycle.x.cols()), static_cast<std::size_t>(cycle.x.rows())}, std::vector<double>(cycle.x.data(), cycle.x.data() + cycle.x.size()), "SI",
+            "states at the nodes, natural order");
+  group.set("period", cycle.period);
+  group.set("parameter", cycle.parameter);
+}
+
+solve::Cycle read_cycle(const io::Group& group) {
+  solve::Cycle cycle;
+  cycle.mesh = group.reals("mesh");
+  const auto& data = group.dataset("x");
+  const auto& values = group.reals("x");
+  cycle.x = Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(data.shape[1]), static_cast<Eigen::Index>(data.shape[0]));
+  cycle.period = group.real("period");
+  cycle.parameter = group.real("parameter");
+  return cycle;
+}
+
+void write_point(io::Group& group, const solve::BranchPoint& point) {
+  group.set("index", point.index);
+  group.set("parameter", point.parameter);
+  group.set("slope", point.slope);
+  group.set("step", point.step);
+  group.set("newton_iterations", point.newton_iterations);
+  std::vector<double> re, im;
+  for (const auto& v : point.stability.values) {
+    re.push_back(v.real());
+    im.push_back(v.imag());
+  }
+  group.put("real", re, "1", "eigenvalues or multipliers");
+  group.put("imag", im, "1", "their imaginary parts");
+}
+
+solve::BranchPoint read_point(const io::Group& group) {
+  solve::BranchPoint point;
+  point.index = static_cast<int>(group.integer("index"));
+  point.parameter = group.real("parameter");
+  point.slope = group.real("slope");
+  point.step = group.real("step");
+  point.newton_iterations = static_cast<int>(group.integer("newton_iterations"));
+  const auto &re = group.reals("real"), &im = group.reals("imag");
+  for (std::size_t k = 0; k < re.size(); ++k) point.stability.values.emplace_back(re[k], im[k]);
+  return point;
+}
+
+void write_summary(io::Group& group, const io::StudySummary& summary) {
+  io::Summary one;
+  one.set(summary);
+  group.put("json", std::vector<std::string>{one.to_json()}, "summary of the study so far");
+}
+
+void read_summary(const io::Group& group, io::StudySummary& summary) {
+  const io::Summary one = io::Summary::from_json(group.strings("json").front());
+  core::require(one.studies.size() == 1, "a checkpoint holds one study");
+  summary = one.studies.front();
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,51 @@
+#pragma once
+// What is kept of a branch of cycles, and how it goes into results and checkpoints.
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/cycle.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+/// Rows of a branch of cycles: extremes of the journals' motion in their bearings, multipliers, orbits. Replicated on all ranks.
+class CycleRecord {
+ public:
+  CycleRecord(std::vector<std::string> bearings, std::string unit, int multipliers);
+
+  /// Adds a point; `scale` is the SI value of one unit of the parameter.
+  void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system, double scale);
+  /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
+  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
+              const solve::Stability& stability, io::StudySummary& summary);
+  [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
+
+  /// Tables into `group`; with `everything`, also what a restart needs.
+  void write(io::Group& group, bool everything) const;
+  void read(const io::Group& group);
+  /// `count` orbits spread evenly over the points.
+  void write_orbits(io::Group& group, int count) const;
+
+ private:
+  std::vector<std::string> bearings_;
+  std::string unit_;
+  int multipliers_;
+  io::Table table_;
+  std::vector<std::vector<double>> orbits_;  // per point: [time][bearing][x, y]
+  std::set<std::string> reported_;
+};
+
+void write_cycle(io::Group& group, const solve::Cycle& cycle);
+[[nodiscard]] solve::Cycle read_cycle(const io::Group& group);
+void write_point(io::Group& group, const solve::BranchPoint& point);
+[[nodiscard]] solve::BranchPoint read_point(const io::Group& group);
+void write_summary(io::Group& group, const io::StudySummary& summary);
+void read_summary(const io::Group& group, io::StudySummary& summary);
+
+}  // namespace whirl::study
