@@ -44,8 +44,11 @@ struct Lanes {
   friend Lanes operator*(double a, Lanes b) { return {a * b.v}; }
   friend Lanes operator+(double a, Lanes b) { return {a + b.v}; }
   friend Lanes operator/(double a, Lanes b) { return {a / b.v}; }
+  friend Lanes operator/(Lanes a, Lanes b) { return {a.v / b.v}; }
   friend Lanes min(Lanes a, Lanes b) { return {a.v < b.v ? a.v : b.v}; }
   friend Lanes max(Lanes a, Lanes b) { return {a.v > b.v ? a.v : b.v}; }
+  friend Lanes positive_part(Lanes a) { return {a.v > 0.0 ? a.v : Vector{}}; }
+  friend Lanes where_negative(Lanes x, Lanes a) { return {x.v < 0.0 ? a.v : Vector{}}; }
 };
 
 using Pack = Lanes<8>;
