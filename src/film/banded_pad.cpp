@@ -59,9 +59,9 @@ private:
   double last_share_;
 
   double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
-  Faces a_, b_;                 // [n_theta][rows], [n_theta][z_faces]; one column if aligned
-  std::vector<double> source_;  // v_j src_ij
-  std::vector<char> cavitated_;
+  Faces a_, b_;                         // [n_theta][rows], [n_theta][z_faces]; one column if aligned
+  std::vector<double> source_;          // v_j src_ij
+  std::vector<char> cavitated_, next_;  // active set, kept as the start of the next evaluation
   Band band_;
   std::vector<Quad> x_, load_;  // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
 };
@@ -85,6 +85,7 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
   const auto size = (n - 1) * static_cast<std::size_t>(rows_);
   source_.assign(size, 0.0);
   cavitated_.assign(size, 0);
+  next_.assign(size, 0);
   x_.assign(size, Quad::zero());
   load_.assign(size, Quad::zero());
 }
@@ -196,11 +197,11 @@ void BandedPad::solve_complementarity() {
         const std::size_t k = at(i, j);
         const bool now = cavitated_[k] ? residual(i, j) >= -kRound * scale : x_[k][0] < -kRound * top;
         changes += now != static_cast<bool>(cavitated_[k]);
-        load_[k].set(0, now ? 1.0 : 0.0);
+        next_[k] = now;
       }
     }
     if (changes == 0) return;
-    for (std::size_t k = 0; k < x_.size(); ++k) cavitated_[k] = load_[k][0] != 0.0;
+    cavitated_.swap(next_);
   }
   throw core::NotConverged("the cavitated region of a film did not settle");
 }

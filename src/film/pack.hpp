@@ -1,8 +1,6 @@
 #pragma once
 // Small fixed numbers of doubles that the compiler keeps in vector registers, whatever their width.
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include <cstddef>
 #include <cstring>
 #include <vector>
