@@ -35,25 +35,37 @@ void Band::factor() {
   }
 }
 
+// Both sweeps gather, the farthest entries first: only the last product waits for the unknown found just before.
 void Band::solve(std::span<Quad> x) const {
   Quad* const at = x.data();
-  for (int i = 0; i < size_; ++i) {
-    const double* l = row(i);
-    const int reach = std::min(width_, size_ - 1 - i);
-    const Quad xi = at[i];
-    for (int r = 1; r <= reach; ++r) at[i + r] -= l[r] * xi;
+  const double* const l = scalars(data_);
+  const auto next = static_cast<std::ptrdiff_t>(stride_) - 1;  // from L(i, i - r) in row i - r to L(i, i - r + 1)
+  for (int i = 1; i < size_; ++i) {
+    const int reach = std::min(width_, i);
+    const double* entry = l + static_cast<std::ptrdiff_t>(i - reach) * (next + 1) + reach;
+    Quad even = at[i], odd = Quad::zero();
+    int r = reach;
+    for (; r > 2; r -= 2, entry += 2 * next) {
+      odd -= entry[0] * at[i - r];
+      even -= entry[next] * at[i - r + 1];
+    }
+    if (r == 2) {
+      odd -= entry[0] * at[i - 2];
+      entry += next;
+    }
+    at[i] = (even + odd) - entry[0] * at[i - 1];
   }
   for (int i = size_ - 1; i >= 0; --i) {
-    const double* l = row(i);
-    const int reach = std::min(width_, size_ - 1 - i);
-    Quad even = l[0] * at[i], odd = Quad::zero();
-    int r = 1;
-    for (; r < reach; r += 2) {
-      even -= l[r] * at[i + r];
-      odd -= l[r + 1] * at[i + r + 1];
+    const double* entry = row(i);
+    int r = std::min(width_, size_ - 1 - i);
+    Quad even = entry[0] * at[i], odd = Quad::zero();
+    for (; r > 2; r -= 2) {
+      odd -= entry[r] * at[i + r];
+      even -= entry[r - 1] * at[i + r - 1];
     }
-    if (r <= reach) even -= l[r] * at[i + r];
+    if (r == 2) odd -= entry[2] * at[i + 2];
     at[i] = even + odd;
+    if (r > 0) at[i] -= entry[1] * at[i + 1];
   }
 }
 

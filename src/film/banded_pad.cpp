@@ -59,9 +59,9 @@ private:
   double last_share_;
 
   double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
-  Faces a_, b_;                 // [n_theta][rows], [n_theta][z_faces]; one column if aligned
-  std::vector<double> source_;  // v_j src_ij
-  std::vector<char> cavitated_;
+  Faces a_, b_;                         // [n_theta][rows], [n_theta][z_faces]; one column if aligned
+  std::vector<double> source_;          // v_j src_ij
+  std::vector<char> cavitated_, next_;  // active set, kept as the start of the next evaluation
   Band band_;
   std::vector<Quad> x_, load_;  // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
 };
@@ -85,6 +85,7 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
   const auto size = (n - 1) * static_cast<std::size_t>(rows_);
   source_.assign(size, 0.0);
   cavitated_.assign(size, 0);
+  next_.assign(size, 0);
   x_.assign(size, Quad::zero());
   load_.assign(size, Quad::zero());
 }
@@ -196,11 +197,11 @@ void BandedPad::solve_complementarity() {
         const std::size_t k = at(i, j);
         const bool now = cavitated_[k] ? residual(i, j) >= -kRound * scale : x_[k][0] < -kRound * top;
         changes += now != static_cast<bool>(cavitated_[k]);
-        load_[k].set(0, now ? 1.0 : 0.0);
+        next_[k] = now;
       }
     }
     if (changes == 0) return;
-    for (std::size_t k = 0; k < x_.size(); ++k) cavitated_[k] = load_[k][0] != 0.0;
+    cavitated_.swap(next_);
   }
   throw core::NotConverged("the cavitated region of a film did not settle");
 }
@@ -208,33 +209,33 @@ void BandedPad::solve_complementarity() {
 // Force, and its derivatives in the nodal pressures into load_.
 void BandedPad::integrate(Need need, Response& response) {
   const bool truncated = cavitation_ == Options::Cavitation::half_sommerfeld;
-  const double area = pad_.radius * grid_.dtheta * grid_.dz;
-  const int cells = tilt_ ? grid_.n_z : (grid_.n_z + 1) / 2;
+  const double area = pad_.radius * grid_.dtheta * grid_.dz * grid_.mean;
   std::fill(load_.begin(), load_.end(), Quad::zero());
   Quad force = Quad::zero();
-  for (int i = 0; i < grid_.n_theta; ++i) {
-    const auto face = static_cast<std::size_t>(i);
-    const double cosine = -area * grid_.mean * grid_.face_cos[face], sine = -area * grid_.mean * grid_.face_sin[face];
-    for (int cell = 0; cell < cells; ++cell) {
-      const bool middle = !tilt_ && cell == rows_;  // straddles the mid-plane: its upper nodes mirror the lower ones
-      const int low = cell - 1, high = middle ? low : cell;
-      const std::array<double, 4> p = {pressure_at(i, low), pressure_at(i, high), pressure_at(i + 1, low),
-                                       pressure_at(i + 1, high)};
-      std::array<double, 4> g = {0.25, 0.25, 0.25, 0.25};
-      const double mean = truncated ? truncated_cell(p, g) : 0.25 * (p[0] + p[1] + p[2] + p[3]);
-      const double times = tilt_ || middle ? 1.0 : 2.0;
-      const double z = tilt_ ? row_z(cell) - 0.5 * grid_.dz : 0.0;
+  const int last = grid_.n_theta - 1;
+  for (int strip = 0; strip <= last; ++strip) {
+    const auto face = static_cast<std::size_t>(strip);
+    const double cosine = -area * grid_.face_cos[face], sine = -area * grid_.face_sin[face];
+    const bool edge = strip == 0 || strip == last;
+    // Left and right column, or near and far column of an edge.
+    const int first = strip == 0 ? 1 : strip, second = strip == 0 ? 2 : strip == last ? last - 1 : strip + 1;
+    for (int j = 0; j < rows_; ++j) {
+      const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
-      force += mean * weight;
+      Quad &load_first = load_[at(first, j)], &load_second = load_[at(second, j)];
+      const double p = x_[at(first, j)][0], q = x_[at(second, j)][0];
+      double d_p = 0.5, d_q = edge ? 0.0 : 0.5, integral = d_p * p + d_q * q;
+      if (truncated && edge) {
+        const EdgeInterval part = truncated_edge(p, q);
+        integral = part.integral, d_p = part.d_near, d_q = part.d_far;
+      } else if (truncated && std::min(p, q) < 0.0) {
+        const Interval<double> part = truncated_linear(p, q);
+        integral = part.integral, d_p = part.d_left, d_q = part.d_right;
+      }
+      force += integral * weight;
       if (need == Need::force) continue;
-      const auto give = [&](int column, int row, double gradient) {
-        if (column > 0 && column < grid_.n_theta && row >= 0 && row < rows_)
-          load_[at(column, row)] += gradient * weight;
-      };
-      give(i, low, g[0]);
-      give(i, high, g[1]);
-      give(i + 1, low, g[2]);
-      give(i + 1, high, g[3]);
+      load_first += d_p * weight;
+      load_second += d_q * weight;
     }
   }
   for (int f = 0; f < 4; ++f) response.force[static_cast<std::size_t>(f)] += force[f];

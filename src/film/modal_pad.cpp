@@ -31,11 +31,15 @@ private:
   void factor_and_solve();
   void synthesise();
   void truncate(bool gradient);
-  void integrate_mixed(int strip, bool gradient);
+  struct Edge {  // the strip between an edge and its neighbour column `near`; its parabola also uses column `far`
+    std::size_t strip, near, far;
+    std::vector<Pack> load_far;
+  };
+  void analyse(const std::vector<Pack>& rows, Pack* modes) const;
+  void integrate_mixed(std::size_t strip, bool gradient);
+  void integrate_edge(Edge& edge, bool gradient);
   void adjoint(const Motion& motion, Response& response);
-  double node(int i, int j) const {
-    return scalars(p_)[static_cast<std::size_t>(i) * stride_ + static_cast<std::size_t>(j)];
-  }
+  double node(std::size_t i, std::size_t j) const { return scalars(p_)[i * stride_ + j]; }
 
   Pad pad_;
   Grid grid_;
@@ -50,15 +54,20 @@ private:
   std::vector<Pack> s_;           // [pack] eigenvalues s_k; 1 in unused lanes
   std::vector<Pack> synthesis_;   // [mode][pack of nodes] S_kj
   std::vector<Pack> analysis_;    // [node][pack of modes] S_kj
+  std::vector<Pack> row_weight_;  // [pack of nodes] area of a cell times the rows of the pad that a row stands for
   std::vector<Pack> strip_load_;  // [pack of modes] derivative of the integral over a full strip in one of its columns
+
+  std::array<Edge, 2> edges_;
 
   // Per evaluation, around the pad. Faces lie at i + 1/2.
   double X_ = 0.0, Y_ = 0.0, h_min_ = 0.0;
   std::vector<double> h_face_, h_node_, a_, a_h_, a_speed_, b_, b_h_, b_speed_, source_;
   std::vector<Pack> q_, multiplier_, inverse_;  // [pack of modes][n_theta + 1]
   std::vector<Pack> p_;                         // [n_theta + 1][pack of half-length nodes]
+  std::vector<Pack> y_x_, y_y_;                 // [n_theta + 1] of one pack of modes, forward sweeps of the adjoints
   std::vector<Strip> strip_;                    // [n_theta]
   std::vector<double> integral_;                // [n_theta] of max(p, 0) over mixed strips
+  std::vector<Pack> rows_left_, rows_right_;    // [pack of nodes] derivatives of one strip integral
   std::vector<Pack> load_left_, load_right_;    // [n_theta][pack of modes] derivatives of the strip integrals
 };
 
@@ -80,7 +89,7 @@ ModalPad::ModalPad(const Pad& pad, const Options& options, const Lubricant& lubr
   s_.assign(n_packs_, Pack::fill(1.0));
   synthesis_.assign(modes * n_packs_, Pack::zero());
   analysis_.assign(modes * n_packs_, Pack::zero());
-  strip_load_.assign(n_packs_, Pack::zero());
+  for (auto* v : {&strip_load_, &row_weight_, &rows_left_, &rows_right_}) v->assign(n_packs_, Pack::zero());
   for (std::size_t m = 0; m < modes; ++m) {
     const double angle = (2.0 * static_cast<double>(m) + 1.0) * std::numbers::pi / grid_.n_z;
     const double root = 2.0 / grid_.dz * std::sin(0.5 * angle);
@@ -91,14 +100,18 @@ ModalPad::ModalPad(const Pad& pad, const Options& options, const Lubricant& lubr
       scalars(synthesis_)[m * stride_ + j] = value;
       scalars(analysis_)[j * stride_ + m] = value;
       const bool middle = grid_.n_z % 2 == 0 && j + 1 == modes;
-      scalars(strip_load_)[m] += 0.5 * cell_area_ * value * (middle ? 1.0 : 2.0);
+      scalars(row_weight_)[j] = cell_area_ * (middle ? 1.0 : 2.0);
+      scalars(strip_load_)[m] += 0.5 * value * scalars(row_weight_)[j];
     }
   }
   for (auto* v : {&h_face_, &a_, &a_h_, &a_speed_, &integral_}) v->assign(n_faces, 0.0);
   for (auto* v : {&h_node_, &b_, &b_h_, &b_speed_, &source_}) v->assign(n_nodes, 0.0);
   for (auto* v : {&q_, &multiplier_, &inverse_, &p_}) v->assign(n_nodes * n_packs_, Pack::zero());
+  for (auto* v : {&y_x_, &y_y_}) v->assign(n_nodes, Pack::zero());
   for (auto* v : {&load_left_, &load_right_}) v->assign(n_faces * n_packs_, Pack::zero());
   strip_.assign(n_faces, Strip::full);
+  edges_[0] = {0, 1, 2, std::vector<Pack>(n_packs_, Pack::zero())};
+  edges_[1] = {n_faces - 1, n_faces - 1, n_faces - 2, std::vector<Pack>(n_packs_, Pack::zero())};
 }
 
 void ModalPad::thickness(const Motion& motion) {
@@ -180,61 +193,69 @@ void ModalPad::synthesise() {
 }
 
 void ModalPad::truncate(bool gradient) {
-  const int n = grid_.n_theta;
-  if (!truncated_) {
-    std::fill(strip_.begin(), strip_.end(), Strip::full);
-    return;
-  }
+  const std::size_t n = h_face_.size();
+  if (!truncated_) return;
   synthesise();
   double low_left = 0.0, high_left = 0.0;
-  for (int i = 1; i <= n; ++i) {
-    Pack low = p_[static_cast<std::size_t>(i) * n_packs_], high = low;
+  for (std::size_t i = 1; i < n; ++i) {
+    Pack low = p_[i * n_packs_], high = low;
     for (std::size_t pack = 1; pack < n_packs_; ++pack) {
-      low = min(low, p_[static_cast<std::size_t>(i) * n_packs_ + pack]);
-      high = max(high, p_[static_cast<std::size_t>(i) * n_packs_ + pack]);
+      low = min(low, p_[i * n_packs_ + pack]);
+      high = max(high, p_[i * n_packs_ + pack]);
     }
     const double low_right = lowest(low), high_right = highest(high);
-    auto& strip = strip_[static_cast<std::size_t>(i - 1)];
-    strip = std::min(low_left, low_right) >= 0.0     ? Strip::full
-            : std::max(high_left, high_right) <= 0.0 ? Strip::empty
-                                                     : Strip::mixed;
-    if (strip == Strip::mixed) integrate_mixed(i - 1, gradient);
+    strip_[i - 1] = std::min(low_left, low_right) >= 0.0     ? Strip::full
+                    : std::max(high_left, high_right) <= 0.0 ? Strip::empty
+                                                             : Strip::mixed;
+    if (strip_[i - 1] == Strip::mixed && i > 1) integrate_mixed(i - 1, gradient);
     low_left = low_right;
     high_left = high_right;
   }
+  for (Edge& edge : edges_) integrate_edge(edge, gradient);
 }
 
-// Integral over the cells between columns `strip` and `strip` + 1, and its derivatives in the modes of both columns.
-void ModalPad::integrate_mixed(int strip, bool gradient) {
-  const bool even = grid_.n_z % 2 == 0;
-  const int rows = even ? n_modes_ : n_modes_ + 1;
-  Pack* const left = &load_left_[static_cast<std::size_t>(strip) * n_packs_];
-  Pack* const right = &load_right_[static_cast<std::size_t>(strip) * n_packs_];
-  std::fill(left, left + n_packs_, Pack::zero());
-  std::fill(right, right + n_packs_, Pack::zero());
-  double total = 0.0, p_low_left = 0.0, p_low_right = 0.0;
-  double g_low_left = 0.0, g_low_right = 0.0;  // derivatives already found for the lower nodes of the cell
-  const auto spread = [&](int j, double gl, double gr) {
-    const Pack* S = &analysis_[static_cast<std::size_t>(j) * n_packs_];
-    for (std::size_t pack = 0; pack < n_packs_; ++pack) {
-      left[pack] += gl * S[pack];
-      right[pack] += gr * S[pack];
-    }
-  };
-  for (int row = 0; row < rows; ++row) {
-    const int upper = std::min(row, n_modes_ - 1);  // beyond the middle the pressure is its mirror image
-    const double weight = cell_area_ * (row == n_modes_ ? 1.0 : 2.0);
-    const double p_left = node(strip, upper), p_right = node(strip + 1, upper);
-    std::array<double, 4> g;
-    total += weight * truncated_cell({p_low_left, p_left, p_low_right, p_right}, g);
-    if (gradient && row > 0) spread(row - 1, g_low_left + weight * g[0], g_low_right + weight * g[2]);
-    g_low_left = weight * g[1];
-    g_low_right = weight * g[3];
-    p_low_left = p_left;
-    p_low_right = p_right;
+// Derivatives in nodal pressures, given per row, turned into derivatives in the modes.
+void ModalPad::analyse(const std::vector<Pack>& rows, Pack* modes) const {
+  const double* g = scalars(rows);
+  std::fill(modes, modes + n_packs_, Pack::zero());
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n_modes_); ++j) {
+    for (std::size_t pack = 0; pack < n_packs_; ++pack) modes[pack] += g[j] * analysis_[j * n_packs_ + pack];
   }
-  if (gradient) spread(n_modes_ - 1, g_low_left, g_low_right);
-  integral_[static_cast<std::size_t>(strip)] = total;
+}
+
+// A strip between two columns of nodes whose pressures differ in sign.
+void ModalPad::integrate_mixed(std::size_t strip, bool gradient) {
+  Pack total = Pack::zero();
+  for (std::size_t pack = 0; pack < n_packs_; ++pack) {
+    const Interval<Pack> part = truncated_linear(p_[strip * n_packs_ + pack], p_[(strip + 1) * n_packs_ + pack]);
+    const Pack weight = row_weight_[pack];
+    total += weight * part.integral;
+    rows_left_[pack] = weight * part.d_left;
+    rows_right_[pack] = weight * part.d_right;
+  }
+  integral_[strip] = sum(total);
+  if (!gradient) return;
+  analyse(rows_left_, &load_left_[strip * n_packs_]);
+  analyse(rows_right_, &load_right_[strip * n_packs_]);
+}
+
+// The first and the last strip.
+void ModalPad::integrate_edge(Edge& edge, bool gradient) {
+  Pack* const near = edge.near == 1 ? &load_right_[0] : &load_left_[edge.strip * n_packs_];
+  double total = 0.0;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(n_modes_); ++j) {
+    const EdgeInterval part = truncated_edge(node(edge.near, j), node(edge.far, j));
+    const double weight = scalars(row_weight_)[j];
+    total += weight * part.integral;
+    scalars(rows_left_)[j] = weight * part.d_near;
+    scalars(rows_right_)[j] = weight * part.d_far;
+  }
+  if (gradient) {
+    analyse(rows_left_, near);
+    analyse(rows_right_, edge.load_far.data());
+  }
+  integral_[edge.strip] = total;
+  strip_[edge.strip] = Strip::mixed;
 }
 
 void ModalPad::add(const Motion& motion, Need need, Response& response) {
@@ -274,9 +295,6 @@ void ModalPad::adjoint(const Motion& motion, Response& response) {
     Pack source_cos = Pack::zero(), source_sin = Pack::zero();
   };
   std::array<Sums, 2> sums;
-  static thread_local std::vector<Pack> yx, yy;
-  yx.resize(nodes);
-  yy.resize(nodes);
   for (std::size_t pack = 0; pack < n_packs_; ++pack) {
     const Pack* const q = &q_[pack * nodes];
     const Pack* const l = &multiplier_[pack * nodes];
@@ -292,16 +310,21 @@ void ModalPad::adjoint(const Motion& motion, Response& response) {
       const Pack from_left = load(i - 1, load_right_), from_right = load(i, load_left_);
       previous_x = grid_.face_cos[at - 1] * from_left + grid_.face_cos[at] * from_right + l[i] * previous_x;
       previous_y = grid_.face_sin[at - 1] * from_left + grid_.face_sin[at] * from_right + l[i] * previous_y;
-      yx[at] = previous_x;
-      yy[at] = previous_y;
+      for (const Edge& edge : edges_) {
+        if (edge.far != at) continue;
+        previous_x += grid_.face_cos[edge.strip] * edge.load_far[pack];
+        previous_y += grid_.face_sin[edge.strip] * edge.load_far[pack];
+      }
+      y_x_[at] = previous_x;
+      y_y_[at] = previous_y;
     }
     std::array<Pack, 2> right = {zero, zero};
     for (int i = n - 1; i >= 0; --i) {
       const auto at = static_cast<std::size_t>(i);
       std::array<Pack, 2> m = {zero, zero};
       if (i > 0) {
-        m[0] = yx[at] * inverse[i] + l[i + 1] * right[0];
-        m[1] = yy[at] * inverse[i] + l[i + 1] * right[1];
+        m[0] = y_x_[at] * inverse[i] + l[i + 1] * right[0];
+        m[1] = y_y_[at] * inverse[i] + l[i + 1] * right[1];
       }
       const Pack jump = q[i + 1] - q[i];
       const Pack level = s_[pack] * q[i];
@@ -337,7 +360,8 @@ std::vector<double> ModalPad::pressure(const Motion& motion) {
   for (int i = 0; i <= grid_.n_theta; ++i) {
     for (int j = 0; j <= grid_.n_z; ++j) {
       const int from_side = std::min(j, grid_.n_z - j);
-      const double p = from_side == 0 ? 0.0 : node(i, from_side - 1);
+      const double p =
+          from_side == 0 ? 0.0 : node(static_cast<std::size_t>(i), static_cast<std::size_t>(from_side - 1));
       values.push_back(truncated_ ? std::max(p, 0.0) : p);
     }
   }

@@ -1,8 +1,6 @@
 #pragma once
 // Small fixed numbers of doubles that the compiler keeps in vector registers, whatever their width.
 
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include <cstddef>
 #include <cstring>
 #include <vector>
@@ -44,8 +42,11 @@ struct Lanes {
   friend Lanes operator*(double a, Lanes b) { return {a * b.v}; }
   friend Lanes operator+(double a, Lanes b) { return {a + b.v}; }
   friend Lanes operator/(double a, Lanes b) { return {a / b.v}; }
+  friend Lanes operator/(Lanes a, Lanes b) { return {a.v / b.v}; }
   friend Lanes min(Lanes a, Lanes b) { return {a.v < b.v ? a.v : b.v}; }
   friend Lanes max(Lanes a, Lanes b) { return {a.v > b.v ? a.v : b.v}; }
+  friend Lanes positive_part(Lanes a) { return {a.v > 0.0 ? a.v : Vector{}}; }
+  friend Lanes where_negative(Lanes x, Lanes a) { return {x.v < 0.0 ? a.v : Vector{}}; }
 };
 
 using Pack = Lanes<8>;

@@ -1,64 +1,55 @@
 #pragma once
-// Exact integral of max(p, 0) over a cell for pressure that is piecewise linear on triangles.
+// Integrals of max(p, 0) along one row of nodes, over the interval between two neighbours.
+//
+// Between inner nodes p is linear and the integral exact. Next to a pad edge, where p = 0 is prescribed, a straight
+// line would give max(p_1, 0)/2, whose kink is felt whenever rupture reaches the edge (triangles have the same kink at
+// edges and sides). There the integral passes from p_1/2 to 0 by a cubic, while the parabola through the edge and the
+// next two nodes has a root near the first one. Both are continuously differentiable except where all their values
+// vanish together, and are the trapezoidal rule over a positive film.
+
+#include <cmath>
 
 #include <algorithm>
-#include <array>
 
 namespace whirl::film {
 
-/// Integral of max(p, 0) over a triangle divided by its area, p linear with vertex values a, b, c; adds `weight` times
-/// the gradient to ga, gb, gc. Continuously differentiable unless a = b = c = 0.
-inline double truncated_triangle(double a, double b, double c, double weight, double& ga, double& gb, double& gc) {
-  // Reduced to one vertex whose sign differs from the other two: the cut-off corner has the integral
-  // a^3/(3 (a-b)(a-c)).
-  const auto corner = [weight](double p, double q, double r, double& gp, double& gq, double& gr) {
-    const double u = p / (p - q), v = p / (p - r);
-    const double third = weight / 3.0;
-    gp += third * u * v * (3.0 - u - v);
-    gq += third * u * u * v;
-    gr += third * u * v * v;
-    return p * u * v / 3.0;
-  };
-  const bool pa = a > 0.0, pb = b > 0.0, pc = c > 0.0;
-  const int positive = pa + pb + pc;
-  if (positive == 0) return 0.0;
-  if (positive == 1) {
-    if (pa) return corner(a, b, c, ga, gb, gc);
-    if (pb) return corner(b, c, a, gb, gc, ga);
-    return corner(c, a, b, gc, ga, gb);
-  }
-  const double third = weight / 3.0;
-  ga += third, gb += third, gc += third;
-  const double full = (a + b + c) / 3.0;
-  if (positive == 3) return full;
-  // With one vertex at or below zero, its (negative) corner is taken off again.
-  double na = 0.0, nb = 0.0, nc = 0.0, cut = 0.0;
-  if (!pa) cut = a < 0.0 ? corner(a, b, c, na, nb, nc) : 0.0;
-  if (!pb) cut = b < 0.0 ? corner(b, c, a, nb, nc, na) : 0.0;
-  if (!pc) cut = c < 0.0 ? corner(c, a, b, nc, na, nb) : 0.0;
-  ga -= na, gb -= nb, gc -= nc;
-  return full - cut;
+inline double where_negative(double x, double a) {
+  return x < 0.0 ? a : 0.0;
+}
+inline double positive_part(double x) {
+  return std::max(x, 0.0);
 }
 
-/// Integral of max(p, 0) over a rectangular cell divided by its area, and its gradient in the corner values
-/// {left-low, left-high, right-low, right-high}. The cell is cut into four triangles that meet in its centre, where p
-/// is the mean of the corners: symmetric in both directions.
-inline double truncated_cell(const std::array<double, 4>& p, std::array<double, 4>& gradient) {
-  gradient = {};
-  const double low = std::min(std::min(p[0], p[1]), std::min(p[2], p[3]));
-  const double mean = 0.25 * (p[0] + p[1] + p[2] + p[3]);
-  if (low >= 0.0) {
-    gradient = {0.25, 0.25, 0.25, 0.25};
-    return mean;
-  }
-  if (std::max(std::max(p[0], p[1]), std::max(p[2], p[3])) <= 0.0) return 0.0;
-  double centre = 0.0;
-  double value = truncated_triangle(p[0], p[1], mean, 0.25, gradient[0], gradient[1], centre);
-  value += truncated_triangle(p[1], p[3], mean, 0.25, gradient[1], gradient[3], centre);
-  value += truncated_triangle(p[3], p[2], mean, 0.25, gradient[3], gradient[2], centre);
-  value += truncated_triangle(p[2], p[0], mean, 0.25, gradient[2], gradient[0], centre);
-  for (double& g : gradient) g += 0.25 * centre;
-  return 0.25 * value;
+template <class T>
+struct Interval {
+  T integral;  // over the interval, divided by its length
+  T d_left, d_right;
+};
+
+/// p linear from l to r; T is double or a pack of doubles.
+template <class T>
+Interval<T> truncated_linear(T l, T r) {
+  constexpr double kTiny = 1e-300;  // keeps 0/0 at 0
+  const T lp = positive_part(l), rp = positive_part(r);
+  const T u = lp / (kTiny + (lp + (rp - r))), v = rp / (kTiny + (rp + (lp - l)));
+  const T both = 0.5 * (u + u - u * u), other = 0.5 * (v + v - v * v);
+  return {0.5 * (lp * u + rp * v), both + where_negative(l, 0.5 * (v * v)), other + where_negative(r, 0.5 * (u * u))};
+}
+
+struct EdgeInterval {
+  double integral;
+  double d_near, d_far;
+};
+
+/// Next to an edge, p(0) = 0, p(1) = near, p(2) = far: near t (2 - t)/2 with t = near/|far/2 - near| held within [0,
+/// 1].
+inline EdgeInterval truncated_edge(double near, double far) {
+  if (near <= 0.0) return {0.0, 0.0, 0.0};
+  const double bend = 0.5 * far - near, size = std::abs(bend);
+  if (near >= size) return {0.5 * near, 0.5, 0.0};
+  const double t = near / size;
+  const double by_size = bend > 0.0 ? t * t * (t - 1.0) : t * t * (1.0 - t);
+  return {0.5 * near * t * (2.0 - t), t * (2.0 - 1.5 * t) - by_size, 0.5 * by_size};
 }
 
 }  // namespace whirl::film
