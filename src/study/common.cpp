@@ -21,7 +21,9 @@ bool Walker::attempt(double speed) {
   check(VecCopy(x_.get(), trial_.get()));
   solve::NewtonOptions options;
   options.max_iterations = 30;
+  system_.set_forcing(false);
   const auto result = solve::find_equilibrium(system_, trial_.get(), options);
+  system_.set_forcing(true);
   reason_ = result.reason;
   if (!result.converged) return false;
   std::swap(x_, trial_);

@@ -132,7 +132,9 @@ core::Vector Branch::start(solve::CycleProblem& problem) const {
   } else {
     solve::NewtonOptions newton;
     newton.max_iterations = 40;
+    system_->set_forcing(false);
     const auto result = solve::find_equilibrium(*system_, x.get(), newton);
+    system_->set_forcing(true);
     if (!result.converged) throw core::NotConverged("no equilibrium to start from: " + result.reason);
     whole = system_->gather(x.get());
   }

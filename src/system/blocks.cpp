@@ -65,7 +65,7 @@ const Eigen::MatrixXd& RotorSystem::Blocks::dl0() {
 }
 
 void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load, Eigen::VectorXd* d_load) {
-  const double omega = system_.speed_, c = std::cos(angle), s = std::sin(angle);
+  const double omega = system_.forcing_ ? system_.speed_ : 0.0, c = std::cos(angle), s = std::sin(angle);
   load.setZero(size());
   if (d_load) d_load->setZero(size());
   for (Eigen::Index i = 0; i < size() / 2; ++i) {

@@ -282,7 +282,7 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   check(VecAXPY(sum.get(), speed_, a.get()));
   const core::ReadArray xa(x), da(xdot), sa(sum.get());
   const core::WriteArray fa(f);
-  const double c = speed_ * speed_ * std::cos(angle), s = speed_ * speed_ * std::sin(angle);
+  const double force = forcing_ ? speed_ * speed_ : 0.0, c = force * std::cos(angle), s = force * std::sin(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
     fa[2 * i + 1] = da[2 * i] - xa[2 * i + 1];
@@ -388,7 +388,7 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   check(MatMult(gyroscopic_.get(), v.get(), sum.get()));
   const core::ReadArray sa(sum.get());
   const core::WriteArray fa(f);
-  const double c = 2 * speed_ * std::cos(angle), s = 2 * speed_ * std::sin(angle);
+  const double force = forcing_ ? 2 * speed_ : 0.0, c = force * std::cos(angle), s = force * std::sin(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
     fa[2 * i + 1] = 0;

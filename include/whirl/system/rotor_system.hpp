@@ -53,6 +53,9 @@ class RotorSystem : public problem::System {
   void scales(Vec state_scale, Vec residual_scale) override;
   [[nodiscard]] problem::Structure* structure() override;
 
+  /// Switches the unbalance forces off (and on again): an equilibrium is that of the balanced machine. On at the start.
+  void set_forcing(bool on) { forcing_ = on; }
+
   // Facts about the machine, for studies.
   [[nodiscard]] const Train& train() const { return train_; }
   [[nodiscard]] const rotor::Rotor& rotor() const { return *rotor_; }
@@ -93,6 +96,7 @@ class RotorSystem : public problem::System {
   Train train_;
   Varying varying_;
   double speed_;
+  bool forcing_ = true;
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;  // coordinates: all, of the rotor, this rank's range
