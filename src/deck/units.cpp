@@ -259,12 +259,12 @@ std::string write_quantity(double value, std::string_view unit) {
     const std::string text = fmt::format("{:.{}g}", number, digits);
     double read = 0;
     (void)std::from_chars(text.data(), text.data() + text.size(), read);
-    if (apply(u, read) == value) return fmt::format("{} {}", text, plain(unit));
+    if (apply(u, read) == value) return fmt::format("{} {}", write_number(read), plain(unit));
   }
   // The division may be off by a unit in the last place: look at the neighbours.
   for (double x : {std::nextafter(number, -HUGE_VAL), std::nextafter(number, HUGE_VAL)})
-    if (apply(u, x) == value) return fmt::format("{:.17g} {}", x, plain(unit));
-  return fmt::format("{:.17g} {}", number, plain(unit));
+    if (apply(u, x) == value) return fmt::format("{} {}", write_number(x), plain(unit));
+  return fmt::format("{} {}", write_number(number), plain(unit));
 }
 
 }  // namespace whirl::deck
