@@ -248,7 +248,14 @@ void check_kind(std::string_view unit, std::string_view si) {
 }
 
 std::string write_number(double value) {
-  return fmt::format("{}", value == 0 ? 0.0 : value);
+  std::string text = fmt::format("{}", value == 0 ? 0.0 : value);
+  // 1.8e9 reads better than 1800000000.
+  const std::size_t sign = text[0] == '-' ? 1 : 0, last = text.find_last_not_of('0');
+  if (text.find_first_of(".en") != std::string::npos || text.size() - last < 7) return text;
+  const std::size_t exponent = text.size() - sign - 1;
+  text.resize(last + 1);
+  if (last > sign) text.insert(sign + 1, ".");
+  return fmt::format("{}e{}", text, exponent);
 }
 
 std::string write_quantity(double value, std::string_view unit) {
