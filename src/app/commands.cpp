@@ -23,7 +23,8 @@ namespace {
 core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   const study::Deck deck = study::load(comm, request.deck.path, request.deck.overrides);
   if (deck.studies.empty()) refuse(fmt::format("{}: the deck asks for no study (`studies: [...]`)", request.deck.path));
-  if (request.resume && request.force) refuse("--resume goes on with earlier results, --force replaces them: choose one");
+  if (request.resume && request.force)
+    refuse("--resume goes on with earlier results, --force replaces them: choose one");
   const std::string directory = request.directory.empty()
                                     ? "results/" + std::filesystem::path(request.deck.path).stem().string()
                                     : request.directory;

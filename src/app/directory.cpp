@@ -38,11 +38,13 @@ void prepare(const fs::path& directory, const std::string& resolved, Earlier ear
     if (!fs::exists(deck))
       throw InputError(fmt::format("'{}' holds files that are not results of whirl", directory.string()));
     if (earlier == Earlier::refuse)
-      throw InputError(fmt::format("'{}' holds results already: choose another directory with -o, go on with --resume, or "
-                                   "replace them with --force",
-                                   directory.string()));
+      throw InputError(
+          fmt::format("'{}' holds results already: choose another directory with -o, go on with --resume, or "
+                      "replace them with --force",
+                      directory.string()));
     if (earlier == Earlier::resume && contents(deck) != resolved)
-      throw InputError(fmt::format("'{}' holds results of another deck: --resume needs the same one", directory.string()));
+      throw InputError(
+          fmt::format("'{}' holds results of another deck: --resume needs the same one", directory.string()));
     if (earlier == Earlier::replace)
       for (const auto& entry : fs::directory_iterator(directory)) fs::remove_all(entry.path());
   }

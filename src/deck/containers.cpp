@@ -51,9 +51,9 @@ public:
     for (std::size_t i = 0; i < a_.size(value); ++i) n.push(item_->write(a_.at(mutable_part(value), i)));
     return n;
   }
-  Node schema() const override {
+  Node schema(bool whole) const override {
     Node n = typed_schema("array");
-    n.set("items", item_->schema());
+    n.set("items", item_->schema(whole));
     if (a_.fixed > 0) {
       n.set("minItems", Node::scalar(fmt::format("{}", a_.fixed)));
       n.set("maxItems", Node::scalar(fmt::format("{}", a_.fixed)));
@@ -106,13 +106,13 @@ public:
     for (std::size_t i = 0; i < a_.size(value); ++i) n.push(row_.write(a_.at(mutable_part(value), i)));
     return n;
   }
-  Node schema() const override {
+  Node schema(bool whole) const override {
     Node file = typed_schema("string");
     file.set("pattern", Node::scalar("\\.csv$", true));
     Node rows = typed_schema("array");
-    rows.set("items", row_.schema());
+    rows.set("items", row_.schema(whole));
     Node both = either_schema(std::move(file), std::move(rows));
-    if (!scalar_.empty()) both.find("anyOf")->push(row_.option(scalar_)->codec->schema());
+    if (!scalar_.empty()) both.find("anyOf")->push(row_.option(scalar_)->codec->schema(whole));
     return both;
   }
   std::string type() const override {
@@ -164,9 +164,9 @@ public:
     for (const auto& [name, v] : a_.entries(mutable_part(value))) n.set(name, item_->write(v));
     return n;
   }
-  Node schema() const override {
+  Node schema(bool whole) const override {
     Node n = typed_schema("object");
-    n.set("additionalProperties", item_->schema());
+    n.set("additionalProperties", item_->schema(whole));
     return n;
   }
   std::string type() const override { return fmt::format("a map NAME: {}", item_->type()); }
@@ -200,7 +200,7 @@ public:
     const void* v = a_.get(mutable_part(value));
     return v ? item_->write(v) : Node{};
   }
-  Node schema() const override { return item_->schema(); }
+  Node schema(bool whole) const override { return item_->schema(whole); }
   std::string type() const override { return item_->type(); }
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return item_->step(); }
@@ -228,7 +228,7 @@ public:
     if (const std::string* name = a_.name(value)) return Node::scalar(*name, true);
     return value_->write(a_.value(mutable_part(value)));
   }
-  Node schema() const override { return either_schema(typed_schema("string"), value_->schema()); }
+  Node schema(bool whole) const override { return either_schema(typed_schema("string"), value_->schema(whole)); }
   std::string type() const override { return "a name, or a map"; }
   const Structure* structure() const override { return value_->structure(); }
   Access find(void* value, std::span<const std::string> path) const override {
@@ -281,13 +281,13 @@ public:
     }
     return n;
   }
-  Node schema() const override {
+  Node schema(bool whole) const override {
     Node n = typed_schema("array");
     Node item = Node::map();
     Node& one_of = item.set("oneOf", Node::list());
     for (const ChoiceKind& k : kinds_) {
       Node o = object_schema();
-      Node options = k.options->schema();
+      Node options = k.options->schema(whole);
       options.set("description", Node::scalar(k.text, true));
       o.find("properties")->set(k.name, std::move(options));
       Node required = Node::list();

@@ -91,7 +91,7 @@ public:
     if (spec_.unit == "1" || spec_.unit == "*") return Node::scalar(write_number(v));
     return Node::scalar(write_quantity(v, spec_.unit), true);
   }
-  Node schema() const override { return quantity_schema(spec_); }
+  Node schema(bool) const override { return quantity_schema(spec_); }
   std::string type() const override { return with_bounds(unit_words(spec_.unit), spec_.check); }
   Access find(void* value, std::span<const std::string> path) const override {
     if (!path.empty()) return {};
@@ -114,7 +114,7 @@ public:
     const std::string unit = q.unit.empty() && spec_.unit != "*" ? spec_.unit : q.unit;
     return Node::scalar(write_quantity(q.value, unit), !unit.empty() && unit != "1");
   }
-  Node schema() const override { return quantity_schema(spec_); }
+  Node schema(bool) const override { return quantity_schema(spec_); }
   std::string type() const override { return with_bounds(unit_words(spec_.unit), spec_.check); }
 
 private:
@@ -149,7 +149,7 @@ public:
     n.set("to", Node::scalar(write_quantity(range.to, unit), text));
     return n;
   }
-  Node schema() const override {
+  Node schema(bool whole) const override {
     Node n = object_schema();
     Node& p = *n.find("properties");
     p.set("from", quantity_schema(spec_));
@@ -157,7 +157,7 @@ public:
     Node required = Node::list();
     required.push(Node::scalar("from", true));
     required.push(Node::scalar("to", true));
-    n.set("required", std::move(required));
+    if (whole) n.set("required", std::move(required));
     return n;
   }
   std::string type() const override {
@@ -188,7 +188,7 @@ public:
   Node write(const void* value) const override {
     return Node::scalar(fmt::format("{}", *static_cast<const int*>(value)));
   }
-  Node schema() const override {
+  Node schema(bool) const override {
     Node n = quantity_schema({"1", spec_.check});
     *n.find("type") = Node::scalar("integer", true);
     n.items.front().key = "type";
@@ -212,7 +212,7 @@ public:
   Node write(const void* value) const override {
     return Node::scalar(*static_cast<const bool*>(value) ? "true" : "false");
   }
-  Node schema() const override { return typed_schema("boolean"); }
+  Node schema(bool) const override { return typed_schema("boolean"); }
   std::string type() const override { return "true or false"; }
 };
 
@@ -222,7 +222,7 @@ public:
     if (is_scalar(node, "text", r)) *static_cast<std::string*>(value) = node.text;
   }
   Node write(const void* value) const override { return Node::scalar(*static_cast<const std::string*>(value), true); }
-  Node schema() const override { return typed_schema("string"); }
+  Node schema(bool) const override { return typed_schema("string"); }
   std::string type() const override { return "text"; }
 };
 
@@ -243,7 +243,7 @@ public:
                                            hint.empty() ? fmt::format("; {}", type()) : hint));
   }
   Node write(const void* value) const override { return Node::scalar(choices_[get_(value)].name, true); }
-  Node schema() const override {
+  Node schema(bool) const override {
     Node n = Node::map();
     Node list = Node::list();
     for (const Choice& c : choices_) list.push(Node::scalar(c.name, true));

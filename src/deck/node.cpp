@@ -149,7 +149,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   for (const std::string& c : candidates) {
     const bool part = word.size() >= 4 && c.size() > word.size() && c.compare(0, word.size(), word) == 0;
     const std::size_t d = part ? 1 : distance(lower(word), lower(c));
-    if (d < least) {
+    if (d < least && d < word.size()) {
       least = d;
       best = c;
     }

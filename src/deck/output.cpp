@@ -51,19 +51,26 @@ std::string flow(const Node& n) {
   return s + (map ? "}" : "]");
 }
 
-// Lists of leaves and maps of leaves inside lists stay on one line.
+// Lists of leaves, small maps of leaves, and rows stay on one line.
+bool on_one_line(const Node& n, bool in_list) {
+  if (is_leaf(n) || n.items.empty()) return true;
+  return all_leaves(n) && (n.kind == Node::Kind::list || in_list || n.items.size() <= 4);
+}
+
 void block(const Node& n, const std::string& indent, std::string& out) {
   for (const Node& i : n.items) {
     const bool in_list = n.kind == Node::Kind::list;
     out += indent + (in_list ? "-" : i.key + ":");
-    const bool short_list = i.kind == Node::Kind::list && all_leaves(i);
-    const bool row = i.kind == Node::Kind::map && (i.items.empty() || (in_list && all_leaves(i)));
-    if (is_leaf(i) || short_list || row) {
+    if (on_one_line(i, in_list)) {
       out += " " + flow(i) + "\n";
-    } else {
-      out += "\n";
-      block(i, indent + "  ", out);
+      continue;
     }
+    std::string inner;
+    block(i, indent + "  ", inner);
+    if (in_list)
+      out += " " + inner.substr(indent.size() + 2);  // the first entry stands behind the dash
+    else
+      out += "\n" + inner;
   }
 }
 
@@ -154,10 +161,16 @@ std::string schema_text(const Structure& structure, std::string_view title) {
   Node n = Node::map();
   n.set("$schema", Node::scalar("https://json-schema.org/draft/2020-12/schema", true));
   n.set("title", Node::scalar(std::string(title), true));
-  for (Node& i : structure.schema().items) n.set(i.key, std::move(i));
+  // A deck with a base gives only what differs, so that nothing is required of it.
+  Node asks = Node::map();
+  asks.set("required", Node::list()).push(Node::scalar("base", true));
+  n.set("if", std::move(asks));
+  Node part = structure.schema(false);
   Node base = typed_schema("string");
   base.set("description", Node::scalar("deck to start from; maps merge, lists replace", true));
-  if (Node* p = n.find("properties")) p->set("base", std::move(base));
+  part.find("properties")->set("base", std::move(base));
+  n.set("then", std::move(part));
+  n.set("else", structure.schema(true));
   return to_json(n);
 }
 

@@ -79,7 +79,7 @@ Node Structure::write(const void* object) const {
 namespace {
 
 // The schema of one set of options; `selector` has the value `choice` in it.
-Node plain_schema(const Structure& s, const std::string& selector, const std::string& choice) {
+Node plain_schema(const Structure& s, bool whole, const std::string& selector, const std::string& choice) {
   Node n = object_schema();
   Node required = Node::list();
   Node& properties = *n.find("properties");
@@ -88,7 +88,7 @@ Node plain_schema(const Structure& s, const std::string& selector, const std::st
     if (!selector.empty() && o.selector == selector &&
         std::find(o.selected.begin(), o.selected.end(), choice) == o.selected.end())
       continue;
-    Node p = o.codec->schema();
+    Node p = o.codec->schema(whole);
     if (selects) {
       p = Node::map();
       p.set("const", Node::scalar(choice, true));
@@ -101,21 +101,21 @@ Node plain_schema(const Structure& s, const std::string& selector, const std::st
     const bool written = selects && o.codec->write(o.member(s.defaults.get())).text != choice;
     if (o.required || written) required.push(Node::scalar(o.key, true));
   }
-  if (!required.items.empty()) n.set("required", std::move(required));
+  if (whole && !required.items.empty()) n.set("required", std::move(required));
   return n;
 }
 
 }  // namespace
 
-Node Structure::schema() const {
+Node Structure::schema(bool whole) const {
   std::string selector;
   for (const Option& o : options)
     if (selector.empty()) selector = o.selector;
-  if (selector.empty()) return plain_schema(*this, {}, {});
+  if (selector.empty()) return plain_schema(*this, whole, {}, {});
   Node n = Node::map();
-  Node& one_of = n.set("oneOf", Node::list());
-  const Node choices = option(selector)->codec->schema();
-  for (const Node& c : choices.find("enum")->items) one_of.push(plain_schema(*this, selector, c.text));
+  Node& one_of = n.set(whole ? "oneOf" : "anyOf", Node::list());
+  const Node choices = option(selector)->codec->schema(whole);
+  for (const Node& c : choices.find("enum")->items) one_of.push(plain_schema(*this, whole, selector, c.text));
   return n;
 }
 
@@ -148,7 +148,7 @@ public:
   explicit StructCodec(const Structure& s) : structure_(s) {}
   void read(const Node& node, void* value, Reading& r) const override { structure_.read(node, value, r); }
   Node write(const void* value) const override { return structure_.write(value); }
-  Node schema() const override { return structure_.schema(); }
+  Node schema(bool whole) const override { return structure_.schema(whole); }
   std::string type() const override { return "map"; }
   const Structure* structure() const override { return &structure_; }
   Access find(void* value, std::span<const std::string> path) const override { return structure_.find(value, path); }

@@ -106,6 +106,7 @@ Node parse_table(std::string_view text, const std::string& source) {
       Node value = Node::scalar(cells[i].text + (columns[i].unit.empty() ? "" : " " + columns[i].unit));
       value.place = {name, line, cells[i].column};
       value.key_place = columns[i].place;
+      value.table_row = true;
       entry.set(columns[i].key, std::move(value));
     }
     rows.push(std::move(entry));

@@ -248,7 +248,14 @@ void check_kind(std::string_view unit, std::string_view si) {
 }
 
 std::string write_number(double value) {
-  return fmt::format("{}", value == 0 ? 0.0 : value);
+  std::string text = fmt::format("{}", value == 0 ? 0.0 : value);
+  // 1.8e9 reads better than 1800000000.
+  const std::size_t sign = text[0] == '-' ? 1 : 0, last = text.find_last_not_of('0');
+  if (text.find_first_of(".en") != std::string::npos || text.size() - last < 7) return text;
+  const std::size_t exponent = text.size() - sign - 1;
+  text.resize(last + 1);
+  if (last > sign) text.insert(sign + 1, ".");
+  return fmt::format("{}e{}", text, exponent);
 }
 
 std::string write_quantity(double value, std::string_view unit) {
@@ -259,12 +266,12 @@ std::string write_quantity(double value, std::string_view unit) {
     const std::string text = fmt::format("{:.{}g}", number, digits);
     double read = 0;
     (void)std::from_chars(text.data(), text.data() + text.size(), read);
-    if (apply(u, read) == value) return fmt::format("{} {}", text, plain(unit));
+    if (apply(u, read) == value) return fmt::format("{} {}", write_number(read), plain(unit));
   }
   // The division may be off by a unit in the last place: look at the neighbours.
   for (double x : {std::nextafter(number, -HUGE_VAL), std::nextafter(number, HUGE_VAL)})
-    if (apply(u, x) == value) return fmt::format("{:.17g} {}", x, plain(unit));
-  return fmt::format("{:.17g} {}", number, plain(unit));
+    if (apply(u, x) == value) return fmt::format("{} {}", write_number(x), plain(unit));
+  return fmt::format("{} {}", write_number(number), plain(unit));
 }
 
 }  // namespace whirl::deck

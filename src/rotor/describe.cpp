@@ -139,8 +139,9 @@ void describe(deck::Description<Options>& d) {
     for (std::size_t i = 0; i < o.segments.size(); ++i) {
       const double t = o.segments[i].temperature;
       if (t >= table.front().first && t <= table.back().first) continue;
-      return r.fail("material.modulus", fmt::format("the modulus is known from {} K to {} K, but segment {} is at {} K",
-                                                    table.front().first, table.back().first, i + 1, t));
+      return r.fail("material.modulus",
+                    fmt::format("the modulus is known from {:.6g} K to {:.6g} K, but segment {} is at {:.6g} K",
+                                table.front().first, table.back().first, i + 1, t));
     }
   });
 }

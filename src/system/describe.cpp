@@ -26,7 +26,7 @@ public:
     const std::string text = write_quantity(static_cast<const system::BalanceGrade*>(value)->velocity, "mm/s");
     return Node::scalar("G" + text.substr(0, text.find(' ')), true);
   }
-  Node schema() const override {
+  Node schema(bool) const override {
     Node n = Node::map();
     n.set("type", Node::scalar("string", true));
     n.set("pattern", Node::scalar("^G[0-9]+(\\.[0-9]+)?$", true));

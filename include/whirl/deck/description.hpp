@@ -97,8 +97,8 @@ public:
   virtual void read(const Node& node, void* value, Reading& reading) const = 0;
   /// The value in SI; a node of kind none is left out of the deck.
   [[nodiscard]] virtual Node write(const void* value) const = 0;
-  /// JSON Schema of the value, as a tree.
-  [[nodiscard]] virtual Node schema() const = 0;
+  /// JSON Schema of the value, as a tree; of a part of it (nothing is required) unless `whole`.
+  [[nodiscard]] virtual Node schema(bool whole) const = 0;
   /// The value in words for the reference: "length in m", "one of a, b".
   [[nodiscard]] virtual std::string type() const = 0;
   /// Options below this one, null for leaves, and how a path gets to them (`NAME`, `1`), empty for structs.
@@ -138,7 +138,7 @@ public:
 
   void read(const Node& node, void* object, Reading& reading) const;
   [[nodiscard]] Node write(const void* object) const;
-  [[nodiscard]] Node schema() const;
+  [[nodiscard]] Node schema(bool whole) const;
   [[nodiscard]] Access find(void* object, std::span<const std::string> path) const;
   [[nodiscard]] const Option* option(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;

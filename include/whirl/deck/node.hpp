@@ -27,7 +27,7 @@ struct Node {
   Kind kind = Kind::none;
   std::string text;         ///< of a scalar
   bool quoted = false;      ///< the scalar stood in quotes
-  bool table_row = false;   ///< came from a row of a table
+  bool table_row = false;   ///< a row of a table, or a cell of one
   std::string key;          ///< if this is an entry of a map
   Place key_place;          ///< if this is an entry of a map
   Place place;              ///< of the value

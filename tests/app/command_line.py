@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Runs the program as users do and checks exit codes, what is said where, and what is left on disk.
+
+command_line.py PROGRAM SOURCE RANKS [LAUNCHER WORDS...]
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+program, source, ranks = sys.argv[1], pathlib.Path(sys.argv[2]), int(sys.argv[3])
+launcher = sys.argv[4:]
+train = source / "inputs" / "turbine_train"
+work = pathlib.Path(tempfile.mkdtemp(prefix="whirl_app_"))
+failures = []
+
+
+def whirl(*words, code, out=None, err=None, times=1):
+    done = subprocess.run([*launcher, program, *map(str, words)], cwd=work, capture_output=True, text=True, timeout=120)
+    where = "whirl " + " ".join(map(str, words))
+    if done.returncode != code:
+        failures.append(f"{where}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
+    if out is not None and done.stdout.count(out) != times:
+        failures.append(f"{where}: '{out}' {done.stdout.count(out)} times on stdout\n{done.stdout}")
+    if err is not None and done.stderr.count(err) != times:
+        failures.append(f"{where}: '{err}' {done.stderr.count(err)} times on stderr\n{done.stderr}")
+    return done
+
+
+whirl("check", train / "unbalance.yaml", code=0, out="184 segments, 5 bearings, 2 studies")
+whirl("list", code=0, out="cycle_branch")
+whirl("describe", "bearings.geometry.clearance", code=0, out="bearings.NAME.geometry.clearance")
+whirl("describe", "clearence", code=2, err="did you mean 'clearance'?")
+whirl("schema", code=0, out='"$schema"')
+whirl("--version", code=0, out="whirl ")
+whirl(code=2)
+whirl("rum", train / "static.yaml", code=2)
+whirl("check", work / "none.yaml", code=2, err="No such file or directory")
+
+# A wrong deck is refused with its place, said once, and leaves nothing behind.
+deck = source / "tests" / "failure" / "unknown_nested_key.yaml"
+whirl("run", deck, "-o", work / "out", code=2, err=f"{deck}:6:16: unknown key 'clearence' (did you mean 'clearance'?)")
+whirl("run", train / "static.yaml", "--set", "gravity=9.81", "-o", work / "out", code=2, err="--set gravity=9.81: ")
+whirl("run", train / "train.yaml", "-o", work / "out", code=2, err="asks for no study")
+if (work / "out").exists() or (work / "results").exists():
+    failures.append("a wrong deck left files")
+
+# Directories that hold something are not touched.
+strange = work / "strange"
+strange.mkdir()
+(strange / "thesis.txt").write_text("mine\n")
+for flag in ([], ["--force"], ["--resume"]):
+    whirl("run", train / "static.yaml", "-o", strange, *flag, code=2, err="not results of whirl")
+earlier = work / "earlier"
+earlier.mkdir()
+(earlier / "resolved.yaml").write_text("title: another deck\n")
+whirl("run", train / "static.yaml", "-o", earlier, code=2, err="holds results already")
+whirl("run", train / "static.yaml", "-o", earlier, "--resume", code=2, err="results of another deck")
+whirl("run", train / "static.yaml", "-o", strange / "thesis.txt", code=2, err="is a file")
+if (earlier / "resolved.yaml").read_text() != "title: another deck\n" or not (strange / "thesis.txt").exists():
+    failures.append("a refused run changed files")
+
+shutil.rmtree(work)
+print("\n".join(failures) or f"the command line is right on {ranks} ranks")
+sys.exit(1 if failures else 0)
