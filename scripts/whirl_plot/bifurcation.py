@@ -22,12 +22,12 @@ def branch_of(study):
     return parameter, np.asarray(stable) > 0.5, unstable
 
 
-def mark_events(axis, study, curves, scale, label_curve=0, size=6):
+def mark_events(axis, study, curves, scale, label=True, size=6):
     parameter, _, unstable = branch_of(study)
     for kind, value in events_of(study):
         heights = place_on_branch(parameter, [c * scale for c in curves], unstable, kind, value)
         for i, height in enumerate(heights):
-            mark(axis, kind, value, height, label=i == label_curve, size=size)
+            mark(axis, kind, value, height, label=label and i == 0, size=size)
 
 
 def draw_equilibria(study):
@@ -61,13 +61,13 @@ def draw_equilibria(study):
                  branch_legend([k for k, _ in events_of(study)], directions))]
 
 
-def draw_cycle_panel(axis, study, direction, b, scale, colour, size=6):
+def draw_cycle_panel(axis, study, direction, b, scale, colour, label=True, size=6):
     parameter, stable, _ = branch_of(study)
     high, low = (study.get(f"branch/{direction}_{k}").reshape(len(parameter), -1)[:, b] for k in ("max", "min"))
     axis.fill_between(parameter, low * scale, high * scale, color=colour, alpha=0.06, linewidth=0)
     draw_branch(axis, parameter, high * scale, stable, colour)
     draw_branch(axis, parameter, low * scale, stable, colour)
-    mark_events(axis, study, [high, low], scale, size=size)
+    mark_events(axis, study, [high, low], scale, label, size)
 
 
 def draw_cycles(study):
@@ -118,9 +118,9 @@ def draw_together(results):
             if study.kind == "equilibrium_branch":
                 parameter, stable, _ = branch_of(study)
                 draw_branch(axis, parameter, tables[s][:, b] * scale, stable, colour, linewidth=1.3)
-                mark_events(axis, study, [tables[s][:, b]], scale, size=5)
+                mark_events(axis, study, [tables[s][:, b]], scale, False, 5)
             else:
-                draw_cycle_panel(axis, study, "y", b, scale, colour, size=5)
+                draw_cycle_panel(axis, study, "y", b, scale, colour, False, 5)
     for axis, name in zip(axes, names):
         axis.set_title(name)
         axis.set_ylabel(f"y, max and min [{unit}]")

@@ -29,6 +29,17 @@ def draw_lines(axis, x, y, decrement, whirl):
         axis.plot(x[start:stop + 1], y[start:stop + 1], color=colour_of(worst[start]), linestyle=LINES.get(whirl[start], "-"))
 
 
+def label_modes(axis, x, ends):
+    """Numbers of the modes at the right end, moved apart where they would overlap."""
+    low, high = axis.get_ylim()
+    gap, last = 0.035 * (high - low) * (2.2 if high < 2 else 1), -np.inf
+    for mode, y in sorted(ends, key=lambda end: end[1]):
+        if not low <= y <= high:
+            continue
+        last = max(y, last + gap)
+        axis.annotate(str(mode), (x, last), xytext=(5, 0), textcoords="offset points", va="center", fontsize=7.5, color=GREY)
+
+
 def draw(study):
     if not study.has("spectrum/speed") or len(np.unique(study.get("spectrum/speed"))) < 2:
         return []
@@ -39,9 +50,6 @@ def draw(study):
         x, y = speed * to_speed, frequency * to_frequency
         draw_lines(top, x, y, decrement, whirl)
         draw_lines(bottom, x, decrement, decrement, whirl)
-        for axis, height in ((top, y[-1]), (bottom, decrement[-1])):
-            axis.annotate(str(mode), (x[-1], height), xytext=(4, 0), textcoords="offset points", va="center", fontsize=7.5,
-                          color=GREY, annotation_clip=True)
     all_speed = np.concatenate([m[1] for m in modes])
     all_frequency = np.concatenate([m[2] for m in modes])
     ends = np.array([all_speed.min(), all_speed.max()])
@@ -50,11 +58,11 @@ def draw(study):
     side = ends[1] if ends[1] < 0.93 * limit else 0.9 * limit
     top.annotate("1\u00d7", (side * to_speed, side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
                  fontsize=9, ha="right", va="bottom")
-    for k, speed in enumerate(np.atleast_1d(study.get("critical/speed", np.array([])))):
+    for speed in np.atleast_1d(study.get("critical/speed", np.array([]))):
         top.plot(speed * to_speed, speed * to_frequency, "o", markersize=7, markerfacecolor="none", color=INK, zorder=5)
         top.annotate(f"{speed * to_speed:.0f}", (speed * to_speed, speed * to_frequency),
-                     xytext=(9, -4) if k % 2 else (-9, 4), textcoords="offset points",
-                     ha="left" if k % 2 else "right", va="top" if k % 2 else "bottom", fontsize=8, color=INK)
+                     xytext=(7, -4), textcoords="offset points", ha="left", va="top", fontsize=8, color=INK,
+                     bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6})
     top.set_xlim(ends[0] * to_speed, ends[1] * to_speed)
     top.set_ylim(0, limit * to_frequency)
     top.set_ylabel(f"natural frequency [{unit}]")
@@ -73,4 +81,6 @@ def draw(study):
     bottom.set_ylabel("logarithmic decrement")
     bottom.set_xlabel(speed_label)
     bottom.set_title("Damping (below zero: unstable)")
+    label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1]])
+    label_modes(bottom, ends[1] * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == ends[1]])
     return [save(figure, study, "campbell", ROTATION, handles, 7)]

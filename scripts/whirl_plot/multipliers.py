@@ -22,8 +22,8 @@ def draw(study):
     inside = np.abs(values) <= 1
     points = plane.scatter(values.real[inside], values.imag[inside], c=colour[inside], s=13, cmap="viridis", linewidths=0,
                            vmin=parameter.min(), vmax=parameter.max(), zorder=3)
-    plane.scatter(values.real[~inside], values.imag[~inside], c=colour[~inside], s=24, cmap="viridis", edgecolors=BAD,
-                  linewidths=0.9, vmin=parameter.min(), vmax=parameter.max(), zorder=4)
+    plane.scatter(values.real[~inside], values.imag[~inside], c=colour[~inside], s=22, cmap="viridis", edgecolors=BAD,
+                  linewidths=0.5, vmin=parameter.min(), vmax=parameter.max(), zorder=4)
     reach = 1.12 * max(1.0, min(2.5, np.nanmax(np.abs(values))))
     plane.set_xlim(-reach, reach)
     plane.set_ylim(-reach, reach)

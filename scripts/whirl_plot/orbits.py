@@ -67,7 +67,7 @@ def draw(study, shown=9):
     names = study.bearings(x.shape[2])
     known = study.has("bearings/clearance") or study.has("bearings/outline_x")
     rows = 2 if known else 1
-    figure, axes = plt.subplots(rows, len(names), figsize=(max(7.2, 2.75 * len(names)), 2.75 * rows + 1.3), squeeze=False)
+    figure, axes = plt.subplots(rows, len(names), figsize=(max(7.2, 2.75 * len(names)), 2.55 * rows + 0.9), squeeze=False)
     norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
     for b, name in enumerate(names):
         if known:
@@ -94,7 +94,7 @@ def draw_locus(study):
     parameter, stable, unstable = branch_of(study)
     x, y = (study.get(f"branch/{k}").reshape(len(parameter), -1) * 1e6 for k in "xy")
     names = study.bearings(x.shape[1])
-    figure, axes = plt.subplots(1, len(names), figsize=(max(7.2, 2.9 * len(names)), 4.1), squeeze=False)
+    figure, axes = plt.subplots(1, len(names), figsize=(max(7.2, 2.75 * len(names)), 3.45), squeeze=False)
     norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
     for b, (axis, name) in enumerate(zip(axes[0], names)):
         if draw_clearance(axis, study, b) is None:
@@ -127,7 +127,6 @@ def draw_positions(study):
         if study.has("bearings/clearance"):
             c = np.atleast_1d(study.get("bearings/clearance"))[b]
             lines += f"\neccentricity {np.hypot(x[b], y[b]) / c:.3f} of {c * 1e6:.0f} \u00b5m"
-        axis.text(0.5, 0.97, lines, transform=axis.transAxes, ha="center", va="top", fontsize=7.5, color=INK,
-                  bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.5})
         finish(axis, name if load is None else f"{name}: {np.atleast_1d(load)[b] / 1e3:.2f} kN")
+        axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8.5)
     return [save(figure, study, "journals", f"journal relative to the bearing centre; load of the journal on the bearing, positive down; {ROTATION}")]

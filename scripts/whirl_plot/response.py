@@ -42,7 +42,7 @@ def draw_group(study, group, names, what, speed, speed_label):
     files, count = [], data["semi_major"].shape[1]
     for start in range(0, count, 5):
         part = range(start, min(start + 5, count))
-        figure, axes = plt.subplots(2, len(part), figsize=(max(7.2, 3.1 * len(part)), 6.0), sharex=True, sharey="row" if group == "bearings" else False,
+        figure, axes = plt.subplots(2, len(part), figsize=(max(7.2, 2.6 * len(part)), 5.8), sharex=True, sharey="row" if group == "bearings" else False,
                                     height_ratios=[1.5, 1], squeeze=False)
         for column, k in enumerate(part):
             draw_place(axes[0, column], axes[1, column], speed, data, k, scale, unit, names[k])
