@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, length_unit, mark, parameter_label,
+from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, length_unit, levels, mark, parameter_label,
                     place_on_branch, save)
 
 
@@ -24,10 +24,11 @@ def branch_of(study):
 
 def mark_events(axis, study, curves, scale, label=True, size=6):
     parameter, _, unstable = branch_of(study)
-    for kind, value in events_of(study):
+    events = events_of(study)
+    for (kind, value), level in zip(events, levels([v for _, v in events], np.ptp(parameter))):
         heights = place_on_branch(parameter, [c * scale for c in curves], unstable, kind, value)
         for i, height in enumerate(heights):
-            mark(axis, kind, value, height, label=label and i == 0, size=size)
+            mark(axis, kind, value, height, label=label and i == 0, size=size, level=level)
 
 
 def draw_equilibria(study):

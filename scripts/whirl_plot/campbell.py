@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import BAD, GOOD, GREY, INK, ROTATION, WARN, runs, save, speed_axis
+from .style import BAD, GOOD, GREY, INK, ROTATION, WARN, levels, runs, save, speed_axis
 
 LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (1, 1.4))}
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
@@ -58,10 +58,11 @@ def draw(study):
     side = ends[1] if ends[1] < 0.93 * limit else 0.9 * limit
     top.annotate("1\u00d7", (side * to_speed, side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
                  fontsize=9, ha="right", va="bottom")
-    for speed in np.atleast_1d(study.get("critical/speed", np.array([]))):
+    critical = np.atleast_1d(study.get("critical/speed", np.array([])))
+    for speed, level in zip(critical, levels(critical, ends[1] - ends[0], 0.03)):
         top.plot(speed * to_speed, speed * to_frequency, "o", markersize=7, markerfacecolor="none", color=INK, zorder=5)
         top.annotate(f"{speed * to_speed:.0f}", (speed * to_speed, speed * to_frequency),
-                     xytext=(7, -4), textcoords="offset points", ha="left", va="top", fontsize=8, color=INK,
+                     xytext=(7 + 24 * level, -4), textcoords="offset points", ha="left", va="top", fontsize=8, color=INK,
                      bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6})
     top.set_xlim(ends[0] * to_speed, ends[1] * to_speed)
     top.set_ylim(0, limit * to_frequency)

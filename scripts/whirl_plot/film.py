@@ -50,6 +50,8 @@ def draw(study):
             thickness = study.get(f"{path}/thickness") * scale
             panel(figure, right, theta, z, thickness, "viridis_r", f"thickness [{unit}]", "white")
             i, j = np.unravel_index(np.argmin(thickness), thickness.shape)
+            if np.ptp(thickness[i]) < 1e-9 * thickness[i, j]:  # aligned: the whole line is thinnest
+                j = len(z) // 2
             right.plot(theta[i], z[j], "+", color="white", markersize=8)
             right.set_title(f"{name}: film thickness, smallest {thickness.min():.4g} {unit} at {theta[i]:.1f} deg")
         files.append(save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness"))

@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .bifurcation import events_of
-from .style import BAD, GREY, INK, MARKS, parameter_label, save
+from .style import BAD, GREY, INK, MARKS, levels, parameter_label, save
 
 
 def draw(study):
@@ -38,10 +38,11 @@ def draw(study):
         moduli.plot(parameter, sizes[:, k], color=INK if k == 0 else GREY, linewidth=1.6 if k == 0 else 0.8)
     moduli.axhline(1, color=BAD, linewidth=1.0)
     top = 1.08 * max(1.0, min(2.5, np.nanmax(sizes)))
-    for kind, value in events_of(study):
+    events = events_of(study)
+    for (kind, value), level in zip(events, levels([v for _, v in events], np.ptp(parameter), 0.09)):
         short, _, colour_, _ = MARKS.get(kind, (kind, "", INK, ""))
         moduli.axvline(value, color=colour_, linewidth=0.8, linestyle=":")
-        moduli.annotate(short, (value, top), xytext=(2, -2), textcoords="offset points", fontsize=8, color=colour_,
+        moduli.annotate(short, (value, top), xytext=(2, -2 - 10 * level), textcoords="offset points", fontsize=8, color=colour_,
                         va="top", fontweight="bold")
     moduli.set_ylim(0, top)
     moduli.set_xlim(parameter.min(), parameter.max())

@@ -116,7 +116,7 @@ def draw_positions(study):
     x, y = (np.atleast_1d(study.get(f"bearings/{k}")) for k in "xy")
     names = study.bearings(len(x))
     load = study.get("bearings/load")
-    figure, axes = plt.subplots(1, len(names), figsize=(max(7.2, 2.6 * len(names)), 3.9), squeeze=False)
+    figure, axes = plt.subplots(1, len(names), figsize=(max(7.2, 2.6 * len(names)), 3.55), squeeze=False)
     for b, (axis, name) in enumerate(zip(axes[0], names)):
         if draw_clearance(axis, study, b) is None:
             square(axis, np.array([0, x[b] * 1e6]), np.array([0, y[b] * 1e6]))

@@ -123,13 +123,23 @@ def place_on_branch(parameter, curves, unstable, kind, value):
     return [c[i] + s * (c[i + 1] - c[i]) for c in curves]
 
 
-def mark(axis, kind, x, y, label=True, size=6, down=False):
+def levels(values, span, width=0.075):
+    """For each label at `values` on an axis of length `span`, how many lines it has to go up to clear those before it."""
+    taken, result = [], [0] * len(values)
+    for i in np.argsort(values, kind="stable"):
+        near = {level for x, level in taken if abs(x - values[i]) < width * span}
+        result[i] = next(level for level in range(len(values) + 1) if level not in near)
+        taken.append((values[i], result[i]))
+    return result
+
+
+def mark(axis, kind, x, y, label=True, size=6, level=0):
     short, marker, colour, _ = MARKS.get(kind, (kind, "x", INK, kind))
     axis.plot([x], [y], marker=marker, color=colour, markersize=size, markeredgecolor="white", markeredgewidth=0.8,
               linestyle="none", zorder=6)
     if label:
-        axis.annotate(short, (x, y), xytext=(0, -7 if down else 6), textcoords="offset points", ha="center",
-                      va="top" if down else "bottom", fontsize=7.5, color=colour, fontweight="bold", zorder=7)
+        axis.annotate(short, (x, y), xytext=(0, 6 + 9 * level), textcoords="offset points", ha="center", va="bottom",
+                      fontsize=7.5, color=colour, fontweight="bold", zorder=7)
 
 
 def branch_legend(kinds, more=()):

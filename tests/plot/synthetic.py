@@ -98,7 +98,7 @@ def cycles(root, name, grade, fold):
               parameter="speed", parameter_unit="rpm", unbalance="gen_pair")
     s = np.linspace(0, 1, 140)
     p = 1000 + 5000 * s + (fold * 9000 * np.exp(-((s - 0.55) / 0.07)**2) * (s - 0.55) * -10 / 5)
-    size = grade * (6e-6 + 35e-6 * np.exp(-((p - 2700) / 500)**2) + 60e-6 * np.maximum(0, s - 0.75)**1.5)
+    size = grade * (6e-6 + 35e-6 * np.exp(-(((s - 0.5) / 0.1) if fold else (p - 2700) / 500)**2) + 60e-6 * np.maximum(0, s - 0.75)**1.5)
     size = np.minimum(size[:, None] * [0.5, 1, 0.7, 0.4, 1.1], 0.45 * CLEARANCE)
     e = 0.8 / (1 + p[:, None] / 2500)
     xm, ym = CLEARANCE * e * 0.5, -CLEARANCE * e * 0.8
