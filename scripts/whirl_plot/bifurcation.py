@@ -1,0 +1,133 @@
+"""Bifurcation diagrams: equilibria and cycles over a parameter, each bearing, stable solid and unstable dashed."""
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, length_unit, levels, mark, parameter_label,
+                    place_on_branch, save)
+
+
+def events_of(study):
+    kinds = study.get("bifurcations/type")
+    if kinds is None or not len(kinds):
+        return []
+    return list(zip(kinds, np.atleast_1d(study.get("bifurcations/parameter"))))
+
+
+def branch_of(study):
+    parameter = study.get("branch/parameter")
+    unstable = study.get("branch/unstable_count")
+    stable = study.get("branch/stable")
+    if stable is None:
+        stable = unstable == 0 if unstable is not None else np.ones(len(parameter))
+    return parameter, np.asarray(stable) > 0.5, unstable
+
+
+def mark_events(axis, study, curves, scale, label=True, size=6):
+    parameter, _, unstable = branch_of(study)
+    events = events_of(study)
+    for (kind, value), level in zip(events, levels([v for _, v in events], np.ptp(parameter))):
+        heights = place_on_branch(parameter, [c * scale for c in curves], unstable, kind, value)
+        for i, height in enumerate(heights):
+            mark(axis, kind, value, height, label=label and i == 0, size=size, level=level)
+
+
+def draw_equilibria(study):
+    if not study.has("branch/parameter", "branch/y"):
+        return []
+    parameter, stable, unstable = branch_of(study)
+    x, y = (study.get(f"branch/{k}").reshape(len(parameter), -1) for k in "xy")
+    names = study.bearings(x.shape[1])
+    growth = study.get("branch/leading_real")
+    figure, axes, _ = grid_of(len(names) + (growth is not None))
+    scale, unit = length_unit(np.concatenate([x, y]))
+    for b, (axis, name) in enumerate(zip(axes, names)):
+        draw_branch(axis, parameter, y[:, b] * scale, stable, COLOURS[0])
+        draw_branch(axis, parameter, x[:, b] * scale, stable, COLOURS[1])
+        mark_events(axis, study, [y[:, b], x[:, b]], scale)
+        axis.set_title(name)
+        axis.set_ylabel(f"journal position [{unit}]")
+        axis.set_xlabel(parameter_label(study))
+        axis.margins(y=0.12)
+    if growth is not None:
+        axis = axes[-1]
+        axis.axhline(0, color=INK, linewidth=0.9)
+        draw_branch(axis, parameter, growth, stable, BAD)
+        mark_events(axis, study, [growth], 1)
+        axis.set_title("least stable eigenvalue")
+        axis.set_ylabel("real part [1/s]")
+        axis.set_xlabel(parameter_label(study))
+        axis.margins(y=0.12)
+    directions = [Line2D([], [], color=COLOURS[0], label="y, vertical"), Line2D([], [], color=COLOURS[1], label="x, horizontal")]
+    return [save(figure, study, "equilibria", "journal relative to the bearing centre",
+                 branch_legend([k for k, _ in events_of(study)], directions))]
+
+
+def draw_cycle_panel(axis, study, direction, b, scale, colour, label=True, size=6):
+    parameter, stable, _ = branch_of(study)
+    high, low = (study.get(f"branch/{direction}_{k}").reshape(len(parameter), -1)[:, b] for k in ("max", "min"))
+    axis.fill_between(parameter, low * scale, high * scale, color=colour, alpha=0.06, linewidth=0)
+    draw_branch(axis, parameter, high * scale, stable, colour)
+    draw_branch(axis, parameter, low * scale, stable, colour)
+    mark_events(axis, study, [high, low], scale, label, size)
+
+
+def draw_cycles(study):
+    if not study.has("branch/parameter", "branch/y_max"):
+        return []
+    parameter, _, _ = branch_of(study)
+    count = study.get("branch/y_max").reshape(len(parameter), -1).shape[1]
+    names = study.bearings(count)
+    files = []
+    for direction, words in (("y", "vertical"), ("x", "horizontal")):
+        if not study.has(f"branch/{direction}_max"):
+            continue
+        figure, axes, _ = grid_of(count)
+        scale, unit = length_unit(np.concatenate([study.get(f"branch/{direction}_max"), study.get(f"branch/{direction}_min")]))
+        for b, (axis, name) in enumerate(zip(axes, names)):
+            draw_cycle_panel(axis, study, direction, b, scale, COLOURS[0] if direction == "y" else COLOURS[1])
+            axis.set_title(name)
+            axis.set_ylabel(f"{direction}, max and min [{unit}]")
+            axis.set_xlabel(parameter_label(study))
+            axis.margins(y=0.12)
+        note = f"largest and smallest {words} position of the journal over one cycle, relative to the bearing centre"
+        unbalance = study.attribute("unbalance")
+        files.append(save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note,
+                          branch_legend([k for k, _ in events_of(study)])))
+    return files
+
+
+def draw_together(results):
+    """All branches of a run over the same parameter in one picture: the vertical motion of each journal."""
+    studies = [s for s in results.studies
+               if (s.kind == "cycle_branch" and s.has("branch/parameter", "branch/y_max"))
+               or (s.kind == "equilibrium_branch" and s.has("branch/parameter", "branch/y"))]
+    label = parameter_label(studies[0]) if studies else ""
+    studies = [s for s in studies if parameter_label(s) == label]
+    if len(studies) < 2 or all(s.kind == "equilibrium_branch" for s in studies):
+        return []
+    field = {"cycle_branch": "branch/y_max", "equilibrium_branch": "branch/y"}
+    tables = [s.get(field[s.kind]).reshape(len(s.get("branch/parameter")), -1) for s in studies]
+    count = min(t.shape[1] for t in tables)
+    names = studies[0].bearings(count)
+    scale, unit = length_unit(np.concatenate([t[:, :count].ravel() for t in tables]))
+    figure, axes, _ = grid_of(count)
+    handles = []
+    for s, study in enumerate(studies):
+        colour = INK if study.kind == "equilibrium_branch" else COLOURS[s % len(COLOURS)]
+        handles.append(Line2D([], [], color=colour, label=study.name))
+        for b, axis in enumerate(axes):
+            if study.kind == "equilibrium_branch":
+                parameter, stable, _ = branch_of(study)
+                draw_branch(axis, parameter, tables[s][:, b] * scale, stable, colour, linewidth=1.3)
+                mark_events(axis, study, [tables[s][:, b]], scale, False, 5)
+            else:
+                draw_cycle_panel(axis, study, "y", b, scale, colour, False, 5)
+    for axis, name in zip(axes, names):
+        axis.set_title(name)
+        axis.set_ylabel(f"y, max and min [{unit}]")
+        axis.set_xlabel(label)
+        axis.margins(y=0.12)
+    whole = type("Whole", (), {"run_title": results.title, "name": "all branches", "status": "",
+                               "file": lambda self, what: results.directory / f"{what}.png"})()
+    return [save(figure, whole, "bifurcations", "vertical position of the journal relative to the bearing centre",
+                 branch_legend([k for s in studies for k, _ in events_of(s)], handles))]

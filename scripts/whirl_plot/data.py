@@ -1,0 +1,77 @@
+"""Reading results.h5: what a study stored, by name, with defaults for what it left out."""
+import contextlib
+import json
+import pathlib
+import re
+
+import h5py
+import numpy as np
+
+
+def text(value):
+    return value.decode("utf-8") if isinstance(value, bytes) else str(value)
+
+
+class Study:
+    """One group /studies/<name>."""
+
+    def __init__(self, group, directory, run_title):
+        self.group = group
+        self.directory = pathlib.Path(directory)
+        self.run_title = run_title
+        self.name = self.attribute("title", group.name.rsplit("/", 1)[-1])
+        self.kind = self.attribute("kind", "")
+        self.status = self.attribute("status", "")
+
+    def attribute(self, name, default=None):
+        if name not in self.group.attrs:
+            return default
+        value = self.group.attrs[name]
+        return text(value) if isinstance(value, (bytes, str)) else value
+
+    def has(self, *paths):
+        """True if all datasets are there and none is empty."""
+        return all(p in self.group and (not isinstance(self.group[p], h5py.Dataset) or self.group[p].size) for p in paths)
+
+    def get(self, path, default=None):
+        if path not in self.group:
+            return default
+        data = self.group[path][()]
+        if isinstance(data, (bytes, str)):
+            return text(data)
+        data = np.asarray(data)
+        return np.array([text(v) for v in data.ravel()]).reshape(data.shape) if data.dtype.kind in "OS" else data
+
+    def bearings(self, count):
+        """Names of the bearings; numbered if the study gave none."""
+        names = self.get("bearings/name")
+        return list(names) if names is not None and len(names) == count else [f"bearing {i + 1}" for i in range(count)]
+
+    def file(self, what):
+        """Where a picture of this study goes."""
+        name = re.sub(r"[^A-Za-z0-9.+-]+", "_", self.name).strip("_.") or "study"
+        return self.directory / f"{name}.{what}.png"
+
+
+class Results:
+    def __init__(self, file, directory):
+        self.directory = pathlib.Path(directory)
+        self.title = text(file.attrs.get("title", self.directory.name))
+        groups = file["studies"] if "studies" in file else {}
+        studies = [Study(groups[name], directory, self.title) for name in groups]
+        self.studies = sorted(studies, key=lambda s: (self._order().get(s.name, len(groups)), s.name))
+
+    def _order(self):
+        """Place of each study in the deck, from summary.json."""
+        try:
+            summary = json.loads((self.directory / "summary.json").read_text())
+            return {s["name"]: i for i, s in enumerate(summary["studies"])}
+        except (OSError, ValueError, KeyError):
+            return {}
+
+
+@contextlib.contextmanager
+def open_results(directory):
+    # A results file is replaced as a whole, never written in place, so it needs no lock.
+    with h5py.File(pathlib.Path(directory) / "results.h5", "r") as file:
+        yield Results(file, directory)

@@ -1,0 +1,132 @@
+"""Journals inside their clearance: orbits of cycles, loci of equilibria, static positions."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .bifurcation import branch_of, events_of
+from .style import BAD, COLOURS, GREY, INK, ROTATION, mark, parameter_label, place_on_branch, save
+
+
+def outline(study, b):
+    """Where the journal centre can be (m): the stored outline, a lemon for a preloaded bearing, or the clearance circle."""
+    if study.has("bearings/outline_x", "bearings/outline_y"):
+        return study.get("bearings/outline_x")[b], study.get("bearings/outline_y")[b]
+    if not study.has("bearings/clearance"):
+        return None
+    clearance = np.atleast_1d(study.get("bearings/clearance"))[b]
+    preload = np.atleast_1d(study.get("bearings/preload", np.zeros(b + 1)))[b]
+    angle = np.linspace(0, 2 * np.pi, 361)
+    if not np.isfinite(preload) or not 0 < preload < 1:
+        return clearance * np.cos(angle), clearance * np.sin(angle)
+    # Two lobes of radius c/(1-m), each moved inwards by m c/(1-m) along y: the journal is inside both circles.
+    lobe = clearance / (1 - preload)
+    shift = preload * lobe
+    radius = -shift * np.abs(np.sin(angle)) + np.sqrt(lobe**2 - (shift * np.cos(angle))**2)
+    return radius * np.cos(angle), radius * np.sin(angle)
+
+
+def draw_clearance(axis, study, b):
+    edge = outline(study, b)
+    if edge is None:
+        return None
+    x, y = edge[0] * 1e6, edge[1] * 1e6
+    axis.fill(x, y, color="#f3f6f9", zorder=0)
+    axis.plot(x, y, color=INK, linewidth=1.2)
+    axis.plot(0, 0, "+", color=GREY, markersize=7)
+    reach = 1.08 * max(np.abs(x).max(), np.abs(y).max())
+    axis.set_xlim(-reach, reach)
+    axis.set_ylim(-reach, reach)
+    return reach
+
+
+def turn_arrow(axis):
+    axis.annotate("", xy=(0.885, 0.975), xytext=(0.975, 0.885), xycoords="axes fraction",
+                  arrowprops={"arrowstyle": "->", "connectionstyle": "arc3,rad=0.45", "color": GREY, "linewidth": 1.0})
+
+
+def finish(axis, name=None):
+    axis.set_aspect("equal", adjustable="box")
+    axis.set_xlabel("x [\u00b5m]")
+    axis.set_ylabel("y [\u00b5m]")
+    if name:
+        axis.set_title(name)
+
+
+def square(axis, x, y):
+    """Limits that hold the points in a square."""
+    half = max(0.6 * max(np.ptp(x), np.ptp(y)), 1e-3)
+    axis.set_xlim((x.max() + x.min()) / 2 - half, (x.max() + x.min()) / 2 + half)
+    axis.set_ylim((y.max() + y.min()) / 2 - half, (y.max() + y.min()) / 2 + half)
+
+
+def draw(study, shown=9):
+    if not study.has("orbits/x", "orbits/y"):
+        return []
+    x, y, parameter = study.get("orbits/x") * 1e6, study.get("orbits/y") * 1e6, np.atleast_1d(study.get("orbits/parameter"))
+    order = np.argsort(parameter, kind="stable")
+    pick = order[np.unique(np.linspace(0, len(parameter) - 1, shown).round().astype(int))]
+    names = study.bearings(x.shape[2])
+    known = study.has("bearings/clearance") or study.has("bearings/outline_x")
+    rows = 2 if known else 1
+    figure, axes = plt.subplots(rows, len(names), figsize=(max(7.2, 2.75 * len(names)), 2.55 * rows + 0.9), squeeze=False)
+    norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
+    for b, name in enumerate(names):
+        if known:
+            draw_clearance(axes[0, b], study, b)
+            turn_arrow(axes[0, b])
+        for row in range(rows):
+            axis = axes[row, b]
+            for k in pick:
+                closed = np.r_[0:x.shape[1], 0]
+                axis.plot(x[k, closed, b], y[k, closed, b], color=plt.cm.viridis(norm(parameter[k])), linewidth=1.0)
+                if row == rows - 1:
+                    axis.plot(x[k, 0, b], y[k, 0, b], "o", markersize=2.6, color=plt.cm.viridis(norm(parameter[k])))
+            finish(axis, name if row == 0 else None)
+        square(axes[-1, b], x[pick][:, :, b].ravel(), y[pick][:, :, b].ravel())
+    colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
+    figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)
+    first = "above in the clearance, below enlarged; " if known else ""
+    return [save(figure, study, "orbits", f"{first}dot: shaft angle 0; journal relative to the bearing centre; {ROTATION}")]
+
+
+def draw_locus(study):
+    if not study.has("branch/x", "branch/y"):
+        return []
+    parameter, stable, unstable = branch_of(study)
+    x, y = (study.get(f"branch/{k}").reshape(len(parameter), -1) * 1e6 for k in "xy")
+    names = study.bearings(x.shape[1])
+    figure, axes = plt.subplots(1, len(names), figsize=(max(7.2, 2.75 * len(names)), 3.45), squeeze=False)
+    norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
+    for b, (axis, name) in enumerate(zip(axes[0], names)):
+        if draw_clearance(axis, study, b) is None:
+            square(axis, x[:, b], y[:, b])
+        turn_arrow(axis)
+        axis.plot(x[:, b], y[:, b], color=GREY, linewidth=0.6)
+        axis.scatter(x[:, b], y[:, b], c=parameter, cmap="viridis", s=np.where(stable, 13, 5), linewidths=0, zorder=3)
+        for kind, value in events_of(study):
+            mark(axis, kind, *place_on_branch(parameter, [x[:, b], y[:, b]], unstable, kind, value))
+        finish(axis, name)
+    colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
+    figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)
+    return [save(figure, study, "locus", f"equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}")]
+
+
+def draw_positions(study):
+    if not study.has("bearings/x", "bearings/y"):
+        return []
+    x, y = (np.atleast_1d(study.get(f"bearings/{k}")) for k in "xy")
+    names = study.bearings(len(x))
+    load = study.get("bearings/load")
+    figure, axes = plt.subplots(1, len(names), figsize=(max(7.2, 2.6 * len(names)), 3.55), squeeze=False)
+    for b, (axis, name) in enumerate(zip(axes[0], names)):
+        if draw_clearance(axis, study, b) is None:
+            square(axis, np.array([0, x[b] * 1e6]), np.array([0, y[b] * 1e6]))
+        turn_arrow(axis)
+        axis.plot([0, x[b] * 1e6], [0, y[b] * 1e6], color=COLOURS[0], linewidth=1.0)
+        axis.plot(x[b] * 1e6, y[b] * 1e6, "o", color=COLOURS[0], markersize=6, markeredgecolor="white")
+        lines = f"x {x[b] * 1e6:.1f} \u00b5m, y {y[b] * 1e6:.1f} \u00b5m"
+        if study.has("bearings/clearance"):
+            c = np.atleast_1d(study.get("bearings/clearance"))[b]
+            lines += f"\neccentricity {np.hypot(x[b], y[b]) / c:.3f} of {c * 1e6:.0f} \u00b5m"
+        finish(axis, name if load is None else f"{name}: {np.atleast_1d(load)[b] / 1e3:.2f} kN")
+        axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8.5)
+    return [save(figure, study, "journals", f"journal relative to the bearing centre; load of the journal on the bearing, positive down; {ROTATION}")]

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Draws synthetic results and checks that every picture came, is not blank, and that gaps in the data cost only their own picture."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+from html.parser import HTMLParser
+
+import h5py
+import matplotlib.image
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import synthetic  # noqa: E402
+
+ROOT = pathlib.Path(__file__).parents[2]
+EXPECTED = {
+    "at_service_speed": ["sag", "journals", "film-B1", "film-B3"],
+    "modes": ["campbell", "shapes"],
+    "generator_pair": ["response", "response-bearings"],
+    "balanced": ["equilibria", "locus"],
+    "pair_G2.5": ["cycles-vertical", "cycles-horizontal", "orbits", "multipliers"],
+    "pair_G6.3": ["cycles-vertical", "cycles-horizontal", "orbits", "multipliers"],
+}
+
+
+def run(script, directory):
+    return subprocess.run([str(ROOT / "scripts" / script), str(directory)], capture_output=True, text=True)
+
+
+def check(condition, what):
+    if not condition:
+        sys.exit(f"FAILED: {what}")
+
+
+def check_picture(path):
+    check(path.is_file(), f"{path.name} is missing")
+    pixels = matplotlib.image.imread(path)[..., :3]
+    check(pixels.shape[1] >= 1000, f"{path.name} is small: {pixels.shape}")
+    check(np.mean(np.any(pixels < 0.9, axis=-1)) > 0.01, f"{path.name} is blank")
+
+
+class Page(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.images, self.links, self.text = 0, [], ""
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name in ("src", "href") and not value.startswith(("data:", "#")):
+                self.links.append(value)
+        self.images += tag == "img"
+
+    def handle_data(self, data):
+        self.text += data
+
+
+with tempfile.TemporaryDirectory() as name:
+    whole = pathlib.Path(name) / "whole"
+    synthetic.make(whole)
+    done = run("plot", whole)
+    check(done.returncode == 0 and not done.stderr, f"plot said {done.returncode}\n{done.stderr}")
+    for study, pictures in EXPECTED.items():
+        for picture in pictures:
+            check_picture(whole / f"{study}.{picture}.png")
+    check_picture(whole / "bifurcations.png")
+    check(len(done.stdout.split("\n")) - 1 == len(list(whole.glob("*.png"))), "plot does not name each picture once")
+
+    done = run("report", whole)
+    check(done.returncode == 0, f"report said {done.returncode}\n{done.stderr}")
+    page = Page()
+    page.feed((whole / "report.html").read_text())
+    check(page.images == len(list(whole.glob("*.png"))), f"the report has {page.images} pictures")
+    check(not page.links, f"the report needs {page.links}")
+    for words in ("42165.66", "hopf", "5025", "<A & B>"):
+        check(words in page.text, f"the report does not say {words}")
+
+    # A run that ended early: no summary, a study without points, one with a single point, one of an unknown kind.
+    part = pathlib.Path(name) / "part"
+    synthetic.make(part)
+    (part / "summary.json").unlink()
+    with h5py.File(part / "results.h5", "a") as root:
+        for table in ("branch", "bifurcations", "orbits"):
+            del root["studies/pair, G6.3"][table]
+        branch = root["studies/balanced/branch"]
+        for column in list(branch):
+            first = branch[column][:1]
+            del branch[column]
+            branch[column] = first
+        root["studies/balanced/branch/stable"][...] = 1
+        del root["studies/balanced/bifurcations"]
+        root.create_group("studies/unknown").attrs["kind"] = "of the future"
+    done = run("plot", part)
+    check(done.returncode == 0 and not done.stderr, f"plot of an early end said {done.returncode}\n{done.stderr}")
+    check_picture(part / "balanced.equilibria.png")
+    check(not (part / "pair_G6.3.orbits.png").exists(), "a picture of nothing")
+    check(run("report", part).returncode == 0, "the report needs summary.json")
+
+    check(run("plot", pathlib.Path(name) / "none").returncode == 2, "a folder that is not there")
+print("all pictures are there")

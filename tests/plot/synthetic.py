@@ -1,0 +1,161 @@
+"""A results folder with every kind of study, made up so that each picture has something of all it can show."""
+import json
+import pathlib
+
+import h5py
+import numpy as np
+
+NAMES = ["B1", "B2", "B3", "B4", "B5"]
+CLEARANCE = np.array([180e-6, 220e-6, 300e-6, 300e-6, 150e-6])
+RPM = np.pi / 30
+
+
+def put(group, **datasets):
+    for name, values in datasets.items():
+        values = np.asarray(values)
+        if values.dtype.kind in "US":
+            group.create_dataset(name, data=values.astype(object), dtype=h5py.string_dtype())
+        else:
+            group.create_dataset(name, data=values)
+
+
+def study(root, name, kind, status="completed", **attributes):
+    group = root.create_group(f"studies/{name}")
+    group.attrs.update({"kind": kind, "status": status, "title": name, **attributes})
+    return group
+
+
+def static(root):
+    g = study(root, "at service speed", "static")
+    z = np.linspace(0, 32, 185)
+    put(g.create_group("nodes"), z=z, y=4e-3 * (z / 16 - 1)**2 - 0.2e-3 * np.cos(z), x=2e-5 * np.sin(z / 5))
+    put(g.create_group("bearings"), name=NAMES, x=CLEARANCE * [0.2, 0.3, 0.45, 0.4, 0.1], y=-CLEARANCE * [0.5, 0.7, 0.5, 0.6, 0.4],
+        clearance=CLEARANCE, preload=[0, 0, 0.5, 0.5, 0], load=[12418, 47830, 213407, 128292, 11698], node=[6, 52, 80, 115, 180])
+    for name, pads in (("B1", [(-120, -60)]), ("B3", [(-165, -15), (15, 165)])):
+        for k, (start, stop) in enumerate(pads):
+            theta, axial = np.radians(np.linspace(start, stop, 61)), np.linspace(-0.1, 0.1, 17)
+            h = 3e-4 * (1 - 0.6 * np.cos(theta + np.radians(65)))[:, None] * np.ones(17)
+            s = (theta - theta[0]) / (theta[-1] - theta[0])
+            p = (5e6 if k == 0 else 2e5) * np.maximum(np.sin(np.pi * np.minimum(1, 1.3 * s)), 0)[:, None] * (1 - (axial / 0.1)**2)
+            put(g.create_group(f"films/{name}/pad{k + 1}"), theta=theta, z=axial, pressure=p, thickness=h)
+
+
+def modes(root):
+    g = study(root, "modes", "modes", speed_unit="rpm")
+    speed = np.linspace(500, 7000, 40) * RPM
+    rows = []
+    for mode, (f, gyro, decay) in enumerate([(72, 1.0, 0.02), (81, -2.0, 0.9), (105, 3.0, 0.12), (147, -6.0, 0.3), (230, 18.0, 0.2), (330, -20, 0.05)], 1):
+        for w in speed:
+            frequency = f + gyro * w / 400
+            decrement = decay * (1 - (w / 526)**3) if mode == 1 else decay
+            rows.append((w, mode, frequency, -decrement * frequency / 6.28, decrement, decrement / np.pi,
+                         "mixed" if mode == 3 and w < 300 else "forward" if gyro > 0 else "backward"))
+    columns = list(zip(*rows))
+    put(g.create_group("spectrum"), **dict(zip(("speed", "mode", "frequency", "damping_real", "log_decrement", "stability_factor", "whirl"), columns)))
+    put(g.create_group("critical"), speed=[72.2, 80.6, 106, 145, 241], mode=[1, 2, 3, 4, 5])
+    z = np.linspace(0, 32, 185)
+    shape = np.array([np.sin((k + 1) * np.pi * z / 32) for k in range(6)])
+    turn = np.exp(1j * np.linspace(0.2, 2.0, 6))[:, None]
+    x, y = shape * turn * 0.7 * (1 + 0.3j), shape * turn * 1j
+    put(g.create_group("shapes"), speed=377.0, z=z, x_real=x.real, x_imag=x.imag, y_real=y.real, y_imag=y.imag,
+        frequency=[72.9, 79.1, 107.8, 141.3, 247, 311])
+    put(g.create_group("bearings"), name=NAMES, z=[1.2, 8, 14, 22, 31])
+
+
+def response(root):
+    g = study(root, "generator pair", "unbalance_response", speed_unit="rpm")
+    w = np.linspace(300, 6000, 300) * RPM
+
+    def receptance(stiff, damp, force):
+        return sum(f * w**2 / (k**2 - w**2 + 2j * damp * k * w) for k, f in zip(stiff, force))
+
+    def block(scales):
+        x = np.stack([s * 1e-6 * receptance([270, 520], 0.06, [1.0, 0.3]) for s in scales], axis=1)
+        y = np.stack([-1j * s * 1e-6 * receptance([281, 540], 0.04, [2.0, -0.4]) for s in scales], axis=1)
+        major = np.sqrt(0.5 * (abs(x)**2 + abs(y)**2 + abs(x**2 + y**2)))
+        minor = np.sqrt(np.maximum(0, abs(x)**2 + abs(y)**2 - major**2))
+        return {"x_amplitude": abs(x), "x_phase": np.angle(x), "y_amplitude": abs(y), "y_phase": np.angle(y),
+                "semi_major": major, "semi_minor": minor}
+
+    put(g.create_group("response"), speed=w, node=[120, 140], **block([3, 2.5]))
+    put(g.create_group("bearings"), name=NAMES, **block([0.3, 0.6, 1.2, 1.0, 0.7]))
+
+
+def equilibria(root):
+    g = study(root, "balanced", "equilibrium_branch", parameter="speed", parameter_unit="rpm")
+    p = np.linspace(500, 8000, 70)
+    e = 0.9 / (1 + p[:, None] / 2500)
+    angle = np.radians(-90) + np.arccos(np.clip(e, 0, 1))
+    growth = (p - 5025) * 2e-3 - 3e-8 * (p - 5025)**2
+    put(g.create_group("branch"), parameter=p, stable=(growth < 0).astype(int), unstable_count=2 * (growth > 0), step=np.full(70, 100.0),
+        x=CLEARANCE * e * np.cos(angle), y=CLEARANCE * e * np.sin(angle), leading_real=growth, leading_imag=85 + 0 * p)
+    put(g.create_group("bifurcations"), type=["hopf"], parameter=[5025.0], uncertainty=[12.0])
+    put(g.create_group("bearings"), name=NAMES, clearance=CLEARANCE, preload=[0, 0, 0.5, 0.5, 0])
+
+
+def cycles(root, name, grade, fold):
+    g = study(root, name, "cycle_branch", "ended at 5900 rpm: the film is broken through at B3" if fold else "completed",
+              parameter="speed", parameter_unit="rpm", unbalance="gen_pair")
+    s = np.linspace(0, 1, 140)
+    p = 1000 + 5000 * s + (fold * 9000 * np.exp(-((s - 0.55) / 0.07)**2) * (s - 0.55) * -10 / 5)
+    size = grade * (6e-6 + 35e-6 * np.exp(-(((s - 0.5) / 0.1) if fold else (p - 2700) / 500)**2) + 60e-6 * np.maximum(0, s - 0.75)**1.5)
+    size = np.minimum(size[:, None] * [0.5, 1, 0.7, 0.4, 1.1], 0.45 * CLEARANCE)
+    e = 0.8 / (1 + p[:, None] / 2500)
+    xm, ym = CLEARANCE * e * 0.5, -CLEARANCE * e * 0.8
+    flips, ns = (4115, 4471), 5057
+    unstable = np.where((p > flips[0]) & (p < flips[1]), 1, np.where(p > ns, 2, 0))
+    if fold:
+        slope = np.gradient(p, s)
+        unstable = np.where(slope < 0, 1, unstable)
+    put(g.create_group("branch"), parameter=p, period=60 / p, stable=(unstable == 0).astype(int), unstable_count=unstable,
+        x_max=xm + size, x_min=xm - 0.9 * size, y_max=ym + 1.2 * size, y_min=ym - size)
+    mu = np.zeros((140, 6), complex)
+    mu[:, 0] = 0.4 + 0.66 * (p - 1000) / (ns - 1000)
+    mu[:, 0] = np.minimum(abs(mu[:, 0]), 1.15) * np.exp(1j * (0.6 + p / 4000))
+    mu[:, 1] = mu[:, 0].conj()
+    mu[:, 2] = -0.7 - 0.35 * np.exp(-((p - 4293) / 230)**2)
+    mu[:, 3] = 0.5
+    put(g["branch"], multipliers_real=mu.real, multipliers_imag=mu.imag)
+    kinds, values = ["flip", "flip", "neimark_sacker"], [*flips, ns]
+    if fold:
+        turns = np.nonzero(np.diff(np.sign(np.diff(p))))[0] + 1
+        kinds, values = kinds + ["cyclic_fold"] * len(turns), values + list(p[turns])
+    put(g.create_group("bifurcations"), type=kinds, parameter=np.array(values, float), uncertainty=np.full(len(values), 5.0), angle=np.zeros(len(values)))
+    pick = np.linspace(0, 139, 20).astype(int)
+    t = np.linspace(0, 2 * np.pi, 120, endpoint=False)[None, :, None]
+    swing = size[pick][:, None, :]
+    put(g.create_group("orbits"), parameter=p[pick], x=xm[pick][:, None, :] + swing * (np.cos(t) + 0.1 * np.cos(2 * t)),
+        y=ym[pick][:, None, :] + 1.1 * swing * np.sin(t + 0.3))
+    put(g.create_group("bearings"), name=NAMES, clearance=CLEARANCE, preload=[0, 0, 0.5, 0.5, 0])
+
+
+def make(directory):
+    directory = pathlib.Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    with h5py.File(directory / "results.h5", "w") as root:
+        root.attrs.update({"title": "Turbine-generator train", "version": "0.1.0"})
+        static(root)
+        modes(root)
+        response(root)
+        equilibria(root)
+        cycles(root, "pair, G2.5", 1.0, 0)
+        cycles(root, "pair, G6.3", 2.5, 1)
+    studies = [
+        {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
+         "values": {"mass.total": {"value": 42165.66, "unit": "kg"}, "load.B3": {"value": None, "unit": "N"}},
+         "bifurcations": [], "modes": [], "points": 1},
+        {"name": "modes", "kind": "modes", "status": "completed", "wall_seconds": 3.0, "values": {}, "bifurcations": [],
+         "modes": [{"speed": 3600, "real": -0.583, "imag": 81.678, "log_decrement": 0.0448, "whirl": "forward"}], "points": 40},
+        {"name": "generator pair", "kind": "unbalance_response", "status": "completed", "wall_seconds": 1.0,
+         "values": {"peak.1.speed": {"value": 280.6, "unit": "rad/s"}}, "bifurcations": [], "modes": [], "points": 300},
+        {"name": "balanced", "kind": "equilibrium_branch", "status": "completed", "wall_seconds": 5.0, "values": {},
+         "bifurcations": [{"type": "hopf", "parameter": "speed", "value": 5025.0, "unit": "rpm", "period_s": 0.0733,
+                           "uncertainty": 12.0, "criticality": None}], "modes": [], "points": 70},
+    ]
+    summary = {"title": "Turbine-generator train <A & B>", "version": "0.1.0", "ranks": 2, "wall_seconds": 9.4, "studies": studies}
+    (directory / "summary.json").write_text(json.dumps(summary))
+
+
+if __name__ == "__main__":
+    import sys
+    make(sys.argv[1])
