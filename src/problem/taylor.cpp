@@ -31,8 +31,8 @@ double order(double coarse, double fine, double round_off) {
 }  // namespace
 
 TaylorReport taylor_test(System& system, double angle, Vec x, Vec xdot, double h) {
-  core::Vector xs = core::duplicate(x), fs = core::duplicate(x), dx = core::duplicate(x), f0 = core::duplicate(x), f1 = core::duplicate(x),
-               jd = core::duplicate(x), moved = core::duplicate(x);
+  core::Vector xs = core::duplicate(x), fs = core::duplicate(x), dx = core::duplicate(x), f0 = core::duplicate(x),
+               f1 = core::duplicate(x), jd = core::duplicate(x), moved = core::duplicate(x);
   system.scales(xs.get(), fs.get());
   core::Matrix j = system.make_jacobian();
   system.residual(angle, x, xdot, f0.get());

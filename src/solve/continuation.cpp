@@ -31,13 +31,13 @@ core::Vector copy(Vec v) {
 }
 
 class Follower {
- public:
+public:
   Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
       : problem_(problem), options_(options), callbacks_(callbacks), direction_(options.to >= options.from ? 1 : -1) {}
 
   BranchEnd run(core::Vector u, std::optional<Restart> restart);
 
- private:
+private:
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
   NewtonResult correct(Vec u, Vec row, double offset) { return newton(problem_, u, row, offset, options_.newton); }
@@ -46,7 +46,8 @@ class Follower {
   bool advance(const State& from, double ds, State& to, NewtonResult& result);
   void events(const State& a, const State& b);
   using Test = std::function<double(const State&)>;
-  // The zero of a test function between two points; false if the location did not converge, then `at` is the nearest point found.
+  // The zero of a test function between two points; false if the location did not converge, then `at` is the nearest
+  // point found.
   bool locate(const State& a, const State& b, const Test& test, LocatedEvent& found, State& at);
   void crossings(const State& a, const State& b, int depth);
   bool accept(State& s);
@@ -138,8 +139,8 @@ bool Follower::locate(const State& a, const State& b, const Test& test, LocatedE
   return false;
 }
 
-// Values that crossed the border of stability between two points. One value or one complex pair is located directly; more than that is first
-// separated by halving the step.
+// Values that crossed the border of stability between two points. One value or one complex pair is located directly;
+// more than that is first separated by halving the step.
 void Follower::crossings(const State& a, const State& b, int depth) {
   const int from = a.point.stability.unstable(), to = b.point.stability.unstable();
   if (from == to) return;
@@ -183,7 +184,8 @@ void Follower::events(const State& a, const State& b) {
     LocatedEvent found{};
     State at;
     found.event = callbacks_.cycles ? Event::cyclic_fold : Event::fold;
-    found.located = locate(a, b, [](const State& s) { return s.point.slope; }, found, at);
+    found.located = locate(
+        a, b, [](const State& s) { return s.point.slope; }, found, at);
     found.sensitivity = 0;
     if (callbacks_.on_event) callbacks_.on_event(found, at.u.get());
   }
@@ -240,8 +242,9 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     if (!ok) {
       ds = rounded(ds / 2);
       if (ds < options_.min_step)
-        return {fmt::format("the step fell below its minimum at {:.6g}: {}", here.point.parameter * problem_.parameter_scale(), result.reason), false,
-                here.point.index + 1};
+        return {fmt::format("the step fell below its minimum at {:.6g}: {}",
+                            here.point.parameter * problem_.parameter_scale(), result.reason),
+                false, here.point.index + 1};
       continue;
     }
     next.point.index = here.point.index + 1;
@@ -251,11 +254,14 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
     ds = std::max(ds, options_.min_step);
     accept(here);
-    if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 && problem_.adapt(here.u, here.tangent)) {
-      // The carried-over solution is corrected at its parameter, so that the next step starts from the branch of the new mesh.
+    if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 &&
+        problem_.adapt(here.u, here.tangent)) {
+      // The carried-over solution is corrected at its parameter, so that the next step starts from the branch of the
+      // new mesh.
       core::Vector along = copy(here.tangent.get());
       const NewtonResult again = correct_at(here.u, here.point.parameter);
-      if (!again.converged) return {fmt::format("no solution on the adapted mesh: {}", again.reason), false, here.point.index + 1};
+      if (!again.converged)
+        return {fmt::format("no solution on the adapted mesh: {}", again.reason), false, here.point.index + 1};
       inspect(here, along.get());
     }
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
@@ -267,10 +273,12 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
 
 }  // namespace
 
-Stability make_stability(std::vector<std::complex<double>> values, const std::function<double(std::complex<double>)>& distance) {
+Stability make_stability(std::vector<std::complex<double>> values,
+                         const std::function<double(std::complex<double>)>& distance) {
   Stability s;
   s.values = std::move(values);
-  std::stable_sort(s.values.begin(), s.values.end(), [&](const auto& x, const auto& y) { return distance(x) > distance(y); });
+  std::stable_sort(s.values.begin(), s.values.end(),
+                   [&](const auto& x, const auto& y) { return distance(x) > distance(y); });
   for (const auto& v : s.values) s.distance.push_back(distance(v));
   return s;
 }
@@ -293,8 +301,8 @@ const char* name_of(Event event) {
   return "";
 }
 
-BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options, const BranchCallbacks& callbacks,
-                        std::optional<Restart> restart) {
+BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
+                        const BranchCallbacks& callbacks, std::optional<Restart> restart) {
   return Follower(problem, options, callbacks).run(std::move(u), std::move(restart));
 }
 

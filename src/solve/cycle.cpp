@@ -13,7 +13,9 @@ Index interval_of(const std::vector<double>& mesh, double s) {
   return static_cast<Index>(it - mesh.begin()) - 1;
 }
 
-double length(const std::vector<double>& mesh, Index i) { return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)]; }
+double length(const std::vector<double>& mesh, Index i) {
+  return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)];
+}
 
 // m-th derivative of the interval's polynomial: m! times the leading divided difference.
 Eigen::VectorXd top_derivative(const Scheme& scheme, const Cycle& cycle, Index i) {
@@ -49,7 +51,9 @@ Cycle Cycle::on(const Scheme& scheme, const std::vector<double>& new_mesh) const
   const Index m = scheme.degree, count = out.intervals();
   out.x.resize(x.rows(), count * m);
   for (Index i = 0; i < count; ++i)
-    for (Index l = 1; l <= m; ++l) out.x.col(i * m + l - 1) = at(scheme, new_mesh[static_cast<std::size_t>(i)] + scheme.node(l) * length(new_mesh, i));
+    for (Index l = 1; l <= m; ++l)
+      out.x.col(i * m + l - 1) =
+          at(scheme, new_mesh[static_cast<std::size_t>(i)] + scheme.node(l) * length(new_mesh, i));
   return out;
 }
 
@@ -71,9 +75,11 @@ std::vector<double> doubled(const std::vector<double>& mesh) {
 std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale) {
   const Index n = cycle.intervals(), m = scheme.degree;
   std::vector<Eigen::VectorXd> top(static_cast<std::size_t>(n));
-  for (Index i = 0; i < n; ++i) top[static_cast<std::size_t>(i)] = top_derivative(scheme, cycle, i).cwiseQuotient(scale);
+  for (Index i = 0; i < n; ++i)
+    top[static_cast<std::size_t>(i)] = top_derivative(scheme, cycle, i).cwiseQuotient(scale);
   const Eigen::VectorXd centre = cycle.x.rowwise().mean();
-  const double size = (cycle.x.colwise() - centre).cwiseQuotient(scale.replicate(1, cycle.x.cols())).cwiseAbs().maxCoeff();
+  const double size =
+      (cycle.x.colwise() - centre).cwiseQuotient(scale.replicate(1, cycle.x.cols())).cwiseAbs().maxCoeff();
   double error_constant = 1;  // of the interpolation at the nodes, with equal spacing as a bound
   for (Index k = 1; k <= m + 1; ++k) error_constant /= 2.0 * static_cast<double>(k);
   std::vector<double> error(static_cast<std::size_t>(n));
@@ -85,12 +91,14 @@ std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, co
       return (top[static_cast<std::size_t>(b)] - top[static_cast<std::size_t>(a)]).cwiseAbs().maxCoeff() / distance;
     };
     const double derivative = std::max(jump(left, i), jump(i, right));
-    error[static_cast<std::size_t>(i)] = error_constant * derivative * std::pow(h, static_cast<double>(m) + 1) / std::max(size, 1e-300);
+    error[static_cast<std::size_t>(i)] =
+        error_constant * derivative * std::pow(h, static_cast<double>(m) + 1) / std::max(size, 1e-300);
   }
   return error;
 }
 
-std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale, double tolerance, int base, int max_intervals) {
+std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
+                                 double tolerance, int base, int max_intervals) {
   const std::vector<double> error = interval_errors(scheme, cycle, scale);
   const double unit = 1.0 / base, ratio = std::pow(2.0, scheme.degree + 1);
   // The level of an interval: how many times 1/base was halved (negative: doubled).
@@ -115,7 +123,8 @@ std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const
     while (merged.size() >= 2) {
       const Piece &a = merged[merged.size() - 2], &b = merged.back();
       const double h = unit / std::pow(2.0, b.level);
-      const bool pair = a.level == b.level && b.level > 0 && std::lround(a.begin / h) % 2 == 0 && std::lround(b.begin / h) == std::lround(a.begin / h) + 1;
+      const bool pair = a.level == b.level && b.level > 0 && std::lround(a.begin / h) % 2 == 0 &&
+                        std::lround(b.begin / h) == std::lround(a.begin / h) + 1;
       if (!pair || std::max(a.error, b.error) * ratio > tolerance / 2) break;
       const Piece joined{a.begin, a.level - 1, std::max(a.error, b.error) * ratio};
       merged.pop_back();

@@ -17,7 +17,9 @@ using Eigen::VectorXd;
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-double length(const std::vector<double>& mesh, Index i) { return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)]; }
+double length(const std::vector<double>& mesh, Index i) {
+  return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)];
+}
 
 VectorXd to_eigen(Vec v) {
   const core::ReadArray a(v);
@@ -55,7 +57,8 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
       n_(local.size()),
       borders_(options.autonomous ? 2 : 1) {
   core::require(core::size_of(local.comm()) == 1, "the system of a time group must live on one rank");
-  core::Vector xs = core::make_vector(local.comm(), static_cast<PetscInt>(n_), PETSC_DETERMINE), fs = core::duplicate(xs.get());
+  core::Vector xs = core::make_vector(local.comm(), static_cast<PetscInt>(n_), PETSC_DETERMINE),
+               fs = core::duplicate(xs.get());
   local.scales(xs.get(), fs.get());
   state_scale_ = to_eigen(xs.get());
   residual_scale_ = to_eigen(fs.get());
@@ -82,7 +85,8 @@ void CycleProblem::layout(std::vector<double> mesh) {
   for (Index i = 0; i < count_; ++i)
     for (Index l = 0; l < m; ++l)
       for (Index k = 0; k < n_; ++k)
-        w[static_cast<PetscInt>((i * m + l) * n_ + k)] = options_.state_weight * length(mesh_, first_ + i) * scheme_.node_weight(l) / static_cast<double>(n_);
+        w[static_cast<PetscInt>((i * m + l) * n_ + k)] =
+            options_.state_weight * length(mesh_, first_ + i) * scheme_.node_weight(l) / static_cast<double>(n_);
   if (rank_ == size_ - 1) w[w.size() - 1] = 1;
 }
 
@@ -101,7 +105,9 @@ VectorXd CycleProblem::border_of(Vec u) const {
   return border;
 }
 
-void CycleProblem::set_parameter(const VectorXd& border) { system_.set_parameter(border(borders_ - 1) * options_.parameter_scale); }
+void CycleProblem::set_parameter(const VectorXd& border) {
+  system_.set_parameter(border(borders_ - 1) * options_.parameter_scale);
+}
 
 double CycleProblem::period_of(const VectorXd& border) const {
   if (options_.autonomous) return border(0) * period_scale_;
@@ -111,8 +117,8 @@ double CycleProblem::period_of(const VectorXd& border) const {
 VectorXd CycleProblem::previous_end(const double* local) const {
   VectorXd send = Map<const VectorXd>(local + (count_ * scheme_.degree - 1) * n_, n_), receive(n_);
   const int next = (rank_ + 1) % size_, previous = (rank_ + size_ - 1) % size_;
-  MPI_Sendrecv(send.data(), static_cast<int>(n_), MPI_DOUBLE, next, 0, receive.data(), static_cast<int>(n_), MPI_DOUBLE, previous, 0, comm_,
-               MPI_STATUS_IGNORE);
+  MPI_Sendrecv(send.data(), static_cast<int>(n_), MPI_DOUBLE, next, 0, receive.data(), static_cast<int>(n_), MPI_DOUBLE,
+               previous, 0, comm_, MPI_STATUS_IGNORE);
   return receive;
 }
 
@@ -148,7 +154,9 @@ void CycleProblem::residual(Vec u, Vec r) {
           slope += scheme_.slope(j, l) * node;
         }
         slope /= h * period;
-        const double angle = options_.autonomous ? 0.0 : two_pi * options_.turns * (mesh_[static_cast<std::size_t>(first_ + i)] + h * scheme_.c(j));
+        const double angle = options_.autonomous ? 0.0
+                                                 : two_pi * options_.turns *
+                                                       (mesh_[static_cast<std::size_t>(first_ + i)] + h * scheme_.c(j));
         Map<VectorXd> out(ra.data() + (i * m + j) * n_, n_);
         if (structure_) {
           structure_->load(angle, load, nullptr);
@@ -177,7 +185,8 @@ void CycleProblem::residual(Vec u, Vec r) {
   }
 }
 
-std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double* own, const VectorXd& start, double period, MatrixXd& columns) {
+std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double* own, const VectorXd& start,
+                                                           double period, MatrixXd& columns) {
   const Index m = scheme_.degree;
   const double h = length(mesh_, first_ + i);
   columns.resize(m * n_, borders_);
@@ -203,7 +212,9 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
       slope += scheme_.slope(j, l) * node;
     }
     slope /= h * period;
-    const double angle = options_.autonomous ? 0.0 : two_pi * options_.turns * (mesh_[static_cast<std::size_t>(first_ + i)] + h * scheme_.c(j));
+    const double angle = options_.autonomous ? 0.0
+                                             : two_pi * options_.turns *
+                                                   (mesh_[static_cast<std::size_t>(first_ + i)] + h * scheme_.c(j));
     VectorXd d_parameter;
     if (structure_) {
       structure_->load(angle, load, &d_load);
@@ -257,7 +268,8 @@ void CycleProblem::linearise(Vec u, Vec row) {
     for (Index i = 0; i < count_; ++i) {
       const double* own = ua.data() + i * m * n_;
       const VectorXd start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
-      intervals_[static_cast<std::size_t>(i)] = linearise_interval(i, own, start, period, columns_[static_cast<std::size_t>(i)]);
+      intervals_[static_cast<std::size_t>(i)] =
+          linearise_interval(i, own, start, period, columns_[static_cast<std::size_t>(i)]);
     }
   });
 
@@ -295,7 +307,8 @@ void CycleProblem::compose(const std::vector<MatrixXd>& rows) {
 
   rank_maps_.assign(static_cast<std::size_t>(size_), MatrixXd(all, all));
   std::vector<double> gathered(static_cast<std::size_t>(all * all * size_));
-  MPI_Allgather(map.data(), static_cast<int>(all * all), MPI_DOUBLE, gathered.data(), static_cast<int>(all * all), MPI_DOUBLE, comm_);
+  MPI_Allgather(map.data(), static_cast<int>(all * all), MPI_DOUBLE, gathered.data(), static_cast<int>(all * all),
+                MPI_DOUBLE, comm_);
   MatrixXd entering = MatrixXd::Identity(n_, all), added = MatrixXd::Zero(borders_, all);
   to_rank_.clear();
   for (int p = 0; p < size_; ++p) {
@@ -326,7 +339,8 @@ void CycleProblem::multiply(Vec v, Vec y) {
   for (Index i = 0; i < count_; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double* own = va.data() + i * m * n_;
-    const VectorXd x = Map<const VectorXd>(own, m * n_), start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
+    const VectorXd x = Map<const VectorXd>(own, m * n_),
+                   start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
     Map<VectorXd>(ya.data() + i * m * n_, m * n_) = intervals_[k]->multiply(start, x) + columns_[k] * border;
     added += rows_[k] * x;
   }
@@ -358,7 +372,8 @@ void CycleProblem::solve(Vec rhs, Vec x) {
   }
   own.head(n_) = t;
   VectorXd gathered(all * size_);
-  MPI_Allgather(own.data(), static_cast<int>(all), MPI_DOUBLE, gathered.data(), static_cast<int>(all), MPI_DOUBLE, comm_);
+  MPI_Allgather(own.data(), static_cast<int>(all), MPI_DOUBLE, gathered.data(), static_cast<int>(all), MPI_DOUBLE,
+                comm_);
   VectorXd through = VectorXd::Zero(n_), entering = VectorXd::Zero(n_), added = VectorXd::Zero(borders_);
   for (int p = 0; p < size_; ++p) {
     const auto& q = rank_maps_[static_cast<std::size_t>(p)];
@@ -390,9 +405,11 @@ void CycleProblem::assemble(const std::vector<MatrixXd>& rows) {
   const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
   const Index local = count_ * m * n_ + (rank_ == size_ - 1 ? borders_ : 0), unknowns = total * m * n_;
   check(MatCreate(comm_, assembled_.put()));
-  check(MatSetSizes(assembled_.get(), static_cast<PetscInt>(local), static_cast<PetscInt>(local), PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetSizes(assembled_.get(), static_cast<PetscInt>(local), static_cast<PetscInt>(local), PETSC_DETERMINE,
+                    PETSC_DETERMINE));
   check(MatSetType(assembled_.get(), MATAIJ));
-  std::vector<PetscInt> diagonal(static_cast<std::size_t>(local), static_cast<PetscInt>(std::min(local, (m + 1) * n_ + borders_)));
+  std::vector<PetscInt> diagonal(static_cast<std::size_t>(local),
+                                 static_cast<PetscInt>(std::min(local, (m + 1) * n_ + borders_)));
   std::vector<PetscInt> off(static_cast<std::size_t>(local), static_cast<PetscInt>(n_ + borders_));
   if (rank_ == size_ - 1)
     for (Index k = 0; k < borders_; ++k) {
@@ -405,7 +422,8 @@ void CycleProblem::assemble(const std::vector<MatrixXd>& rows) {
     for (Index a = 0; a < block.rows(); ++a)
       for (Index b = 0; b < block.cols(); ++b)
         if (block(a, b) != 0)
-          check(MatSetValue(assembled_.get(), static_cast<PetscInt>(row + a), static_cast<PetscInt>(column + b), block(a, b), ADD_VALUES));
+          check(MatSetValue(assembled_.get(), static_cast<PetscInt>(row + a), static_cast<PetscInt>(column + b),
+                            block(a, b), ADD_VALUES));
   };
   for (Index i = 0; i < count_; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -420,7 +438,8 @@ void CycleProblem::assemble(const std::vector<MatrixXd>& rows) {
   if (rank_ == size_ - 1) {
     add(unknowns, unknowns, corner_);
     for (Index k = 0; k < borders_; ++k)
-      check(MatSetValue(assembled_.get(), static_cast<PetscInt>(unknowns + k), static_cast<PetscInt>(unknowns + k), 0.0, ADD_VALUES));
+      check(MatSetValue(assembled_.get(), static_cast<PetscInt>(unknowns + k), static_cast<PetscInt>(unknowns + k), 0.0,
+                        ADD_VALUES));
   }
   check(MatAssemblyBegin(assembled_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(assembled_.get(), MAT_FINAL_ASSEMBLY));
@@ -446,7 +465,8 @@ Cycle CycleProblem::gather(Vec u) const {
     counts[static_cast<std::size_t>(p)] = static_cast<int>((end - begin) * m * n_);
   }
   const core::ReadArray ua(u);
-  MPI_Allgatherv(ua.data(), static_cast<int>(count_ * m * n_), MPI_DOUBLE, cycle.x.data(), counts.data(), offsets.data(), MPI_DOUBLE, comm_);
+  MPI_Allgatherv(ua.data(), static_cast<int>(count_ * m * n_), MPI_DOUBLE, cycle.x.data(), counts.data(),
+                 offsets.data(), MPI_DOUBLE, comm_);
   cycle.x = state_scale_.asDiagonal() * cycle.x;
   if (options_.autonomous)
     cycle.period = border(0) * period_scale_;
@@ -460,7 +480,8 @@ core::Vector CycleProblem::scatter(const Cycle& cycle) const {
   const Index m = scheme_.degree;
   core::Vector u = make_unknown();
   core::WriteArray ua(u.get());
-  Map<MatrixXd>(ua.data(), n_, count_ * m) = state_scale_.cwiseInverse().asDiagonal() * here.x.middleCols(first_ * m, count_ * m);
+  Map<MatrixXd>(ua.data(), n_, count_ * m) =
+      state_scale_.cwiseInverse().asDiagonal() * here.x.middleCols(first_ * m, count_ * m);
   if (rank_ == size_ - 1) {
     if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
     ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
@@ -505,7 +526,8 @@ bool CycleProblem::adapt(core::Vector& u, core::Vector& tangent) {
   double longest = 0;
   for (Index i = 0; i < cycle.intervals(); ++i) longest = std::max(longest, length(mesh_, i));
   std::vector<double> mesh =
-      adapted_mesh(scheme_, cycle, state_scale_, options_.mesh_tolerance, std::min(base, static_cast<int>(std::lround(1 / longest))), options_.max_intervals);
+      adapted_mesh(scheme_, cycle, state_scale_, options_.mesh_tolerance,
+                   std::min(base, static_cast<int>(std::lround(1 / longest))), options_.max_intervals);
   if (mesh == mesh_) return false;
   layout(std::move(mesh));
   u = scatter(cycle);

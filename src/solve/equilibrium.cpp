@@ -125,9 +125,13 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   check(KSPSetUp(solver_.get()));
 }
 
-void EquilibriumProblem::multiply(Vec v, Vec y) { check(MatMult(bordered_.get(), v, y)); }
+void EquilibriumProblem::multiply(Vec v, Vec y) {
+  check(MatMult(bordered_.get(), v, y));
+}
 
-void EquilibriumProblem::solve(Vec rhs, Vec x) { check(KSPSolve(solver_.get(), rhs, x)); }
+void EquilibriumProblem::solve(Vec rhs, Vec x) {
+  check(KSPSolve(solver_.get(), rhs, x));
+}
 
 NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options) {
   const double parameter = system.parameter(), unit = parameter != 0 ? std::abs(parameter) : 1.0;

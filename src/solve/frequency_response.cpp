@@ -97,7 +97,8 @@ void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& ri
   check(KSPSolve(solver_.get(), rhs_.get(), answer_.get()));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(solver_.get(), &reason));
-  if (reason < 0) throw core::NotConverged("the response at this frequency could not be solved: the matrix is singular");
+  if (reason < 0)
+    throw core::NotConverged("the response at this frequency could not be solved: the matrix is singular");
   const core::ReadArray z(answer_.get()), scale(state_scale_.get());
   amplitude.resize(static_cast<std::size_t>(2 * rows));
   for (PetscInt i = 0; i < 2 * rows; ++i) amplitude[static_cast<std::size_t>(i)] = z[i] * scale[i / 2];

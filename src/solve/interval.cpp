@@ -8,7 +8,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 class DenseInterval : public Interval {
- public:
+public:
   DenseInterval(const Scheme& scheme, double length, std::vector<MatrixXd> jx, std::vector<MatrixXd> jxdot)
       : scheme_(scheme), length_(length), jx_(std::move(jx)), jxdot_(std::move(jxdot)) {
     const Index n = jx_[0].rows(), m = scheme.degree;
@@ -47,7 +47,7 @@ class DenseInterval : public Interval {
     return scheme_.value(j, l) * jx_[k] + (scheme_.slope(j, l) / length_) * jxdot_[k];
   }
 
- private:
+private:
   const Scheme& scheme_;
   double length_;
   std::vector<MatrixXd> jx_, jxdot_;
@@ -56,8 +56,9 @@ class DenseInterval : public Interval {
 };
 
 class LowRankInterval : public Interval {
- public:
-  LowRankInterval(std::shared_ptr<const LinearPart> part, std::vector<MatrixXd> tangents) : part_(std::move(part)), s_(std::move(tangents)) {
+public:
+  LowRankInterval(std::shared_ptr<const LinearPart> part, std::vector<MatrixXd> tangents)
+      : part_(std::move(part)), s_(std::move(tangents)) {
     const Index m = part_->scheme.degree;
     k_.compute(MatrixXd::Identity(m * part_->r, m * part_->r) - times_s(part_->vy));
   }
@@ -75,13 +76,16 @@ class LowRankInterval : public Interval {
     MatrixXd y = part_->w00 * x;
     const MatrixXd inputs = part_->c * x;
     for (int j = 0; j < part_->scheme.degree; ++j)
-      y.middleRows(j * part_->n, part_->n).noalias() -= part_->b * (s_[static_cast<std::size_t>(j)] * inputs) * part_->scheme.value(j, 0);
+      y.middleRows(j * part_->n, part_->n).noalias() -=
+          part_->b * (s_[static_cast<std::size_t>(j)] * inputs) * part_->scheme.value(j, 0);
     return y;
   }
   MatrixXd start_transposed(const MatrixXd& y) const override {
     MatrixXd x = part_->w00.transpose() * y;
     for (int j = 0; j < part_->scheme.degree; ++j)
-      x.noalias() -= part_->c.transpose() * (s_[static_cast<std::size_t>(j)].transpose() * (part_->b.transpose() * y.middleRows(j * part_->n, part_->n))) *
+      x.noalias() -= part_->c.transpose() *
+                     (s_[static_cast<std::size_t>(j)].transpose() *
+                      (part_->b.transpose() * y.middleRows(j * part_->n, part_->n))) *
                      part_->scheme.value(j, 0);
     return x;
   }
@@ -94,22 +98,27 @@ class LowRankInterval : public Interval {
         value += p.scheme.value(j, l) * x.segment((l - 1) * p.n, p.n);
         slope += p.scheme.slope(j, l) * x.segment((l - 1) * p.n, p.n);
       }
-      y.segment(j * p.n, p.n) = p.l0 * value + p.l1 * (slope / p.length) - p.b * (s_[static_cast<std::size_t>(j)] * (p.c * value));
+      y.segment(j * p.n, p.n) =
+          p.l0 * value + p.l1 * (slope / p.length) - p.b * (s_[static_cast<std::size_t>(j)] * (p.c * value));
     }
     return y;
   }
-  MatrixXd transition() const override { return part_->end_free + part_->end_y * k_.solve(times_s(part_->inputs_free)); }
+  MatrixXd transition() const override {
+    return part_->end_free + part_->end_y * k_.solve(times_s(part_->inputs_free));
+  }
   MatrixXd block(int j, int l) const override {
     const auto& p = *part_;
-    return p.scheme.value(j, l) * (p.l0 - p.b * s_[static_cast<std::size_t>(j)] * p.c) + (p.scheme.slope(j, l) / p.length) * p.l1;
+    return p.scheme.value(j, l) * (p.l0 - p.b * s_[static_cast<std::size_t>(j)] * p.c) +
+           (p.scheme.slope(j, l) / p.length) * p.l1;
   }
 
- private:
+private:
   // S v for v [mw x k], block by block.
   MatrixXd times_s(const MatrixXd& v) const {
     const Index r = part_->r, w = part_->w;
     MatrixXd out(part_->scheme.degree * r, v.cols());
-    for (Index j = 0; j < part_->scheme.degree; ++j) out.middleRows(j * r, r).noalias() = s_[static_cast<std::size_t>(j)] * v.middleRows(j * w, w);
+    for (Index j = 0; j < part_->scheme.degree; ++j)
+      out.middleRows(j * r, r).noalias() = s_[static_cast<std::size_t>(j)] * v.middleRows(j * w, w);
     return out;
   }
   MatrixXd times_s_transposed(const MatrixXd& v) const {
@@ -127,7 +136,8 @@ class LowRankInterval : public Interval {
 
 }  // namespace
 
-LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const MatrixXd& l0_, const MatrixXd& b_, const MatrixXd& c_)
+LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const MatrixXd& l0_, const MatrixXd& b_,
+                       const MatrixXd& c_)
     : scheme(sc), l1(l1_), l0(l0_), b(b_), c(c_), length(len), n(l1_.rows()), r(b_.cols()), w(c_.rows()) {
   const Index m = scheme.degree;
   MatrixXd a(m * n, m * n);
@@ -135,7 +145,8 @@ LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const 
   MatrixXd ub = MatrixXd::Zero(m * n, m * r);
   for (Index j = 0; j < m; ++j) {
     w00.middleRows(j * n, n) = scheme.value(j, 0) * l0 + (scheme.slope(j, 0) / length) * l1;
-    for (Index l = 1; l <= m; ++l) a.block(j * n, (l - 1) * n, n, n) = scheme.value(j, l) * l0 + (scheme.slope(j, l) / length) * l1;
+    for (Index l = 1; l <= m; ++l)
+      a.block(j * n, (l - 1) * n, n, n) = scheme.value(j, l) * l0 + (scheme.slope(j, l) / length) * l1;
     ub.block(j * n, j * r, n, r) = b;
   }
   w0.compute(a);
@@ -170,11 +181,13 @@ MatrixXd LinearPart::inputs_transposed(const MatrixXd& s) const {
   return out;
 }
 
-std::unique_ptr<Interval> make_dense_interval(const Scheme& scheme, double length, std::vector<MatrixXd> jx, std::vector<MatrixXd> jxdot) {
+std::unique_ptr<Interval> make_dense_interval(const Scheme& scheme, double length, std::vector<MatrixXd> jx,
+                                              std::vector<MatrixXd> jxdot) {
   return std::make_unique<DenseInterval>(scheme, length, std::move(jx), std::move(jxdot));
 }
 
-std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part, std::vector<MatrixXd> tangents) {
+std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part,
+                                                 std::vector<MatrixXd> tangents) {
   return std::make_unique<LowRankInterval>(std::move(part), std::move(tangents));
 }
 

@@ -109,7 +109,8 @@ NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, con
   PetscInt n = 0;
   check(VecGetSize(u, &n));
   const double root_n = std::sqrt(static_cast<double>(n));
-  check(SNESSetTolerances(snes.get(), options.tolerance * root_n, 1e-30, options.step_tolerance, options.max_iterations, 1000));
+  check(SNESSetTolerances(snes.get(), options.tolerance * root_n, 1e-30, options.step_tolerance, options.max_iterations,
+                          1000));
   check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
@@ -127,9 +128,12 @@ NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, con
   check(SNESGetIterationNumber(snes.get(), &iterations));
   check(SNESGetLinearSolveIterations(snes.get(), &linear));
   check(SNESGetFunctionNorm(snes.get(), &norm));
-  NewtonResult result{reason > 0, static_cast<int>(iterations), static_cast<int>(linear), norm / root_n, text_of(reason)};
-  // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls there has arrived.
-  if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options.tolerance) result.converged = true;
+  NewtonResult result{reason > 0, static_cast<int>(iterations), static_cast<int>(linear), norm / root_n,
+                      text_of(reason)};
+  // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls
+  // there has arrived.
+  if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options.tolerance)
+    result.converged = true;
   if (!result.converged && !c.gate.domain_text().empty()) result.reason += ": " + c.gate.domain_text();
   return result;
 }

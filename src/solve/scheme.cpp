@@ -10,8 +10,8 @@
 namespace whirl::solve {
 namespace {
 
-// Nodes and weights on [0, 1] from the Legendre three-term recurrence (Golub and Welsch 1969); for Radau the last diagonal entry is moved
-// so that 1 becomes a node (Golub 1973).
+// Nodes and weights on [0, 1] from the Legendre three-term recurrence (Golub and Welsch 1969); for Radau the last
+// diagonal entry is moved so that 1 becomes a node (Golub 1973).
 void quadrature(int m, Points points, Eigen::VectorXd& c, Eigen::VectorXd& weight) {
   Eigen::MatrixXd jacobi = Eigen::MatrixXd::Zero(m, m);
   for (int k = 1; k < m; ++k) jacobi(k, k - 1) = jacobi(k - 1, k) = k / std::sqrt(4.0 * k * k - 1);

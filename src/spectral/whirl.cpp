@@ -32,11 +32,14 @@ Sense sense_of_whirl(const std::vector<std::complex<double>>& x, const std::vect
 }
 
 double log_decrement(std::complex<double> lambda) {
-  if (lambda.imag() == 0) return lambda.real() < 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+  if (lambda.imag() == 0)
+    return lambda.real() < 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
   return -2 * std::numbers::pi * lambda.real() / std::abs(lambda.imag());
 }
 
-double stability_factor(std::complex<double> lambda) { return std::pow(10.0, -log_decrement(lambda)); }
+double stability_factor(std::complex<double> lambda) {
+  return std::pow(10.0, -log_decrement(lambda));
+}
 
 double mac(const std::vector<std::complex<double>>& a, const std::vector<std::complex<double>>& b) {
   std::complex<double> ab = 0;

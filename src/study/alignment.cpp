@@ -10,7 +10,9 @@ namespace whirl::study {
 
 void Alignment::run(Context& context) {
   const auto names = names_of_bearings(context.machine);
-  const auto position = [&](const std::string& name) { return static_cast<int>(*system::find_bearing(context.machine, name)) + 1; };
+  const auto position = [&](const std::string& name) {
+    return static_cast<int>(*system::find_bearing(context.machine, name)) + 1;
+  };
   rotor::Options shaft = context.machine.rotor;
   shaft.reduction = {};
   std::vector<rotor::Support> supports;

@@ -50,7 +50,8 @@ Vec Walker::at(double speed) {
     if (attempt(next)) continue;
     step = (next - last_) / 2;
     if (std::abs(step) < 1e-4 * std::max(1.0, speed))
-      throw core::NotConverged(fmt::format("the equilibrium could not be followed from {:.6g} to {:.6g} rad/s: {}", last_, speed, reason_));
+      throw core::NotConverged(
+          fmt::format("the equilibrium could not be followed from {:.6g} to {:.6g} rad/s: {}", last_, speed, reason_));
   }
   system_.set_parameter(speed);
   return x_.get();
@@ -68,7 +69,9 @@ solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x) {
   return solve::make_stability(std::move(values), [](std::complex<double> v) { return v.real(); });
 }
 
-std::vector<std::string> names_of_bearings(const system::Machine& machine) { return system::bearing_names(machine); }
+std::vector<std::string> names_of_bearings(const system::Machine& machine) {
+  return system::bearing_names(machine);
+}
 
 void put_bearings(io::Group& group, const system::Machine& machine) {
   std::vector<double> clearance, preload, node;
@@ -82,7 +85,9 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
   bearings.put("preload", preload, "1", "m = 1 - c_b/c_p");
 }
 
-std::string number_text(double value_si, const std::string& unit) { return fmt::format("{:.6g}", deck::from_si(value_si, unit)); }
+std::string number_text(double value_si, const std::string& unit) {
+  return fmt::format("{:.6g}", deck::from_si(value_si, unit));
+}
 
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {
   std::vector<std::string> type;

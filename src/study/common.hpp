@@ -12,14 +12,15 @@
 
 namespace whirl::study {
 
-/// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is approached by halved steps.
+/// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is
+/// approached by halved steps.
 class Walker {
- public:
+public:
   explicit Walker(system::RotorSystem& system) : system_(system) {}
   /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
   Vec at(double speed);
 
- private:
+private:
   bool attempt(double speed);
   system::RotorSystem& system_;
   core::Vector x_, trial_;

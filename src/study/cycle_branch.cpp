@@ -24,7 +24,9 @@ using core::check;
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-double distance_of_multiplier(std::complex<double> mu) { return std::abs(mu) - 1; }
+double distance_of_multiplier(std::complex<double> mu) {
+  return std::abs(mu) - 1;
+}
 
 Event event_of(solve::Event e) {
   switch (e) {
@@ -45,11 +47,11 @@ Event event_of(solve::Event e) {
 
 // One branch of forced cycles: the solver's problem, what is recorded of it, and how to restart it.
 class Branch {
- public:
+public:
   Branch(Context& context, const CycleBranchOptions& options);
   void run();
 
- private:
+private:
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
   [[nodiscard]] solve::CycleOptions cycle_options() const;
   [[nodiscard]] core::Vector start(solve::CycleProblem& problem) const;
@@ -57,7 +59,8 @@ class Branch {
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
-  [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh, bool half_film) const;
+  [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
+                             bool half_film) const;
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
@@ -101,9 +104,12 @@ std::unique_ptr<system::RotorSystem> Branch::make_system(bool half_film) const {
     system::Train t = system::train_of(machine, options_.unbalance);
     return half_film ? with_half_film_mesh(std::move(t)) : t;
   };
-  if (options_.parameter.path == "speed") return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(context_.machine), value);
+  if (options_.parameter.path == "speed")
+    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(context_.machine), value);
   system::Varying varying;
-  varying.train = [this, train_at](double p) { return train_at(with_parameter(context_.machine, options_.parameter.path, p)); };
+  varying.train = [this, train_at](double p) {
+    return train_at(with_parameter(context_.machine, options_.parameter.path, p));
+  };
   varying.value = value;
   varying.magnitude = std::max(std::abs(options_.parameter.range.from), std::abs(options_.parameter.range.to));
   return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), options_.speed->value);
@@ -139,11 +145,14 @@ core::Vector Branch::start(solve::CycleProblem& problem) const {
     whole = system_->gather(x.get());
   }
   solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), parameter};
-  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size()).replicate(1, guess.intervals() * problem.scheme().degree);
+  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
+                .replicate(1, guess.intervals() * problem.scheme().degree);
   return problem.scatter(guess);
 }
 
-solve::Stability Branch::stability() const { return solve::make_stability(spectral::eigenvalues(problem_->monodromy()), distance_of_multiplier); }
+solve::Stability Branch::stability() const {
+  return solve::make_stability(spectral::eigenvalues(problem_->monodromy()), distance_of_multiplier);
+}
 
 void Branch::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
@@ -151,9 +160,10 @@ void Branch::on_point(const solve::BranchPoint& point, Vec u) {
   if (last_) report_between(*last_, cycle);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
-  context_.results.progress(fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
-                                        context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_, point.step,
-                                        point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
+  context_.results.progress(
+      fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
+                  context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_,
+                  point.step, point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
 }
 
 // Cycles asked for at given parameters, solved there and not interpolated.
@@ -172,16 +182,20 @@ void Branch::report_between(const solve::Cycle& a, const solve::Cycle& b) {
     const auto result = solve::newton(*problem_, u.get(), row.get(), p / scale_, newton_);
     if (!result.converged) continue;
     problem_->linearise(u.get(), row.get());
-    record_.report(key, problem_->gather(u.get()), problem_->scheme(), *system_, stability(), context_.results.summary());
+    record_.report(key, problem_->gather(u.get()), problem_->scheme(), *system_, stability(),
+                   context_.results.summary());
   }
 }
 
-// How far the bifurcation moves when the discretisation changes: one corrected cycle at the same parameter, and the distance from the border there
-// over its slope along the branch. Folds have no such slope; there the branch itself is moved and its parameter read off.
-double Branch::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh, bool half_film) const {
+// How far the bifurcation moves when the discretisation changes: one corrected cycle at the same parameter, and the
+// distance from the border there over its slope along the branch. Folds have no such slope; there the branch itself is
+// moved and its parameter read off.
+double Branch::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
+                     bool half_film) const {
   const auto other = half_film ? make_system(true) : nullptr;
   system::RotorSystem& system = other ? *other : *system_;
-  solve::CycleProblem problem(context_.comm, system, cycle_options(), doubled_mesh ? solve::doubled(cycle.mesh) : cycle.mesh);
+  solve::CycleProblem problem(context_.comm, system, cycle_options(),
+                              doubled_mesh ? solve::doubled(cycle.mesh) : cycle.mesh);
   core::Vector u = problem.scatter(cycle), row = core::duplicate(u.get());
   const bool fold = found.event == solve::Event::cyclic_fold;
   double offset = found.parameter;
@@ -217,7 +231,9 @@ double Branch::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle
 
 void Branch::on_event(const solve::LocatedEvent& found, Vec u) {
   const auto& wanted = options_.detect;
-  if (std::find(wanted.begin(), wanted.end(), event_of(found.event)) == wanted.end() && found.event != solve::Event::branch_point) return;
+  if (std::find(wanted.begin(), wanted.end(), event_of(found.event)) == wanted.end() &&
+      found.event != solve::Event::branch_point)
+    return;
   const solve::Cycle cycle = problem_->gather(u);
   io::Bifurcation b;
   b.type = type_of(found.event);
@@ -233,7 +249,8 @@ void Branch::on_event(const solve::LocatedEvent& found, Vec u) {
   }
   if (found.located) {
     const double time = shift(found, cycle, true, false), film = shift(found, cycle, false, true);
-    // Twice the change to the doubled time mesh; the film is of second order, so a third of the change to the halved mesh is the error of this one.
+    // Twice the change to the doubled time mesh; the film is of second order, so a third of the change to the halved
+    // mesh is the error of this one.
     b.more["uncertainty_time_mesh"] = 2 * time;
     b.more["uncertainty_film_mesh"] = film / 3;
     b.uncertainty = 2 * time + film / 3 + found.bracket;
@@ -272,7 +289,8 @@ std::optional<solve::Restart> Branch::restore() {
   problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), cycle.mesh);
   read_summary(state.group("summary"), context_.results.summary());
   context_.results.add_earlier_seconds(state.real("seconds"));
-  solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"), read_point(state.group("point"))};
+  solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
+                         read_point(state.group("point"))};
   restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);
   last_ = cycle;
   return restart;
@@ -282,7 +300,8 @@ void Branch::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
   if (!restart) {
-    problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), solve::uniform_mesh(options_.intervals));
+    problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(),
+                                                     solve::uniform_mesh(options_.intervals));
     u = start(*problem_);
   }
   solve::BranchCallbacks callbacks;
@@ -294,7 +313,8 @@ void Branch::run() {
     save(p, v, t, step);
     return true;
   };
-  const solve::BranchEnd end = solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
+  const solve::BranchEnd end =
+      solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
 
   auto& results = context_.results;
   auto& group = results.group();
@@ -312,6 +332,8 @@ void Branch::run() {
 
 }  // namespace
 
-void CycleBranch::run(Context& context) { Branch(context, options).run(); }
+void CycleBranch::run(Context& context) {
+  Branch(context, options).run();
+}
 
 }  // namespace whirl::study

@@ -24,10 +24,14 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("intervals", &O::intervals, deck::at_least(4), "intervals of the time mesh");
   d.add("degree", &O::degree, deck::in(1, 7), "degree of the polynomials in time");
   d.add("points", &O::points, "collocation points");
-  d.add("adapt_mesh", &O::adapt_mesh, "split and merge intervals of the time mesh as the cycle changes along the branch");
-  d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive, "estimated error per interval above which it is split, relative to the orbit");
-  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2), "root mean square of the scaled residual at which Newton's method stops");
-  d.add("at", &O::at, "*", deck::any, "parameter values inside the range at which the cycle is solved and reported as at.VALUE.*");
+  d.add("adapt_mesh", &O::adapt_mesh,
+        "split and merge intervals of the time mesh as the cycle changes along the branch");
+  d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive,
+        "estimated error per interval above which it is split, relative to the orbit");
+  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),
+        "root mean square of the scaled residual at which Newton's method stops");
+  d.add("at", &O::at, "*", deck::any,
+        "parameter values inside the range at which the cycle is solved and reported as at.VALUE.*");
   d.add("multipliers", &O::multipliers, deck::positive, "Floquet multipliers to report, the largest");
   d.add("period", &O::period, deck::positive, "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");

@@ -15,7 +15,8 @@ struct Extremes {
 };
 
 // Journal motion of all bearings at `count` equidistant times: [time][bearing][x, y].
-std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system, int count) {
+std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
+                           int count) {
   const auto n = static_cast<std::size_t>(system.n_bearings());
   std::vector<double> out;
   out.reserve(2 * n * static_cast<std::size_t>(count));
@@ -76,8 +77,8 @@ CycleRecord::CycleRecord(std::vector<std::string> bearings, std::string unit, in
       multipliers_(multipliers),
       table_(columns(bearings_.size(), unit_, static_cast<std::size_t>(multipliers))) {}
 
-void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
-                         double scale) {
+void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                         const system::RotorSystem& system, double scale) {
   std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
   const Extremes e = extremes(motion, bearings_.size());
   std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
@@ -102,8 +103,9 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
   orbits_.push_back(std::move(motion));
 }
 
-void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
-                         const solve::Stability& stability, io::StudySummary& summary) {
+void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                         const system::RotorSystem& system, const solve::Stability& stability,
+                         io::StudySummary& summary) {
   const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), bearings_.size());
   const std::string head = "at." + key + ".";
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
@@ -123,7 +125,8 @@ void CycleRecord::write(io::Group& group, bool everything) const {
   if (!everything) return;
   std::vector<double> flat;
   for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
-  group.put("orbits", {orbits_.size(), samples_per_orbit, bearings_.size(), 2}, std::move(flat), "m", "journal motion of every point");
+  group.put("orbits", {orbits_.size(), samples_per_orbit, bearings_.size(), 2}, std::move(flat), "m",
+            "journal motion of every point");
   group.put("reported", std::vector<std::string>(reported_.begin(), reported_.end()), "parameters already reported");
 }
 
@@ -132,12 +135,15 @@ void CycleRecord::read(const io::Group& group) {
   const auto& flat = group.reals("orbits");
   const std::size_t width = samples_per_orbit * bearings_.size() * 2;
   orbits_.clear();
-  for (std::size_t k = 0; k + width <= flat.size(); k += width) orbits_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(k), flat.begin() + static_cast<std::ptrdiff_t>(k + width));
+  for (std::size_t k = 0; k + width <= flat.size(); k += width)
+    orbits_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(k),
+                         flat.begin() + static_cast<std::ptrdiff_t>(k + width));
   for (const auto& key : group.strings("reported")) reported_.insert(key);
 }
 
 void CycleRecord::write_orbits(io::Group& group, int count) const {
-  const std::size_t total = orbits_.size(), n = std::min<std::size_t>(total, static_cast<std::size_t>(std::max(count, 0)));
+  const std::size_t total = orbits_.size(),
+                    n = std::min<std::size_t>(total, static_cast<std::size_t>(std::max(count, 0)));
   std::vector<double> parameter, x, y;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = n == 1 ? 0 : k * (total - 1) / (n - 1);
@@ -156,7 +162,8 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
 void write_cycle(io::Group& group, const solve::Cycle& cycle) {
   group.put("mesh", cycle.mesh, "1", "s = t/T");
   // Nodes are the slow index.
-  group.put("x", {static_cast<std::size_t>(cycle.x.cols()), static_cast<std::size_t>(cycle.x.rows())}, std::vector<double>(cycle.x.data(), cycle.x.data() + cycle.x.size()), "SI",
+  group.put("x", {static_cast<std::size_t>(cycle.x.cols()), static_cast<std::size_t>(cycle.x.rows())},
+            std::vector<double>(cycle.x.data(), cycle.x.data() + cycle.x.size()), "SI",
             "states at the nodes, natural order");
   group.set("period", cycle.period);
   group.set("parameter", cycle.parameter);
@@ -167,7 +174,8 @@ solve::Cycle read_cycle(const io::Group& group) {
   cycle.mesh = group.reals("mesh");
   const auto& data = group.dataset("x");
   const auto& values = group.reals("x");
-  cycle.x = Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(data.shape[1]), static_cast<Eigen::Index>(data.shape[0]));
+  cycle.x = Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(data.shape[1]),
+                                              static_cast<Eigen::Index>(data.shape[0]));
   cycle.period = group.real("period");
   cycle.parameter = group.real("parameter");
   return cycle;

@@ -14,16 +14,18 @@
 
 namespace whirl::study {
 
-/// Rows of a branch of cycles: extremes of the journals' motion in their bearings, multipliers, orbits. Replicated on all ranks.
+/// Rows of a branch of cycles: extremes of the journals' motion in their bearings, multipliers, orbits. Replicated on
+/// all ranks.
 class CycleRecord {
- public:
+public:
   CycleRecord(std::vector<std::string> bearings, std::string unit, int multipliers);
 
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
-  void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system, double scale);
+  void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
+              const system::RotorSystem& system, double scale);
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
-  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
-              const solve::Stability& stability, io::StudySummary& summary);
+  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
+              const system::RotorSystem& system, const solve::Stability& stability, io::StudySummary& summary);
   [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
 
   /// Tables into `group`; with `everything`, also what a restart needs.
@@ -32,7 +34,7 @@ class CycleRecord {
   /// `count` orbits spread evenly over the points.
   void write_orbits(io::Group& group, int count) const;
 
- private:
+private:
   std::vector<std::string> bearings_;
   std::string unit_;
   int multipliers_;

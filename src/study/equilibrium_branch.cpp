@@ -19,14 +19,18 @@ namespace {
 
 using core::check;
 
-std::unique_ptr<system::RotorSystem> make_system(const Context& context, const EquilibriumBranchOptions& o, bool half_film) {
+std::unique_ptr<system::RotorSystem> make_system(const Context& context, const EquilibriumBranchOptions& o,
+                                                 bool half_film) {
   const auto train_at = [half_film](const system::Machine& machine) {
     system::Train t = system::train_of(machine);
     return half_film ? with_half_film_mesh(std::move(t)) : t;
   };
-  if (o.parameter.path == "speed") return std::make_unique<system::RotorSystem>(context.comm, train_at(context.machine), o.parameter.range.from);
+  if (o.parameter.path == "speed")
+    return std::make_unique<system::RotorSystem>(context.comm, train_at(context.machine), o.parameter.range.from);
   system::Varying varying;
-  varying.train = [&context, &o, train_at](double p) { return train_at(with_parameter(context.machine, o.parameter.path, p)); };
+  varying.train = [&context, &o, train_at](double p) {
+    return train_at(with_parameter(context.machine, o.parameter.path, p));
+  };
   varying.value = o.parameter.range.from;
   varying.magnitude = std::max(std::abs(o.parameter.range.from), std::abs(o.parameter.range.to));
   return std::make_unique<system::RotorSystem>(context.comm, std::move(varying), o.speed->value);
@@ -85,15 +89,26 @@ void EquilibriumBranch::run(Context& context) {
     }
     const auto& s = point.stability;
     const std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
-    table.append({{point.parameter}, {s.unstable() == 0 ? 1.0 : 0.0}, {static_cast<double>(s.unstable())}, {point.step}, {leading.real()},
-                  {std::abs(leading.imag())}, px, py});
-    results.progress(fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
-                                 results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
-                                 point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
+    table.append({{point.parameter},
+                  {s.unstable() == 0 ? 1.0 : 0.0},
+                  {static_cast<double>(s.unstable())},
+                  {point.step},
+                  {leading.real()},
+                  {std::abs(leading.imag())},
+                  px,
+                  py});
+    results.progress(fmt::format(
+        "{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
+        results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
+        point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
   };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
-    const Event kind = found.event == solve::Event::hopf ? Event::hopf : found.event == solve::Event::fold ? Event::fold : Event::branch_point;
-    if (kind != Event::branch_point && std::find(options.detect.begin(), options.detect.end(), kind) == options.detect.end()) return;
+    const Event kind = found.event == solve::Event::hopf   ? Event::hopf
+                       : found.event == solve::Event::fold ? Event::fold
+                                                           : Event::branch_point;
+    if (kind != Event::branch_point &&
+        std::find(options.detect.begin(), options.detect.end(), kind) == options.detect.end())
+      return;
     io::Bifurcation b;
     b.type = type_of(found.event);
     b.parameter = options.parameter.path;
@@ -106,7 +121,8 @@ void EquilibriumBranch::run(Context& context) {
       b.more["whirl_frequency_rad_s"] = omega;
       b.more["whirl_frequency_rpm"] = omega * 30 / std::numbers::pi;
     }
-    // The same equilibrium on the halved film mesh: how far the border of stability moves, a third of which is the error of this mesh.
+    // The same equilibrium on the halved film mesh: how far the border of stability moves, a third of which is the
+    // error of this mesh.
     if (found.located && found.sensitivity != 0) {
       const auto coarse = make_system(context, options, true);
       coarse->set_parameter(found.parameter * scale);
@@ -139,7 +155,9 @@ void EquilibriumBranch::run(Context& context) {
   int k = 0;
   for (const auto& b : results.summary().bifurcations)
     if (b.type == io::BifurcationType::hopf && k++ == 0) {
-      results.summary().set("threshold", b.value * scale, deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path));
+      results.summary().set(
+          "threshold", b.value * scale,
+          deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path));
       results.summary().set("whirl_frequency", b.more.at("whirl_frequency_rad_s"), "rad/s");
     }
   results.summary().points = end.points;

@@ -62,7 +62,8 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   return out;
 }
 
-// Gives the modes of one speed the identities of those of the speed before: the best pairs of like shape and near eigenvalue first.
+// Gives the modes of one speed the identities of those of the speed before: the best pairs of like shape and near
+// eigenvalue first.
 void follow(const std::vector<ShaftMode>& before, std::vector<ShaftMode>& now, int& next_id) {
   struct Pair {
     double score;
@@ -98,7 +99,9 @@ void rigid_modes(Context& context, const ModesOptions& options) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
     summary.modes.push_back({0, 0, frequencies[k], 0, "planar"});
   }
-  context.results.group().child("spectrum").put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
+  context.results.group()
+      .child("spectrum")
+      .put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
   summary.points = 1;
   context.results.finish("completed", true);
 }
@@ -166,8 +169,8 @@ void Modes::run(Context& context) {
       }
     before = std::move(modes);
     last_speed = speed;
-    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, ++ready, speeds.size(), deck::from_si(speed, unit), unit,
-                                 results.seconds()));
+    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, ++ready, speeds.size(),
+                                 deck::from_si(speed, unit), unit, results.seconds()));
   }
 
   auto& spectrum = group.child("spectrum");
@@ -205,7 +208,8 @@ void Modes::run(Context& context) {
     }
   }
   const char* const names[] = {"x_real", "x_imag", "y_real", "y_imag"};
-  for (std::size_t k = 0; k < 4; ++k) shapes.put(names[k], {before.size(), z.size()}, flat[k], "1", "shape [mode][node], largest displacement one");
+  for (std::size_t k = 0; k < 4; ++k)
+    shapes.put(names[k], {before.size(), z.size()}, flat[k], "1", "shape [mode][node], largest displacement one");
   shapes.put("speed", std::vector<double>{last_speed}, "rad/s", "speed of the shapes");
   shapes.put("z", z, "m", "axial position of the nodes");
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");

@@ -10,8 +10,13 @@ namespace whirl::study {
 
 namespace fs = std::filesystem;
 
-Results::Results(MPI_Comm comm, fs::path directory, const std::string& title, const std::string& version, Say say, bool resume)
-    : comm_(comm), rank_(core::rank_of(comm)), directory_(std::move(directory)), say_(std::move(say)), started_run_(std::chrono::steady_clock::now()) {
+Results::Results(MPI_Comm comm, fs::path directory, const std::string& title, const std::string& version, Say say,
+                 bool resume)
+    : comm_(comm),
+      rank_(core::rank_of(comm)),
+      directory_(std::move(directory)),
+      say_(std::move(say)),
+      started_run_(std::chrono::steady_clock::now()) {
   started_ = started_run_;
   if (rank_ != 0) say_ = nullptr;
   core::agree(comm_, [&] {
@@ -30,9 +35,13 @@ Results::Results(MPI_Comm comm, fs::path directory, const std::string& title, co
   all_.ranks = core::size_of(comm);
 }
 
-bool Results::finished(const std::string& name) const { return std::find(finished_.begin(), finished_.end(), name) != finished_.end(); }
+bool Results::finished(const std::string& name) const {
+  return std::find(finished_.begin(), finished_.end(), name) != finished_.end();
+}
 
-io::Group& Results::group() { return root_.child("studies").child(io::safe_name(current_.name)); }
+io::Group& Results::group() {
+  return root_.child("studies").child(io::safe_name(current_.name));
+}
 
 void Results::begin(const std::string& name, const std::string& kind) {
   current_ = {};
@@ -65,7 +74,8 @@ void Results::finish(const std::string& status, bool delivered) {
 }
 
 void Results::write() {
-  all_.wall_seconds = earlier_run_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_run_).count();
+  all_.wall_seconds =
+      earlier_run_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_run_).count();
   core::agree(comm_, [&] {
     if (rank_ != 0) return;
     io::write_hdf5(directory_ / "results.h5", root_);
@@ -81,7 +91,9 @@ void Results::progress(const std::string& line) {
   say_(line, true);
 }
 
-fs::path Results::checkpoint_path() const { return directory_ / (io::safe_name(current_.name) + ".checkpoint.h5"); }
+fs::path Results::checkpoint_path() const {
+  return directory_ / (io::safe_name(current_.name) + ".checkpoint.h5");
+}
 
 void Results::save_checkpoint(const io::Group& state) const {
   core::agree(comm_, [&] {

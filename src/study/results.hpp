@@ -17,11 +17,13 @@ namespace whirl::study {
 
 /// Results of one run. Every rank holds the same tree; rank 0 of `comm` writes the files.
 class Results {
- public:
+public:
   using Say = std::function<void(const std::string& line, bool transient)>;
 
-  /// `say` shows progress (called on rank 0 only, may be empty); `resume` takes over what an earlier run left in the directory.
-  Results(MPI_Comm comm, std::filesystem::path directory, const std::string& title, const std::string& version, Say say, bool resume);
+  /// `say` shows progress (called on rank 0 only, may be empty); `resume` takes over what an earlier run left in the
+  /// directory.
+  Results(MPI_Comm comm, std::filesystem::path directory, const std::string& title, const std::string& version, Say say,
+          bool resume);
 
   /// True if an earlier run finished this study; its results are kept.
   [[nodiscard]] bool finished(const std::string& name) const;
@@ -35,7 +37,9 @@ class Results {
   [[nodiscard]] io::StudySummary& summary() { return current_; }
   /// Replaces the group and the summary by those of a checkpoint.
   void restore(io::Group group, io::StudySummary summary);
-  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count() + earlier_seconds_; }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count() + earlier_seconds_;
+  }
   void add_earlier_seconds(double seconds) { earlier_seconds_ += seconds; }
 
   /// Replaces the progress line; rank 0 only, at most ten times a second.
@@ -52,7 +56,7 @@ class Results {
   [[nodiscard]] io::Group& root() { return root_; }
   [[nodiscard]] std::string group_path() const { return "/studies/" + io::safe_name(current_.name); }
 
- private:
+private:
   void write();
   [[nodiscard]] std::filesystem::path checkpoint_path() const;
 

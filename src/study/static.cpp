@@ -21,7 +21,8 @@ film::Motion motion_of(const system::JournalState& j, double speed) {
 }
 
 // Pressure and thickness of every pad, and where ParaView finds them.
-void put_films(Context& context, system::RotorSystem& system, const std::vector<system::JournalState>& journals, const std::vector<double>& z) {
+void put_films(Context& context, system::RotorSystem& system, const std::vector<system::JournalState>& journals,
+               const std::vector<double>& z) {
   auto& group = context.results.group();
   const auto names = names_of_bearings(context.machine);
   std::vector<io::StructuredGrid> grids;
@@ -43,14 +44,16 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
     const auto groups = pads.groups();
     for (const auto& entry : groups) {
       const std::string path = context.results.group_path() + "/films/" + io::safe_name(names[k]) + "/" + entry.first;
-      for (auto& g : io::film_grids(pads.child(entry.first), path, names[k] + " " + entry.first, place)) grids.push_back(std::move(g));
+      for (auto& g : io::film_grids(pads.child(entry.first), path, names[k] + " " + entry.first, place))
+        grids.push_back(std::move(g));
     }
   }
   core::agree(context.comm, [&] {
     int rank = 0;
     MPI_Comm_rank(context.comm, &rank);
     if (rank == 0 && !grids.empty())
-      io::write_xdmf(context.results.directory() / (io::safe_name(context.results.summary().name) + ".xdmf"), "results.h5", grids);
+      io::write_xdmf(context.results.directory() / (io::safe_name(context.results.summary().name) + ".xdmf"),
+                     "results.h5", grids);
   });
 }
 
@@ -84,9 +87,11 @@ void Static::run(Context& context) {
     summary.set(head + "force.y", films[b].force[1], "N");
     for (std::size_t d = 0; d < 2; ++d) summary.set(head + axis[d], journals[b].position[d], "m");
     if (support.geometry.clearance > 0) {
-      for (std::size_t d = 0; d < 2; ++d) summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
+      for (std::size_t d = 0; d < 2; ++d)
+        summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
       film::Summary report;
-      core::agree(context.comm, [&] { report = system.film(static_cast<int>(b)).summary(motion_of(journals[b], system.speed())); });
+      core::agree(context.comm,
+                  [&] { report = system.film(static_cast<int>(b)).summary(motion_of(journals[b], system.speed())); });
       summary.set(head + "min_thickness", report.min_thickness, "m");
       summary.set(head + "min_thickness_ratio", report.min_thickness / support.geometry.clearance, "1");
       summary.set(head + "max_pressure", report.max_pressure, "Pa");

@@ -35,7 +35,7 @@ struct Response {
 };
 
 class Machine {
- public:
+public:
   Machine(Context& context, const UnbalanceResponseOptions& options, std::vector<int> nodes)
       : system_(context.comm, system::train_of(context.machine, options.unbalance), options.range.from),
         walker_(system_),
@@ -46,7 +46,8 @@ class Machine {
     Vec x = walker_.at(speed);
     PetscInt begin = 0, end = 0;
     core::check(VecGetOwnershipRange(x, &begin, &end));
-    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum rows.
+    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum
+    // rows.
     std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
     for (PetscInt row = begin; row < end; row += 2) {
       const auto q = static_cast<std::size_t>(row / 2), at = static_cast<std::size_t>(2 * (row - begin));
@@ -74,7 +75,9 @@ class Machine {
       Complex z[2];
       for (int d = 0; d < 2; ++d) {
         const PetscInt j = 2 * system_.journal(b, d), p = 2 * system_.pedestal(b, d);
-        const auto value = [&](PetscInt i) { return Complex(state[0][static_cast<std::size_t>(i)], state[1][static_cast<std::size_t>(i)]); };
+        const auto value = [&](PetscInt i) {
+          return Complex(state[0][static_cast<std::size_t>(i)], state[1][static_cast<std::size_t>(i)]);
+        };
         z[d] = value(j) - (p >= 0 ? value(p) : 0.0);
       }
       r.bearings.push_back({z[0], z[1]});
@@ -82,7 +85,7 @@ class Machine {
     return r;
   }
 
- private:
+private:
   system::RotorSystem system_;
   Walker walker_;
   solve::FrequencyResponse solver_;
@@ -109,7 +112,8 @@ double amplification(const std::vector<Response>& curve, std::size_t node, std::
   return curve[top].speed / (crossing(right - 1, right) - crossing(left + 1, left));
 }
 
-void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place, const std::string& text) {
+void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place,
+                const std::string& text) {
   const io::Shape shape{curve.size(), (curve.front().*place).size()};
   std::map<std::string, std::vector<double>> column;
   for (const Response& r : curve)
@@ -123,7 +127,8 @@ void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Mo
     }
   for (auto& [name, values] : column) {
     const bool phase = name.ends_with("phase");
-    g.put(name, shape, std::move(values), phase ? "rad" : "m", text + (phase ? ", phase ahead of the shaft angle" : ", 0-peak"));
+    g.put(name, shape, std::move(values), phase ? "rad" : "m",
+          text + (phase ? ", phase ahead of the shaft angle" : ", 0-peak"));
   }
 }
 
@@ -135,7 +140,8 @@ void UnbalanceResponse::run(Context& context) {
   if (nodes.empty()) {
     for (const auto& b : context.machine.bearings) wanted.insert(b.node);
     for (const auto& name : options.unbalance)
-      for (const auto& plane : context.machine.unbalance[*system::find_unbalance(context.machine, name)].planes) wanted.insert(plane.node);
+      for (const auto& plane : context.machine.unbalance[*system::find_unbalance(context.machine, name)].planes)
+        wanted.insert(plane.node);
     nodes.assign(wanted.begin(), wanted.end());
   }
   const std::string unit = options.range.unit;
@@ -144,9 +150,11 @@ void UnbalanceResponse::run(Context& context) {
   auto& summary = results.summary();
   std::vector<Response> curve;
   for (int k = 0; k < options.points; ++k) {
-    const double speed = options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1);
+    const double speed =
+        options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1);
     curve.push_back(machine.at(speed));
-    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, k + 1, options.points, deck::from_si(speed, unit), unit, results.seconds()));
+    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, k + 1, options.points,
+                                 deck::from_si(speed, unit), unit, results.seconds()));
   }
 
   // Speeds added around the peaks of each node until the parabola through three neighbours settles the speed to 1e-5.
@@ -155,7 +163,8 @@ void UnbalanceResponse::run(Context& context) {
   const auto tops = [&](std::size_t node) {
     std::vector<std::size_t> found;
     for (std::size_t k = 1; k + 1 < curve.size(); ++k) {
-      const double a = curve[k - 1].nodes[node].semi_major(), b = curve[k].nodes[node].semi_major(), c = curve[k + 1].nodes[node].semi_major();
+      const double a = curve[k - 1].nodes[node].semi_major(), b = curve[k].nodes[node].semi_major(),
+                   c = curve[k + 1].nodes[node].semi_major();
       if (b > a && b >= c) found.push_back(k);
     }
     return found;
@@ -165,8 +174,10 @@ void UnbalanceResponse::run(Context& context) {
       std::vector<double> speeds;
       for (const std::size_t k : tops(node)) {
         const double s0 = curve[k - 1].speed, s1 = curve[k].speed, s2 = curve[k + 1].speed;
-        const double f0 = curve[k - 1].nodes[node].semi_major(), f1 = curve[k].nodes[node].semi_major(), f2 = curve[k + 1].nodes[node].semi_major();
-        const double u = (s1 - s0) * (s1 - s0) * (f1 - f2), v = (s1 - s2) * (s1 - s2) * (f1 - f0), w = (s1 - s0) * (f1 - f2) - (s1 - s2) * (f1 - f0);
+        const double f0 = curve[k - 1].nodes[node].semi_major(), f1 = curve[k].nodes[node].semi_major(),
+                     f2 = curve[k + 1].nodes[node].semi_major();
+        const double u = (s1 - s0) * (s1 - s0) * (f1 - f2), v = (s1 - s2) * (s1 - s2) * (f1 - f0),
+                     w = (s1 - s0) * (f1 - f2) - (s1 - s2) * (f1 - f0);
         const double vertex = w != 0 ? s1 - 0.5 * (u - v) / w : s1;
         if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > 1e-5 * s1) speeds.push_back(vertex);
       }
@@ -178,7 +189,8 @@ void UnbalanceResponse::run(Context& context) {
   std::vector<Peak> peaks;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
-    for (const std::size_t k : tops(node)) own.push_back({nodes[node], curve[k].speed, curve[k].nodes[node].semi_major(), amplification(curve, node, k)});
+    for (const std::size_t k : tops(node))
+      own.push_back({nodes[node], curve[k].speed, curve[k].nodes[node].semi_major(), amplification(curve, node, k)});
     std::stable_sort(own.begin(), own.end(), [](const Peak& a, const Peak& b) { return a.amplitude > b.amplitude; });
     for (std::size_t k = 0; k < own.size(); ++k) {
       const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
@@ -195,7 +207,8 @@ void UnbalanceResponse::run(Context& context) {
     summary.set(head + "semi_major", peaks[k].amplitude, "m");
     summary.set(head + "amplification_factor", peaks[k].amplification, "1");
     if (options.operating_speed)
-      summary.set(head + "separation_margin", std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
+      summary.set(head + "separation_margin",
+                  std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
   }
   if (options.operating_speed) {
     const Response r = machine.at(options.operating_speed->value);
@@ -204,7 +217,8 @@ void UnbalanceResponse::run(Context& context) {
       summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
       summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
     }
-    for (std::size_t k = 0; k < nodes.size(); ++k) summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
   }
 
   auto& group = results.group();

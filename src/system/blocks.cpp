@@ -76,7 +76,8 @@ void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load, Eigen::Vecto
   }
 }
 
-void RotorSystem::Blocks::forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs, Eigen::VectorXd* d_parameter) {
+void RotorSystem::Blocks::forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs,
+                                 Eigen::VectorXd* d_parameter) {
   const int bearings = system_.n_bearings();
   f.resize(2 * bearings);
   if (d_inputs) d_inputs->setZero(2 * bearings, 4 * bearings);
@@ -92,7 +93,8 @@ void RotorSystem::Blocks::forces(const Eigen::VectorXd& inputs, Eigen::VectorXd&
     }
     motion.position[1] -= system_.train_.supports[static_cast<std::size_t>(i)].elevation;
     try {
-      system_.bearings_[static_cast<std::size_t>(i)].film->evaluate(motion, tangents ? film::Need::tangents : film::Need::force, response);
+      system_.bearings_[static_cast<std::size_t>(i)].film->evaluate(
+          motion, tangents ? film::Need::tangents : film::Need::force, response);
     } catch (const core::DomainError& e) {
       throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
     }

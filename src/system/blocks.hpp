@@ -8,9 +8,10 @@
 
 namespace whirl::system {
 
-/// Inputs are (x, y, vx, vy) of each journal relative to its pedestal (elevation not subtracted), forces (Fx, Fy) of each film on its journal.
+/// Inputs are (x, y, vx, vy) of each journal relative to its pedestal (elevation not subtracted), forces (Fx, Fy) of
+/// each film on its journal.
 class RotorSystem::Blocks : public problem::Structure {
- public:
+public:
   explicit Blocks(RotorSystem& system);
 
   [[nodiscard]] Eigen::Index size() const override { return l1_.rows(); }
@@ -22,9 +23,10 @@ class RotorSystem::Blocks : public problem::Structure {
   [[nodiscard]] const Eigen::MatrixXd& b() const override { return b_; }
   [[nodiscard]] const Eigen::MatrixXd& c() const override { return c_; }
   void load(double angle, Eigen::VectorXd& load, Eigen::VectorXd* d_load) override;
-  void forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs, Eigen::VectorXd* d_parameter) override;
+  void forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs,
+              Eigen::VectorXd* d_parameter) override;
 
- private:
+private:
   RotorSystem& system_;
   Eigen::MatrixXd l1_, l0_at_rest_, gyroscopic_, l0_, dl0_, b_, c_;
   double l0_speed_ = -1;

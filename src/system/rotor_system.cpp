@@ -15,7 +15,8 @@ namespace {
 using core::check;
 
 // `m` of the rotor with the pedestals' diagonal appended behind it; `local` rows on this rank.
-core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor, const std::vector<std::pair<PetscInt, double>>& diagonal) {
+core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
+                            const std::vector<std::pair<PetscInt, double>>& diagonal) {
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(m, &begin, &end));
   std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local, 1)), 1);
@@ -59,7 +60,10 @@ std::vector<double> everywhere(Vec v) {
 
 }  // namespace
 
-RotorSystem::RotorSystem(MPI_Comm comm, Train train, double speed) : comm_(comm), train_(std::move(train)), speed_(speed) { build(); }
+RotorSystem::RotorSystem(MPI_Comm comm, Train train, double speed)
+    : comm_(comm), train_(std::move(train)), speed_(speed) {
+  build();
+}
 
 RotorSystem::RotorSystem(MPI_Comm comm, Varying varying, double speed)
     : comm_(comm), train_(varying.train(varying.value)), varying_(std::move(varying)), speed_(speed) {
@@ -80,7 +84,8 @@ void RotorSystem::build() {
     Bearing b;
     for (int d = 0; d < 2; ++d) {
       b.journal[static_cast<std::size_t>(d)] = rotor_->coordinate(s.node, d);
-      if (b.journal[static_cast<std::size_t>(d)] < 0) throw core::InputError("a bearing's node is not a master node of the reduced rotor");
+      if (b.journal[static_cast<std::size_t>(d)] < 0)
+        throw core::InputError("a bearing's node is not a master node of the reduced rotor");
       if (s.has_pedestal) b.pedestal[static_cast<std::size_t>(d)] = n_++;
     }
     bearings_.push_back(std::move(b));
@@ -117,11 +122,13 @@ void RotorSystem::build() {
   }
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const PetscInt row = bearings_[i].pedestal[1];
-    if (row >= 0 && owns(row)) load_[static_cast<std::size_t>(row - begin_)] -= train_.gravity * train_.supports[i].mass[1];
+    if (row >= 0 && owns(row))
+      load_[static_cast<std::size_t>(row - begin_)] -= train_.gravity * train_.supports[i].mass[1];
   }
 
   // U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
-  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_end - rotor_begin, PETSC_DETERMINE), s = core::duplicate(c.get());
+  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_end - rotor_begin, PETSC_DETERMINE),
+                               s = core::duplicate(c.get());
   const bool reduced = static_cast<bool>(m.basis);
   if (reduced) {
     check(MatCreateVecs(m.basis.get(), nullptr, full_c.put()));
@@ -159,7 +166,8 @@ void RotorSystem::build() {
         for (PetscInt rate = 0; rate < 2; ++rate) wanted.push_back(2 * std::max<PetscInt>(q, 0) + rate);
   core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
   core::IndexSet from;
-  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES, from.put()));
+  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
+                        from.put()));
   inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), PETSC_DETERMINE);
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
   blocks_.reset();
@@ -265,7 +273,8 @@ std::vector<film::Response> RotorSystem::film_responses(const std::vector<Journa
 void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::force);
   // q, v and their rates as vectors of coordinates, for the matrix products.
-  core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()), a = core::duplicate(q.get()), sum = core::duplicate(q.get());
+  core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()),
+               a = core::duplicate(q.get()), sum = core::duplicate(q.get());
   {
     const core::ReadArray xa(x), da(xdot);
     const core::WriteArray qa(q.get()), va(v.get()), aa(a.get());
@@ -352,10 +361,12 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, 
   }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     for (std::size_t d = 0; d < 2; ++d)
-      for (const auto& [row, sign] : {std::pair{bearings_[b].journal[d], -1.0}, std::pair{bearings_[b].pedestal[d], 1.0}}) {
+      for (const auto& [row, sign] :
+           {std::pair{bearings_[b].journal[d], -1.0}, std::pair{bearings_[b].pedestal[d], 1.0}}) {
         if (row < 0 || !owns(row)) continue;
         for (std::size_t e = 0; e < 2; ++e)
-          for (const auto& [column, side] : {std::pair{bearings_[b].journal[e], 1.0}, std::pair{bearings_[b].pedestal[e], -1.0}}) {
+          for (const auto& [column, side] :
+               {std::pair{bearings_[b].journal[e], 1.0}, std::pair{bearings_[b].pedestal[e], -1.0}}) {
             if (column < 0) continue;
             check(MatSetValue(j, 2 * row, 2 * column, alpha * sign * side * films[b].d_position[d][e], ADD_VALUES));
             check(MatSetValue(j, 2 * row, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
@@ -402,7 +413,8 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
     }
 }
 
-// Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the weight.
+// Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the
+// weight.
 void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
   double clearance = 0;
   int films = 0;
@@ -413,16 +425,18 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
     }
   clearance = films > 0 ? clearance / films : 1e-4;
   constexpr double frequency = 300;  // rad/s
-  const double mass = rotor::total_mass(train_.rotor), force = std::max(mass * std::abs(train_.gravity), mass * clearance * frequency * frequency) /
-                                                              std::max<double>(1.0, static_cast<double>(bearings_.size()));
+  const double mass = rotor::total_mass(train_.rotor),
+               force = std::max(mass * std::abs(train_.gravity), mass * clearance * frequency * frequency) /
+                       std::max<double>(1.0, static_cast<double>(bearings_.size()));
   const bool reduced = train_.rotor.reduction.type != rotor::Reduction::Type::none;
   const auto masters = static_cast<PetscInt>(2 * train_.rotor.reduction.masters.size());
   const core::WriteArray s(state_scale), r(residual_scale);
   for (PetscInt i = 0; i < end_ - begin_; ++i) {
     const PetscInt g = begin_ + i;
     double length = clearance, load = force;
-    if (g < n_rotor_ && !reduced && g % 4 > 1) load = force * 0.1;         // slopes: clearance per metre, moments on a lever of 0.1 m
-    if (g < n_rotor_ && reduced && g >= masters) {                           // mass-normalised modes
+    if (g < n_rotor_ && !reduced && g % 4 > 1)
+      load = force * 0.1;                           // slopes: clearance per metre, moments on a lever of 0.1 m
+    if (g < n_rotor_ && reduced && g >= masters) {  // mass-normalised modes
       length = clearance * std::sqrt(mass);
       load = force / std::sqrt(mass);
     }
@@ -439,7 +453,9 @@ problem::Structure* RotorSystem::structure() {
   return blocks_.get();
 }
 
-std::vector<double> RotorSystem::gather(Vec x) const { return everywhere(x); }
+std::vector<double> RotorSystem::gather(Vec x) const {
+  return everywhere(x);
+}
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {
   const rotor::Matrices& m = rotor_->matrices();

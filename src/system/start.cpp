@@ -18,7 +18,8 @@ core::Vector static_guess(RotorSystem& system) {
     s.elevation -= 0.45 * s.geometry.clearance;
   }
   RotorSystem springs(system.comm(), std::move(train), system.speed());
-  core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE), f = core::duplicate(x.get()), rest = core::duplicate(x.get());
+  core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE), f = core::duplicate(x.get()),
+               rest = core::duplicate(x.get());
   core::Matrix j = springs.make_jacobian();
   springs.residual(0, x.get(), rest.get(), f.get());
   springs.jacobian(0, x.get(), rest.get(), 1, 0, j.get());

@@ -76,7 +76,8 @@ TEST(Cycle, G25AtServiceSpeed) {
     EXPECT_NEAR(a.y[b], y[b], 6e-3 * y[b]);
   }
   EXPECT_NEAR(a.multiplier, 0.99000172, 1e-3);
-  printf("DBG %d its %d linear %g s, mult %.8f y %g %g %g %g %g\n", a.iterations, a.linear, seconds, a.multiplier, a.y[0]*1e6, a.y[1]*1e6, a.y[2]*1e6, a.y[3]*1e6, a.y[4]*1e6);
+  printf("DBG %d its %d linear %g s, mult %.8f y %g %g %g %g %g\n", a.iterations, a.linear, seconds, a.multiplier,
+         a.y[0] * 1e6, a.y[1] * 1e6, a.y[2] * 1e6, a.y[3] * 1e6, a.y[4] * 1e6);
 }
 
 TEST(Cycle, AllLinearAlgebraPathsAgree) {

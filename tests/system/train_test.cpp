@@ -31,7 +31,8 @@ void disturb(const system::RotorSystem& s, Vec x, double size) {
   PetscInt begin = 0;
   core::check(VecGetOwnershipRange(x, &begin, nullptr));
   const core::WriteArray a(x);
-  for (PetscInt i = 0; i < a.size(); ++i) a[i] += size * std::sin(3.7 * static_cast<double>(begin + i)) * ((begin + i) % 2 ? 300 : 1);
+  for (PetscInt i = 0; i < a.size(); ++i)
+    a[i] += size * std::sin(3.7 * static_cast<double>(begin + i)) * ((begin + i) % 2 ? 300 : 1);
   (void)s;
 }
 
@@ -60,7 +61,8 @@ TEST(Train, LoadsAtServiceSpeed) {
   const auto whole = s.gather(x.get());
   const auto films = s.film_responses(s.journals(whole.data()), film::Need::force);
   const double reference[] = {12418.391, 47829.622, 213406.85, 128292.09, 11698.184};
-  for (int b = 0; b < 5; ++b) EXPECT_NEAR(films[static_cast<std::size_t>(b)].force[1], reference[b], 1e-3 * reference[b]);
+  for (int b = 0; b < 5; ++b)
+    EXPECT_NEAR(films[static_cast<std::size_t>(b)].force[1], reference[b], 1e-3 * reference[b]);
 }
 
 TEST(Train, EigenvaluesAtServiceSpeed) {
@@ -70,7 +72,8 @@ TEST(Train, EigenvaluesAtServiceSpeed) {
   o.count = 60;
   o.shapes = false;
   const auto modes = spectral::modes(s, x.get(), o);
-  const std::complex<double> reference[] = {{-0.58344247, 81.678244}, {-1.9989577, 105.89431}, {-3.7948633, 147.23537}, {-6.7011103, 186.53935}};
+  const std::complex<double> reference[] = {
+      {-0.58344247, 81.678244}, {-1.9989577, 105.89431}, {-3.7948633, 147.23537}, {-6.7011103, 186.53935}};
   for (const auto& wanted : reference) {
     double nearest = 1e9;
     for (const auto& m : modes) nearest = std::min(nearest, std::abs(m.lambda - wanted));

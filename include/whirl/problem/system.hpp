@@ -13,11 +13,12 @@ namespace whirl::problem {
 
 /// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.
 ///
-/// The state x is distributed by rows in natural order: entry k means the same on any number of ranks. Forcing depends on the shaft angle
-/// and the speed, never on time itself, so that dF/dp stays bounded on a cycle whose period follows the speed. `p` is the active
-/// parameter: the speed [rad/s] unless the system was made with another one. All members are collective on comm() unless they say not.
+/// The state x is distributed by rows in natural order: entry k means the same on any number of ranks. Forcing depends
+/// on the shaft angle and the speed, never on time itself, so that dF/dp stays bounded on a cycle whose period follows
+/// the speed. `p` is the active parameter: the speed [rad/s] unless the system was made with another one. All members
+/// are collective on comm() unless they say not.
 class System {
- public:
+public:
   System() = default;
   System(const System&) = delete;
   System& operator=(const System&) = delete;
@@ -44,10 +45,12 @@ class System {
   /// f = dF/dp at fixed angle, x and xdot.
   virtual void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) = 0;
 
-  /// Typical magnitude of each state and of each row of F, all positive, in SI: solvers work on x/state_scale and F/residual_scale.
+  /// Typical magnitude of each state and of each row of F, all positive, in SI: solvers work on x/state_scale and
+  /// F/residual_scale.
   virtual void scales(Vec state_scale, Vec residual_scale) = 0;
 
-  /// Linear blocks and thin couplings if this rank holds the whole system (communicator of size 1) and it has them, else nullptr. Not collective.
+  /// Linear blocks and thin couplings if this rank holds the whole system (communicator of size 1) and it has them,
+  /// else nullptr. Not collective.
   [[nodiscard]] virtual Structure* structure() { return nullptr; }
 };
 

@@ -18,13 +18,14 @@ struct ContinuationOptions {
   double from = 0, to = 1;
   double initial_step = 0.1, min_step = 1e-4, max_step = 0.5;
   int max_points = 1000;
-  int adapt_every = 5;  ///< accepted points between adaptations of the discretisation; 0 never
+  int adapt_every = 5;               ///< accepted points between adaptations of the discretisation; 0 never
   double location_tolerance = 1e-6;  ///< of a bifurcation, in scaled parameter
   NewtonOptions newton;
 };
 
-/// Eigenvalues or multipliers of a point, the least stable first, each with its signed distance from the border of stability: Re(lambda) [1/s]
-/// for eigenvalues, |mu| - 1 for multipliers. The trivial multiplier of an autonomous cycle is left out.
+/// Eigenvalues or multipliers of a point, the least stable first, each with its signed distance from the border of
+/// stability: Re(lambda) [1/s] for eigenvalues, |mu| - 1 for multipliers. The trivial multiplier of an autonomous cycle
+/// is left out.
 struct Stability {
   std::vector<std::complex<double>> values;
   std::vector<double> distance;
@@ -36,7 +37,8 @@ struct Stability {
   }
 };
 /// Sorts values by falling distance.
-[[nodiscard]] Stability make_stability(std::vector<std::complex<double>> values, const std::function<double(std::complex<double>)>& distance);
+[[nodiscard]] Stability make_stability(std::vector<std::complex<double>> values,
+                                       const std::function<double(std::complex<double>)>& distance);
 
 enum class Event { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };
 [[nodiscard]] const char* name_of(Event event);
@@ -44,20 +46,20 @@ enum class Event { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point }
 /// One accepted point.
 struct BranchPoint {
   int index = 0;
-  double parameter = 0;          ///< scaled
-  double slope = 0;              ///< scaled parameter per arclength: its sign changes at folds
-  double step = 0;               ///< arclength from the previous point
+  double parameter = 0;  ///< scaled
+  double slope = 0;      ///< scaled parameter per arclength: its sign changes at folds
+  double step = 0;       ///< arclength from the previous point
   int newton_iterations = 0;
   Stability stability;
 };
 
 struct LocatedEvent {
   Event event;
-  double parameter = 0;  ///< scaled
-  double bracket = 0;    ///< scaled width left by the location
-  double sensitivity = 0;  ///< d(distance)/d(scaled parameter) along the branch; 0 for folds
+  double parameter = 0;           ///< scaled
+  double bracket = 0;             ///< scaled width left by the location
+  double sensitivity = 0;         ///< d(distance)/d(scaled parameter) along the branch; 0 for folds
   std::complex<double> critical;  ///< eigenvalue [1/s] or multiplier
-  bool located = true;   ///< false: seen between two points, but the location did not converge
+  bool located = true;            ///< false: seen between two points, but the location did not converge
 };
 
 /// What a study hands over; all collective.
@@ -79,15 +81,16 @@ struct Restart {
 };
 
 struct BranchEnd {
-  std::string reason;   ///< why the branch ended
+  std::string reason;      ///< why the branch ended
   bool completed = false;  ///< reached the end of its range
   int points = 0;
 };
 
 /// Follows the branch through u (a guess at options.from, corrected there first) to options.to.
 ///
-/// Decisions use integer counts and rounded values only, so that any number of ranks takes the same steps. Collective on problem.comm().
-BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options, const BranchCallbacks& callbacks,
-                        std::optional<Restart> restart = std::nullopt);
+/// Decisions use integer counts and rounded values only, so that any number of ranks takes the same steps. Collective
+/// on problem.comm().
+BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
+                        const BranchCallbacks& callbacks, std::optional<Restart> restart = std::nullopt);
 
 }  // namespace whirl::solve

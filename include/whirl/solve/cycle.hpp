@@ -8,9 +8,11 @@
 
 namespace whirl::solve {
 
-/// A periodic solution x(s), s = t/T in [0, 1], by its values at the nodes of a collocation mesh; the same copy on every rank.
+/// A periodic solution x(s), s = t/T in [0, 1], by its values at the nodes of a collocation mesh; the same copy on
+/// every rank.
 ///
-/// Column i m + l - 1 of `x` [n x N m] (SI) is node l = 1..m of interval i; the start of interval i is the end of interval i - 1.
+/// Column i m + l - 1 of `x` [n x N m] (SI) is node l = 1..m of interval i; the start of interval i is the end of
+/// interval i - 1.
 struct Cycle {
   std::vector<double> mesh;  ///< 0 = s_0 < ... < s_N = 1
   Eigen::MatrixXd x;
@@ -28,13 +30,16 @@ struct Cycle {
 /// Every interval split in two.
 [[nodiscard]] std::vector<double> doubled(const std::vector<double>& mesh);
 
-/// Estimated local error of each interval, as a fraction of the largest scaled state: |h^(m+1) x^(m+1)| by the jump of the m-th derivative between
-/// neighbours (de Boor 1973; Ascher, Mattheij and Russell 1995, 9.3). `scale` [n] divides the states.
-[[nodiscard]] std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale);
+/// Estimated local error of each interval, as a fraction of the largest scaled state: |h^(m+1) x^(m+1)| by the jump of
+/// the m-th derivative between neighbours (de Boor 1973; Ascher, Mattheij and Russell 1995, 9.3). `scale` [n] divides
+/// the states.
+[[nodiscard]] std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle,
+                                                  const Eigen::VectorXd& scale);
 
-/// A mesh whose intervals are split or merged by factors of two until their estimated errors stand between tolerance/8 and tolerance;
-/// lengths stay powers of two of 1/base, so that few distinct lengths occur and each is factorised once. At most `max_intervals`.
-[[nodiscard]] std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale, double tolerance, int base,
-                                               int max_intervals);
+/// A mesh whose intervals are split or merged by factors of two until their estimated errors stand between tolerance/8
+/// and tolerance; lengths stay powers of two of 1/base, so that few distinct lengths occur and each is factorised once.
+/// At most `max_intervals`.
+[[nodiscard]] std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
+                                               double tolerance, int base, int max_intervals);
 
 }  // namespace whirl::solve

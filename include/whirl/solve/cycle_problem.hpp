@@ -15,24 +15,26 @@ namespace whirl::solve {
 struct CycleOptions {
   int degree = 2;
   Points points = Points::radau;
-  int turns = 1;            ///< shaft turns per period of a forced cycle
-  bool autonomous = false;  ///< no forcing: the period is an unknown and a phase condition is added
+  int turns = 1;               ///< shaft turns per period of a forced cycle
+  bool autonomous = false;     ///< no forcing: the period is an unknown and a phase condition is added
   double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
   bool use_structure = true;   ///< condense by low-rank updates where the system tells its structure
-  bool assembled = false;      ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
-  double mesh_tolerance = 0;   ///< error per interval for adapt(); 0 keeps the mesh
+  bool assembled =
+      false;  ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
+  double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
   int max_intervals = 400;
 };
 
 /// Equations F(2 pi k s, x(s), x'(s)/T; p) = 0 at the collocation points of all intervals, with x(0) = x(1).
 ///
-/// Each rank of `time` holds a whole System on a communicator of size 1 and a run of intervals. Unknowns per interval: X_1..X_m at its nodes;
-/// its start is its left neighbour's X_m. The condensation eliminates each interval to x_(i+1) = Gamma_i x_i + ..., multiplies these along the
-/// rank's run, gathers one small system from all ranks and solves it together with the border (parameter, period, added rows), so that folds
-/// are regular. Products of Gamma lose log10 of the largest multiplier in digits, which GMRES around it restores.
+/// Each rank of `time` holds a whole System on a communicator of size 1 and a run of intervals. Unknowns per interval:
+/// X_1..X_m at its nodes; its start is its left neighbour's X_m. The condensation eliminates each interval to x_(i+1) =
+/// Gamma_i x_i + ..., multiplies these along the rank's run, gathers one small system from all ranks and solves it
+/// together with the border (parameter, period, added rows), so that folds are regular. Products of Gamma lose log10 of
+/// the largest multiplier in digits, which GMRES around it restores.
 class CycleProblem : public ExtendedProblem {
- public:
+public:
   /// `local` lives on a communicator of size 1 and outlives this.
   CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh);
   ~CycleProblem() override;
@@ -60,14 +62,15 @@ class CycleProblem : public ExtendedProblem {
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
   [[nodiscard]] const Eigen::MatrixXd& monodromy() const { return monodromy_; }
 
- private:
+private:
   struct Point;
   void layout(std::vector<double> mesh);
   [[nodiscard]] double period_of(const Eigen::VectorXd& border) const;
   [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
   [[nodiscard]] Eigen::VectorXd previous_end(const double* local) const;
   void set_parameter(const Eigen::VectorXd& border);
-  [[nodiscard]] std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* x, const Eigen::VectorXd& start, double period,
+  [[nodiscard]] std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* x,
+                                                             const Eigen::VectorXd& start, double period,
                                                              Eigen::MatrixXd& columns);
   void compose(const std::vector<Eigen::MatrixXd>& rows);
   void assemble(const std::vector<Eigen::MatrixXd>& rows);
@@ -85,7 +88,7 @@ class CycleProblem : public ExtendedProblem {
   std::vector<double> mesh_;
   Eigen::Index first_ = 0, count_ = 0;  // this rank's intervals
   core::Vector weights_;
-  Eigen::MatrixXd phase_row_;      // [n x local nodes], autonomous only
+  Eigen::MatrixXd phase_row_;  // [n x local nodes], autonomous only
   double phase_offset_ = 0;
 
   // The linearisation: scaled structure blocks, intervals, border columns, and the composed small system.

@@ -12,8 +12,9 @@ namespace whirl::solve {
 /// The bordered matrix [dF/dx dF/dp; row] is assembled and factorised as a whole (MUMPS), so that folds are regular.
 /// Cost: one sparse LU per Newton step. A system with 2-D films of many own states wants block elimination instead.
 class EquilibriumProblem : public ExtendedProblem {
- public:
-  /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled state in the arclength.
+public:
+  /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
+  /// state in the arclength.
   EquilibriumProblem(problem::System& system, double parameter_scale, double state_weight);
 
   [[nodiscard]] MPI_Comm comm() const override { return system_.comm(); }
@@ -29,7 +30,7 @@ class EquilibriumProblem : public ExtendedProblem {
   void to_state(Vec u, Vec x) const;
   void from_state(Vec x, double parameter, Vec u) const;
 
- private:
+private:
   void prepare(Vec u);
   problem::System& system_;
   double parameter_scale_;

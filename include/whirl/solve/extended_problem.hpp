@@ -7,15 +7,16 @@
 
 namespace whirl::solve {
 
-/// R(u) = 0 with u = (states, ..., parameter): one equation fewer than unknowns; an added last row makes Newton's matrix square.
+/// R(u) = 0 with u = (states, ..., parameter): one equation fewer than unknowns; an added last row makes Newton's
+/// matrix square.
 ///
-/// Unknowns and residuals are scaled to order one. The parameter is the last entry of u and lives on the last rank; the last row of every
-/// residual belongs to the added row. All members are collective on comm().
+/// Unknowns and residuals are scaled to order one. The parameter is the last entry of u and lives on the last rank; the
+/// last row of every residual belongs to the added row. All members are collective on comm().
 ///
 ///     [ dR/dstates  dR/dparameter ] [ du ]   [ r   ]
 ///     [ row                       ] [ dp ] = [ r_c ]
 class ExtendedProblem {
- public:
+public:
   ExtendedProblem() = default;
   ExtendedProblem(const ExtendedProblem&) = delete;
   ExtendedProblem& operator=(const ExtendedProblem&) = delete;
@@ -37,7 +38,8 @@ class ExtendedProblem {
   /// x = matrix^-1 rhs up to rounding; used as a preconditioner, so that lost digits come back by iteration.
   virtual void solve(Vec rhs, Vec x) = 0;
 
-  /// Adapts the discretisation to the solution u and carries u and the tangent over; true if anything changed (all layouts then differ).
+  /// Adapts the discretisation to the solution u and carries u and the tangent over; true if anything changed (all
+  /// layouts then differ).
   virtual bool adapt(core::Vector& /*u*/, core::Vector& /*tangent*/) { return false; }
 };
 

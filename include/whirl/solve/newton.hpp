@@ -9,7 +9,7 @@
 namespace whirl::solve {
 
 struct NewtonOptions {
-  double tolerance = 1e-10;  ///< root mean square of the scaled residual at which Newton stops
+  double tolerance = 1e-10;       ///< root mean square of the scaled residual at which Newton stops
   double step_tolerance = 1e-11;  ///< relative size of a step below which Newton stops
   int max_iterations = 12;
   std::string prefix = "newton_";  ///< of the PETSc options
@@ -21,11 +21,11 @@ struct NewtonResult {
   int iterations = 0;
   int linear_iterations = 0;
   double residual = 0;  ///< root mean square of the scaled residual at the end
-  std::string reason;  ///< why it ended, with the text of a film's DomainError if one was met
+  std::string reason;   ///< why it ended, with the text of a film's DomainError if one was met
 };
 
-/// Solves R(u) = 0, row . u = offset from the start in u, with line search `bt` (it recovers from domain errors) and right-preconditioned
-/// GMRES around problem.solve(). Collective; u holds the answer.
+/// Solves R(u) = 0, row . u = offset from the start in u, with line search `bt` (it recovers from domain errors) and
+/// right-preconditioned GMRES around problem.solve(). Collective; u holds the answer.
 NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, const NewtonOptions& options);
 
 /// x = [dR/du; row]^-1 rhs for the linearisation that `problem` holds, by the same GMRES; returns its iterations.

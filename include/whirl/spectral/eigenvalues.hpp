@@ -13,24 +13,25 @@ namespace whirl::spectral {
 
 using Complex = std::complex<double>;
 
-/// lambda [rad/s] and its right eigenvector, whole on every rank [size of the system], SI, largest entry of the scaled vector one.
-/// Of a complex pair only the member with positive imaginary part is kept.
+/// lambda [rad/s] and its right eigenvector, whole on every rank [size of the system], SI, largest entry of the scaled
+/// vector one. Of a complex pair only the member with positive imaginary part is kept.
 struct Mode {
   Complex lambda;
   std::vector<Complex> shape;
 };
 
 struct EigenOptions {
-  int count = 40;          ///< eigenvalues wanted (a complex pair counts twice), nearest to `target`
-  double target = 0;       ///< real shift of the shift-and-invert transformation [1/s]
-  int dense_below = 600;   ///< systems up to this size are solved as dense matrices (LAPACK), with all eigenvalues
+  int count = 40;         ///< eigenvalues wanted (a complex pair counts twice), nearest to `target`
+  double target = 0;      ///< real shift of the shift-and-invert transformation [1/s]
+  int dense_below = 600;  ///< systems up to this size are solved as dense matrices (LAPACK), with all eigenvalues
   bool shapes = true;
 };
 
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.
 ///
-/// Small systems: all modes, by LAPACK on every rank. Larger ones: Krylov-Schur with shift and invert at a real target (MUMPS on several ranks); such
-/// a search can miss a mode far from the target, so ask for more than are needed. Collective; throws core::NotConverged.
+/// Small systems: all modes, by LAPACK on every rank. Larger ones: Krylov-Schur with shift and invert at a real target
+/// (MUMPS on several ranks); such a search can miss a mode far from the target, so ask for more than are needed.
+/// Collective; throws core::NotConverged.
 [[nodiscard]] std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options);
 
 /// All eigenvalues of a dense matrix, by SLEPc's LAPACK solver, on this rank alone; sorted by falling modulus.

@@ -12,7 +12,8 @@
 
 namespace whirl::system {
 
-/// A parameter other than the speed: the train as a function of it, from which everything that depends on it is rebuilt.
+/// A parameter other than the speed: the train as a function of it, from which everything that depends on it is
+/// rebuilt.
 struct Varying {
   std::function<Train(double)> train;
   double value = 0;      ///< start value, SI
@@ -24,15 +25,17 @@ struct JournalState {
   std::array<double, 2> position{}, velocity{};  ///< [m], [m/s]
 };
 
-/// F(angle, x, xdot; p) = 0 of a train. With q = (rotor coordinates, pedestals) the state is x = (q_1, v_1, q_2, v_2, ...) and
+/// F(angle, x, xdot; p) = 0 of a train. With q = (rotor coordinates, pedestals) the state is x = (q_1, v_1, q_2, v_2,
+/// ...) and
 ///
 ///     row 2i:     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
 ///     row 2i + 1: q' - v = 0
 ///
-/// in this order, so that no diagonal entry of dF/dx is zero. /// f_film acts on the journal and with the opposite sign on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank.
-/// Film i is evaluated on rank i mod size, its ten numbers are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// in this order, so that no diagonal entry of dF/dx is zero. /// f_film acts on the journal and with the opposite sign
+/// on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
+/// mod size, its ten numbers are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public problem::System {
- public:
+public:
   /// The speed [rad/s] is the parameter.
   RotorSystem(MPI_Comm comm, Train train, double speed);
   /// `varying.value` is the parameter and the speed is fixed.
@@ -63,23 +66,28 @@ class RotorSystem : public problem::System {
   /// Number of coordinates q: rotor and pedestals.
   [[nodiscard]] PetscInt coordinates() const { return n_; }
   /// Coordinate of the journal / pedestal of bearing b in direction d (0 x, 1 y); -1: no pedestal.
-  [[nodiscard]] PetscInt journal(int b, int d) const { return bearings_[static_cast<std::size_t>(b)].journal[static_cast<std::size_t>(d)]; }
-  [[nodiscard]] PetscInt pedestal(int b, int d) const { return bearings_[static_cast<std::size_t>(b)].pedestal[static_cast<std::size_t>(d)]; }
+  [[nodiscard]] PetscInt journal(int b, int d) const {
+    return bearings_[static_cast<std::size_t>(b)].journal[static_cast<std::size_t>(d)];
+  }
+  [[nodiscard]] PetscInt pedestal(int b, int d) const {
+    return bearings_[static_cast<std::size_t>(b)].pedestal[static_cast<std::size_t>(d)];
+  }
   /// Journal states from a state held as a whole [size()]. Not collective.
   [[nodiscard]] std::vector<JournalState> journals(const double* x) const;
-  /// Film responses at the states of the journals, each evaluated by its rank; the same answer on all ranks. Collective.
+  /// Film responses at the states of the journals, each evaluated by its rank; the same answer on all ranks.
+  /// Collective.
   [[nodiscard]] std::vector<film::Response> film_responses(const std::vector<JournalState>& journals, film::Need need);
   [[nodiscard]] film::Model& film(int b) { return *bearings_[static_cast<std::size_t>(b)].film; }
   /// Whole state on every rank [size()]. Collective.
   [[nodiscard]] std::vector<double> gather(Vec x) const;
-  /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes q, 1 takes v. Static shapes of a
-  /// reduced rotor need the gravity offset: `with_gravity`. Collective.
+  /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes
+  /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
   /// Force of unbalance per Omega^2 on each coordinate as cosine and sine parts [coordinates()], whole on every rank.
   [[nodiscard]] const std::vector<double>& unbalance_cosine() const { return unbalance_c_; }
   [[nodiscard]] const std::vector<double>& unbalance_sine() const { return unbalance_s_; }
 
- private:
+private:
   struct Bearing {
     std::array<PetscInt, 2> journal{-1, -1}, pedestal{-1, -1};
     std::unique_ptr<film::Model> film;
@@ -99,10 +107,10 @@ class RotorSystem : public problem::System {
   bool forcing_ = true;
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<Bearing> bearings_;
-  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;  // coordinates: all, of the rotor, this rank's range
+  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
-  std::vector<double> load_;                             // gravity on this rank's coordinates [N]
-  std::vector<double> unbalance_c_, unbalance_s_;        // whole, per Omega^2
+  std::vector<double> load_;                              // gravity on this rank's coordinates [N]
+  std::vector<double> unbalance_c_, unbalance_s_;         // whole, per Omega^2
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::unique_ptr<Blocks> blocks_;

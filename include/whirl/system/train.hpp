@@ -11,8 +11,8 @@ namespace whirl::system {
 
 /// A bearing: film between the journal at `node` and a pedestal (or the rigid ground).
 struct Support {
-  int node = 0;           ///< 1-based
-  double elevation = 0;   ///< of the bearing centre, positive up [m]
+  int node = 0;          ///< 1-based
+  double elevation = 0;  ///< of the bearing centre, positive up [m]
   film::Geometry geometry;
   film::Options film;
   film::Lubricant lubricant;
