@@ -41,7 +41,8 @@ Json json_of(const deck::Node& n) {
 
 // The part of JSON Schema that ours uses. Empty if `value` is valid, otherwise where it is not.
 std::string invalid(const Json& schema, const Json& value, const std::string& path) {
-  if (schema.contains("if")) return invalid(invalid(schema["if"], value, path).empty() ? schema["then"] : schema["else"], value, path);
+  if (schema.contains("if"))
+    return invalid(invalid(schema["if"], value, path).empty() ? schema["then"] : schema["else"], value, path);
   for (const char* some : {"anyOf", "oneOf"}) {
     if (!schema.contains(some)) continue;
     int n = 0;
@@ -122,8 +123,9 @@ TEST(InputDecks, FollowTheSchema) {
     EXPECT_EQ(invalid(schema, json_of(deck::parse_yaml(study::resolved_text(load(path)), path)), "deck"), "") << path;
   }
   const std::string train = inputs + "/turbine_train/train.yaml";
-  for (const char* wrong : {"gravty=1 m/s^2", "gravity=9.81", "bearings.B1.geometry.type=round", "bearings.B1.geometry.preload=0.5",
-                            "bearings.B1.node=1.5", "studies=[{statics: {}}]", "rotor.reduction={type: guyan}"})
+  for (const char* wrong :
+       {"gravty=1 m/s^2", "gravity=9.81", "bearings.B1.geometry.type=round", "bearings.B1.geometry.preload=0.5",
+        "bearings.B1.node=1.5", "studies=[{statics: {}}]", "rotor.reduction={type: guyan}"})
     EXPECT_NE(invalid(schema, json_of(deck::load(train, {wrong}, files)), "deck"), "") << wrong;
 }
 
@@ -154,7 +156,9 @@ TEST(TurbineTrain, IsTheMachineOfTheTables) {
   for (std::size_t i = 0; i < bearings.size(); ++i) {
     auto row = bearings[i], stand = pedestals[i];
     const system::Support& s = t.supports[i];
-    auto same = [](double x, const std::string& cell) { EXPECT_NEAR(x, std::stod(cell), 1e-14 * std::abs(std::stod(cell))); };
+    auto same = [](double x, const std::string& cell) {
+      EXPECT_NEAR(x, std::stod(cell), 1e-14 * std::abs(std::stod(cell)));
+    };
     EXPECT_EQ(m.bearings[i].name, "B" + row["bearing"]);
     EXPECT_EQ(s.geometry.type == film::Geometry::Bore::lemon_bore, row["type"] == "lemon");
     EXPECT_EQ(s.node, std::stoi(row["node"]));
@@ -175,11 +179,13 @@ TEST(TurbineTrain, IsTheMachineOfTheTables) {
     same(s.damping[0], stand["damping_x_N_s_m"]);
     same(s.damping[1], stand["damping_y_N_s_m"]);
   }
-  // Half of M_GEN e_u in each plane, M_GEN between bearings 3 and 4: the tabulated span mass times 2.5 mm/s / 377 rad/s.
+  // Half of M_GEN e_u in each plane, M_GEN between bearings 3 and 4: the tabulated span mass times 2.5 mm/s / 377
+  // rad/s.
   const auto pair = system::enclosing_bearings(m, "GEN");
   ASSERT_TRUE(pair.has_value());
   EXPECT_EQ(m.bearings[(*pair)[0]].name + m.bearings[(*pair)[1]].name, "B3B4");
-  for (const auto& [rotor, names] : std::map<std::string, std::string>{{"HP", "B1B2"}, {"IPLP", "B2B3"}, {"SR", "B4B5"}}) {
+  for (const auto& [rotor, names] :
+       std::map<std::string, std::string>{{"HP", "B1B2"}, {"IPLP", "B2B3"}, {"SR", "B4B5"}}) {
     const auto p = system::enclosing_bearings(m, rotor);
     ASSERT_TRUE(p.has_value());
     EXPECT_EQ(m.bearings[(*p)[0]].name + m.bearings[(*p)[1]].name, names);
@@ -210,8 +216,8 @@ TEST(TurbineTrain, OverridesReachCellsBearingsAndStudies) {
   EXPECT_EQ(d.machine.rotor.segments[2].length, 0.081);
   EXPECT_EQ(d.machine.bearings[1].geometry->clearance, 2.64e-4);
   EXPECT_EQ(d.machine.bearings[1].film.cells[0], 120);
-  EXPECT_NEAR(dynamic_cast<const study::EquilibriumBranch&>(*d.studies[0]).options.parameter.range.to, 300 * std::numbers::pi,
-              1e-11);
+  EXPECT_NEAR(dynamic_cast<const study::EquilibriumBranch&>(*d.studies[0]).options.parameter.range.to,
+              300 * std::numbers::pi, 1e-11);
 }
 
 TEST(Parameter, ContinuableOptionsCanBeVaried) {
@@ -221,7 +227,8 @@ TEST(Parameter, ContinuableOptionsCanBeVaried) {
   EXPECT_EQ(study::parameter_unit(d.machine, path), "m");
   EXPECT_EQ(study::with_parameter(d.machine, path, 3e-4).bearings[1].geometry->clearance, 3e-4);
   EXPECT_EQ(study::with_parameter(d.machine, "unbalance.gen_pair.grade", 5e-3).unbalance[0].grade->velocity, 5e-3);
-  EXPECT_EQ(study::with_parameter(d.machine, "lubricants.hot_vg46.viscosity", 8e-3).lubricants.at("hot_vg46").viscosity, 8e-3);
+  EXPECT_EQ(study::with_parameter(d.machine, "lubricants.hot_vg46.viscosity", 8e-3).lubricants.at("hot_vg46").viscosity,
+            8e-3);
   EXPECT_THROW((void)study::with_parameter(d.machine, path, -1e-4), core::DomainError);
   EXPECT_THROW((void)study::parameter_unit(d.machine, "bearings.B2.geometry.radius"), core::InputError);
   EXPECT_THROW((void)study::parameter_unit(d.machine, "rotor.segments.1.length"), core::InputError);
