@@ -153,7 +153,7 @@ void override_value(Node& root, const std::string& argument, const Files& files)
   }
   relocate(value, place);
   const std::vector<std::string> steps = split_path(std::string_view(argument).substr(0, equals));
-  Node* at = &root;
+  Node *at = &root, *parent = nullptr;
   std::string walked;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].empty()) fail("a step of the path is empty");
@@ -168,6 +168,7 @@ void override_value(Node& root, const std::string& argument, const Files& files)
       const auto [end, code] = std::from_chars(steps[i].data(), steps[i].data() + steps[i].size(), k);
       if (code != std::errc() || *end != '\0' || k < 1 || k > at->items.size())
         fail(fmt::format("'{}' has items 1 to {}, not '{}'", walked, at->items.size(), steps[i]));
+      parent = at;
       at = &at->items[k - 1];
     } else {
       if (at->kind == Node::Kind::none) at->kind = Node::Kind::map;
@@ -176,10 +177,13 @@ void override_value(Node& root, const std::string& argument, const Files& files)
         next = &at->set(steps[i], Node{});
         next->place = next->key_place = place;
       }
+      parent = at;
       at = next;
     }
     walked += (walked.empty() ? "" : ".") + steps[i];
-    if (last) {
+    if (last && value.kind == Node::Kind::none && parent->kind == Node::Kind::map) {
+      std::erase_if(parent->items, [&](const Node& n) { return n.key == steps[i]; });
+    } else if (last) {
       value.key = at->key;
       value.key_place = place;
       *at = std::move(value);

@@ -179,8 +179,10 @@ std::string reference_text(const Structure& structure, std::string_view path) {
   std::vector<std::string> keys;
   walk(structure, {}, [&](const std::string& key, const Option& o, const Structure& s) {
     keys.push_back(key);
-    // The last words of a path are enough.
-    if (!path.empty() && !is_below(key, path) && !(path.find('.') == std::string_view::npos && o.key == path)) return;
+    // A single word finds every option that has it in its path.
+    const std::vector<std::string> steps = split_path(key);
+    const bool named = std::find(steps.begin(), steps.end(), path) != steps.end();
+    if (!path.empty() && !named && !is_below(key, path)) return;
     const std::string value = default_text(o, s);
     out += fmt::format("{}\n    {}{}{}\n    {}{}\n", key, o.codec->type(), value.empty() ? "" : "; ", value, o.text,
                        o.source.empty() ? "" : " [" + o.source + "]");

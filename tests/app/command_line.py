@@ -28,21 +28,25 @@ def whirl(*words, code, out=None, err=None, times=1):
     return done
 
 
+few = ranks > 1  # starting under mpirun takes a second; what one rank shows is not repeated
 whirl("check", train / "unbalance.yaml", code=0, out="184 segments, 5 bearings, 2 studies")
 whirl("list", code=0, out="cycle_branch")
-whirl("describe", "bearings.geometry.clearance", code=0, out="bearings.NAME.geometry.clearance")
 whirl("describe", "clearence", code=2, err="did you mean 'clearance'?")
-whirl("schema", code=0, out='"$schema"')
-whirl("--version", code=0, out="whirl ")
-whirl(code=2)
-whirl("rum", train / "static.yaml", code=2)
+if not few:
+    whirl("describe", "bearings.geometry.clearance", code=0, out="bearings.NAME.geometry.clearance")
+    whirl("describe", "cycle_branch", code=0, out="studies.1.cycle_branch.intervals")
+    whirl("schema", code=0, out='"$schema"')
+    whirl("--version", code=0, out="whirl ")
+    whirl(code=2)
+    whirl("rum", train / "static.yaml", code=2)
 whirl("check", work / "none.yaml", code=2, err="No such file or directory")
 
 # A wrong deck is refused with its place, said once, and leaves nothing behind.
 deck = source / "tests" / "failure" / "unknown_nested_key.yaml"
 whirl("run", deck, "-o", work / "out", code=2, err=f"{deck}:6:16: unknown key 'clearence' (did you mean 'clearance'?)")
 whirl("run", train / "static.yaml", "--set", "gravity=9.81", "-o", work / "out", code=2, err="--set gravity=9.81: ")
-whirl("run", train / "train.yaml", "-o", work / "out", code=2, err="asks for no study")
+if not few:
+    whirl("run", train / "train.yaml", "-o", work / "out", code=2, err="asks for no study")
 if (work / "out").exists() or (work / "results").exists():
     failures.append("a wrong deck left files")
 
@@ -50,14 +54,15 @@ if (work / "out").exists() or (work / "results").exists():
 strange = work / "strange"
 strange.mkdir()
 (strange / "thesis.txt").write_text("mine\n")
-for flag in ([], ["--force"], ["--resume"]):
+for flag in ([["--force"]] if few else [[], ["--force"], ["--resume"]]):
     whirl("run", train / "static.yaml", "-o", strange, *flag, code=2, err="not results of whirl")
 earlier = work / "earlier"
 earlier.mkdir()
 (earlier / "resolved.yaml").write_text("title: another deck\n")
 whirl("run", train / "static.yaml", "-o", earlier, code=2, err="holds results already")
 whirl("run", train / "static.yaml", "-o", earlier, "--resume", code=2, err="results of another deck")
-whirl("run", train / "static.yaml", "-o", strange / "thesis.txt", code=2, err="is a file")
+if not few:
+    whirl("run", train / "static.yaml", "-o", strange / "thesis.txt", code=2, err="is a file")
 if (earlier / "resolved.yaml").read_text() != "title: another deck\n" or not (strange / "thesis.txt").exists():
     failures.append("a refused run changed files")
 

@@ -148,11 +148,13 @@ TEST_F(Folder, OverridesComeAfterBasesAndTables) {
   write("t.csv", "length [m]\n1\n2\n");
   write("base.yaml", "b: {c: 1 m, list: [{x: 1}, {x: 2}]}\nrows: t.csv\n");
   const std::string top = write("top.yaml", "base: base.yaml\n");
-  const deck::Node n =
-      deck::load(top, {"b.c=264 um", "b.list.2.x=5", "rows.2.length=7 mm", "new.deep=[60, 16]", "b.empty={}"}, files);
+  const deck::Node n = deck::load(
+      top, {"b.c=264 um", "b.list.2.x=5", "rows.2.length=7 mm", "new.deep=[60, 16]", "b.empty={}", "b.list.1.x="},
+      files);
   EXPECT_EQ(n.find("b")->find("c")->text, "264 um");
   EXPECT_EQ(n.find("b")->find("c")->place.text(), "--set b.c=264 um");
   EXPECT_EQ(n.find("b")->find("list")->items[1].find("x")->text, "5");
+  EXPECT_EQ(n.find("b")->find("list")->items[0].items.size(), 0U);
   EXPECT_EQ(n.find("rows")->items[0].find("length")->text, "1 m");
   EXPECT_EQ(n.find("rows")->items[1].find("length")->text, "7 mm");
   EXPECT_EQ(n.find("new")->find("deep")->items.size(), 2U);

@@ -40,7 +40,8 @@ private:
 /// its own place.
 [[nodiscard]] Node merge(Node base, Node over);
 
-/// Sets what `argument` (`PATH=VALUE`; list items are 1-based) says; VALUE is YAML. Tables on the path are read first.
+/// Sets what `argument` (`PATH=VALUE`; list items are 1-based) says; VALUE is YAML, an empty one removes the key.
+/// Tables on the path are read first.
 /// Errors cite the argument. Collective.
 void override_value(Node& root, const std::string& argument, const Files& files);
 
