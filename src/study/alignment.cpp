@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common.hpp"
+#include "groups.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -24,10 +25,11 @@ void Alignment::run(Context& context) {
     rule.loaded.push_back(position(name));
     rule.loads.push_back(load);
   }
-  const auto as_given = rotor::rigid_static(context.comm, shaft, supports, context.machine.gravity);
-  const auto elevations = rotor::align(context.comm, shaft, supports, rule, context.machine.gravity);
+  MPI_Comm space = Groups::split(context.comm, context.machine).space;
+  const auto as_given = rotor::rigid_static(space, shaft, supports, context.machine.gravity);
+  const auto elevations = rotor::align(space, shaft, supports, rule, context.machine.gravity);
   for (std::size_t b = 0; b < supports.size(); ++b) supports[b].elevation = elevations[b];
-  const auto aligned = rotor::rigid_static(context.comm, shaft, supports, context.machine.gravity);
+  const auto aligned = rotor::rigid_static(space, shaft, supports, context.machine.gravity);
 
   auto& summary = context.results.summary();
   summary.set("mass.total", rotor::total_mass(shaft), "kg");

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common.hpp"
+#include "groups.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -26,14 +27,14 @@ std::unique_ptr<system::RotorSystem> make_system(const Context& context, const E
     return half_film ? with_half_film_mesh(std::move(t)) : t;
   };
   if (o.parameter.path == "speed")
-    return std::make_unique<system::RotorSystem>(context.comm, train_at(context.machine), o.parameter.range.from);
+    return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, train_at(context.machine), o.parameter.range.from);
   system::Varying varying;
   varying.train = [&context, &o, train_at](double p) {
     return train_at(with_parameter(context.machine, o.parameter.path, p));
   };
   varying.value = o.parameter.range.from;
   varying.magnitude = std::max(std::abs(o.parameter.range.from), std::abs(o.parameter.range.to));
-  return std::make_unique<system::RotorSystem>(context.comm, std::move(varying), o.speed->value);
+  return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, std::move(varying), o.speed->value);
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ void EquilibriumBranch::run(Context& context) {
   const auto system = make_system(context, options, false);
   // A change of the root mean square state by half a clearance counts as one longest step.
   solve::EquilibriumProblem problem(*system, scale, std::pow(continuation.max_step / 0.5, 2));
-  core::Vector u = problem.make_unknown(), x = core::make_vector(context.comm, system->local_size(), PETSC_DETERMINE);
+  core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
   if (system->parameter_is_speed()) {
     Walker walker(*system);
     check(VecCopy(walker.at(range.from), x.get()));

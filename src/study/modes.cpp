@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common.hpp"
+#include "groups.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
@@ -62,6 +63,36 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   return out;
 }
 
+// Modes of one speed as numbers, to send them between ranks.
+std::vector<double> pack(const std::vector<ShaftMode>& modes) {
+  std::vector<double> flat{static_cast<double>(modes.size()), modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
+  const auto put = [&](Complex v) {
+    flat.push_back(v.real());
+    flat.push_back(v.imag());
+  };
+  for (const ShaftMode& m : modes) {
+    put(m.lambda);
+    for (const Complex& v : m.both()) put(v);
+  }
+  return flat;
+}
+
+std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
+  const auto count = static_cast<std::size_t>(flat[0]), nodes = static_cast<std::size_t>(flat[1]);
+  std::vector<ShaftMode> modes(count);
+  std::size_t at = 2;
+  const auto take = [&] {
+    at += 2;
+    return Complex(flat[at - 2], flat[at - 1]);
+  };
+  for (ShaftMode& m : modes) {
+    m.lambda = take();
+    for (auto* side : {&m.x, &m.y})
+      for (std::size_t k = 0; k < nodes; ++k) side->push_back(take());
+  }
+  return modes;
+}
+
 // Gives the modes of one speed the identities of those of the speed before: the best pairs of like shape and near
 // eigenvalue first.
 void follow(const std::vector<ShaftMode>& before, std::vector<ShaftMode>& now, int& next_id) {
@@ -93,7 +124,7 @@ void rigid_modes(Context& context, const ModesOptions& options) {
   std::vector<int> pinned;
   if (options.supports == ModesOptions::Supports::pinned)
     for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
-  const auto frequencies = rotor::natural_frequencies(context.comm, shaft, pinned, options.count);
+  const auto frequencies = rotor::natural_frequencies(Groups::split(context.comm, context.machine).space, shaft, pinned, options.count);
   auto& summary = context.results.summary();
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
@@ -113,25 +144,35 @@ void Modes::run(Context& context) {
   const std::vector<double> speeds = options.all_speeds();
   const std::string unit = options.unit();
   const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
-  system::RotorSystem system(context.comm, system::train_of(context.machine), speeds.front());
+  const Groups groups = Groups::split(context.comm, context.machine);
+  system::RotorSystem system(groups.space, system::train_of(context.machine), speeds.front());
   Walker walker(system);
   auto& results = context.results;
   auto& summary = results.summary();
   auto& group = results.group();
+  std::size_t ready = 0;
+  const auto packed = distribute(groups, speeds.size(), [&](std::size_t i) {
+    auto modes = pack(shaft_modes(system, walker.at(speeds[i]), options.count, limit));
+    results.progress(fmt::format("{}: {} of {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
+                                 (speeds.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count),
+                                 deck::from_si(speeds[i], unit), unit, results.seconds()));
+    return modes;
+  });
 
   std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
   std::vector<std::string> sense_column;
   std::vector<ShaftMode> before;
-  int next_id = 1, ready = 0;
-  double last_speed = 0;
-  struct Critical {
-    double speed;
-    int id;
+  int next_id = 1;
+  // Damped frequency meets the speed of the shaft between two speeds.
+  struct Crossing {
+    double s0, s1, f0, f1;
+    ShaftMode guide;
   };
-  std::vector<Critical> criticals;
-  for (const double speed : speeds) {
-    auto modes = shaft_modes(system, walker.at(speed), options.count, limit);
+  std::vector<Crossing> crossings;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    const double speed = speeds[i];
+    auto modes = unpack(packed[i]);
     follow(before, modes, next_id);
     for (const ShaftMode& m : modes) {
       const auto sense = spectral::name_of(spectral::sense_of_whirl(m.x, m.y));
@@ -143,35 +184,37 @@ void Modes::run(Context& context) {
       factor.push_back(spectral::stability_factor(m.lambda));
       sense_column.emplace_back(sense);
       summary.modes.push_back({deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense});
-    }
-    // Damped frequency meets the speed between two speeds: where the chords cross, refined by solving there.
-    for (const ShaftMode& m : modes)
       for (const ShaftMode& b : before) {
-        if (m.id != b.id) continue;
-        double s0 = last_speed, s1 = speed, f0 = b.lambda.imag() - s0, f1 = m.lambda.imag() - s1;
-        if (f0 * f1 >= 0) continue;
-        ShaftMode guide = m;
-        for (int k = 0; k < 6 && std::abs(s1 - s0) > 1e-6 * s1; ++k) {
-          const double s = s1 - f1 * (s1 - s0) / (f1 - f0);
-          const auto there = shaft_modes(system, walker.at(s), options.count, limit);
-          const auto best = std::max_element(there.begin(), there.end(), [&](const ShaftMode& p, const ShaftMode& q) {
-            return spectral::mac(guide.both(), p.both()) < spectral::mac(guide.both(), q.both());
-          });
-          if (best == there.end()) break;
-          guide = *best;
-          const double f = guide.lambda.imag() - s;
-          if (f * f1 < 0) s0 = s1, f0 = f1;
-          s1 = s;
-          f1 = f;
-          if (std::abs(f) < 1e-7 * s) break;
-        }
-        criticals.push_back({s1, m.id});
+        const double f0 = b.lambda.imag() - speeds[i - 1], f1 = m.lambda.imag() - speed;
+        if (m.id == b.id && f0 * f1 < 0) crossings.push_back({speeds[i - 1], speed, f0, f1, m});
       }
+    }
     before = std::move(modes);
-    last_speed = speed;
-    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, ++ready, speeds.size(),
-                                 deck::from_si(speed, unit), unit, results.seconds()));
   }
+  // Where the chords cross, refined by solving there and following the shape.
+  const auto refined = distribute(groups, crossings.size(), [&](std::size_t i) {
+    Crossing c = crossings[i];
+    for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
+      const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
+      const auto there = shaft_modes(system, walker.at(s), options.count, limit);
+      const auto best = std::max_element(there.begin(), there.end(), [&](const ShaftMode& p, const ShaftMode& q) {
+        return spectral::mac(c.guide.both(), p.both()) < spectral::mac(c.guide.both(), q.both());
+      });
+      if (best == there.end()) break;
+      const double f = best->lambda.imag() - s;
+      if (f * c.f1 < 0) c.s0 = c.s1, c.f0 = c.f1;
+      c.s1 = s;
+      c.f1 = f;
+      if (std::abs(f) < 1e-7 * s) break;
+    }
+    return std::vector<double>{c.s1};
+  });
+  struct Critical {
+    double speed;
+    int id;
+  };
+  std::vector<Critical> criticals;
+  for (std::size_t i = 0; i < crossings.size(); ++i) criticals.push_back({refined[i][0], crossings[i].guide.id});
 
   auto& spectrum = group.child("spectrum");
   spectrum.put("speed", speed_column, "rad/s", "shaft speed");
@@ -210,7 +253,7 @@ void Modes::run(Context& context) {
   const char* const names[] = {"x_real", "x_imag", "y_real", "y_imag"};
   for (std::size_t k = 0; k < 4; ++k)
     shapes.put(names[k], {before.size(), z.size()}, flat[k], "1", "shape [mode][node], largest displacement one");
-  shapes.put("speed", std::vector<double>{last_speed}, "rad/s", "speed of the shapes");
+  shapes.put("speed", std::vector<double>{speeds.back()}, "rad/s", "speed of the shapes");
   shapes.put("z", z, "m", "axial position of the nodes");
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
   summary.points = static_cast<long>(speeds.size());

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common.hpp"
+#include "groups.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/io/xdmf.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -60,7 +61,7 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
 }  // namespace
 
 void Static::run(Context& context) {
-  system::RotorSystem system(context.comm, system::train_of(context.machine), options.speed.value);
+  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine), options.speed.value);
   Walker walker(system);
   const std::vector<double> x = system.gather(walker.at(options.speed.value));
   const auto journals = system.journals(x.data());

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common.hpp"
+#include "groups.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
@@ -34,10 +35,27 @@ struct Response {
   std::vector<Motion> nodes, bearings;
 };
 
+std::vector<double> pack(const Response& r) {
+  std::vector<double> flat{r.speed};
+  for (const auto* place : {&r.nodes, &r.bearings})
+    for (const Motion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
+  return flat;
+}
+
+Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_t n_bearings) {
+  Response r;
+  r.speed = flat[0];
+  for (std::size_t k = 0; k < n_nodes + n_bearings; ++k) {
+    const double* v = flat.data() + 1 + 4 * k;
+    (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
+  }
+  return r;
+}
+
 class Machine {
 public:
-  Machine(Context& context, const UnbalanceResponseOptions& options, std::vector<int> nodes)
-      : system_(context.comm, system::train_of(context.machine, options.unbalance), options.range.from),
+  Machine(Context& context, const Groups& groups, const UnbalanceResponseOptions& options, std::vector<int> nodes)
+      : system_(groups.space, system::train_of(context.machine, options.unbalance), options.range.from),
         walker_(system_),
         solver_(system_),
         nodes_(std::move(nodes)) {}
@@ -145,17 +163,27 @@ void UnbalanceResponse::run(Context& context) {
     nodes.assign(wanted.begin(), wanted.end());
   }
   const std::string unit = options.range.unit;
-  Machine machine(context, options, nodes);
+  const Groups groups = Groups::split(context.comm, context.machine);
+  Machine machine(context, groups, options, nodes);
   auto& results = context.results;
   auto& summary = results.summary();
-  std::vector<Response> curve;
-  for (int k = 0; k < options.points; ++k) {
-    const double speed =
-        options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1);
-    curve.push_back(machine.at(speed));
-    results.progress(fmt::format("{}: speed {} of {}, {:.1f} {}, {:.1f} s", summary.name, k + 1, options.points,
-                                 deck::from_si(speed, unit), unit, results.seconds()));
-  }
+  const std::size_t n_bearings = context.machine.bearings.size();
+  // Responses at several speeds, shared between the groups of ranks.
+  std::size_t ready = 0;
+  const auto at_speeds = [&](const std::vector<double>& speeds) {
+    std::vector<Response> out;
+    for (const auto& flat : distribute(groups, speeds.size(), [&](std::size_t i) {
+           auto packed = pack(machine.at(speeds[i]));
+           results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready, deck::from_si(speeds[i], unit), unit,
+                                        results.seconds()));
+           return packed;
+         }))
+      out.push_back(unpack(flat, nodes.size(), n_bearings));
+    return out;
+  };
+  std::vector<double> grid;
+  for (int k = 0; k < options.points; ++k) grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
+  std::vector<Response> curve = at_speeds(grid);
 
   // Speeds added around the peaks of each node until the parabola through three neighbours settles the speed to 1e-5.
   const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
@@ -182,7 +210,7 @@ void UnbalanceResponse::run(Context& context) {
         if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > 1e-5 * s1) speeds.push_back(vertex);
       }
       if (speeds.empty()) break;
-      for (const double s : speeds) curve.push_back(machine.at(s));
+      for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
       std::sort(curve.begin(), curve.end(), by_speed);
     }
 
@@ -211,7 +239,7 @@ void UnbalanceResponse::run(Context& context) {
                   std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
   }
   if (options.operating_speed) {
-    const Response r = machine.at(options.operating_speed->value);
+    const Response r = at_speeds({options.operating_speed->value}).front();
     const auto names = names_of_bearings(context.machine);
     for (std::size_t b = 0; b < names.size(); ++b) {
       summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
