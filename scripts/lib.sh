@@ -45,6 +45,9 @@ quietly() {
 build_release() {
   cd "$whirl_root"
   quietly cmake --preset release
-  NINJA_STATUS='[%f/%t %es] ' cmake --build --preset release >&2
+  # Configuring has just looked for new files, so ninja's plan is complete; silence if there is nothing to do.
+  if ! ninja -C build -n | grep -q 'no work to do'; then
+    NINJA_STATUS='[%f/%t %es] ' cmake --build --preset release >&2
+  fi
   cd - >/dev/null
 }

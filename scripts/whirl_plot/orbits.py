@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .bifurcation import branch_of, events_of
-from .style import BAD, COLOURS, GREY, INK, ROTATION, mark, parameter_label, place_on_branch, save
+from .style import BAD, COLOURS, GREY, INK, ROTATION, branch_legend, mark, parameter_label, place_on_branch, save
 
 
 def outline(study, b):
@@ -13,6 +13,8 @@ def outline(study, b):
     if not study.has("bearings/clearance"):
         return None
     clearance = np.atleast_1d(study.get("bearings/clearance"))[b]
+    if not clearance > 0:  # a linear film has none
+        return None
     preload = np.atleast_1d(study.get("bearings/preload", np.zeros(b + 1)))[b]
     angle = np.linspace(0, 2 * np.pi, 361)
     if not np.isfinite(preload) or not 0 < preload < 1:
@@ -22,6 +24,17 @@ def outline(study, b):
     shift = preload * lobe
     radius = -shift * np.abs(np.sin(angle)) + np.sqrt(lobe**2 - (shift * np.cos(angle))**2)
     return radius * np.cos(angle), radius * np.sin(angle)
+
+
+def way_to_pad(study, b, x, y):
+    """In words, how far from the centre to the pad the journal is; the eccentricity ratio in a circular clearance."""
+    edge = outline(study, b)
+    if edge is None:
+        return ""
+    angle = np.unwrap(np.arctan2(edge[1], edge[0]))
+    order = np.argsort(angle % (2 * np.pi))
+    reach = np.interp(np.arctan2(y, x) % (2 * np.pi), (angle % (2 * np.pi))[order], np.hypot(*edge)[order], period=2 * np.pi)
+    return f"\n{np.hypot(x, y) / reach:.3f} of the way to the pad"
 
 
 def draw_clearance(axis, study, b):
@@ -103,11 +116,12 @@ def draw_locus(study):
         axis.plot(x[:, b], y[:, b], color=GREY, linewidth=0.6)
         axis.scatter(x[:, b], y[:, b], c=parameter, cmap="viridis", s=np.where(stable, 13, 5), linewidths=0, zorder=3)
         for kind, value in events_of(study):
-            mark(axis, kind, *place_on_branch(parameter, [x[:, b], y[:, b]], unstable, kind, value))
+            mark(axis, kind, *place_on_branch(parameter, [x[:, b], y[:, b]], unstable, kind, value), label=False)
         finish(axis, name)
     colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
     figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)
-    return [save(figure, study, "locus", f"equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}")]
+    return [save(figure, study, "locus", f"equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}",
+                 branch_legend([k for k, _ in events_of(study)])[2:])]
 
 
 def draw_positions(study):
@@ -125,8 +139,7 @@ def draw_positions(study):
         axis.plot(x[b] * 1e6, y[b] * 1e6, "o", color=COLOURS[0], markersize=6, markeredgecolor="white")
         lines = f"x {x[b] * 1e6:.1f} \u00b5m, y {y[b] * 1e6:.1f} \u00b5m"
         if study.has("bearings/clearance"):
-            c = np.atleast_1d(study.get("bearings/clearance"))[b]
-            lines += f"\neccentricity {np.hypot(x[b], y[b]) / c:.3f} of {c * 1e6:.0f} \u00b5m"
+            lines += way_to_pad(study, b, x[b], y[b])
         finish(axis, name if load is None else f"{name}: {np.atleast_1d(load)[b] / 1e3:.2f} kN")
         axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8.5)
     return [save(figure, study, "journals", f"journal relative to the bearing centre; load of the journal on the bearing, positive down; {ROTATION}")]
