@@ -5,7 +5,7 @@ from matplotlib.lines import Line2D
 
 from .style import BAD, GOOD, GREY, INK, ROTATION, WARN, levels, runs, save, speed_axis
 
-LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (1, 1.4))}
+LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6))}
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
 
 
@@ -57,7 +57,7 @@ def draw(study):
     limit = min(all_frequency.max() * 1.06, 3 * ends[1])
     side = ends[1] if ends[1] < 0.93 * limit else 0.9 * limit
     top.annotate("1\u00d7", (side * to_speed, side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
-                 fontsize=9, ha="right", va="bottom")
+                 fontsize=9, ha="right", va="bottom", bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6})
     critical = np.atleast_1d(study.get("critical/speed", np.array([])))
     for speed, level in zip(critical, levels(critical, ends[1] - ends[0], 0.03)):
         top.plot(speed * to_speed, speed * to_frequency, "o", markersize=7, markerfacecolor="none", color=INK, zorder=5)
