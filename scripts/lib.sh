@@ -4,6 +4,8 @@ whirl_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # Ranks are our parallelism; BLAS threads beside them only get in the way.
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
+# A rank that waits gives its core away: on a busy machine this is the difference between seconds and minutes.
+export OMPI_MCA_mpi_yield_when_idle=1
 if [ "$(id -u)" = 0 ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi

@@ -10,7 +10,10 @@ def bearing_places(study, z):
     if study.has("bearings/z"):
         places = np.atleast_1d(study.get("bearings/z"))
     elif study.has("bearings/node"):
-        places = z[np.atleast_1d(study.get("bearings/node")).astype(int) - 1]
+        node = np.atleast_1d(study.get("bearings/node")).astype(int) - 1
+        if node.min() < 0 or node.max() >= len(z):
+            return []
+        places = z[node]
     else:
         return []
     return list(zip(places, study.bearings(len(places))))

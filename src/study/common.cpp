@@ -74,15 +74,24 @@ std::vector<std::string> names_of_bearings(const system::Machine& machine) {
 }
 
 void put_bearings(io::Group& group, const system::Machine& machine) {
-  std::vector<double> clearance, preload, node;
+  std::vector<double> clearance, preload, offset, arc;
+  std::vector<std::int64_t> node;
   for (const auto& b : machine.bearings) {
-    clearance.push_back(b.geometry ? b.geometry->clearance : 0.0);
-    preload.push_back(b.geometry && b.geometry->type == film::Geometry::Bore::lemon_bore ? b.geometry->preload : 0.0);
+    const film::Geometry g = b.geometry.value_or(film::Geometry{});
+    const bool lobes = g.type == film::Geometry::Bore::lemon_bore;
+    clearance.push_back(g.clearance);
+    preload.push_back(lobes ? g.preload : 0.0);
+    offset.push_back(lobes ? g.offset : 0.0);
+    arc.push_back(g.arc);
+    node.push_back(b.node);
   }
   auto& bearings = group.child("bearings");
   bearings.put("name", names_of_bearings(machine), "bearings in the order of the deck");
+  bearings.put("node", node, "shaft node, 1-based");
   bearings.put("clearance", clearance, "m", "assembled radial clearance c_b; zero for a linear film");
-  bearings.put("preload", preload, "1", "m = 1 - c_b/c_p");
+  bearings.put("preload", preload, "1", "m = 1 - c_b/c_p of two lobes; zero for one pad at the bottom");
+  bearings.put("offset", offset, "m", "horizontal distance between the centres of the two lobes");
+  bearings.put("arc", arc, "rad", "angular extent of each pad");
 }
 
 std::string number_text(double value_si, const std::string& unit) {

@@ -195,6 +195,7 @@ void Modes::run(Context& context) {
   group.child("critical").put("mode", critical_mode, "mode followed by its shape");
 
   // Shapes at the last speed.
+  put_bearings(group, context.machine);
   auto& shapes = group.child("shapes");
   const auto z = rotor::node_positions(system.train().rotor);
   std::vector<double> flat[4], at_frequency;

@@ -30,7 +30,8 @@ def static(root):
     z = np.linspace(0, 32, 185)
     put(g.create_group("nodes"), z=z, y=4e-3 * (z / 16 - 1)**2 - 0.2e-3 * np.cos(z), x=2e-5 * np.sin(z / 5))
     put(g.create_group("bearings"), name=NAMES, x=CLEARANCE * [0.2, 0.3, 0.45, 0.4, 0.1], y=-CLEARANCE * [0.5, 0.7, 0.5, 0.6, 0.4],
-        clearance=CLEARANCE, preload=[0, 0, 0.5, 0.5, 0], load=[12418, 47830, 213407, 128292, 11698], node=[6, 52, 80, 115, 180])
+        clearance=CLEARANCE, preload=[0, 0, 0.5, 0.5, 0],
+        offset=[0, 0, 1e-4, 0, 0], arc=np.radians([60, 160, 160, 160, 60]), load=[12418, 47830, 213407, 128292, 11698], node=[6, 52, 80, 115, 180])
     for name, pads in (("B1", [(-120, -60)]), ("B3", [(-165, -15), (15, 165)])):
         for k, (start, stop) in enumerate(pads):
             theta, axial = np.radians(np.linspace(start, stop, 61)), np.linspace(-0.1, 0.1, 17)
