@@ -37,7 +37,7 @@ Grid::Grid(const Pad& pad, const std::array<int, 2>& cells)
 }
 
 void require_thickness(double h_min) {
-  if (!(h_min > 0.0)) throw core::DomainError("film thickness is not positive: " + std::to_string(h_min) + " m");
+  if (!(h_min > 0.0)) throw core::DomainError("film thickness is not positive: " + std::to_string(h_min * 1e6) + " um");
 }
 
 }  // namespace whirl::film

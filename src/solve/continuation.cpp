@@ -165,7 +165,9 @@ void Follower::crossings(const State& a, const State& b, int depth) {
   State at;
   found.located = locate(a, b, test, found, at);
   const std::complex<double> value = at.point.stability.values[k];
-  const bool real = std::abs(value.imag()) < 1e-7 * std::abs(value);
+  // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits the
+  // double value into a pair of the size of its square root.
+  const bool real = std::abs(value.imag()) < (callbacks_.cycles && value.real() > 0 ? 5e-3 : 1e-7) * std::abs(value);
   if (real && std::abs(to - from) == 2 && split()) return;
   found.critical = value;
   if (!real)
@@ -207,20 +209,23 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     ds = restart->step;
   } else {
     const NewtonResult first = correct_at(u, options_.from);
-    if (!first.converged) return {fmt::format("no solution at the start of the branch: {}", first.reason), false, 0};
+    if (!first.converged) return {fmt::format("no solution at the start of the branch: {}", first.reason), false, 0, options_.from};
     here.u = std::move(u);
     here.point.newton_iterations = first.iterations;
     inspect(here, nullptr);
     accept(here);
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
-      return {"stopped on request", false, 1};
+      return {"stopped on request", false, 1, options_.from};
   }
 
+  const auto ended = [&](std::string reason, bool completed) {
+    return BranchEnd{std::move(reason), completed, here.point.index + 1, here.point.parameter};
+  };
   const auto beyond = [&](double p) { return direction_ * rounded(p - options_.to) >= 0; };
   while (here.point.index + 1 < options_.max_points) {
-    if (beyond(here.point.parameter)) return {"reached the end of its range", true, here.point.index + 1};
+    if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
     if (direction_ * rounded(here.point.parameter - options_.from) < -std::abs(options_.max_step))
-      return {"turned back beyond the start of its range", true, here.point.index + 1};
+      return ended("turned back beyond the start of its range", true);
     State next;
     NewtonResult result;
     bool ok = advance(here, ds, next, result);
@@ -241,14 +246,12 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     }
     if (!ok) {
       ds = rounded(ds / 2);
-      if (ds < options_.min_step)
-        return {fmt::format("the step fell below its minimum at {:.6g}: {}",
-                            here.point.parameter * problem_.parameter_scale(), result.reason),
-                false, here.point.index + 1};
+      if (ds < options_.min_step) return ended("the step fell below its minimum: " + result.reason, false);
       continue;
     }
     next.point.index = here.point.index + 1;
-    if (callbacks_.stability) events(here, next);
+    // Without stability facts (a branch that starts at a bifurcation) there is nothing to compare with.
+    if (!here.point.stability.values.empty()) events(here, next);
     here = std::move(next);
     const int k = result.iterations;
     ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
@@ -260,15 +263,14 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
       // new mesh.
       core::Vector along = copy(here.tangent.get());
       const NewtonResult again = correct_at(here.u, here.point.parameter);
-      if (!again.converged)
-        return {fmt::format("no solution on the adapted mesh: {}", again.reason), false, here.point.index + 1};
+      if (!again.converged) return ended(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
       inspect(here, along.get());
     }
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
-      return {"stopped on request", false, here.point.index + 1};
+      return ended("stopped on request", false);
   }
-  if (beyond(here.point.parameter)) return {"reached the end of its range", true, here.point.index + 1};
-  return {"reached the largest number of points", false, here.point.index + 1};
+  if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
+  return ended("reached the largest number of points", false);
 }
 
 }  // namespace

@@ -133,6 +133,11 @@ io::BifurcationType type_of(solve::Event event) {
   }
 }
 
+std::string branch_status(const solve::BranchEnd& end, const std::string& unit) {
+  if (end.completed) return "completed";
+  return fmt::format("ended at {:.6g} {}: {}", end.parameter, unit, end.reason);
+}
+
 system::Train with_half_film_mesh(system::Train train) {
   for (auto& s : train.supports)
     for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = std::max(4, s.film.cells[d] / 2);

@@ -42,6 +42,9 @@ void put_bearings(io::Group& group, const system::Machine& machine);
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);
 [[nodiscard]] io::BifurcationType type_of(solve::Event event);
 
+/// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
+[[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);
+
 /// The train with its film meshes halved in both directions, to estimate the error of the film mesh.
 [[nodiscard]] system::Train with_half_film_mesh(system::Train train);
 

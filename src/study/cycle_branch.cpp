@@ -55,6 +55,8 @@ private:
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
   [[nodiscard]] solve::CycleOptions cycle_options() const;
   [[nodiscard]] core::Vector start(solve::CycleProblem& problem) const;
+  [[nodiscard]] solve::Restart start_at_hopf();
+  [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   [[nodiscard]] solve::Stability stability() const;
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
@@ -120,6 +122,7 @@ solve::CycleOptions Branch::cycle_options() const {
   o.degree = options_.degree;
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
   o.turns = options_.period;
+  o.autonomous = autonomous();
   o.parameter_scale = scale_;
   // A change of the root mean square state by half a clearance counts as one longest step.
   o.state_weight = std::pow(continuation_.max_step / 0.5, 2);
@@ -150,8 +153,82 @@ core::Vector Branch::start(solve::CycleProblem& problem) const {
   return problem.scatter(guess);
 }
 
+// The Hopf point is found on the branch of equilibria; there the cycle is the equilibrium itself, and the branch leaves
+// along the critical mode x(s) = x_H + a Re(phi exp(2 pi i s)) with T = 2 pi/omega. A step along this tangent asks for
+// an amplitude and leaves speed and period free.
+solve::Restart Branch::start_at_hopf() {
+  solve::EquilibriumProblem equilibria(*system_, scale_, std::pow(continuation_.max_step / 0.5, 2));
+  core::Vector u = equilibria.make_unknown(), at_hopf,
+               x = core::make_vector(PETSC_COMM_SELF, system_->local_size(), PETSC_DETERMINE);
+  if (system_->parameter_is_speed()) {
+    Walker walker(*system_);
+    check(VecCopy(walker.at(system_->parameter()), x.get()));
+  } else {
+    x = system::static_guess(*system_);
+  }
+  equilibria.from_state(x.get(), system_->parameter(), u.get());
+  double parameter = 0;
+  solve::BranchCallbacks callbacks;
+  callbacks.stability = [&](Vec v) {
+    equilibria.to_state(v, x.get());
+    return equilibrium_stability(*system_, x.get());
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
+    if (at_hopf || found.event != solve::Event::hopf || !found.located) return;
+    at_hopf = core::duplicate(x.get());
+    equilibria.to_state(v, at_hopf.get());
+    parameter = found.parameter * scale_;
+  };
+  callbacks.checkpoint = [&](const solve::BranchPoint&, Vec, Vec, double) { return !at_hopf; };
+  solve::ContinuationOptions search = continuation_;
+  search.initial_step = search.max_step;
+  search.newton.max_iterations = 20;
+  const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), search, callbacks);
+  if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
+
+  system_->set_parameter(parameter);
+  const auto modes = spectral::modes(*system_, at_hopf.get(), {});
+  const spectral::Mode* critical = nullptr;
+  for (const auto& m : modes)
+    if (m.lambda.imag() > 0 && (!critical || std::abs(m.lambda.real()) < std::abs(critical->lambda.real())))
+      critical = &m;
+  core::require(critical != nullptr, "a Hopf point has a complex eigenvalue");
+  const std::vector<double> rest = system_->gather(at_hopf.get());
+  const auto n = static_cast<Eigen::Index>(rest.size());
+  Eigen::VectorXcd phi(n);
+  for (Eigen::Index k = 0; k < n; ++k) phi(k) = critical->shape[static_cast<std::size_t>(k)];
+  solve::Cycle still{problem_->mesh(), {}, two_pi / critical->lambda.imag(), parameter}, mode = still;
+  const auto& scheme = problem_->scheme();
+  still.x = Eigen::Map<const Eigen::VectorXd>(rest.data(), n).replicate(1, still.intervals() * scheme.degree);
+  mode.x.resize(n, still.x.cols());
+  for (Eigen::Index i = 0; i < still.intervals(); ++i)
+    for (Eigen::Index l = 1; l <= scheme.degree; ++l) {
+      const double begin = still.mesh[static_cast<std::size_t>(i)];
+      const double s = begin + (still.mesh[static_cast<std::size_t>(i) + 1] - begin) * scheme.node(l);
+      mode.x.col(i * scheme.degree + l - 1) = (phi * std::exp(std::complex<double>(0, two_pi * s))).real();
+    }
+  problem_->set_phase_reference(mode);
+  solve::Restart restart;
+  restart.u = problem_->scatter(still);
+  mode.period = mode.parameter = 0;
+  restart.tangent = problem_->scatter(mode);
+  check(VecScale(restart.tangent.get(),
+                 1 / std::sqrt(solve::inner(*problem_, restart.tangent.get(), restart.tangent.get()))));
+  restart.step = continuation_.initial_step;
+  restart.point.index = -1;  // the Hopf point is no cycle: the first one comes next
+  restart.point.parameter = parameter / scale_;
+  context_.results.summary().set("hopf", parameter / scale_, unit_);
+  context_.results.summary().set("hopf.whirl_frequency", critical->lambda.imag(), "rad/s");
+  return restart;
+}
+
 solve::Stability Branch::stability() const {
-  return solve::make_stability(spectral::eigenvalues(problem_->monodromy()), distance_of_multiplier);
+  auto values = spectral::eigenvalues(problem_->monodromy());
+  // The trivial multiplier of a self-excited cycle says nothing.
+  if (autonomous())
+    values.erase(std::min_element(values.begin(), values.end(),
+                                  [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
+  return solve::make_stability(std::move(values), distance_of_multiplier);
 }
 
 void Branch::on_point(const solve::BranchPoint& point, Vec u) {
@@ -159,6 +236,7 @@ void Branch::on_point(const solve::BranchPoint& point, Vec u) {
   record_.append(point, cycle, problem_->scheme(), *system_, scale_);
   if (last_) report_between(*last_, cycle);
   last_ = cycle;
+  if (autonomous()) problem_->set_phase_reference(cycle);
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
   context_.results.progress(
       fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
@@ -196,6 +274,7 @@ double Branch::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle
   system::RotorSystem& system = other ? *other : *system_;
   solve::CycleProblem problem(context_.comm, system, cycle_options(),
                               doubled_mesh ? solve::doubled(cycle.mesh) : cycle.mesh);
+  if (autonomous()) problem.set_phase_reference(cycle);
   core::Vector u = problem.scatter(cycle), row = core::duplicate(u.get());
   const bool fold = found.event == solve::Event::cyclic_fold;
   double offset = found.parameter;
@@ -287,6 +366,7 @@ std::optional<solve::Restart> Branch::restore() {
   record_.read(state.group("record"));
   const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
   problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), cycle.mesh);
+  if (autonomous()) problem_->set_phase_reference(cycle);
   read_summary(state.group("summary"), context_.results.summary());
   context_.results.add_earlier_seconds(state.real("seconds"));
   solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
@@ -302,7 +382,10 @@ void Branch::run() {
   if (!restart) {
     problem_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(),
                                                      solve::uniform_mesh(options_.intervals));
-    u = start(*problem_);
+    if (autonomous())
+      restart = start_at_hopf();
+    else
+      u = start(*problem_);
   }
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
@@ -327,7 +410,7 @@ void Branch::run() {
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
   group.set("period_turns", options_.period);
   results.summary().points = end.points;
-  results.finish(end.completed ? "completed" : end.reason, end.points > 0);
+  results.finish(branch_status(end, unit_), end.points > 0);
 }
 
 }  // namespace

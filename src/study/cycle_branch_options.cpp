@@ -14,10 +14,19 @@ std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions
   return table;
 }
 
+std::span<const deck::Name<CycleBranchOptions::Origin>> names(CycleBranchOptions::Origin) {
+  using enum CycleBranchOptions::Origin;
+  static constexpr deck::Name<CycleBranchOptions::Origin> table[] = {
+      {equilibrium, "equilibrium", "forced cycles: the response to unbalance, from range.from on"},
+      {hopf, "hopf", "self-excited cycles of the balanced machine, born at the first Hopf point of the range"}};
+  return table;
+}
+
 void describe(deck::Description<CycleBranchOptions>& d) {
   using O = CycleBranchOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once").required();
+  d.add("origin", &O::origin, "where the branch begins");
+  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; required for forced cycles");
   d.embed(&O::parameter);
   d.add("start", &O::start, "*", deck::any, "value of the parameter to start at; that of range.from if not given");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, where the parameter is another one");
@@ -46,7 +55,13 @@ void describe(deck::Description<CycleBranchOptions>& d) {
 }
 
 void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {
-  check_unbalance(options.unbalance, machine, report);
+  if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
+  const bool forced = options.origin == CycleBranchOptions::Origin::equilibrium;
+  if (forced && options.unbalance.empty())
+    report.fail("", "'unbalance' is missing (forced cycles need a force; self-excited ones have 'origin: hopf')");
+  if (!forced && !options.unbalance.empty())
+    report.fail("unbalance", "self-excited cycles (origin: hopf) are those of the balanced machine");
+  if (!forced && options.start) report.fail("start", "self-excited cycles start at the Hopf point");
   check_parameter(options.parameter, options.speed, machine, report);
   const deck::Range& range = options.parameter.range;
   for (std::size_t i = 0; i < options.at.size(); ++i)

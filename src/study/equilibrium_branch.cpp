@@ -27,14 +27,16 @@ std::unique_ptr<system::RotorSystem> make_system(const Context& context, const E
     return half_film ? with_half_film_mesh(std::move(t)) : t;
   };
   if (o.parameter.path == "speed")
-    return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, train_at(context.machine), o.parameter.range.from);
+    return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space,
+                                                 train_at(context.machine), o.parameter.range.from);
   system::Varying varying;
   varying.train = [&context, &o, train_at](double p) {
     return train_at(with_parameter(context.machine, o.parameter.path, p));
   };
   varying.value = o.parameter.range.from;
   varying.magnitude = std::max(std::abs(o.parameter.range.from), std::abs(o.parameter.range.to));
-  return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, std::move(varying), o.speed->value);
+  return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, std::move(varying),
+                                               o.speed->value);
 }
 
 }  // namespace
@@ -162,7 +164,7 @@ void EquilibriumBranch::run(Context& context) {
       results.summary().set("whirl_frequency", b.more.at("whirl_frequency_rad_s"), "rad/s");
     }
   results.summary().points = end.points;
-  results.finish(end.completed ? "completed" : end.reason, end.points > 0);
+  results.finish(branch_status(end, unit), end.points > 0);
 }
 
 }  // namespace whirl::study

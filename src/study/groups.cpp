@@ -19,7 +19,8 @@ Groups Groups::split(MPI_Comm world, const system::Machine& machine) {
   return g;
 }
 
-std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n, const std::function<std::vector<double>(std::size_t)>& work) {
+std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
+                                            const std::function<std::vector<double>(std::size_t)>& work) {
   std::vector<std::vector<double>> all(n);
   if (groups.count == 1) {
     for (std::size_t i = 0; i < n; ++i) all[i] = work(i);

@@ -65,7 +65,8 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
 
 // Modes of one speed as numbers, to send them between ranks.
 std::vector<double> pack(const std::vector<ShaftMode>& modes) {
-  std::vector<double> flat{static_cast<double>(modes.size()), modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
+  std::vector<double> flat{static_cast<double>(modes.size()),
+                           modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
   const auto put = [&](Complex v) {
     flat.push_back(v.real());
     flat.push_back(v.imag());
@@ -124,7 +125,8 @@ void rigid_modes(Context& context, const ModesOptions& options) {
   std::vector<int> pinned;
   if (options.supports == ModesOptions::Supports::pinned)
     for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
-  const auto frequencies = rotor::natural_frequencies(Groups::split(context.comm, context.machine).space, shaft, pinned, options.count);
+  const auto frequencies =
+      rotor::natural_frequencies(Groups::split(context.comm, context.machine).space, shaft, pinned, options.count);
   auto& summary = context.results.summary();
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
@@ -153,9 +155,10 @@ void Modes::run(Context& context) {
   std::size_t ready = 0;
   const auto packed = distribute(groups, speeds.size(), [&](std::size_t i) {
     auto modes = pack(shaft_modes(system, walker.at(speeds[i]), options.count, limit));
-    results.progress(fmt::format("{}: {} of {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
-                                 (speeds.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count),
-                                 deck::from_si(speeds[i], unit), unit, results.seconds()));
+    results.progress(fmt::format(
+        "{}: {} of {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
+        (speeds.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count),
+        deck::from_si(speeds[i], unit), unit, results.seconds()));
     return modes;
   });
 

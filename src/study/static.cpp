@@ -61,7 +61,8 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
 }  // namespace
 
 void Static::run(Context& context) {
-  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine), options.speed.value);
+  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine),
+                             options.speed.value);
   Walker walker(system);
   const std::vector<double> x = system.gather(walker.at(options.speed.value));
   const auto journals = system.journals(x.data());

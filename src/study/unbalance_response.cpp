@@ -174,15 +174,16 @@ void UnbalanceResponse::run(Context& context) {
     std::vector<Response> out;
     for (const auto& flat : distribute(groups, speeds.size(), [&](std::size_t i) {
            auto packed = pack(machine.at(speeds[i]));
-           results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready, deck::from_si(speeds[i], unit), unit,
-                                        results.seconds()));
+           results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
+                                        deck::from_si(speeds[i], unit), unit, results.seconds()));
            return packed;
          }))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };
   std::vector<double> grid;
-  for (int k = 0; k < options.points; ++k) grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
+  for (int k = 0; k < options.points; ++k)
+    grid.push_back(options.range.from + (options.range.to - options.range.from) * k / std::max(1, options.points - 1));
   std::vector<Response> curve = at_speeds(grid);
 
   // Speeds added around the peaks of each node until the parabola through three neighbours settles the speed to 1e-5.

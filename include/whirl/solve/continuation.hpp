@@ -84,6 +84,7 @@ struct BranchEnd {
   std::string reason;      ///< why the branch ended
   bool completed = false;  ///< reached the end of its range
   int points = 0;
+  double parameter = 0;  ///< scaled, of the last point
 };
 
 /// Follows the branch through u (a guess at options.from, corrected there first) to options.to.

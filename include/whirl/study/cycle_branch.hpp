@@ -1,5 +1,5 @@
 #pragma once
-// Forced limit cycles over a parameter by orthogonal collocation, with multipliers and bifurcations.
+// Limit cycles, forced or self-excited, over a parameter by orthogonal collocation, with multipliers and bifurcations.
 
 #include <optional>
 
@@ -10,7 +10,11 @@ namespace whirl::study {
 
 struct CycleBranchOptions {
   enum class Points { radau, gauss };
+  /// Where the branch begins: forced cycles about the equilibrium, or self-excited ones at the first Hopf point of the
+  /// range.
+  enum class Origin { equilibrium, hopf };
   std::string name;
+  Origin origin = Origin::equilibrium;
   std::vector<std::string> unbalance;  ///< names of the machine's unbalances, applied together
   Parameter parameter;
   std::optional<deck::Quantity> start;  ///< value of the parameter to start at; that of range.from if absent
@@ -30,6 +34,7 @@ struct CycleBranchOptions {
   bool checkpoint = true;
 };
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points);
+[[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Origin>> names(CycleBranchOptions::Origin);
 void describe(deck::Description<CycleBranchOptions>& d);
 
 class CycleBranch final : public StudyWith<CycleBranchOptions> {
