@@ -400,6 +400,21 @@ void CycleProblem::solve(Vec rhs, Vec x) {
     for (Index k = 0; k < borders_; ++k) xa[static_cast<PetscInt>(xa.size() - borders_ + k)] = border(k);
 }
 
+MatrixXd CycleProblem::propagate(const VectorXd& v) const {
+  const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
+  MatrixXd whole = MatrixXd::Zero(n_, total * m);
+  VectorXd state = to_rank_[static_cast<std::size_t>(rank_)].leftCols(n_) * v;
+  for (Index i = 0; i < count_; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    MatrixXd z = -intervals_[k]->start(state);
+    intervals_[k]->solve(z);
+    whole.middleCols((first_ + i) * m, m) = Map<const MatrixXd>(z.data(), n_, m);
+    state = z.col(0).tail(n_);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  return whole;
+}
+
 // The same matrix entry by entry, for MUMPS: the check on everything above.
 void CycleProblem::assemble(const std::vector<MatrixXd>& rows) {
   const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;

@@ -62,6 +62,10 @@ public:
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
   [[nodiscard]] const Eigen::MatrixXd& monodromy() const { return monodromy_; }
 
+  /// Solution of the linearised equations over one period from the scaled start v [n], at the nodes like Cycle::x but
+  /// scaled [n x N m]; its last column is monodromy() v. Collective.
+  [[nodiscard]] Eigen::MatrixXd propagate(const Eigen::VectorXd& v) const;
+
 private:
   struct Point;
   void layout(std::vector<double> mesh);
