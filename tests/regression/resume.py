@@ -13,13 +13,17 @@ import subprocess
 import sys
 import time
 
-from branches import SHORT
+from branches import G25, G63, SHORT
 from compare import same_results
 from harness import Harness
 
 program, source, kills, seed = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
 h = Harness(program, source, sys.argv[5:])
 random.seed(seed)
+# Many kills need a longer way: seven bifurcations.
+LONG = [G25 + "range={from: 4000 rpm, to: 5200 rpm}", G25 + "at=[4300 rpm]", G63 + "range={from: 2500 rpm, to: 4100 rpm}",
+        G63 + "at=[2700 rpm, 3600 rpm]"]
+deck = LONG if kills > 6 else SHORT
 
 
 def on(ranks):
@@ -56,7 +60,7 @@ def left(out):
 
 
 begin = time.monotonic()
-h.run("unbalance.yaml", "undisturbed", SHORT, launcher=on(1))
+h.run("unbalance.yaml", "undisturbed", deck, launcher=on(1))
 duration = time.monotonic() - begin
 
 out, done, seen = h.work / "killed", 0, {}
@@ -65,7 +69,7 @@ flags = []
 moments = [0.02 * duration, 0.08 * duration] + [random.uniform(0.05, 0.5) * duration for _ in range(kills - 2)]
 while True:
     ranks = random.choice([1, 1, 2]) if kills > 6 else 1 + (done == kills // 2)
-    process = subprocess.Popen(h.command("unbalance.yaml", out, SHORT, flags, on(ranks)), stdout=subprocess.PIPE,
+    process = subprocess.Popen(h.command("unbalance.yaml", out, deck, flags, on(ranks)), stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True)
     if done < kills:
         if done % 4 == 3:
@@ -103,6 +107,6 @@ print(f"{done} kills, undisturbed {duration:.1f} s; what a kill left: {seen}")
 
 # A finished run resumes to itself.
 before = (out / "results.h5").read_bytes()
-h.run("unbalance.yaml", "killed", SHORT, ["--resume"], launcher=on(1))
+h.run("unbalance.yaml", "killed", deck, ["--resume"], launcher=on(1))
 h.true("a finished run is not computed again", (out / "results.h5").read_bytes() == before)
 h.finish()
