@@ -33,9 +33,10 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
-  const core::Exit exit = study::run(comm, deck, options);
-  text = fmt::format("results in {}\n", directory);
-  return exit;
+  const std::vector<std::string> undelivered = study::run(comm, deck, options);
+  for (const auto& line : undelivered) text += line + "\n";
+  text += fmt::format("results in {}\n", directory);
+  return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }
 
 std::string check(MPI_Comm comm, const DeckRequest& request) {

@@ -20,8 +20,12 @@ std::string contents(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+fs::path unfinished_name(const fs::path& path) {
+  return path.string() + ".new";
+}
+
 void write_whole(const fs::path& path, const std::string& text) {
-  const fs::path temporary = path.string() + ".new";
+  const fs::path temporary = unfinished_name(path);
   std::ofstream out(temporary, std::ios::binary);
   out << text << std::flush;
   out.close();
@@ -32,8 +36,11 @@ void write_whole(const fs::path& path, const std::string& text) {
 void prepare(const fs::path& directory, const std::string& resolved, Earlier earlier) {
   if (fs::exists(directory) && !fs::is_directory(directory))
     throw InputError(fmt::format("'{}' is a file; -o names a directory", directory.string()));
-  const bool used = fs::exists(directory) && !fs::is_empty(directory);
-  const fs::path deck = directory / "resolved.yaml";
+  const fs::path deck = directory / "resolved.yaml", unfinished = unfinished_name(deck);
+  // A run killed while it wrote its deck leaves only that.
+  bool used = false;
+  if (fs::exists(directory))
+    for (const auto& entry : fs::directory_iterator(directory)) used = used || entry.path() != unfinished;
   if (used) {
     if (!fs::exists(deck))
       throw InputError(fmt::format("'{}' holds files that are not results of whirl", directory.string()));

@@ -12,7 +12,7 @@ namespace {
 
 using core::check;
 
-// Twelve significant digits: the last ones may differ between rank counts and must not decide anything.
+// Ten significant digits: the last ones may differ between rank counts and must not decide anything.
 double rounded(double x) {
   if (x == 0 || !std::isfinite(x)) return x;
   const double unit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 9);
@@ -112,7 +112,7 @@ bool Follower::locate(const State& a, const State& b, const Test& test, LocatedE
   found.bracket = std::abs(dp);
   at.u = copy(b.u.get());
   at.point = b.point;
-  double last = b.point.parameter;
+  double last = b.point.parameter, last_f = f1;
   int side = 0;
   for (int k = 0; k < 30; ++k) {
     double s = (s0 * f1 - s1 * f0) / (f1 - f0);
@@ -125,8 +125,11 @@ bool Follower::locate(const State& a, const State& b, const Test& test, LocatedE
     at = std::move(trial);
     found.parameter = at.point.parameter;
     found.bracket = std::abs(found.parameter - last);
+    // The slope near the zero, from the last two points that lie far enough apart to show one.
+    if (found.bracket > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / (found.parameter - last);
     if (f == 0 || rounded(found.bracket) <= options_.location_tolerance) return true;
     last = found.parameter;
+    last_f = f;
     if (f * f1 < 0) {
       s0 = s1, f0 = f1;
       side = 0;

@@ -234,7 +234,7 @@ solve::Stability Branch::stability() const {
 void Branch::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
   record_.append(point, cycle, problem_->scheme(), *system_, scale_);
-  if (last_) report_between(*last_, cycle);
+  report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
   if (autonomous()) problem_->set_phase_reference(cycle);
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
@@ -248,7 +248,9 @@ void Branch::on_point(const solve::BranchPoint& point, Vec u) {
 void Branch::report_between(const solve::Cycle& a, const solve::Cycle& b) {
   for (const auto& wanted : options_.at) {
     const double p = wanted.value;
-    if ((p - a.parameter) * (p - b.parameter) > 0 || p == a.parameter) continue;
+    // The branch starts and ends at its limits but for rounding.
+    const double slack = 1e-10 * std::abs(p);
+    if (p < std::min(a.parameter, b.parameter) - slack || p > std::max(a.parameter, b.parameter) + slack) continue;
     const std::string key = number_text(p, unit_);
     if (record_.reported(key)) continue;
     const double w = b.parameter == a.parameter ? 1 : (p - a.parameter) / (b.parameter - a.parameter);
@@ -328,11 +330,10 @@ void Branch::on_event(const solve::LocatedEvent& found, Vec u) {
   }
   if (found.located) {
     const double time = shift(found, cycle, true, false), film = shift(found, cycle, false, true);
-    // Twice the change to the doubled time mesh; the film is of second order, so a third of the change to the halved
-    // mesh is the error of this one.
+    // Twice the change to the doubled time mesh: the rest that a yet finer one would bring is smaller than that change.
     b.more["uncertainty_time_mesh"] = 2 * time;
-    b.more["uncertainty_film_mesh"] = film / 3;
-    b.uncertainty = 2 * time + film / 3 + found.bracket;
+    b.more["uncertainty_film_mesh"] = film;
+    b.uncertainty = 2 * time + film + found.bracket;
   } else {
     b.more["bracket"] = found.bracket;
     b.criticality = "not located: lies within the bracket";

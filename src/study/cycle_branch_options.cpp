@@ -64,15 +64,14 @@ void CycleBranch::validate(const system::Machine& machine, const deck::Report& r
   if (!forced && options.start) report.fail("start", "self-excited cycles start at the Hopf point");
   check_parameter(options.parameter, options.speed, machine, report);
   const deck::Range& range = options.parameter.range;
-  for (std::size_t i = 0; i < options.at.size(); ++i)
-    if (!deck::same_kind(options.at[i].unit, range.unit))
-      report.fail(fmt::format("at.{}", i + 1), fmt::format("'at' has another unit than the range ({})", range.unit));
-  if (!options.start) return;
-  if (!deck::same_kind(options.start->unit, range.unit))
-    report.fail("start", fmt::format("'start' has another unit than the range ({})", range.unit));
-  else if (options.start->value < std::min(range.from, range.to) ||
-           options.start->value > std::max(range.from, range.to))
-    report.fail("start", "'start' lies outside the range");
+  const auto inside = [&](const char* option, const std::string& path, const deck::Quantity& q) {
+    if (!deck::same_kind(q.unit, range.unit))
+      report.fail(path, fmt::format("'{}' has another unit than the range ({})", option, range.unit));
+    else if (q.value < std::min(range.from, range.to) || q.value > std::max(range.from, range.to))
+      report.fail(path, fmt::format("'{}' lies outside the range", option));
+  };
+  for (std::size_t i = 0; i < options.at.size(); ++i) inside("at", fmt::format("at.{}", i + 1), options.at[i]);
+  if (options.start) inside("start", "start", *options.start);
 }
 
 }  // namespace whirl::study

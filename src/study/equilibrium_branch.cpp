@@ -124,8 +124,7 @@ void EquilibriumBranch::run(Context& context) {
       b.more["whirl_frequency_rad_s"] = omega;
       b.more["whirl_frequency_rpm"] = omega * 30 / std::numbers::pi;
     }
-    // The same equilibrium on the halved film mesh: how far the border of stability moves, a third of which is the
-    // error of this mesh.
+    // The same equilibrium on the halved film mesh: how far the border of stability moves.
     if (found.located && found.sensitivity != 0) {
       const auto coarse = make_system(context, options, true);
       coarse->set_parameter(found.parameter * scale);
@@ -141,7 +140,7 @@ void EquilibriumBranch::run(Context& context) {
             distance = s.distance[k];
           }
         }
-        b.more["uncertainty_film_mesh"] = std::abs(distance / found.sensitivity) / 3;
+        b.more["uncertainty_film_mesh"] = std::abs(distance / found.sensitivity);
         b.uncertainty += b.more["uncertainty_film_mesh"];
       }
     }

@@ -11,11 +11,11 @@
 
 namespace whirl::study {
 
-/// Groups of ranks, each of which holds a whole system on its `space` communicator; independent work (speeds, collocation intervals) is
-/// shared between groups.
+/// Groups of ranks, each of which holds a whole system on its `space` communicator; independent work (speeds,
+/// collocation intervals) is shared between groups.
 ///
-/// A shaft of fewer than 20 000 freedoms fits one rank's cache and its solves are over before a message arrives, so that every rank is a group of
-/// its own; a larger one is spread over all ranks as one group.
+/// A shaft of fewer than 20 000 freedoms fits one rank's cache and its solves are over before a message arrives, so
+/// that every rank is a group of its own; a larger one is spread over all ranks as one group.
 struct Groups {
   MPI_Comm world = MPI_COMM_NULL, space = MPI_COMM_NULL;
   int count = 1;  ///< number of groups
@@ -24,8 +24,9 @@ struct Groups {
   [[nodiscard]] static Groups split(MPI_Comm world, const system::Machine& machine);
 };
 
-/// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks. `work` is collective on the space
-/// communicator. If one item throws, all ranks throw. Collective on the world.
-[[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n, const std::function<std::vector<double>(std::size_t)>& work);
+/// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
+/// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.
+[[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
+                                                          const std::function<std::vector<double>(std::size_t)>& work);
 
 }  // namespace whirl::study

@@ -25,8 +25,16 @@ Results::Results(MPI_Comm comm, fs::path directory, const std::string& title, co
     all_ = io::Summary::read(directory_ / "summary.json");
     earlier_run_seconds_ = all_.wall_seconds;
     if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5");
-    for (const auto& s : all_.studies)
-      if (root_.child("studies").has_group(io::safe_name(s.name))) finished_.push_back(s.name);
+    auto& studies = root_.child("studies");
+    for (const auto& s : all_.studies) {
+      // What delivered nothing is tried again.
+      const std::string name = io::safe_name(s.name);
+      const bool known = studies.has_group(name) && studies.group(name).has_attribute("delivered");
+      if (!known || studies.group(name).integer("delivered") == 0) continue;
+      finished_.push_back(s.name);
+      // A run killed right after it finished the study leaves this behind.
+      if (rank_ == 0) io::Checkpoint(checkpoint_path(s.name)).remove();
+    }
   });
   io::describe_results(root_, title, version);
   root_.child("studies");
@@ -54,22 +62,15 @@ void Results::begin(const std::string& name, const std::string& kind) {
   group().set("title", name);
 }
 
-void Results::restore(io::Group group, io::StudySummary summary) {
-  root_.child("studies").child(io::safe_name(current_.name)) = std::move(group);
-  const std::string name = current_.name, kind = current_.kind;
-  current_ = std::move(summary);
-  current_.name = name;
-  current_.kind = kind;
-}
-
 void Results::finish(const std::string& status, bool delivered) {
   current_.status = status;
   current_.wall_seconds = seconds();
   group().set("status", status);
-  if (!delivered) missing_ = true;
+  group().set("delivered", delivered ? 1 : 0);
+  if (!delivered) undelivered_.push_back(current_.name + ": " + status);
   all_.set(current_);
   write();
-  if (rank_ == 0) io::Checkpoint(checkpoint_path()).remove();
+  if (rank_ == 0) io::Checkpoint(checkpoint_path(current_.name)).remove();
   if (say_) say_("", false);
 }
 
@@ -91,25 +92,25 @@ void Results::progress(const std::string& line) {
   say_(line, true);
 }
 
-fs::path Results::checkpoint_path() const {
-  return directory_ / (io::safe_name(current_.name) + ".checkpoint.h5");
+fs::path Results::checkpoint_path(const std::string& study) const {
+  return directory_ / (io::safe_name(study) + ".checkpoint.h5");
 }
 
 void Results::save_checkpoint(const io::Group& state) const {
   core::agree(comm_, [&] {
-    if (rank_ == 0) io::Checkpoint(checkpoint_path()).save(state);
+    if (rank_ == 0) io::Checkpoint(checkpoint_path(current_.name)).save(state);
   });
 }
 
 bool Results::has_checkpoint() const {
-  int there = rank_ == 0 && io::Checkpoint(checkpoint_path()).exists();
+  int there = rank_ == 0 && io::Checkpoint(checkpoint_path(current_.name)).exists();
   MPI_Bcast(&there, 1, MPI_INT, 0, comm_);
   return there != 0;
 }
 
 io::Group Results::load_checkpoint() const {
   io::Group state;
-  core::agree(comm_, [&] { state = io::Checkpoint(checkpoint_path()).load().state; });
+  core::agree(comm_, [&] { state = io::Checkpoint(checkpoint_path(current_.name)).load().state; });
   return state;
 }
 

@@ -25,7 +25,7 @@ public:
   Results(MPI_Comm comm, std::filesystem::path directory, const std::string& title, const std::string& version, Say say,
           bool resume);
 
-  /// True if an earlier run finished this study; its results are kept.
+  /// True if an earlier run finished this study and it delivered something; its results are kept.
   [[nodiscard]] bool finished(const std::string& name) const;
   /// Starts a study: clears its group and summary.
   void begin(const std::string& name, const std::string& kind);
@@ -35,8 +35,6 @@ public:
   /// The group and the summary of the study that runs.
   [[nodiscard]] io::Group& group();
   [[nodiscard]] io::StudySummary& summary() { return current_; }
-  /// Replaces the group and the summary by those of a checkpoint.
-  void restore(io::Group group, io::StudySummary summary);
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count() + earlier_seconds_;
   }
@@ -51,14 +49,15 @@ public:
   [[nodiscard]] io::Group load_checkpoint() const;
   [[nodiscard]] bool has_checkpoint() const;
 
-  [[nodiscard]] bool anything_missing() const { return missing_; }
+  /// `NAME: reason` for each study that delivered nothing.
+  [[nodiscard]] const std::vector<std::string>& undelivered() const { return undelivered_; }
   [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
   [[nodiscard]] io::Group& root() { return root_; }
   [[nodiscard]] std::string group_path() const { return "/studies/" + io::safe_name(current_.name); }
 
 private:
   void write();
-  [[nodiscard]] std::filesystem::path checkpoint_path() const;
+  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) const;
 
   MPI_Comm comm_;
   int rank_;
@@ -70,7 +69,7 @@ private:
   std::vector<std::string> finished_;
   std::chrono::steady_clock::time_point started_run_, started_, last_line_;
   double earlier_seconds_ = 0, earlier_run_seconds_ = 0;
-  bool missing_ = false;
+  std::vector<std::string> undelivered_;
 };
 
 }  // namespace whirl::study

@@ -6,7 +6,7 @@
 
 namespace whirl::study {
 
-core::Exit run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
+std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
   Results results(comm, options.directory, deck.machine.title, options.version, options.say, options.resume);
   Context context{comm, deck.machine, options.directory, results, options.resume};
   for (const auto& study : deck.studies) {
@@ -21,7 +21,7 @@ core::Exit run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
       results.finish(e.what(), false);
     }
   }
-  return results.anything_missing() ? core::Exit::not_delivered : core::Exit::success;
+  return results.undelivered();
 }
 
 }  // namespace whirl::study

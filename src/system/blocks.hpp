@@ -28,7 +28,7 @@ public:
 
 private:
   RotorSystem& system_;
-  Eigen::MatrixXd l1_, l0_at_rest_, gyroscopic_, l0_, dl0_, b_, c_;
+  Eigen::MatrixXd l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
   double l0_speed_ = -1;
 };
 

@@ -32,8 +32,8 @@ struct RunOptions {
   bool resume = false;
 };
 
-/// Runs all studies in turn and leaves their results in the directory; core::Exit::not_delivered if one of them could
+/// Runs all studies in turn and leaves their results in the directory; returns `NAME: reason` for each one that could
 /// deliver nothing. Collective.
-[[nodiscard]] core::Exit run(MPI_Comm comm, const Deck& deck, const RunOptions& options);
+[[nodiscard]] std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& options);
 
 }  // namespace whirl::study

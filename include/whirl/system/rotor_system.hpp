@@ -31,9 +31,9 @@ struct JournalState {
 ///     row 2i:     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
 ///     row 2i + 1: q' - v = 0
 ///
-/// in this order, so that no diagonal entry of dF/dx is zero. /// f_film acts on the journal and with the opposite sign
-/// on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
-/// mod size, its ten numbers are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// in this order, so that no diagonal entry of dF/dx is zero. f_film acts on the journal and with the opposite sign on
+/// the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
+/// mod size, its force and tangents are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public problem::System {
 public:
   /// The speed [rad/s] is the parameter.

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Branches of forced cycles: reference values, doubled time mesh, rank counts.
+
+branches.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
+"""
+import sys
+
+from compare import same_results
+from harness import Harness, value
+
+NAMES = ["B1", "B2", "B3", "B4", "B5"]
+G25, G63 = "studies.1.cycle_branch.", "studies.2.cycle_branch."
+# A stretch of each branch with bifurcations in it: a flip of G2.5, both Neimark-Sacker bifurcations of G6.3.
+SHORT = [G25 + "range={from: 4000 rpm, to: 4200 rpm}", G25 + "step={initial: 20 rpm, min: 0.01 rpm, max: 60 rpm}",
+         G25 + "at=[4100 rpm]", G63 + "range={from: 2500 rpm, to: 2800 rpm}",
+         G63 + "step={initial: 20 rpm, min: 0.01 rpm, max: 60 rpm}", G63 + "at=[2700 rpm]"]
+
+
+def nearest(study, speed, kinds=("cyclic_fold", "flip", "neimark_sacker", "branch_point")):
+    found = [b for b in study["bifurcations"] if b["type"] in kinds]
+    return min(found, key=lambda b: abs(b["value"] - speed), default={"value": None})
+
+
+def reference(h):
+    """The main job: cycles and bifurcations of both unbalances."""
+    run = h.run("unbalance.yaml", "main")
+    for grade, speed, records in (("G2.5", 2700, (84, 85, 86)), ("G2.5", 3600, (80, 81, 82)),
+                                  ("G6.3", 2700, (90, 91, 92)), ("G6.3", 3600, (87, 88, 89))):
+        s = run[grade]
+        for axis, record in zip("xy", records):
+            for name, (r, within) in zip(NAMES, h.reference(record)):
+                h.close(f"{grade}, {speed} rpm: peak to peak {axis} {name} [m]",
+                        value(s, f"at.{speed}.peak_to_peak.{name}.{axis}"), r, within)
+        h.close(f"{grade}, {speed} rpm: largest multiplier", value(s, f"at.{speed}.multiplier.modulus"),
+                *h.reference(records[2])[0])
+    # Record 95 is a period doubling there and a Neimark-Sacker bifurcation at an angle of 170 degrees here.
+    lost, back = "stability lost", "stability regained"
+    for grade, record, kinds, what in (
+            ("G2.5", 98, ("flip",), lost), ("G2.5", 99, ("flip",), back), ("G2.5", 100, ("neimark_sacker",), lost),
+            ("G6.3", 93, ("neimark_sacker",), lost), ("G6.3", 94, ("neimark_sacker",), back),
+            ("G6.3", 95, ("flip", "neimark_sacker"), lost), ("G6.3", 96, ("flip",), back),
+            ("G6.3", 97, ("neimark_sacker",), lost)):
+        r, within = h.reference(record)[0]
+        b = nearest(run[grade], r, kinds)
+        h.close(f"{grade}: {what}, {'/'.join(kinds)} [rpm]", b["value"], r, within)
+        if record != 95:
+            h.close(f"{grade}: {what}, angle of the multiplier [rad]", b.get("angle_rad"),
+                    h.records[record]["parameters"]["multiplier_angle_rad"], 0.03)
+    # Nothing happens to G2.5 below service speed, and no cycle folds.
+    h.true("G2.5 is stable up to the first flip", min(b["value"] for b in run["G2.5"]["bifurcations"]) > 4085)
+    for grade in ("G2.5", "G6.3"):
+        h.true(f"{grade} reaches its end", run[grade]["status"] == "completed", run[grade]["status"])
+
+
+def doubled(h, overrides=SHORT):
+    """A located bifurcation moves by less than its reported uncertainty on a doubled time mesh and at a higher degree."""
+    base = h.run("unbalance.yaml", "base", overrides)
+    finer = {"120 intervals": [G25 + "intervals=120", G63 + "intervals=120"],
+             "degree 3": [G25 + "degree=3", G63 + "degree=3"]}
+    for what, more in finer.items():
+        run = h.run("unbalance.yaml", what, overrides + more)
+        for grade in ("G2.5", "G6.3"):
+            a, b = base[grade]["bifurcations"], run[grade]["bifurcations"]
+            h.true(f"{grade}, {what}: the same bifurcations", [x["type"] for x in a] == [x["type"] for x in b])
+            for x, y in zip(a, b):
+                h.close(f"{grade}, {what}: {x['type']} [rpm]", y["value"], x["value"], x["uncertainty"])
+                h.close("  against the uncertainty of the time mesh alone", y["value"], x["value"],
+                        x["uncertainty_time_mesh"])
+
+
+def ranks(h):
+    """The same branches to 1e-8 on 1, 2 and 3 ranks."""
+    decks = {"unbalance.yaml": SHORT,
+             "balanced.yaml": ["studies.1.equilibrium_branch.range={from: 4950 rpm, to: 5100 rpm}"],
+             "modes.yaml": ["studies.3.modes.points=2"]}
+    for deck, overrides in decks.items():
+        for n in (1, 2, 3):
+            h.run(deck, f"{deck}.{n}", overrides, launcher=[*h.launcher, "-n", str(n)])
+            if n > 1:
+                for what, difference, within in same_results(h.work / f"{deck}.1", h.work / f"{deck}.{n}"):
+                    h.close(f"{deck}, {n} ranks: {what}", difference, 0, within)
+
+
+if __name__ == "__main__":
+    harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    cases = {"reference": reference, "doubled": doubled, "doubled_whole": lambda h: doubled(h, []), "ranks": ranks}
+    cases[sys.argv[3]](harness)
+    harness.finish()

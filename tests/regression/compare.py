@@ -1,0 +1,66 @@
+"""Whether two runs found the same, whatever the number of ranks and interruptions."""
+import json
+
+import h5py
+import numpy
+
+CLOCKS = ("wall_seconds", "seconds", "ranks")
+
+
+def datasets(path):
+    found = {}
+    with h5py.File(path) as f:
+        def visit(name, item):
+            for key, text in item.attrs.items():
+                found[f"{name}@{key}"] = text
+            if isinstance(item, h5py.Dataset):
+                found[name] = item[()]
+        f.visititems(visit)
+    return {k: v for k, v in found.items() if not k.endswith(CLOCKS)}
+
+
+def leaves(node, path=""):
+    if isinstance(node, dict):
+        node = node.items()
+    elif isinstance(node, list):
+        node = enumerate(node)
+    else:
+        return {path: node}
+    all = {}
+    for key, below in node:
+        all.update(leaves(below, f"{path}/{key}"))
+    return {k: v for k, v in all.items() if not k.endswith(CLOCKS)}
+
+
+def difference(key, a, b, scale):
+    """Largest difference over the largest magnitude; infinite if the shapes or texts differ."""
+    a, b = numpy.asarray(a), numpy.asarray(b)
+    if a.shape != b.shape:
+        return float("inf")
+    if a.dtype.kind not in "fiu" or b.dtype.kind not in "fiu":
+        return 0.0 if numpy.array_equal(a, b) else float("inf")
+    if a.size == 0:
+        return 0.0
+    return float(numpy.max(numpy.abs(a.astype(float) - b.astype(float))) / (scale or numpy.max(numpy.abs(a)) or 1.0))
+
+
+def same_results(one, other, within=1e-8):
+    """The worst differences of results.h5 and summary.json as (what, relative difference, tolerance)."""
+    report = []
+    for what, a, b in (("results.h5", datasets(one / "results.h5"), datasets(other / "results.h5")),
+                       ("summary.json", leaves(json.loads((one / "summary.json").read_text())),
+                        leaves(json.loads((other / "summary.json").read_text())))):
+        if a.keys() != b.keys():
+            report.append((f"{what}: {sorted(a.keys() ^ b.keys())[:3]} only once", float("inf"), 0))
+            continue
+        worst, where = 0.0, "nothing"
+        for key in a:
+            scale = None
+            # A difference of two parameters has the accuracy of the parameters.
+            if "uncertainty" in key:
+                scale = numpy.max(numpy.abs(a[key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value")]))
+            d = difference(key, a[key], b[key], scale)
+            if d > worst:
+                worst, where = d, key
+        report.append((f"{what}, worst at {where}", worst, within))
+    return report

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Runs that cannot deliver say why, with the right exit code, and leave nothing half-written.
+
+refused.py PROGRAM SOURCE [LAUNCHER WORDS...]
+"""
+import subprocess
+import sys
+
+from harness import Harness, every_bearing
+
+h = Harness(sys.argv[1], sys.argv[2], sys.argv[3:])
+
+
+def run(what, deck, out, code, said="", overrides=(), flags=()):
+    done = subprocess.run(h.command(deck, out, overrides, flags), capture_output=True, text=True, timeout=200)
+    h.true(f"{what}: exit {code}", done.returncode == code, f"got {done.returncode}")
+    told = done.stderr if code == 2 else done.stdout
+    h.true(f"{what}: says '{said}' once", not said or told.count(said) == 1, told.strip()[:300])
+    return done
+
+
+def files(name):
+    path = h.work / name
+    return sorted(p.name for p in path.iterdir()) if path.is_dir() else None
+
+
+# Where results cannot go.
+(h.work / "file").write_text("mine\n")
+run("a directory below a file", "static.yaml", h.work / "file" / "out", 2, "for results: ")
+run("a directory that nobody may make", "static.yaml", "/proc/whirl", 2, "cannot use '/proc/whirl' for results: ")
+run("a directory as deck", ".", h.work / "out", 2, "is a directory")
+h.true("nothing was written", files("out") is None and (h.work / "file").read_text() == "mine\n")
+
+# A machine without an equilibrium: the films close under the weight before they carry it.
+CASES = {"static.yaml": "at service speed", "balanced.yaml": "balanced", "response.yaml": "generator pair G2.5",
+         "unbalance.yaml": "G2.5"}
+for deck, study in CASES.items():
+    name = deck.removesuffix(".yaml")
+    impossible = ["gravity=1e7 m/s^2", *every_bearing("film.cells", "[16, 8]")]
+    run(f"{deck} without equilibrium", deck, h.work / name, 3, f"{study}: no equilibrium near", overrides=impossible)
+    s = h.studies(name)[study]
+    h.true(f"{deck}: the reason is in the status", "completed" not in s["status"] and len(s["status"]) > 20, s["status"])
+    h.true(f"{deck}: no values, no bifurcations", not s["values"] and not s["bifurcations"] and s["points"] == 0)
+    h.true(f"{deck}: only finished files", all(n.endswith((".json", ".h5", ".yaml", ".xdmf")) and "checkpoint" not in n
+                                               for n in files(name)), str(files(name)))
+    if deck == "static.yaml":
+        h.true("the other study goes on", h.studies(name)["alignment"]["status"] == "completed")
+        run("what failed is tried again", deck, h.work / name, 3, f"{study}: no equilibrium near", overrides=impossible, flags=["--resume"])
+
+# Results and checkpoints that are damaged are named, not used.
+work = h.work / "damaged"
+run("a study", "static.yaml", work, 0)
+(work / "results.h5").write_bytes(b"not HDF5")
+done = subprocess.run(h.command("static.yaml", work, flags=["--resume"]), capture_output=True, text=True)
+h.true("damaged results: exit 1", done.returncode == 1 and "results.h5" in done.stderr, done.stderr.strip())
+run("damaged results, replaced", "static.yaml", work, 0, flags=["--force"])
+(work / "results.h5").unlink()
+(work / "summary.json").unlink()
+(work / "at_service_speed.checkpoint.h5").write_bytes(b"not HDF5")
+run("a checkpoint that the study does not use", "static.yaml", work, 0, flags=["--resume"])
+
+short = ["studies.1.cycle_branch.range={from: 4000 rpm, to: 4100 rpm}", "studies.1.cycle_branch.at=[]",
+         "studies.2.cycle_branch.max_points=1"]
+work = h.work / "checkpoint"
+work.mkdir()
+run("a short branch", "unbalance.yaml", work, 0, overrides=short)
+for name in ("results.h5", "summary.json"):
+    (work / name).unlink()
+(work / "G2.5.checkpoint.h5").write_bytes(b"not HDF5")
+done = subprocess.run(h.command("unbalance.yaml", work, short, ["--resume"]), capture_output=True, text=True)
+h.true("a damaged checkpoint: exit 1", done.returncode == 1 and "no usable checkpoint" in done.stderr, done.stderr.strip())
+h.finish()
