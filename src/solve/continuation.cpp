@@ -135,7 +135,9 @@ bool Follower::locate(const State& a, const State& b, const Test& test, LocatedE
     const double f = test(trial);
     at = std::move(trial);
     found.parameter = at.point.parameter;
-    found.bracket = std::abs(found.parameter - last);
+    // False position may creep: what the secant through the last two points says is left counts as well.
+    const double moved = found.parameter - last;
+    found.bracket = std::max(std::abs(moved), f != f1 ? std::abs(f / (f - f1) * moved) : 0.0);
     if (f == 0 || rounded(found.bracket) <= options_.location_tolerance) return true;
     last = found.parameter;
     if (f * f1 < 0) {
