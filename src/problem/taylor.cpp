@@ -60,7 +60,7 @@ TaylorReport taylor_test(System& system, double angle, Vec x, Vec xdot, double h
     const double round_off = 1e-12 * (base + report.first_difference);
     (rate ? report.rate_order : report.state_order) = order(size[0], size[1], round_off);
   }
-  const double p = system.parameter(), unit = h * std::max(std::abs(p), 1e-12);
+  const double p = system.parameter(), unit = h * (p != 0 ? std::abs(p) : 1.0);
   system.parameter_derivative(angle, x, xdot, jd.get());
   double size[2];
   for (int k = 0; k < 2; ++k) {

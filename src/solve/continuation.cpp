@@ -30,6 +30,13 @@ core::Vector copy(Vec v) {
   return c;
 }
 
+// Arclength from a to b as the pseudo-arclength condition counts it: along the tangent at a.
+double arclength(const ExtendedProblem& problem, const State& a, Vec b) {
+  core::Vector chord = copy(b);
+  check(VecAXPY(chord.get(), -1, a.u.get()));
+  return inner(problem, a.tangent.get(), chord.get());
+}
+
 class Follower {
 public:
   Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
@@ -50,7 +57,6 @@ private:
   // point found.
   bool locate(const State& a, const State& b, const Test& test, LocatedEvent& found, State& at);
   void crossings(const State& a, const State& b, int depth);
-  bool accept(State& s);
 
   ExtendedProblem& problem_;
   const ContinuationOptions& options_;
@@ -94,10 +100,15 @@ bool Follower::advance(const State& from, double ds, State& to, NewtonResult& re
   to.point = from.point;
   to.point.step = ds;
   to.point.newton_iterations = result.iterations;
-  inspect(to, from.tangent.get());
+  try {
+    inspect(to, from.tangent.get());
+  } catch (const core::NotConverged& error) {  // a singular matrix, at a branch point for one
+    result.reason = error.what();
+    return false;
+  }
   // A tangent turned by more than 60 degrees: another branch, or a step too long for this one.
   const double cosine = inner(problem_, from.tangent.get(), to.tangent.get());
-  if (rounded(cosine) < 0.5) {
+  if (!(rounded(cosine) >= 0.5)) {
     result.reason = "the branch turns too sharply";
     return false;
   }
@@ -124,9 +135,11 @@ bool Follower::locate(const State& a, const State& b, const Test& test, LocatedE
     const double f = test(trial);
     at = std::move(trial);
     found.parameter = at.point.parameter;
-    found.bracket = std::abs(found.parameter - last);
+// False position may creep: what the secant through the last two points says is left counts as well.
+    const double moved = found.parameter - last;
+    found.bracket = std::max(std::abs(moved), f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0);
     // The slope near the zero, from the last two points that lie far enough apart to show one.
-    if (found.bracket > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / (found.parameter - last);
+    if (std::abs(moved) > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / moved;
     if (f == 0 || rounded(found.bracket) <= options_.location_tolerance) return true;
     last = found.parameter;
     last_f = f;
@@ -157,20 +170,25 @@ void Follower::crossings(const State& a, const State& b, int depth) {
     rest.u = copy(b.u.get());
     rest.tangent = copy(b.tangent.get());
     rest.point = b.point;
-    rest.point.step = rounded(b.point.step - middle.point.step);
+    rest.point.step = arclength(problem_, middle, b.u.get());
     crossings(middle, rest, depth + 1);
     return true;
   };
   if (std::abs(to - from) > 2 && split()) return;
 
-  const Test test = [k](const State& s) { return s.point.stability.distance[k]; };
+  // A search for a few eigenvalues may return fewer at one point: those left out are no less stable than its last.
+  const Test test = [k](const State& s) {
+    const auto& d = s.point.stability.distance;
+    return d.empty() ? -1.0 : d[std::min(k, d.size() - 1)];
+  };
   LocatedEvent found{};
   State at;
   found.located = locate(a, b, test, found, at);
-  const std::complex<double> value = at.point.stability.values[k];
+  const auto& values = at.point.stability.values;
+  const std::complex<double> value = values.empty() ? 0.0 : values[std::min(k, values.size() - 1)];
   // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits the
   // double value into a pair of the size of its square root.
-  const bool real = std::abs(value.imag()) < (callbacks_.cycles && value.real() > 0 ? 5e-3 : 1e-7) * std::abs(value);
+  const bool real = std::abs(value.imag()) <= (callbacks_.cycles && value.real() > 0 ? 5e-3 : 1e-7) * std::abs(value);
   if (real && std::abs(to - from) == 2 && split()) return;
   found.critical = value;
   if (!real)
@@ -181,7 +199,7 @@ void Follower::crossings(const State& a, const State& b, int depth) {
     found.event = Event::branch_point;
   // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such.
   if (found.event == Event::branch_point && a.point.slope * b.point.slope < 0) return;
-  if (callbacks_.on_event) callbacks_.on_event(found, at.u.get());
+  callbacks_.on_event(found, at.u.get());
 }
 
 void Follower::events(const State& a, const State& b) {
@@ -192,14 +210,9 @@ void Follower::events(const State& a, const State& b) {
     found.located = locate(
         a, b, [](const State& s) { return s.point.slope; }, found, at);
     found.sensitivity = 0;
-    if (callbacks_.on_event) callbacks_.on_event(found, at.u.get());
+    callbacks_.on_event(found, at.u.get());
   }
   crossings(a, b, 0);
-}
-
-bool Follower::accept(State& s) {
-  if (callbacks_.on_point) callbacks_.on_point(s.point, s.u.get());
-  return true;
 }
 
 BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
@@ -216,7 +229,7 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     here.u = std::move(u);
     here.point.newton_iterations = first.iterations;
     inspect(here, nullptr);
-    accept(here);
+    if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
       return {"stopped on request", false, 1, options_.from};
   }
@@ -224,7 +237,9 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
   const auto ended = [&](std::string reason, bool completed) {
     return BranchEnd{std::move(reason), completed, here.point.index + 1, here.point.parameter};
   };
-  const auto beyond = [&](double p) { return direction_ * rounded(p - options_.to) >= 0; };
+  // The last point stands at the limit but for rounding, whose sign must not decide whether another one follows.
+  const double margin = 1e-10 * std::max(std::abs(options_.to), std::abs(options_.to - options_.from));
+  const auto beyond = [&](double p) { return direction_ * (p - options_.to) >= -margin; };
   while (here.point.index + 1 < options_.max_points) {
     if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
     if (direction_ * rounded(here.point.parameter - options_.from) < -std::abs(options_.max_step))
@@ -232,16 +247,17 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     State next;
     NewtonResult result;
     bool ok = advance(here, ds, next, result);
-    if (ok && beyond(next.point.parameter) && rounded(next.point.parameter - options_.to) != 0) {
+    if (ok && direction_ * (next.point.parameter - options_.to) > margin) {
       // End exactly at the limit: the arclength that leads there, by one secant step, then natural continuation.
       State last;
       last.u = copy(next.u.get());
       const double fraction = (options_.to - here.point.parameter) / (next.point.parameter - here.point.parameter);
       check(VecAXPBY(last.u.get(), 1 - fraction, fraction, here.u.get()));
       result = correct_at(last.u, options_.to);
-      if (result.converged) {
+      ok = result.converged;
+      if (ok) {
         last.point = here.point;
-        last.point.step = ds * fraction;
+        last.point.step = arclength(problem_, here, last.u.get());
         last.point.newton_iterations = result.iterations;
         inspect(last, here.tangent.get());
         next = std::move(last);
@@ -253,13 +269,15 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
       continue;
     }
     next.point.index = here.point.index + 1;
-    // Without stability facts (a branch that starts at a bifurcation) there is nothing to compare with.
-    if (!here.point.stability.values.empty()) events(here, next);
+    // With stability facts missing at this point alone (a branch that starts at a bifurcation) there is nothing to
+    // compare with.
+    const bool comparable = !callbacks_.stability || !here.point.stability.values.empty();
+    if (callbacks_.on_event && comparable) events(here, next);
     here = std::move(next);
     const int k = result.iterations;
     ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
     ds = std::max(ds, options_.min_step);
-    accept(here);
+    if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
     if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 &&
         problem_.adapt(here.u, here.tangent)) {
       // The carried-over solution is corrected at its parameter, so that the next step starts from the branch of the

@@ -92,7 +92,7 @@ std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, co
     };
     const double derivative = std::max(jump(left, i), jump(i, right));
     error[static_cast<std::size_t>(i)] =
-        error_constant * derivative * std::pow(h, static_cast<double>(m) + 1) / std::max(size, 1e-300);
+        error_constant * derivative * std::pow(h, static_cast<double>(m) + 1) / std::max(size, 1e-6);
   }
   return error;
 }

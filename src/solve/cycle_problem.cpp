@@ -133,8 +133,9 @@ void CycleProblem::residual(Vec u, Vec r) {
     const double period = period_of(border);
     if (!(period > 0)) throw core::DomainError("the period is not positive");
     core::Vector x, xdot, f;
+    MatrixXd l0;  // not l0_, which belongs to the linearisation
     if (structure_) {
-      l0_ = residual_scale_.cwiseInverse().asDiagonal() * structure_->l0() * state_scale_.asDiagonal();
+      l0 = residual_scale_.cwiseInverse().asDiagonal() * structure_->l0() * state_scale_.asDiagonal();
     } else {
       x = core::make_vector(system_.comm(), static_cast<PetscInt>(n_), PETSC_DETERMINE);
       xdot = core::duplicate(x.get());
@@ -161,7 +162,7 @@ void CycleProblem::residual(Vec u, Vec r) {
         if (structure_) {
           structure_->load(angle, load, nullptr);
           structure_->forces(c_ * value, forces, nullptr, nullptr);
-          out.noalias() = l0_ * value;
+          out.noalias() = l0 * value;
           out.noalias() += l1_ * slope;
           out -= load.cwiseQuotient(residual_scale_);
           out.noalias() -= b_ * forces;
@@ -491,6 +492,7 @@ Cycle CycleProblem::gather(Vec u) const {
 }
 
 core::Vector CycleProblem::scatter(const Cycle& cycle) const {
+  core::require(!options_.autonomous || period_scale_ > 0, "an autonomous cycle wants its phase reference first");
   const Cycle here = cycle.on(scheme_, mesh_);
   const Index m = scheme_.degree;
   core::Vector u = make_unknown();
@@ -536,14 +538,12 @@ void CycleProblem::set_phase_reference(const Cycle& reference) {
 bool CycleProblem::adapt(core::Vector& u, core::Vector& tangent) {
   if (options_.mesh_tolerance <= 0) return false;
   const Cycle cycle = gather(u.get()), direction = gather(tangent.get());
-  const int base = static_cast<int>(std::lround(1 / length(mesh_, 0)));
-  // The longest interval of the mesh sets the base of the dyadic lengths.
   double longest = 0;
   for (Index i = 0; i < cycle.intervals(); ++i) longest = std::max(longest, length(mesh_, i));
+  const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
   std::vector<double> mesh =
-      adapted_mesh(scheme_, cycle, state_scale_, options_.mesh_tolerance,
-                   std::min(base, static_cast<int>(std::lround(1 / longest))), options_.max_intervals);
-  if (mesh == mesh_) return false;
+      adapted_mesh(scheme_, cycle, state_scale_, options_.mesh_tolerance, base, options_.max_intervals);
+  if (mesh == mesh_ || static_cast<int>(mesh.size()) - 1 < size_) return false;
   layout(std::move(mesh));
   u = scatter(cycle);
   tangent = scatter(direction);

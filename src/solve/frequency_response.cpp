@@ -90,7 +90,8 @@ void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& ri
     PC pc = nullptr;
     check(KSPGetPC(solver_.get(), &pc));
     check(PCSetType(pc, PCLU));
-    if (core::size_of(system_.comm()) > 1) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    // PETSc's own LU does not pivot, and rows like q' = v have no diagonal.
+    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
     check(KSPSetFromOptions(solver_.get()));
   }
   check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));

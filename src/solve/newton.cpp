@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "whirl/core/error.hpp"
 #include "whirl/core/gate.hpp"
 
 namespace whirl::solve {
@@ -81,6 +82,7 @@ const char* text_of(SNESConvergedReason reason) {
     case SNES_CONVERGED_SNORM_RELATIVE:
       return "step below tolerance";
     case SNES_DIVERGED_FUNCTION_DOMAIN:
+    case SNES_DIVERGED_JACOBIAN_DOMAIN:
       return "a film left its validity";
     case SNES_DIVERGED_LINEAR_SOLVE:
       return "the linear solve did not converge";
@@ -112,6 +114,7 @@ NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, con
   check(SNESSetTolerances(snes.get(), options.tolerance * root_n, 1e-30, options.step_tolerance, options.max_iterations,
                           1000));
   check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
+  check(SNESSetCheckJacobianDomainError(snes.get(), PETSC_TRUE));  // PETSc looks in debug builds only
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
@@ -134,6 +137,11 @@ NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, con
   // there has arrived.
   if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options.tolerance)
     result.converged = true;
+  // Steps that the line search has cut to nothing are no convergence either.
+  if (reason == SNES_CONVERGED_SNORM_RELATIVE && !(result.residual < 1e4 * options.tolerance)) {
+    result.converged = false;
+    result.reason = "the steps became too small";
+  }
   if (!result.converged && !c.gate.domain_text().empty()) result.reason += ": " + c.gate.domain_text();
   return result;
 }
@@ -148,6 +156,10 @@ int solve_linear(ExtendedProblem& problem, Vec rhs, Vec x, const std::string& pr
   check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
   check(KSPSetFromOptions(ksp.get()));
   c.gate.rethrow(KSPSolve(ksp.get(), rhs, x));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(ksp.get(), &reason));
+  if (reason == KSP_DIVERGED_NANORINF || reason == KSP_DIVERGED_PC_FAILED)
+    throw core::NotConverged("the linearised equations are singular");
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(ksp.get(), &iterations));
   return static_cast<int>(iterations);

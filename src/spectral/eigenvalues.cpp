@@ -72,7 +72,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   check(MatDiagonalScale(a.get(), fs.get(), xs.get()));
   check(MatDiagonalScale(b.get(), fs.get(), xs.get()));
 
-  const bool dense = system.size() <= options.dense_below;
+  const bool dense = system.size() <= std::max(options.dense_below, 3);  // Krylov wants n - 2 > 0
   MPI_Comm comm = dense ? PETSC_COMM_SELF : system.comm();
   if (dense) {
     a = redundant_dense(a.get());
@@ -101,7 +101,8 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     check(KSPSetType(ksp, KSPPREONLY));
     check(KSPGetPC(ksp, &pc));
     check(PCSetType(pc, PCLU));
-    if (core::size_of(comm) > 1) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    // PETSc's own LU does not pivot, and rows like q' = v have no diagonal.
+    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
     // The same start vector on any number of ranks.
     core::Vector start;
     check(MatCreateVecs(a.get(), start.put(), nullptr));

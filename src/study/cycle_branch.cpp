@@ -126,6 +126,7 @@ solve::CycleOptions Branch::cycle_options() const {
   o.parameter_scale = scale_;
   // A change of the root mean square state by half a clearance counts as one longest step.
   o.state_weight = std::pow(continuation_.max_step / 0.5, 2);
+  o.base_intervals = options_.intervals;
   o.mesh_tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
   return o;
 }

@@ -56,7 +56,7 @@ struct BranchPoint {
 struct LocatedEvent {
   Event event;
   double parameter = 0;           ///< scaled
-  double bracket = 0;             ///< scaled width left by the location
+  double bracket = 0;             ///< scaled width left by the location: last move, or what a secant says is left
   double sensitivity = 0;         ///< d(distance)/d(scaled parameter) along the branch; 0 for folds
   std::complex<double> critical;  ///< eigenvalue [1/s] or multiplier
   bool located = true;            ///< false: seen between two points, but the location did not converge

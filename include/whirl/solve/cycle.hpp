@@ -30,15 +30,16 @@ struct Cycle {
 /// Every interval split in two.
 [[nodiscard]] std::vector<double> doubled(const std::vector<double>& mesh);
 
-/// Estimated local error of each interval, as a fraction of the largest scaled state: |h^(m+1) x^(m+1)| by the jump of
-/// the m-th derivative between neighbours (de Boor 1973; Ascher, Mattheij and Russell 1995, 9.3). `scale` [n] divides
-/// the states.
+/// Estimated local error of each interval, as a fraction of the largest scaled deviation from the mean (at least 1e-6,
+/// so that rounding in a resting state is no error): |h^(m+1) x^(m+1)|/(2^(m+1) (m+1)!) by the jump of the m-th
+/// derivative between neighbours (de Boor 1973; Ascher, Mattheij and Russell 1995, 9.3). `scale` [n] divides the
+/// states.
 [[nodiscard]] std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle,
                                                   const Eigen::VectorXd& scale);
 
 /// A mesh whose intervals are split or merged by factors of two until their estimated errors stand between tolerance/8
 /// and tolerance; lengths stay powers of two of 1/base, so that few distinct lengths occur and each is factorised once.
-/// At most `max_intervals`.
+/// The mesh stays as it is where more than `max_intervals` would be needed.
 [[nodiscard]] std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
                                                double tolerance, int base, int max_intervals);
 

@@ -23,6 +23,7 @@ struct CycleOptions {
   bool assembled =
       false;  ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
   double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
+  int base_intervals = 0;     ///< adapt() never makes a mesh coarser than this uniform one; 0: its longest interval
   int max_intervals = 400;
 };
 
@@ -54,7 +55,8 @@ public:
   [[nodiscard]] const CycleOptions& options() const { return options_; }
   [[nodiscard]] const Eigen::VectorXd& state_scale() const { return state_scale_; }
 
-  /// Between the distributed unknown and the replicated cycle. Collective.
+  /// Between the distributed unknown and the replicated cycle; an autonomous problem wants its phase reference first.
+  /// Collective.
   [[nodiscard]] Cycle gather(Vec u) const;
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const;
   /// Phase reference of an autonomous cycle: integral <x - ref, ref'> = 0 from now on.

@@ -29,6 +29,7 @@ struct NewtonResult {
 NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, const NewtonOptions& options);
 
 /// x = [dR/du; row]^-1 rhs for the linearisation that `problem` holds, by the same GMRES; returns its iterations.
+/// Throws core::NotConverged if the matrix is singular.
 int solve_linear(ExtendedProblem& problem, Vec rhs, Vec x, const std::string& prefix);
 
 }  // namespace whirl::solve

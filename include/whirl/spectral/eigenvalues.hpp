@@ -30,7 +30,7 @@ struct EigenOptions {
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.
 ///
 /// Small systems: all modes, by LAPACK on every rank. Larger ones: Krylov-Schur with shift and invert at a real target
-/// (MUMPS on several ranks); such a search can miss a mode far from the target, so ask for more than are needed.
+/// (LU by MUMPS); such a search can miss a mode far from the target, so ask for more than are needed.
 /// Collective; throws core::NotConverged.
 [[nodiscard]] std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options);
 

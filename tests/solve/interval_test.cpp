@@ -1,0 +1,67 @@
+// The condensed interval by low-rank updates against the dense one, entry by entry.
+
+#include <gtest/gtest.h>
+
+#include "whirl/solve/interval.hpp"
+
+using namespace whirl;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+double apart(const MatrixXd& a, const MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / std::max(1.0, b.cwiseAbs().maxCoeff());
+}
+
+}  // namespace
+
+TEST(Interval, LowRankAndDenseAreTheSameMatrix) {
+  std::srand(7);
+  const int n = 7, r = 2, w = 3;
+  for (const auto points : {solve::Points::radau, solve::Points::gauss})
+    for (int m = 1; m <= 4; ++m) {
+      const solve::Scheme scheme = solve::make_scheme(m, points);
+      const MatrixXd l1 = MatrixXd::Identity(n, n) + 0.1 * MatrixXd::Random(n, n), l0 = MatrixXd::Random(n, n),
+                     b = MatrixXd::Random(n, r), c = MatrixXd::Random(w, n);
+      std::vector<MatrixXd> tangents, jx, jxdot;
+      for (int j = 0; j < m; ++j) {
+        tangents.push_back(MatrixXd::Random(r, w));
+        jx.push_back(l0 - b * tangents.back() * c);
+        jxdot.push_back(l1);
+      }
+      const double length = 0.3;
+      const auto dense = solve::make_dense_interval(scheme, length, jx, jxdot);
+      const auto part = std::make_shared<solve::LinearPart>(scheme, length, l1, l0, b, c);
+      const auto low = solve::make_low_rank_interval(part, tangents);
+
+      // The matrix from its definition.
+      MatrixXd a(m * n, m * n), a0(m * n, n);
+      for (int j = 0; j < m; ++j)
+        for (int l = 0; l <= m; ++l) {
+          const auto k = static_cast<std::size_t>(j);
+          const MatrixXd block = scheme.value(j, l) * jx[k] + scheme.slope(j, l) / length * jxdot[k];
+          EXPECT_LE(apart(dense->block(j, l), block), 1e-14);
+          EXPECT_LE(apart(low->block(j, l), block), 1e-14);
+          if (l == 0)
+            a0.middleRows(j * n, n) = block;
+          else
+            a.block(j * n, (l - 1) * n, n, n) = block;
+        }
+      const MatrixXd inverse = a.inverse(), gamma = -(inverse * a0).bottomRows(n);
+      const MatrixXd y = MatrixXd::Random(m * n, 4), x = MatrixXd::Random(n, 4);
+      const VectorXd states = VectorXd::Random(m * n), start = VectorXd::Random(n);
+      for (const solve::Interval* interval : {dense.get(), low.get()}) {
+        MatrixXd z = y;
+        interval->solve(z);
+        EXPECT_LE(apart(z, inverse * y), 1e-11);
+        z = y;
+        interval->solve_transposed(z);
+        EXPECT_LE(apart(z, inverse.transpose() * y), 1e-11);
+        EXPECT_LE(apart(interval->start(x), a0 * x), 1e-13);
+        EXPECT_LE(apart(interval->start_transposed(y), a0.transpose() * y), 1e-13);
+        EXPECT_LE(apart(interval->multiply(start, states), a * states + a0 * start), 1e-13);
+        EXPECT_LE(apart(interval->transition(), gamma), 1e-11);
+      }
+    }
+}

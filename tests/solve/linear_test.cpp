@@ -1,0 +1,198 @@
+// The linear algebra of cycles: derivatives, inverses, the three paths to a Newton step, any number of ranks.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cycle_systems.hpp"
+
+using namespace whirl;
+using test::Column;
+
+namespace {
+
+struct Load {
+  bool forced;
+  template <class T>
+  Column<T> operator()(double angle, T p) const {
+    Column<T> u = Column<T>::Zero(5);
+    u(1) = forced ? 0.4 * p * p * std::cos(angle) : T(0.0);
+    u(3) = 0.3 + (forced ? 0.2 * std::sin(2 * angle) : 0.0);
+    return u;
+  }
+};
+struct Forces {
+  template <class T>
+  Column<T> operator()(const Column<T>& w, T p) const {
+    Column<T> f(2);
+    f << p * (1.0 - w(0) * w(0)) * w(1), -0.1 * w(2) * w(2) * w(2) + 0.1 * sin(w(0)) * p;
+    return f;
+  }
+};
+
+// Van der Pol's oscillator with a damped neighbour and a first-order lag, as linear blocks and two forces.
+std::unique_ptr<test::StructuredSystem> make_system(double p, double speed, bool forced) {
+  test::Blocks blocks;
+  blocks.l1 = Eigen::MatrixXd::Identity(5, 5);
+  blocks.l1(4, 3) = 0.2;
+  blocks.l0.resize(5, 5);
+  blocks.l0 << 0, -1, 0, 0, 0,  //
+      1.2, 0, -0.2, 0, 0.1,     //
+      0, 0, 0, -1, 0,           //
+      -0.2, 0, 2.2, 0.6, 0,     //
+      -0.5, 0, 0, 0, 3;
+  blocks.l0p = Eigen::MatrixXd::Zero(5, 5);
+  blocks.l0p(3, 3) = 0.3;
+  blocks.b = Eigen::MatrixXd::Zero(5, 2);
+  blocks.b(1, 0) = blocks.b(3, 1) = 1;
+  blocks.c = Eigen::MatrixXd::Zero(3, 5);
+  blocks.c(0, 0) = blocks.c(1, 1) = 1;
+  blocks.c(2, 2) = 1;
+  blocks.c(2, 4) = 0.5;
+  auto s = std::make_unique<test::StructuredSystem>(p, speed, blocks, Load{forced}, Forces{});
+  Eigen::VectorXd scale(5), rows(5);
+  scale << 2, 3, 0.5, 0.5, 1;
+  rows << 1, 2, 0.5, 1, 3;
+  s->set_scales(scale, rows);
+  return s;
+}
+
+struct Case {
+  const char* name;
+  bool autonomous;
+  double speed;  // 0: the parameter is the speed
+};
+constexpr Case cases[] = {{"speed", false, 0}, {"other parameter", false, 1.0}, {"autonomous", true, 1}};
+constexpr double parameter = 1.1;
+
+struct Prepared {
+  std::unique_ptr<test::StructuredSystem> system;
+  std::unique_ptr<solve::CycleProblem> problem;
+  core::Vector u, row;
+};
+
+Prepared make(MPI_Comm comm, const Case& c, solve::Points points, bool structure, bool assembled) {
+  Prepared s;
+  s.system = make_system(parameter, c.speed, !c.autonomous);
+  solve::CycleOptions o;
+  o.degree = 3;
+  o.points = points;
+  o.autonomous = c.autonomous;
+  o.parameter_scale = 0.5;
+  o.state_weight = 0.7;
+  o.use_structure = structure;
+  o.assembled = assembled;
+  s.problem = std::make_unique<solve::CycleProblem>(comm, *s.system, o, test::uneven_mesh(1));
+  const auto guess =
+      test::sampled(s.problem->scheme(), s.problem->mesh(), c.autonomous ? 6.3 : 0, parameter, [](double a) {
+        Eigen::VectorXd x(5);
+        x << 2 * std::sin(a), 2 * std::cos(a), 0.3 * std::cos(a + 1), 0.3 * std::sin(a), 0.2 * std::cos(a);
+        return x;
+      });
+  if (c.autonomous) s.problem->set_phase_reference(guess);
+  s.u = s.problem->scatter(guess);
+  s.row = core::duplicate(s.u.get());
+  solve::weighted_row(*s.problem, s.u.get(), s.row.get());
+  return s;
+}
+
+// The same numbers on any number of ranks.
+void fill(Vec v, double seed) {
+  PetscInt begin = 0;
+  core::check(VecGetOwnershipRange(v, &begin, nullptr));
+  const core::WriteArray a(v);
+  for (PetscInt i = 0; i < a.size(); ++i) a[i] = std::sin(seed + 78.233 * static_cast<double>(begin + i) * (1 + seed));
+}
+
+double norm(Vec v) {
+  double n = 0;
+  core::check(VecNorm(v, NORM_2, &n));
+  return n;
+}
+
+}  // namespace
+
+TEST(CycleLinear, SolveIsTheInverseOfMultiply) {
+  for (const Case& c : cases)
+    for (const auto points : {solve::Points::radau, solve::Points::gauss})
+      for (const int path : {0, 1, 2}) {
+        const Prepared s = make(MPI_COMM_WORLD, c, points, path == 0, path == 2);
+        s.problem->linearise(s.u.get(), s.row.get());
+        core::Vector r = core::duplicate(s.u.get()), x = core::duplicate(r.get()), back = core::duplicate(r.get());
+        for (const double seed : {0.3, 1.7}) {
+          fill(r.get(), seed);
+          s.problem->solve(r.get(), x.get());
+          s.problem->multiply(x.get(), back.get());
+          core::check(VecAXPY(back.get(), -1, r.get()));
+          EXPECT_LE(norm(back.get()), 1e-10 * norm(r.get())) << c.name << " path " << path;
+        }
+      }
+}
+
+TEST(CycleLinear, MultiplyIsTheDerivativeOfTheResidual) {
+  for (const Case& c : cases)
+    for (const bool structure : {true, false}) {
+      const Prepared s = make(MPI_COMM_WORLD, c, solve::Points::radau, structure, false);
+      core::Vector r0 = core::duplicate(s.u.get()), r1 = core::duplicate(r0.get()), d = core::duplicate(r0.get()),
+                   jd = core::duplicate(r0.get()), moved = core::duplicate(r0.get());
+      core::check(VecSet(r0.get(), 0.0));
+      core::check(VecSet(r1.get(), 0.0));
+      s.problem->residual(s.u.get(), r0.get());
+      s.problem->linearise(s.u.get(), s.row.get());
+      fill(d.get(), 0.9);
+      double remainder[2];
+      for (int k = 0; k < 2; ++k) {
+        const double h = 1e-3 / (k + 1);
+        core::check(VecWAXPY(moved.get(), h, d.get(), s.u.get()));
+        // Elsewhere the residual has other linear blocks; the linearisation must keep its own.
+        s.problem->residual(moved.get(), r1.get());
+        s.problem->multiply(d.get(), jd.get());
+        solve::set_last_entry(MPI_COMM_WORLD, jd.get(), 0);
+        core::check(VecAXPY(r1.get(), -1, r0.get()));
+        core::check(VecAXPY(r1.get(), -h, jd.get()));
+        solve::set_last_entry(MPI_COMM_WORLD, r1.get(), 0);
+        remainder[k] = norm(r1.get());
+      }
+      EXPECT_NEAR(std::log2(remainder[0] / remainder[1]), 2, 0.05) << c.name << " " << structure;
+    }
+}
+
+TEST(CycleLinear, ThreePathsTakeTheSameNewtonSteps) {
+  for (const Case& c : cases)
+    for (int steps = 1; steps <= 4; ++steps) {
+      Eigen::MatrixXd x[3];
+      double period[3];
+      for (const int path : {0, 1, 2}) {
+        const Prepared s = make(MPI_COMM_WORLD, c, solve::Points::radau, path == 0, path == 2);
+        solve::NewtonOptions o;
+        o.max_iterations = steps;
+        (void)test::solve_at(*s.problem, s.u.get(), parameter, o);
+        const solve::Cycle cycle = s.problem->gather(s.u.get());
+        x[path] = cycle.x;
+        period[path] = cycle.period;
+      }
+      for (const int path : {1, 2}) {
+        EXPECT_LE((x[path] - x[0]).cwiseAbs().maxCoeff(), 1e-8) << c.name << " step " << steps << " path " << path;
+        EXPECT_NEAR(period[path], period[0], 1e-8);
+      }
+    }
+}
+
+TEST(CycleLinear, AnyNumberOfRanksSolvesTheSame) {
+  for (const Case& c : cases) {
+    const Prepared all = make(MPI_COMM_WORLD, c, solve::Points::radau, true, false),
+                   one = make(PETSC_COMM_SELF, c, solve::Points::radau, true, false);
+    solve::NewtonOptions o;
+    o.max_iterations = 30;
+    const auto a = test::solve_at(*all.problem, all.u.get(), parameter, o),
+               b = test::solve_at(*one.problem, one.u.get(), parameter, o);
+    EXPECT_TRUE(a.converged) << c.name << a.reason;
+    EXPECT_EQ(a.iterations, b.iterations);
+    const solve::Cycle ca = all.problem->gather(all.u.get()), cb = one.problem->gather(one.u.get());
+    EXPECT_LE((ca.x - cb.x).cwiseAbs().maxCoeff(), 1e-11);
+    EXPECT_NEAR(ca.period, cb.period, 1e-11);
+    all.problem->linearise(all.u.get(), all.row.get());
+    one.problem->linearise(one.u.get(), one.row.get());
+    EXPECT_LE((all.problem->monodromy() - one.problem->monodromy()).cwiseAbs().maxCoeff(), 1e-10);
+  }
+}

@@ -1,0 +1,167 @@
+// Eigenvalues of systems and matrices with exact answers; words for modes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/small_system.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+using namespace whirl;
+using spectral::Complex;
+using spectral::Sense;
+using test::Column;
+
+namespace {
+
+// A chain of `masses` unit masses and unit springs between walls, without damping: the rows q' = v have no diagonal.
+struct Chain {
+  int masses;
+  double damping = 0;
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T) const {
+    Column<T> f(2 * masses);
+    for (int k = 0; k < masses; ++k) {
+      f(k) = xdot(k) - x(masses + k);
+      f(masses + k) = xdot(masses + k) + damping * x(masses + k) + 2.0 * x(k);
+      if (k > 0) f(masses + k) -= x(k - 1);
+      if (k + 1 < masses) f(masses + k) -= x(k + 1);
+    }
+    return f;
+  }
+};
+
+// A rigid disc that tilts on an isotropic support, J_d = 1, stiffness 1: a'' - i g a' + a = 0 for a = x + i y, with
+// gyroscopic rate g = p J_p/J_d: forward frequency g/2 + sqrt(1 + g^2/4), backward -(g/2 - sqrt(1 + g^2/4)).
+struct Gyroscope {
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T p) const {
+    Column<T> f(4);
+    f << xdot(0) - x(2), xdot(1) - x(3), xdot(2) + p * x(3) + x(0), xdot(3) - p * x(2) + x(1);
+    return f;
+  }
+};
+
+}  // namespace
+
+TEST(Modes, DenseAndKrylovFindTheChainsFrequencies) {
+  const int masses = 20;
+  test::SmallSystem s(MPI_COMM_WORLD, 2 * masses, 0, 1, Chain{masses});
+  const core::Vector x = s.vector(Eigen::VectorXd::Zero(2 * masses));
+  spectral::EigenOptions o;
+  const auto dense = spectral::modes(s, x.get(), o);
+  o.dense_below = 0;
+  o.count = 10;
+  const auto krylov = spectral::modes(s, x.get(), o);
+  ASSERT_EQ(dense.size(), 20U);
+  ASSERT_GE(krylov.size(), 5U);
+  for (std::size_t k = 0; k < dense.size(); ++k) {
+    const double exact = 2 * std::sin((static_cast<double>(k) + 1) * std::numbers::pi / (2 * (masses + 1)));
+    EXPECT_NEAR(dense[k].lambda.imag(), exact, 1e-12);
+    EXPECT_NEAR(dense[k].lambda.real(), 0, 1e-12);
+    if (k < 5) {
+      EXPECT_NEAR(krylov[k].lambda.imag(), exact, 1e-9);
+      EXPECT_NEAR(spectral::mac(dense[k].shape, krylov[k].shape), 1, 1e-9);
+      EXPECT_LE(spectral::mac(dense[k].shape, krylov[(k + 1) % 5].shape), 0.3);
+    }
+  }
+}
+
+TEST(Modes, ScalesDoNotMatterAndShapesAreInSi) {
+  test::SmallSystem s(MPI_COMM_WORLD, 4, 0, 1, Chain{2, 0.1});
+  s.set_scales(Eigen::Vector4d(1e-6, 1e-3, 2, 1e4), Eigen::Vector4d(1e3, 10, 1e-5, 1));
+  const core::Vector x = s.vector(Eigen::VectorXd::Zero(4));
+  const auto modes = spectral::modes(s, x.get(), {});
+  ASSERT_EQ(modes.size(), 2U);
+  const double exact[] = {1, 3};  // omega^2
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(modes[k].lambda.real(), -0.05, 1e-10);
+    EXPECT_NEAR(modes[k].lambda.imag(), std::sqrt(exact[k] - 0.0025), 1e-10);
+    EXPECT_NEAR(std::abs(modes[k].shape[1] / modes[k].shape[0] - (k == 0 ? 1.0 : -1.0)), 0, 1e-9);
+    EXPECT_NEAR(std::abs(modes[k].shape[2] / modes[k].shape[0] - modes[k].lambda), 0, 1e-9);
+    EXPECT_NEAR(spectral::log_decrement(modes[k].lambda), 0.1 * std::numbers::pi / modes[k].lambda.imag(), 1e-9);
+  }
+}
+
+TEST(Modes, SenseOfWhirlOfAGyroscope) {
+  const double g = 0.8;
+  test::SmallSystem s(MPI_COMM_WORLD, 4, g, 1, Gyroscope{});
+  const core::Vector x = s.vector(Eigen::VectorXd::Zero(4));
+  for (const int dense_below : {600, 0}) {
+    spectral::EigenOptions o;
+    o.dense_below = dense_below;
+    o.count = 2;
+    const auto modes = spectral::modes(s, x.get(), o);
+    const double backward = std::sqrt(1 + g * g / 4) - g / 2, forward = std::sqrt(1 + g * g / 4) + g / 2;
+    ASSERT_GE(modes.size(), 1U);
+    EXPECT_NEAR(modes[0].lambda.imag(), backward, 1e-9);
+    EXPECT_EQ(spectral::sense_of_whirl({modes[0].shape[0]}, {modes[0].shape[1]}), Sense::backward);
+    if (modes.size() < 2) continue;
+    EXPECT_NEAR(modes[1].lambda.imag(), forward, 1e-9);
+    EXPECT_EQ(spectral::sense_of_whirl({modes[1].shape[0]}, {modes[1].shape[1]}), Sense::forward);
+  }
+}
+
+TEST(Modes, RealEigenvaluesAndCountOfUnconverged) {
+  test::SmallSystem s(MPI_COMM_WORLD, 3, 0, 1, []<class T>(double, Column<T> x, Column<T> xdot, T) {
+    Column<T> f(3);
+    f << xdot(0) + 3.0 * x(0) - x(1), xdot(1) + 2.0 * x(1), xdot(2) - 0.5 * x(2);
+    return f;
+  });
+  const core::Vector x = s.vector(Eigen::VectorXd::Zero(3));
+  const auto modes = spectral::modes(s, x.get(), {});
+  ASSERT_EQ(modes.size(), 3U);
+  const double exact[] = {-3, -2, 0.5};
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(std::abs(modes[k].lambda - exact[k]), 0, 1e-13);
+}
+
+// A nilpotent shift of size 12 with a corner e has the twelfth roots of e: far from normal.
+TEST(Eigenvalues, OfANonnormalMatrix) {
+  const int n = 12;
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+  for (int k = 0; k + 1 < n; ++k) a(k, k + 1) = 1;
+  const double corner = 1e-6, radius = std::pow(corner, 1.0 / n);
+  a(n - 1, 0) = corner;
+  const auto values = spectral::eigenvalues(a);
+  ASSERT_EQ(values.size(), 12U);
+  std::vector<bool> seen(12, false);
+  for (const Complex& v : values) {
+    EXPECT_NEAR(std::abs(v), radius, 1e-8);
+    const double k = std::arg(v) / (2 * std::numbers::pi) * n;
+    EXPECT_NEAR(k, std::round(k), 1e-7);
+    seen[static_cast<std::size_t>((std::lround(k) + n) % n)] = true;
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 12);
+}
+
+TEST(Eigenvalues, SortedByFallingModulus) {
+  Eigen::MatrixXd a(4, 4);
+  a << -0.5, 30, 2, 1, 0, 0.1, 5, -7, 0, 0, 0, -2, 0, 0, 2, 0;  // -0.5, 0.1, +-2 i
+  const auto values = spectral::eigenvalues(a);
+  ASSERT_EQ(values.size(), 4U);
+  EXPECT_NEAR(std::abs(std::abs(values[0].imag()) - 2), 0, 1e-13);
+  EXPECT_NEAR(std::abs(values[0] - std::conj(values[1])), 0, 1e-13);
+  EXPECT_NEAR(std::abs(values[2] + 0.5), 0, 1e-13);
+  EXPECT_NEAR(std::abs(values[3] - 0.1), 0, 1e-13);
+}
+
+TEST(Words, ForModes) {
+  const Complex i(0, 1);
+  // x = cos, y = sin turns from x to y.
+  EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, -2.0 * i}), Sense::forward);
+  EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {i, 2.0 * i}), Sense::backward);
+  EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, 2.0 * i}), Sense::mixed);
+  EXPECT_EQ(spectral::sense_of_whirl({1, 0.01}, {-i, 0.01 * i}), Sense::forward);  // a node that rests has no vote
+  EXPECT_DOUBLE_EQ(spectral::log_decrement({-0.3, 2}), 0.3 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(spectral::log_decrement({-0.3, -2}), 0.3 * std::numbers::pi);
+  EXPECT_EQ(spectral::log_decrement({-1, 0}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(spectral::log_decrement({1, 0}), -std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(spectral::stability_factor({0, 2}), 1);
+  EXPECT_DOUBLE_EQ(spectral::mac({1, i}, {2.0 * i, -2}), 1);
+  EXPECT_DOUBLE_EQ(spectral::mac({1, i}, {1, -i}), 0);
+  EXPECT_DOUBLE_EQ(spectral::mac({1, 0}, {1, 1}), 0.5);
+  EXPECT_STREQ(spectral::name_of(Sense::backward), "backward");
+}
