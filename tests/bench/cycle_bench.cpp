@@ -1,6 +1,6 @@
 // Cost of one Newton iteration of the main job's cycle: the Guyan-reduced train (104 states), G2.5 at 3600 rpm, 60
 // intervals of degree 2, films of 60 x 16 cells; with its parts, and against dense intervals and assembled MUMPS.
-// mpirun -n 1 bench_cycle; mpirun -n 2 bench_cycle. Least of several runs.
+// mpirun -n 1 bench_cycle; mpirun -n 2 bench_cycle. Least of several runs; --quick: few; --alone: no comparison.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -23,8 +23,7 @@ constexpr double kSpeed = 120 * M_PI;  // 3600 rpm
 constexpr int kIntervals = 60;
 
 void row(const char* name, const bench::Timing& t) {
-  if (core::rank_of(MPI_COMM_WORLD) == 0)
-    fmt::print("{:<58} {:9.3f} {:9.3f}\n", name, 1e3 * t.wall, 1e3 * t.processor);
+  if (core::rank_of(MPI_COMM_WORLD) == 0) fmt::print("{:<58} {:9.3f} {:9.3f}\n", name, 1e3 * t.wall, 1e3 * t.processor);
 }
 
 struct Iteration {
@@ -80,12 +79,11 @@ void parts(system::RotorSystem& s, solve::CycleProblem& p, Vec u, int runs) {
         const Eigen::MatrixXd next = p.monodromy() * product;
         product(0, 0) = next(0, 0) != 0 ? 1 : 2;
       }));
-  row("multipliers (per point of a branch)", bench::least(MPI_COMM_WORLD, runs, [&] {
-        (void)spectral::eigenvalues(p.monodromy());
-      }));
+  row("multipliers (per point of a branch)",
+      bench::least(MPI_COMM_WORLD, runs, [&] { (void)spectral::eigenvalues(p.monodromy()); }));
 }
 
-int run(int runs) {
+int run(int runs, bool alone) {
   auto t = test::train({60, 16}, true);
   test::add_gen_pair(t, 2.5);
   system::RotorSystem s(PETSC_COMM_SELF, t, kSpeed);
@@ -99,9 +97,10 @@ int run(int runs) {
 
   core::Vector u;
   Iteration reference;
-  for (const auto& [name, structured, assembled] :
-       {std::tuple{"low-rank intervals", true, false}, {"dense intervals", false, false},
-        {"assembled matrix, MUMPS", false, true}}) {
+  for (const auto& [name, structured, assembled] : {std::tuple{"low-rank intervals", true, false},
+                                                    {"dense intervals", false, false},
+                                                    {"assembled matrix, MUMPS", false, true}}) {
+    if (alone && !structured) break;
     options.use_structure = structured;
     options.assembled = assembled;
     solve::CycleProblem p(MPI_COMM_WORLD, s, options, solve::uniform_mesh(kIntervals));
@@ -142,5 +141,11 @@ int run(int runs) {
 
 int main(int argc, char** argv) {
   const whirl::core::Session session(argc, argv);
-  return run(argc > 1 && std::strcmp(argv[1], "--quick") == 0 ? 3 : 40);
+  int runs = 40;
+  bool alone = false;
+  for (int k = 1; k < argc; ++k) {
+    if (std::strcmp(argv[k], "--quick") == 0) runs = 3;
+    if (std::strcmp(argv[k], "--alone") == 0) alone = true;
+  }
+  return run(runs, alone);
 }

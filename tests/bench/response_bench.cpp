@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   fmt::print("FrequencyResponse                {:9.2f} {:9.2f}\n", 1e3 * response.wall, 1e3 * response.processor);
   fmt::print("plain loop of Eigen::SparseLU    {:9.2f} {:9.2f}\n", 1e3 * loop.wall, 1e3 * loop.processor);
   fmt::print("largest relative difference {:.1e}\n", difference);
-  fmt::print("ratio to the plain loop: {:.2f} (response), {:.2f} (assembly and response)\n",
-             response.wall / loop.wall, (assembly.wall + response.wall) / loop.wall);
+  fmt::print("ratio to the plain loop: {:.2f} (response), {:.2f} (assembly and response)\n", response.wall / loop.wall,
+             (assembly.wall + response.wall) / loop.wall);
   return difference < 1e-6 ? 0 : 1;
 }

@@ -15,8 +15,8 @@ inline double clock_seconds(clockid_t id) {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Least wall time over the runs of the slowest rank, and least processor time over the runs of the busiest rank [s]: on
-/// an idle machine the two agree, and waiting for another rank spins, so that it counts in both.
+/// Least wall time over the runs of the slowest rank, and least processor time over the runs of the busiest rank [s]:
+/// on an idle machine the two agree, and waiting for another rank spins, so that it counts in both.
 struct Timing {
   double wall = std::numeric_limits<double>::infinity(), processor = wall;
 };

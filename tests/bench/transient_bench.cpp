@@ -1,7 +1,7 @@
 // One limit cycle by collocation against integration in time by PETSc TS until the transient has died out: the
 // Guyan-reduced train (104 states), G2.5 at 3600 rpm, films of 60 x 16 cells, both from the static equilibrium.
-// bench_transient [--quick] [-ts_type ... -ts_rtol ...]; --quick integrates 60 periods and extrapolates with the measured
-// decay of the peak to peak.
+// bench_transient [--quick] [-ts_type ... -ts_rtol ...]; --quick integrates 60 periods and extrapolates with the
+// measured decay of the peak to peak.
 #include <fmt/core.h>
 #include <petscts.h>
 
@@ -146,9 +146,10 @@ int main(int argc, char** argv) {
   system::RotorSystem s(PETSC_COMM_SELF, train, kSpeed);
   core::Vector x = equilibrium(s);
   const Collocated cycle = collocate(s, x.get(), 60, 2), fine = collocate(s, x.get(), 60, 4);
-  fmt::print("collocation, 60 intervals of degree 2: {} Newton iterations, {:.3f} s, peak to peak within {:.1e} of that "
-             "of degree 4\n",
-             cycle.iterations, cycle.seconds, difference(cycle.range, fine.range));
+  fmt::print(
+      "collocation, 60 intervals of degree 2: {} Newton iterations, {:.3f} s, peak to peak within {:.1e} of that "
+      "of degree 4\n",
+      cycle.iterations, cycle.seconds, difference(cycle.range, fine.range));
 
   Motion motion{s, core::duplicate(x.get()), core::duplicate(x.get()), core::duplicate(x.get()),
                 core::duplicate(x.get())};
@@ -214,10 +215,11 @@ int main(int argc, char** argv) {
     if (ranges.size() > 400 && difference(ranges.back(), ranges[ranges.size() - 100]) < 2e-6) break;
   }
   (void)start;
-  fmt::print("TS {}: {} periods, {} steps, {} residuals, {} Jacobians, {:.2f} s; {:.1e} from the collocated cycle, {:.1e} "
-             "from that of degree 4\n",
-             type, periods, steps, motion.residuals, motion.jacobians, seconds, last_difference,
-             difference(ranges.back(), fine.range));
+  fmt::print(
+      "TS {}: {} periods, {} steps, {} residuals, {} Jacobians, {:.2f} s; {:.1e} from the collocated cycle, {:.1e} "
+      "from that of degree 4\n",
+      type, periods, steps, motion.residuals, motion.jacobians, seconds, last_difference,
+      difference(ranges.back(), fine.range));
   double whole = seconds;
   if (quick && settled == 0) {
     const double needed = periods + std::log(last_difference / 1e-4) / -std::log(0.990);

@@ -31,7 +31,7 @@ struct JournalState {
 ///     row 2i:     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
 ///     row 2i + 1: q' - v = 0
 ///
-/// in this order, so that no diagonal entry of dF/dx is zero. /// f_film acts on the journal and with the opposite sign
+/// in this order, so that no diagonal entry of dF/dx is zero. f_film acts on the journal and with the opposite sign
 /// on the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
 /// mod size, its ten numbers are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public problem::System {
@@ -96,6 +96,9 @@ private:
 
   void build();
   void set_train(Train train);
+  void make_constant_parts();
+  /// j += alpha times the derivatives of the film forces. Collective: assembles j.
+  void add_films(Mat j, const std::vector<film::Response>& films, double alpha) const;
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// Journal states on every rank from the distributed state. Collective.
   [[nodiscard]] std::vector<JournalState> journals_of(Vec x);
@@ -109,6 +112,7 @@ private:
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
+  core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
   std::vector<double> load_;                              // gravity on this rank's coordinates [N]
   std::vector<double> unbalance_c_, unbalance_s_;         // whole, per Omega^2
   core::Scatter gather_inputs_;
