@@ -135,7 +135,7 @@ bool Follower::locate(const State& a, const State& b, const Test& test, LocatedE
     const double f = test(trial);
     at = std::move(trial);
     found.parameter = at.point.parameter;
-// False position may creep: what the secant through the last two points says is left counts as well.
+    // False position may creep: what the secant through the last two points says is left counts as well.
     const double moved = found.parameter - last;
     found.bracket = std::max(std::abs(moved), f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0);
     // The slope near the zero, from the last two points that lie far enough apart to show one.
@@ -225,7 +225,8 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     ds = restart->step;
   } else {
     const NewtonResult first = correct_at(u, options_.from);
-    if (!first.converged) return {fmt::format("no solution at the start of the branch: {}", first.reason), false, 0, options_.from};
+    if (!first.converged)
+      return {fmt::format("no solution at the start of the branch: {}", first.reason), false, 0, options_.from};
     here.u = std::move(u);
     here.point.newton_iterations = first.iterations;
     inspect(here, nullptr);

@@ -301,7 +301,10 @@ void CycleProblem::compose(const std::vector<MatrixXd>& rows) {
     map.bottomRightCorner(borders_, borders_).noalias() -= adjoint.transpose() * columns_[i];
     eliminated_[i] = columns_[i];
     interval.solve(eliminated_[i]);
-    state = (interval.transition() * state).eval();
+    if (i == 0)
+      state.leftCols(n_) = interval.transition();  // of the identity
+    else
+      state = (interval.transition() * state).eval();
     state.rightCols(borders_) -= eliminated_[i].bottomRows(n_);
   }
   map.topRows(n_) = state;
@@ -316,6 +319,11 @@ void CycleProblem::compose(const std::vector<MatrixXd>& rows) {
     auto& q = rank_maps_[static_cast<std::size_t>(p)];
     q = Map<const MatrixXd>(gathered.data() + static_cast<Index>(p) * all * all, all, all);
     to_rank_.push_back(entering);
+    if (p == 0) {  // entering is the identity
+      added = q.bottomRows(borders_);
+      entering = q.topRows(n_);
+      continue;
+    }
     added += q.bottomLeftCorner(borders_, n_) * entering;
     added.rightCols(borders_) += q.bottomRightCorner(borders_, borders_);
     MatrixXd next = q.topLeftCorner(n_, n_) * entering;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "eliminated_response.hpp"
+
 namespace whirl::solve {
 
 using core::check;
@@ -13,19 +15,30 @@ FrequencyResponse::FrequencyResponse(problem::System& system) : system_(system) 
   state_scale_ = core::duplicate(rest_.get());
   residual_scale_ = core::duplicate(rest_.get());
   system.scales(state_scale_.get(), residual_scale_.get());
-  rhs_ = core::make_vector(system.comm(), 2 * system.local_size(), PETSC_DETERMINE);
-  answer_ = core::duplicate(rhs_.get());
   jx_ = system.make_jacobian();
   jd_ = system.make_jacobian();
+  if (core::size_of(system.comm()) == 1) {
+    eliminated_ = std::make_unique<EliminatedResponse>();
+    return;
+  }
+  rhs_ = core::make_vector(system.comm(), 2 * system.local_size(), PETSC_DETERMINE);
+  answer_ = core::duplicate(rhs_.get());
   core::Scatter scatter;
   check(VecScatterCreateToAll(state_scale_.get(), scatter.put(), whole_scale_.put()));
   check(VecScatterBegin(scatter.get(), state_scale_.get(), whole_scale_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(scatter.get(), state_scale_.get(), whole_scale_.get(), INSERT_VALUES, SCATTER_FORWARD));
 }
 
+FrequencyResponse::~FrequencyResponse() = default;
+
 void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude) {
   system_.jacobian(0, x, rest_.get(), 1, 0, jx_.get());
   system_.jacobian(0, x, rest_.get(), 0, 1, jd_.get());
+  if (eliminated_) {
+    const core::ReadArray rows(residual_scale_.get()), columns(state_scale_.get());
+    eliminated_->solve(jx_.get(), jd_.get(), omega, rows.data(), columns.data(), right, amplitude);
+    return;
+  }
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(jx_.get(), &begin, &end));
   const PetscInt rows = end - begin;

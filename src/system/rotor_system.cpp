@@ -171,6 +171,7 @@ void RotorSystem::build() {
   inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), PETSC_DETERMINE);
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
   blocks_.reset();
+  j_at_rest_.reset();
 }
 
 void RotorSystem::set_train(Train train) {
@@ -305,7 +306,9 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
     }
 }
 
-core::Matrix RotorSystem::make_jacobian() {
+// The parts of the Jacobian that are constant between builds, all in the pattern of make_jacobian(): so a Jacobian is a
+// sum of arrays plus the few entries of the films.
+void RotorSystem::make_constant_parts() {
   const PetscInt rows = end_ - begin_;
   std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(2 * rows, 1)), 2);
   for (PetscInt i = 0; i < rows; ++i) {
@@ -317,48 +320,72 @@ core::Matrix RotorSystem::make_jacobian() {
     }
     count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, 2 * n_);
   }
-  core::Matrix j;
-  check(MatCreate(comm_, j.put()));
-  check(MatSetSizes(j.get(), 2 * rows, 2 * rows, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetType(j.get(), MATAIJ));
-  check(MatSeqAIJSetPreallocation(j.get(), 0, count.data()));
   std::vector<PetscInt> local = count;
   for (auto& k : local) k = std::min(k, 2 * rows);
-  check(MatMPIAIJSetPreallocation(j.get(), 0, local.data(), 0, count.data()));
+  std::vector<PetscInt> columns_to;
+  std::vector<PetscScalar> scaled;
+  // Every part sets every entry, if need be to zero.
+  const auto make = [&](double at_rest, double gyroscopic, double rates) {
+    core::Matrix j;
+    check(MatCreate(comm_, j.put()));
+    check(MatSetSizes(j.get(), 2 * rows, 2 * rows, PETSC_DETERMINE, PETSC_DETERMINE));
+    check(MatSetType(j.get(), MATAIJ));
+    check(MatSeqAIJSetPreallocation(j.get(), 0, count.data()));
+    check(MatMPIAIJSetPreallocation(j.get(), 0, local.data(), 0, count.data()));
+    const auto add = [&](Mat m, PetscInt rate, double factor) {
+      for (PetscInt i = begin_; i < end_; ++i) {
+        PetscInt k = 0;
+        const PetscInt* columns = nullptr;
+        const PetscScalar* values = nullptr;
+        check(MatGetRow(m, i, &k, &columns, &values));
+        columns_to.assign(columns, columns + k);
+        scaled.assign(values, values + k);
+        for (PetscInt e = 0; e < k; ++e) {
+          columns_to[static_cast<std::size_t>(e)] = 2 * columns_to[static_cast<std::size_t>(e)] + rate;
+          scaled[static_cast<std::size_t>(e)] *= factor;
+        }
+        const PetscInt row = 2 * i;
+        check(MatSetValues(j.get(), 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
+        check(MatRestoreRow(m, i, &k, &columns, &values));
+      }
+    };
+    add(stiffness_.get(), 0, at_rest);
+    add(damping_.get(), 1, at_rest);
+    add(gyroscopic_.get(), 1, gyroscopic);
+    add(mass_.get(), 1, rates);
+    for (PetscInt i = begin_; i < end_; ++i) {
+      check(MatSetValue(j.get(), 2 * i + 1, 2 * i, rates, ADD_VALUES));
+      check(MatSetValue(j.get(), 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
+    }
+    add_films(j.get(), std::vector<film::Response>(bearings_.size()), 0);
+    check(MatAssemblyBegin(j.get(), MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(j.get(), MAT_FINAL_ASSEMBLY));
+    return j;
+  };
+  j_at_rest_ = make(1, 0, 0);
+  j_gyroscopic_ = make(0, 1, 0);
+  j_rates_ = make(0, 0, 1);
+}
+
+core::Matrix RotorSystem::make_jacobian() {
+  if (!j_at_rest_) make_constant_parts();
+  core::Matrix j;
+  check(MatDuplicate(j_at_rest_.get(), MAT_DO_NOT_COPY_VALUES, j.put()));
   return j;
 }
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, double sigma, Mat j) {
-  const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::tangents);
-  check(MatZeroEntries(j));
-  std::vector<PetscInt> columns_to;
-  std::vector<PetscScalar> scaled;
-  const auto add = [&](Mat m, PetscInt rate, double factor) {
-    for (PetscInt i = begin_; i < end_; ++i) {
-      PetscInt k = 0;
-      const PetscInt* columns = nullptr;
-      const PetscScalar* values = nullptr;
-      check(MatGetRow(m, i, &k, &columns, &values));
-      columns_to.assign(columns, columns + k);
-      scaled.assign(values, values + k);
-      for (PetscInt e = 0; e < k; ++e) {
-        columns_to[static_cast<std::size_t>(e)] = 2 * columns_to[static_cast<std::size_t>(e)] + rate;
-        scaled[static_cast<std::size_t>(e)] *= factor;
-      }
-      const PetscInt row = 2 * i;
-      check(MatSetValues(j, 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
-      check(MatRestoreRow(m, i, &k, &columns, &values));
-    }
-  };
-  // Every entry is set in every call, also with factor zero, so that the pattern never changes.
-  add(stiffness_.get(), 0, alpha);
-  add(damping_.get(), 1, alpha);
-  add(gyroscopic_.get(), 1, alpha * speed_);
-  add(mass_.get(), 1, sigma);
-  for (PetscInt i = begin_; i < end_; ++i) {
-    check(MatSetValue(j, 2 * i + 1, 2 * i, sigma, ADD_VALUES));
-    check(MatSetValue(j, 2 * i + 1, 2 * i + 1, -alpha, ADD_VALUES));
+  if (!j_at_rest_) make_constant_parts();
+  check(MatCopy(j_at_rest_.get(), j, SAME_NONZERO_PATTERN));
+  if (alpha != 1) check(MatScale(j, alpha));
+  if (alpha != 0) {
+    check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
+    add_films(j, film_responses(journals_of(x), film::Need::tangents), alpha);
   }
+  if (sigma != 0) check(MatAXPY(j, sigma, j_rates_.get(), SAME_NONZERO_PATTERN));
+}
+
+void RotorSystem::add_films(Mat j, const std::vector<film::Response>& films, double alpha) const {
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     for (std::size_t d = 0; d < 2; ++d)
       for (const auto& [row, sign] :

@@ -25,7 +25,7 @@ struct NewtonResult {
 };
 
 /// Solves R(u) = 0, row . u = offset from the start in u, with line search `bt` (it recovers from domain errors) and
-/// right-preconditioned GMRES around problem.solve(). Collective; u holds the answer.
+/// right-preconditioned flexible GMRES around problem.solve(). Collective; u holds the answer.
 NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, const NewtonOptions& options);
 
 /// x = [dR/du; row]^-1 rhs for the linearisation that `problem` holds, by the same GMRES; returns its iterations.

@@ -96,6 +96,9 @@ private:
 
   void build();
   void set_train(Train train);
+  void make_constant_parts();
+  /// j += alpha times the derivatives of the film forces. Collective: assembles j.
+  void add_films(Mat j, const std::vector<film::Response>& films, double alpha) const;
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// Journal states on every rank from the distributed state. Collective.
   [[nodiscard]] std::vector<JournalState> journals_of(Vec x);
@@ -109,6 +112,7 @@ private:
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
+  core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
   std::vector<double> load_;                              // gravity on this rank's coordinates [N]
   std::vector<double> unbalance_c_, unbalance_s_;         // whole, per Omega^2
   core::Scatter gather_inputs_;

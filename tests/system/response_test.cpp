@@ -1,0 +1,72 @@
+// The linear response solves its own equations, also those that are eliminated.
+
+#include "whirl/solve/frequency_response.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "support/dense.hpp"
+#include "support/train_system.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+using namespace whirl;
+using Complex = std::complex<double>;
+
+namespace {
+
+// One part of interleaved complex entries, whole on every rank.
+Eigen::VectorXd part_of(const std::vector<double>& values, std::size_t part) {
+  core::Vector v = core::make_vector(MPI_COMM_WORLD, static_cast<PetscInt>(values.size() / 2), PETSC_DETERMINE);
+  {
+    const core::WriteArray a(v.get());
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = values[static_cast<std::size_t>(2 * i) + part];
+  }
+  return test::dense(v.get());
+}
+
+void solves_its_equations(bool guyan) {
+  system::RotorSystem s(MPI_COMM_WORLD, test::train({30, 8}, guyan), 377);
+  core::Vector x = system::static_guess(s), rest = core::duplicate(x.get()), xs = core::duplicate(x.get()),
+               fs = core::duplicate(x.get());
+  s.scales(xs.get(), fs.get());
+  std::vector<double> right(static_cast<std::size_t>(2 * s.local_size())), amplitude;
+  {
+    const core::ReadArray scale(fs.get());
+    PetscInt begin = 0;
+    core::check(VecGetOwnershipRange(fs.get(), &begin, nullptr));
+    // Loads on all rows, the kinematic ones too.
+    for (PetscInt i = 0; i < scale.size(); ++i) {
+      right[static_cast<std::size_t>(2 * i)] = scale[i] * std::sin(1.0 + begin + i);
+      right[static_cast<std::size_t>(2 * i + 1)] = scale[i] * std::cos(0.7 * (begin + i));
+    }
+  }
+  solve::FrequencyResponse response(s);
+  core::Matrix jx = s.make_jacobian(), jd = s.make_jacobian();
+  for (const double omega : {0.0, 150.0, 377.0}) {  // at rest the pattern of values is thinner
+    s.set_parameter(200 + omega);
+    response.solve(x.get(), omega, right, amplitude);
+    s.jacobian(0, x.get(), rest.get(), 1, 0, jx.get());
+    s.jacobian(0, x.get(), rest.get(), 0, 1, jd.get());
+    const Eigen::MatrixXcd a =
+        test::dense(jx.get()).cast<Complex>() + Complex(0, omega) * test::dense(jd.get()).cast<Complex>();
+    const Eigen::VectorXcd z = part_of(amplitude, 0).cast<Complex>() + Complex(0, 1) * part_of(amplitude, 1),
+                           b = part_of(right, 0).cast<Complex>() + Complex(0, 1) * part_of(right, 1);
+    // Rows measured against the sum of their terms.
+    const Eigen::VectorXd size = a.cwiseAbs() * z.cwiseAbs() + b.cwiseAbs();
+    EXPECT_LE((a * z - b).cwiseAbs().cwiseQuotient(size).maxCoeff(), 1e-9) << omega;
+    EXPECT_GT(z.cwiseQuotient(test::dense(xs.get())).norm(), 1e-6);
+  }
+}
+
+}  // namespace
+
+TEST(FrequencyResponse, SolvesItsEquationsOnTheFullTrain) {
+  solves_its_equations(false);
+}
+
+TEST(FrequencyResponse, SolvesItsEquationsOnTheReducedTrain) {
+  solves_its_equations(true);
+}
