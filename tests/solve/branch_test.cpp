@@ -49,6 +49,18 @@ struct NeimarkSacker {
   }
 };
 
+// z' = (p + i) z + |z|^2 z - |z|^4 z: cycles p = r^4 - r^2 of period 2 pi, fold at r^2 = 1/2, p = -1/4; multiplier
+// beside the trivial one exp(2 pi (2 r^2 - 4 r^4)).
+struct Bautin {
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T p) const {
+    const T q = x(0) * x(0) + x(1) * x(1), g = p + q - q * q;
+    Column<T> f(2);
+    f << xdot(0) - (g * x(0) - x(1)), xdot(1) - (g * x(1) + x(0));
+    return f;
+  }
+};
+
 // Duffing's oscillator: two folds along the speed.
 struct Duffing {
   template <class T>
@@ -182,4 +194,41 @@ TEST(Branch, RestartGoesOnWhereItWas) {
     EXPECT_NEAR(second.points[k].parameter, whole.points[k + 10].parameter, 1e-12);
     EXPECT_NEAR(second.norms[k], whole.norms[k + 10], 1e-12);
   }
+}
+
+// A self-excited cycle through its fold, where the critical multiplier meets the trivial one.
+TEST(Branch, FoldOfASelfExcitedCycle) {
+  test::SmallSystem s(PETSC_COMM_SELF, 2, 0.5, 1, Bautin{});
+  auto cycle = degree_four();
+  cycle.autonomous = true;
+  solve::CycleProblem problem(MPI_COMM_WORLD, s, cycle, solve::uniform_mesh(20));
+  const double r0 = std::sqrt((1 + std::sqrt(3.0)) / 2);
+  const auto guess = test::sampled(problem.scheme(), problem.mesh(), 6, 0.5,
+                                   [r0](double a) { return VectorXd(r0 * Eigen::Vector2d(std::cos(a), std::sin(a))); });
+  problem.set_phase_reference(guess);
+  test::Recorded r;
+  auto callbacks = test::recording(problem, r);
+  callbacks.cycles = true;
+  callbacks.stability = [&](Vec) {
+    auto mu = spectral::eigenvalues(problem.monodromy());
+    mu.erase(
+        std::min_element(mu.begin(), mu.end(), [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
+    return solve::make_stability(std::move(mu), [](auto z) { return std::abs(z) - 1; });
+  };
+  callbacks.checkpoint = [&](const solve::BranchPoint& p, Vec u, Vec, double) {
+    const solve::Cycle c = problem.gather(u);
+    const double q = c.x.col(3).squaredNorm();
+    EXPECT_NEAR(c.period, test::two_pi, 1e-7);
+    EXPECT_NEAR(q * q - q, p.parameter, 1e-7);
+    const double exact = std::exp(test::two_pi * (2 * q - 4 * q * q));
+    EXPECT_NEAR(std::abs(p.stability.values[0]), exact, 1e-4 * std::max(exact, 1.0)) << p.parameter;
+    problem.set_phase_reference(c);
+    return p.slope < 0 || p.parameter < -0.05;
+  };
+  r.end = solve::follow_branch(problem, problem.scatter(guess), test::range(0.5, -1, 0.1), callbacks);
+  EXPECT_EQ(r.end.reason, "stopped on request");
+  ASSERT_EQ(r.events.size(), 1U);
+  EXPECT_EQ(r.events[0].event, Event::cyclic_fold);
+  EXPECT_TRUE(r.events[0].located);
+  EXPECT_NEAR(r.events[0].parameter, -0.25, 1e-8);
 }

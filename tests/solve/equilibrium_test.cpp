@@ -145,7 +145,8 @@ TEST(Equilibria, ABranchThatLeavesTheDomainEndsWithTheReason) {
   const auto r = test::follow(s, Eigen::Vector3d::Zero(), test::range(0, 1, 0.1));
   EXPECT_FALSE(r.end.completed);
   EXPECT_NE(r.end.reason.find("the journal touches the bore"), std::string::npos) << r.end.reason;
-  EXPECT_NE(r.end.reason.find("the step fell below its minimum at 0."), std::string::npos) << r.end.reason;
+  EXPECT_EQ(r.end.reason.find("the step fell below its minimum"), 0U) << r.end.reason;
+  EXPECT_EQ(r.end.parameter, r.points.back().parameter);
   EXPECT_NEAR(r.points.back().parameter, 0.6, 1e-5);
 }
 

@@ -196,3 +196,24 @@ TEST(CycleLinear, AnyNumberOfRanksSolvesTheSame) {
     EXPECT_LE((all.problem->monodromy() - one.problem->monodromy()).cwiseAbs().maxCoeff(), 1e-10);
   }
 }
+
+// x'' + 0.2 x' + x = 0 from (1, 0): exp(-0.1 t) (cos w t + 0.1/w sin w t), w^2 = 0.99.
+TEST(CycleLinear, PropagatesAStartOverThePeriod) {
+  test::SmallSystem s(PETSC_COMM_SELF, 2, 1.3, 0, test::LinearOscillator{});
+  solve::CycleOptions o;
+  o.degree = 4;
+  solve::CycleProblem problem(MPI_COMM_WORLD, s, o, test::uneven_mesh(2));
+  const auto rest = [](double) { return Eigen::VectorXd(Eigen::Vector2d::Zero()); };
+  core::Vector u = problem.scatter(test::sampled(problem.scheme(), problem.mesh(), 1, 1.3, rest)),
+               row = core::duplicate(u.get());
+  solve::parameter_row(problem, row.get());
+  problem.linearise(u.get(), row.get());
+  const Eigen::Vector2d start(1, 0);
+  const Eigen::MatrixXd x = problem.propagate(start);
+  EXPECT_LE((x.rightCols(1) - problem.monodromy() * start).cwiseAbs().maxCoeff(), 1e-13);
+  const double w = std::sqrt(0.99), period = test::two_pi / 1.3;
+  for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(problem.mesh().size()); ++i) {
+    const double t = period * problem.mesh()[static_cast<std::size_t>(i) + 1];
+    EXPECT_NEAR(x(0, 4 * i + 3), std::exp(-0.1 * t) * (std::cos(w * t) + 0.1 / w * std::sin(w * t)), 1e-8);
+  }
+}
