@@ -237,7 +237,6 @@ void Branch::on_point(const solve::BranchPoint& point, Vec u) {
   record_.append(point, cycle, problem_->scheme(), *system_, scale_);
   report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
-  if (autonomous()) problem_->set_phase_reference(cycle);
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
   context_.results.progress(
       fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
@@ -282,14 +281,19 @@ double Branch::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle
   const bool fold = found.event == solve::Event::cyclic_fold;
   double offset = found.parameter;
   if (fold) {
-    core::Vector tangent = core::duplicate(u.get()), rhs = core::duplicate(u.get());
-    check(VecCopy(u.get(), tangent.get()));
-    solve::set_last_entry(context_.comm, tangent.get(), 0);
-    solve::weighted_row(problem, tangent.get(), row.get());
-    problem.linearise(u.get(), row.get());
+    // The direction of the branch at its fold has no part in the parameter. It is that of the branch found: the other
+    // discretisation is not at a fold here, and its own direction would hold the parameter instead of the amplitude.
+    core::Vector at = problem_->scatter(cycle), along = core::duplicate(at.get()), own_row = core::duplicate(at.get()),
+                 rhs = core::duplicate(at.get());
+    check(VecCopy(at.get(), along.get()));
+    solve::set_last_entry(context_.comm, along.get(), 0);
+    solve::weighted_row(*problem_, along.get(), own_row.get());
+    problem_->linearise(at.get(), own_row.get());
     check(VecSet(rhs.get(), 0.0));
     solve::set_last_entry(context_.comm, rhs.get(), 1);
-    (void)solve::solve_linear(problem, rhs.get(), tangent.get(), "tangent_");
+    (void)solve::solve_linear(*problem_, rhs.get(), along.get(), "tangent_");
+    const core::Vector tangent = problem.scatter(problem_->gather(along.get()));
+    solve::set_last_entry(context_.comm, tangent.get(), 0);
     solve::weighted_row(problem, tangent.get(), row.get());
     check(VecScale(row.get(), 1 / std::sqrt(solve::inner(problem, tangent.get(), tangent.get()))));
     check(VecDot(row.get(), u.get(), &offset));
@@ -323,8 +327,10 @@ void Branch::on_event(const solve::LocatedEvent& found, Vec u) {
   b.value = found.parameter;
   b.unit = unit_;
   b.period_s = cycle.period;
-  b.more["angle_rad"] = std::abs(std::arg(found.critical));
-  b.more["multiplier_modulus"] = std::abs(found.critical);
+  if (found.event != solve::Event::cyclic_fold) {
+    b.more["angle_rad"] = std::abs(std::arg(found.critical));
+    b.more["multiplier_modulus"] = std::abs(found.critical);
+  }
   if (found.event == solve::Event::neimark_sacker) {
     const double frequency = std::abs(std::arg(found.critical)) / cycle.period;
     b.more["whirl_frequency_rad_s"] = frequency;
@@ -344,6 +350,8 @@ void Branch::on_event(const solve::LocatedEvent& found, Vec u) {
 }
 
 void Branch::save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step) {
+  // The next phase is measured against this cycle, in a resumed branch as in this one.
+  if (autonomous()) problem_->set_phase_reference(problem_->gather(u));
   if (!options_.checkpoint) return;
   // At least once a second of work, so that a kill costs no more than that; the decision is rank 0's, for all.
   int due = context_.results.seconds() - last_saved_ >= 1;
