@@ -45,6 +45,8 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("period", &O::period, deck::positive, "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
   d.add("detect", &O::detect, "bifurcations to locate");
+  d.add("follow_flips", &O::follow_flips,
+        "also follow the cycles of twice the period born at the flips found, each as a study 'NAME flip K'");
   d.add("orbits", &O::orbits, deck::non_negative, "cycles whose time history is stored, spread over the branch");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
   d.check([](const O& o, const deck::Report& r) {

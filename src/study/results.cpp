@@ -47,6 +47,10 @@ bool Results::finished(const std::string& name) const {
   return std::find(finished_.begin(), finished_.end(), name) != finished_.end();
 }
 
+const io::Group& Results::group_of(const std::string& name) const {
+  return root_.group("studies").group(io::safe_name(name));
+}
+
 io::Group& Results::group() {
   return root_.child("studies").child(io::safe_name(current_.name));
 }

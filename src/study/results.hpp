@@ -32,6 +32,8 @@ public:
   /// Ends it with its status and writes the files.
   void finish(const std::string& status, bool delivered);
 
+  /// The group of a study that is finished.
+  [[nodiscard]] const io::Group& group_of(const std::string& name) const;
   /// The group and the summary of the study that runs.
   [[nodiscard]] io::Group& group();
   [[nodiscard]] io::StudySummary& summary() { return current_; }

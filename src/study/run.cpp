@@ -10,8 +10,9 @@ std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& 
   Results results(comm, options.directory, deck.machine.title, options.version, options.say, options.resume);
   Context context{comm, deck.machine, options.directory, results, options.resume};
   for (const auto& study : deck.studies) {
-    if (options.resume && results.finished(study->name())) continue;
-    results.begin(study->name(), std::string(study->kind()));
+    const bool finished = options.resume && results.finished(study->name());
+    if (finished && !study->resumes_itself()) continue;
+    if (!finished) results.begin(study->name(), std::string(study->kind()));
     try {
       study->run(context);
     } catch (const core::NotConverged& e) {

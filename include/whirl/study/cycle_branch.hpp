@@ -30,7 +30,8 @@ struct CycleBranchOptions {
   int period = 1;                  ///< revolutions per cycle
   int max_points = 500;
   std::vector<Event> detect{Event::cyclic_fold, Event::flip, Event::neimark_sacker};
-  int orbits = 20;  ///< cycles whose time history is stored, spread over the branch
+  bool follow_flips = false;  ///< also follow the cycles of twice the period born at the flips found
+  int orbits = 20;            ///< cycles whose time history is stored, spread over the branch
   bool checkpoint = true;
 };
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points);
@@ -42,6 +43,7 @@ public:
   static constexpr std::string_view key = "cycle_branch";
   [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
+  [[nodiscard]] bool resumes_itself() const override { return true; }
   void run(Context& context) override;
 };
 

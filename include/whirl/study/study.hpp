@@ -37,6 +37,8 @@ public:
   [[nodiscard]] virtual std::string name() const = 0;
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
   virtual void validate(const system::Machine& machine, const deck::Report& report) const = 0;
+  /// True if run() itself looks which of its results a resumed run already has; else a finished study is not run again.
+  [[nodiscard]] virtual bool resumes_itself() const { return false; }
   /// Collective.
   virtual void run(Context& context) = 0;
 };

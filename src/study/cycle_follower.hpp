@@ -1,0 +1,74 @@
+#pragma once
+// One branch of cycles from its first guess to its tables.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common.hpp"
+#include "cycle_record.hpp"
+#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/study/cycle_branch.hpp"
+
+namespace whirl::study {
+
+/// A located flip and the direction [n x N m] (SI) in which the cycle of twice its period leaves: the linearised motion
+/// of the multiplier -1 over one lap, reversed on the second one.
+struct FlipSeed {
+  solve::Cycle cycle, direction;
+};
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds);
+[[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group);
+
+/// The solver's problem, what is recorded of the branch, and how to restart it. Collective throughout.
+class CycleFollower {
+public:
+  /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
+  /// options are those of that branch: period and intervals doubled).
+  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
+  /// Solves, records, and finishes the study that runs in the results.
+  void run();
+  /// The flips located on the way.
+  [[nodiscard]] const std::vector<FlipSeed>& seeds() const { return seeds_; }
+
+private:
+  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
+  [[nodiscard]] solve::CycleOptions cycle_options() const;
+  [[nodiscard]] core::Vector start(solve::CycleProblem& problem) const;
+  [[nodiscard]] solve::Restart start_at_hopf();
+  [[nodiscard]] solve::Restart start_at_flip();
+  [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle) const;
+  [[nodiscard]] bool returned(const solve::Cycle& cycle);
+  [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
+  [[nodiscard]] solve::Stability stability() const;
+  void on_point(const solve::BranchPoint& point, Vec u);
+  void on_event(const solve::LocatedEvent& found, Vec u);
+  void report_between(const solve::Cycle& a, const solve::Cycle& b);
+  [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
+                             bool half_film) const;
+  void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
+  [[nodiscard]] std::optional<solve::Restart> restore();
+
+  Context& context_;
+  CycleBranchOptions options_;
+  std::optional<FlipSeed> seed_;
+  std::string unit_;
+  double scale_;  // SI value of one unit of the range
+  solve::NewtonOptions newton_;
+  solve::ContinuationOptions continuation_;
+  std::unique_ptr<system::RotorSystem> system_;
+  std::unique_ptr<solve::CycleProblem> problem_;
+  CycleRecord record_;
+  std::optional<solve::Cycle> last_;
+  double last_saved_ = -1e9;
+  std::vector<FlipSeed> seeds_;
+  Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
+  double largest_difference_ = 0;   // its largest norm so far
+  bool returned_ = false;
+};
+
+/// Signed distance of a Floquet multiplier from the unit circle.
+[[nodiscard]] double distance_of_multiplier(std::complex<double> mu);
+
+}  // namespace whirl::study

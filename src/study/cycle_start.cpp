@@ -1,0 +1,180 @@
+// Where branches of cycles begin: at an equilibrium, at a Hopf point, at a flip.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "cycle_follower.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/start.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// Two laps on one mesh.
+std::vector<double> two_laps(const std::vector<double>& mesh) {
+  std::vector<double> out;
+  for (const double s : mesh) out.push_back(s / 2);
+  for (std::size_t k = 1; k < mesh.size(); ++k) out.push_back((1 + mesh[k]) / 2);
+  return out;
+}
+
+}  // namespace
+
+// The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
+core::Vector CycleFollower::start(solve::CycleProblem& problem) const {
+  core::Vector x = system::static_guess(*system_);
+  Walker walker(*system_);
+  std::vector<double> whole;
+  const double parameter = system_->parameter();
+  if (system_->parameter_is_speed()) {
+    whole = system_->gather(walker.at(parameter));
+  } else {
+    solve::NewtonOptions newton;
+    newton.max_iterations = 40;
+    system_->set_forcing(false);
+    const auto result = solve::find_equilibrium(*system_, x.get(), newton);
+    system_->set_forcing(true);
+    if (!result.converged) throw core::NotConverged("no equilibrium to start from: " + result.reason);
+    whole = system_->gather(x.get());
+  }
+  solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), parameter};
+  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
+                .replicate(1, guess.intervals() * problem.scheme().degree);
+  return problem.scatter(guess);
+}
+
+// The Hopf point is found on the branch of equilibria; there the cycle is the equilibrium itself, and the branch leaves
+// along the critical mode x(s) = x_H + a Re(phi exp(2 pi i s)) with T = 2 pi/omega. A step along this tangent asks for
+// an amplitude and leaves speed and period free.
+solve::Restart CycleFollower::start_at_hopf() {
+  solve::EquilibriumProblem equilibria(*system_, scale_, std::pow(continuation_.max_step / 0.5, 2));
+  core::Vector u = equilibria.make_unknown(), at_hopf,
+               x = core::make_vector(PETSC_COMM_SELF, system_->local_size(), PETSC_DETERMINE);
+  if (system_->parameter_is_speed()) {
+    Walker walker(*system_);
+    check(VecCopy(walker.at(system_->parameter()), x.get()));
+  } else {
+    x = system::static_guess(*system_);
+  }
+  equilibria.from_state(x.get(), system_->parameter(), u.get());
+  double parameter = 0;
+  solve::BranchCallbacks callbacks;
+  callbacks.stability = [&](Vec v) {
+    equilibria.to_state(v, x.get());
+    return equilibrium_stability(*system_, x.get());
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
+    if (at_hopf || found.event != solve::Event::hopf || !found.located) return;
+    at_hopf = core::duplicate(x.get());
+    equilibria.to_state(v, at_hopf.get());
+    parameter = found.parameter * scale_;
+  };
+  callbacks.checkpoint = [&](const solve::BranchPoint&, Vec, Vec, double) { return !at_hopf; };
+  solve::ContinuationOptions search = continuation_;
+  search.initial_step = search.max_step;
+  search.newton.max_iterations = 20;
+  const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), search, callbacks);
+  if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
+
+  system_->set_parameter(parameter);
+  const auto modes = spectral::modes(*system_, at_hopf.get(), {});
+  const spectral::Mode* critical = nullptr;
+  for (const auto& m : modes)
+    if (m.lambda.imag() > 0 && (!critical || std::abs(m.lambda.real()) < std::abs(critical->lambda.real())))
+      critical = &m;
+  core::require(critical != nullptr, "a Hopf point has a complex eigenvalue");
+  const std::vector<double> rest = system_->gather(at_hopf.get());
+  const auto n = static_cast<Eigen::Index>(rest.size());
+  Eigen::VectorXcd phi(n);
+  for (Eigen::Index k = 0; k < n; ++k) phi(k) = critical->shape[static_cast<std::size_t>(k)];
+  solve::Cycle still{problem_->mesh(), {}, two_pi / critical->lambda.imag(), parameter}, mode = still;
+  const auto& scheme = problem_->scheme();
+  still.x = Eigen::Map<const Eigen::VectorXd>(rest.data(), n).replicate(1, still.intervals() * scheme.degree);
+  mode.x.resize(n, still.x.cols());
+  for (Eigen::Index i = 0; i < still.intervals(); ++i)
+    for (Eigen::Index l = 1; l <= scheme.degree; ++l) {
+      const double begin = still.mesh[static_cast<std::size_t>(i)];
+      const double s = begin + (still.mesh[static_cast<std::size_t>(i) + 1] - begin) * scheme.node(l);
+      mode.x.col(i * scheme.degree + l - 1) = (phi * std::exp(std::complex<double>(0, two_pi * s))).real();
+    }
+  problem_->set_phase_reference(mode);
+  solve::Restart restart;
+  restart.u = problem_->scatter(still);
+  mode.period = mode.parameter = 0;
+  restart.tangent = problem_->scatter(mode);
+  check(VecScale(restart.tangent.get(),
+                 1 / std::sqrt(solve::inner(*problem_, restart.tangent.get(), restart.tangent.get()))));
+  restart.step = continuation_.initial_step;
+  restart.point.index = -1;  // the Hopf point is no cycle: the first one comes next
+  restart.point.parameter = parameter / scale_;
+  context_.results.summary().set("hopf", parameter / scale_, unit_);
+  context_.results.summary().set("hopf.whirl_frequency", critical->lambda.imag(), "rad/s");
+  return restart;
+}
+
+// The vector v of (M + I) v = 0 by inverse iteration, carried over the lap.
+FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) const {
+  const Eigen::MatrixXd& m = problem_->monodromy();
+  const Eigen::Index n = m.rows();
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(m + (1 + 1e-10) * Eigen::MatrixXd::Identity(n, n));
+  Eigen::VectorXd v(n);
+  for (Eigen::Index k = 0; k < n; ++k) v(k) = std::sin(1.0 + static_cast<double>(k));
+  for (int k = 0; k < 4; ++k) v = lu.solve(v).normalized();
+  FlipSeed seed{cycle, cycle};
+  seed.direction.x = problem_->state_scale().asDiagonal() * problem_->propagate(v);
+  return seed;
+}
+
+// The branch leaves along +delta on the first lap and -delta on the second, at first without a change of the parameter.
+solve::Restart CycleFollower::start_at_flip() {
+  const auto twice = [](const solve::Cycle& one, double second) {
+    solve::Cycle two{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period,
+                     one.parameter};
+    two.x << one.x, second * one.x;
+    return two;
+  };
+  solve::Cycle direction = twice(seed_->direction, -1);
+  direction.parameter = 0;
+  system_->set_parameter(seed_->cycle.parameter);
+  problem_ =
+      std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), two_laps(seed_->cycle.mesh));
+  solve::Restart restart;
+  restart.u = problem_->scatter(twice(seed_->cycle, 1));
+  restart.tangent = problem_->scatter(direction);
+  check(VecScale(restart.tangent.get(),
+                 1 / std::sqrt(solve::inner(*problem_, restart.tangent.get(), restart.tangent.get()))));
+  restart.step = continuation_.initial_step;
+  restart.point.index = -1;  // the flip itself belongs to the branch of the simple period
+  restart.point.parameter = seed_->cycle.parameter / scale_;
+  context_.results.summary().set("flip", seed_->cycle.parameter / scale_, unit_);
+  return restart;
+}
+
+// A branch of twice the period may run back into the one it came from. Beyond that point it either repeats itself with
+// the laps exchanged, when the difference of the laps changes its sign, or the step has landed on the simple cycle run
+// twice, when there is no difference.
+bool CycleFollower::returned(const solve::Cycle& cycle) {
+  constexpr int samples = 24;
+  Eigen::MatrixXd difference(cycle.x.rows(), samples);
+  for (int k = 0; k < samples; ++k) {
+    const double s = 0.5 * k / samples;
+    difference.col(k) = (cycle.at(problem_->scheme(), s) - cycle.at(problem_->scheme(), s + 0.5))
+                            .cwiseQuotient(problem_->state_scale());
+  }
+  const bool turned = lap_difference_.size() > 0 && (difference.array() * lap_difference_.array()).sum() < 0;
+  largest_difference_ = std::max(largest_difference_, difference.norm());
+  const bool vanished = difference.norm() < 1e-3 * largest_difference_;
+  lap_difference_ = std::move(difference);
+  return turned || vanished;
+}
+
+}  // namespace whirl::study
