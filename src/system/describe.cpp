@@ -68,6 +68,11 @@ void describe(deck::Description<Bearing>& d) {
   d.check([](const Bearing& b, const deck::Report& r) {
     if (b.film.kind == film::Options::Kind::linear) return;
     if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
+    const bool pads = b.film.kind == film::Options::Kind::reynolds;
+    if (b.geometry && pads == (b.geometry->type == film::Geometry::Bore::cylindrical))
+      r.fail("film.type", pads ? "a reynolds film needs a bore with pads; a full circle with an inlet at the top is a "
+                                 "partial_arc of 360 deg"
+                               : "a film in closed form needs a cylindrical bore");
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
   });
