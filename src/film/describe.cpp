@@ -29,14 +29,20 @@ std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore) {
   static constexpr deck::Name<Geometry::Bore> table[] = {
       {Geometry::Bore::partial_arc, "partial_arc", "one pad centred at 270 deg"},
       {Geometry::Bore::lemon_bore, "lemon_bore",
-       "two pads centred at 90 and 270 deg, moved towards each other by the preload"}};
+       "two pads centred at 90 and 270 deg, moved towards each other by the preload"},
+      {Geometry::Bore::cylindrical, "cylindrical", "a full circle, for the films in closed form"}};
   return table;
 }
 
 std::span<const deck::Name<Options::Kind>> names(Options::Kind) {
   static constexpr deck::Name<Options::Kind> table[] = {
       {Options::Kind::reynolds, "reynolds", "two-dimensional Reynolds equation, pressure condensed"},
-      {Options::Kind::linear, "linear", "constant stiffness and damping"}};
+      {Options::Kind::linear, "linear", "constant stiffness and damping"},
+      {Options::Kind::short_bearing, "short", "closed form without flow around the bearing (L/D below 1/2)"},
+      {Options::Kind::long_bearing, "long", "closed form without side flow, periodic pressure, half of it positive"},
+      {Options::Kind::long_inlet, "long_inlet", "closed form without side flow, pressure zero at the top (90 deg)"},
+      {Options::Kind::finite_approximate, "finite_approximate",
+       "harmonic sum of the short and the long film, along and across the eccentricity"}};
   return table;
 }
 
@@ -68,7 +74,8 @@ void describe(deck::Description<Geometry>& d) {
       .continuable();
   d.add("arc", &Geometry::arc, "rad", deck::Check{.min = 0, .max = 2 * pi, .min_open = true},
         "angle that each pad covers, centred at 270 deg (and 90 deg)")
-      .required();
+      .required()
+      .only(&Geometry::type, {partial_arc, lemon_bore});
   d.add("preload", &Geometry::preload, deck::Check{.min = 0, .max = 1, .max_open = true},
         "1 - clearance / pad clearance", "004 table 2.2")
       .continuable()

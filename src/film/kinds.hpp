@@ -9,6 +9,8 @@ namespace whirl::film {
 
 /// Reynolds' equation on the pads of a bore; throws core::InputError on values outside their range.
 std::unique_ptr<Model> make_reynolds(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+/// Short, long or approximate finite-length film of a cylindrical bore; throws core::InputError alike.
+std::unique_ptr<Model> make_rigid(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 /// force = -K d - C d' in x and y.
 std::unique_ptr<Model> make_linear(const Options& options);
 

@@ -9,6 +9,11 @@ std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& optio
   switch (options.kind) {
     case Options::Kind::reynolds:
       return make_reynolds(geometry, options, lubricant);
+    case Options::Kind::short_bearing:
+    case Options::Kind::long_bearing:
+    case Options::Kind::long_inlet:
+    case Options::Kind::finite_approximate:
+      return make_rigid(geometry, options, lubricant);
     case Options::Kind::linear:
       return make_linear(options);
   }

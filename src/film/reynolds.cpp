@@ -18,6 +18,7 @@ void demand(bool condition, const char* what) {
 }
 
 void check(const Geometry& g, const Options& o, const Lubricant& l) {
+  demand(g.type != Geometry::Bore::cylindrical, "a reynolds film needs the edges of pads (a partial arc of 360 deg)");
   demand(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
   const double limit = (g.type == Geometry::Bore::lemon_bore ? 1.0 : 2.0) * std::numbers::pi;
   demand(g.arc > 0.0 && g.arc <= limit, "the arc must be positive and its pads must not overlap");

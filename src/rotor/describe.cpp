@@ -9,6 +9,13 @@ namespace whirl::rotor {
 using deck::non_negative;
 using deck::positive;
 
+std::span<const deck::Name<Options::Type>> names(Options::Type) {
+  static constexpr deck::Name<Options::Type> table[] = {
+      {Options::Type::shaft, "shaft", "beam elements and discs"},
+      {Options::Type::rigid, "rigid", "a mass that moves in x and y without tilt; its only node is 1"}};
+  return table;
+}
+
 std::span<const deck::Name<Shear>> names(Shear) {
   static constexpr deck::Name<Shear> table[] = {
       {Shear::cowper_solid, "cowper_solid", "6 (1 + nu)/(7 + 6 nu), also for hollow sections"},
@@ -116,16 +123,29 @@ void describe(deck::Description<Reduction>& d) {
 }
 
 void describe(deck::Description<Options>& d) {
+  using enum Options::Type;
+  d.add("type", &Options::type, "model of the rotor");
+  d.add("mass", &Options::mass, "kg", positive, "mass of the rigid rotor")
+      .required()
+      .continuable()
+      .only(&Options::type, {rigid});
+  d.add("load", &Options::load, "N", deck::any, "static force along -y beside the weight", "000 sec. 5.1")
+      .continuable()
+      .only(&Options::type, {rigid});
   d.table("segments", &Options::segments, "beam elements along the shaft; node k is the left end of segment k")
-      .required();
-  d.add("discs", &Options::discs, "rigid discs at nodes");
-  d.add("material", &Options::material, "material of the shaft").required();
-  d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5");
+      .required()
+      .only(&Options::type, {shaft});
+  d.add("discs", &Options::discs, "rigid discs at nodes").only(&Options::type, {shaft});
+  d.add("material", &Options::material, "material of the shaft").required().only(&Options::type, {shaft});
+  d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5")
+      .only(&Options::type, {shaft});
   d.add("stiffness_damping", &Options::stiffness_damping, "s", non_negative,
         "damping per stiffness in the stationary frame, C = value K", "004 errata 8")
-      .continuable();
-  d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms");
+      .continuable()
+      .only(&Options::type, {shaft});
+  d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms").only(&Options::type, {shaft});
   d.check([](const Options& o, const deck::Report& r) {
+    if (o.type == rigid) return;
     const int n_nodes = static_cast<int>(o.segments.size()) + 1;
     auto node = [&](int k, const std::string& path) {
       if (k > n_nodes) r.fail(path, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", k, n_nodes));

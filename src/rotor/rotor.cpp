@@ -11,10 +11,33 @@ namespace whirl::rotor {
 
 using core::check;
 
+namespace {
+
+// A mass without stiffness in one plane, on the first rank. Zeros are stored too: they are in the pattern of the
+// system.
+Planar rigid_planar(MPI_Comm comm, double mass) {
+  const PetscInt local = core::rank_of(comm) == 0 ? 1 : 0;
+  const auto matrix = [&](double value) {
+    core::Matrix m;
+    check(MatCreateAIJ(comm, local, local, 1, 1, 1, nullptr, 0, nullptr, m.put()));
+    if (local > 0) check(MatSetValue(m.get(), 0, 0, value, INSERT_VALUES));
+    check(MatAssemblyBegin(m.get(), MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
+    return m;
+  };
+  Planar p{matrix(mass), matrix(0), matrix(0), core::make_vector(comm, local, 1)};
+  check(VecSet(p.weight.get(), mass));
+  return p;
+}
+
+}  // namespace
+
 Rotor::Rotor(MPI_Comm comm, const Options& options)
-    : n_nodes_(rotor::n_nodes(options)), reduced_(options.reduction.type != Reduction::Type::none) {
+    : n_nodes_(rotor::n_nodes(options)),
+      rigid_(options.type == Options::Type::rigid),
+      reduced_(!rigid_ && options.reduction.type != Reduction::Type::none) {
   core::agree(comm, [&] { validate(options); });
-  Planar planar = assemble_planar(comm, options);
+  Planar planar = rigid_ ? rigid_planar(comm, options.mass) : assemble_planar(comm, options);
   if (reduced_) {
     masters_ = options.reduction.masters;
     std::sort(masters_.begin(), masters_.end());
@@ -45,6 +68,7 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
 
 PetscInt Rotor::coordinate(int node, int direction) const {
   core::require(node >= 1 && node <= n_nodes_ && direction >= 0 && direction < 4, "rotor coordinate out of range");
+  if (rigid_) return direction < 2 ? direction : -1;
   if (!reduced_) return 4 * (node - 1) + direction;
   const auto at = std::lower_bound(masters_.begin(), masters_.end(), node);
   if (direction > 1 || at == masters_.end() || *at != node) return -1;

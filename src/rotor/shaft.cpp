@@ -69,6 +69,7 @@ void validate(const Reduction& r, int nodes) {
 }  // namespace
 
 void validate(const Options& o) {
+  if (o.type == Options::Type::rigid) return refuse_unless(o.mass > 0, "the mass must be positive");
   validate(o.material);
   refuse_unless(!o.segments.empty(), "there are no segments");
   refuse_unless(o.stiffness_damping >= 0, "the stiffness damping must not be negative");
@@ -131,6 +132,7 @@ Disc resolved(const Disc& d, const Material& m) {
 }
 
 double total_mass(const Options& o) {
+  if (o.type == Options::Type::rigid) return o.mass;
   double mass = 0;
   for (const Segment& s : o.segments) mass += segment_mass(s, o.material);
   for (const Disc& d : o.discs) mass += resolved(d, o.material).mass;

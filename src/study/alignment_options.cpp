@@ -21,6 +21,8 @@ void describe(deck::Description<AlignmentOptions>& d) {
 }
 
 void Alignment::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (machine.rotor.type == rotor::Options::Type::rigid)
+    return report.fail("", "the alignment is that of a shaft; this rotor is rigid");
   check_nodes("zero_moment", options.zero_moment, machine, report);
   const std::vector<std::string> bearings = system::bearing_names(machine);
   auto exists = [&](const std::string& name, const std::string& path) {

@@ -9,6 +9,7 @@
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/groups.hpp"
 #include "whirl/system/start.hpp"
 
 namespace whirl::study {
@@ -96,6 +97,25 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
 
 std::string number_text(double value_si, const std::string& unit) {
   return fmt::format("{:.6g}", deck::from_si(value_si, unit));
+}
+
+void put_groups(io::StudySummary& summary, const system::Train& train) {
+  const auto groups = system::groups_of(train);
+  if (!groups) return;
+  summary.set("nondimensional.speed_scale", groups->speed_scale, "rad/s");
+  summary.set("nondimensional.load", groups->load, "1");
+  summary.set("nondimensional.unbalance", groups->unbalance, "1");
+  summary.set("nondimensional.length_to_diameter", groups->length_to_diameter, "1");
+  summary.set("nondimensional.sommerfeld_times_speed", groups->load / groups->bearings, "1");
+}
+
+void put_groups(io::Bifurcation& b, const system::Train& train, double speed) {
+  const auto groups = system::groups_of(train);
+  if (!groups) return;
+  b.more["nondimensional_speed"] = speed / groups->speed_scale;
+  b.more["nondimensional_load"] = groups->load;
+  b.more["nondimensional_unbalance"] = groups->unbalance;
+  b.more["sommerfeld"] = groups->sommerfeld(speed);
 }
 
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {

@@ -38,6 +38,11 @@ void put_bearings(io::Group& group, const system::Machine& machine);
 /// "3600" for 376.99 rad/s in rpm: the shortest text with six digits, for dotted names.
 [[nodiscard]] std::string number_text(double value_si, const std::string& unit);
 
+/// The nondimensional groups of a rigid rotor in equal bearings, as nondimensional.*; nothing for other machines.
+void put_groups(io::StudySummary& summary, const system::Train& train);
+/// The groups at a bifurcation; `train` and `speed` [rad/s] are those there.
+void put_groups(io::Bifurcation& bifurcation, const system::Train& train, double speed);
+
 /// A table of bifurcations: type, parameter, uncertainty, angle.
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);
 [[nodiscard]] io::BifurcationType type_of(solve::Event event);

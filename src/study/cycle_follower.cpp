@@ -215,6 +215,13 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   b.value = found.parameter;
   b.unit = unit_;
   b.period_s = cycle.period;
+  const bool over_speed = options_.parameter.path == "speed";
+  put_groups(b,
+             over_speed
+                 ? system_->train()
+                 : system::train_of(with_parameter(context_.machine, options_.parameter.path, found.parameter * scale_),
+                                    options_.unbalance),
+             over_speed ? found.parameter * scale_ : system_->speed());
   if (found.event != solve::Event::cyclic_fold) {
     b.more["angle_rad"] = std::abs(std::arg(found.critical));
     b.more["multiplier_modulus"] = std::abs(found.critical);
@@ -292,6 +299,7 @@ void CycleFollower::run() {
     else
       u = start(*problem_);
   }
+  put_groups(context_.results.summary(), system_->train());
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
   callbacks.stability = [this](Vec) { return stability(); };

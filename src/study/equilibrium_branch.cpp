@@ -78,6 +78,7 @@ void EquilibriumBranch::run(Context& context) {
                    {"x", "m", "journal relative to the bearing centre", {names.size()}},
                    {"y", "m", "journal relative to the bearing centre", {names.size()}}});
   auto& results = context.results;
+  put_groups(results.summary(), system->train());
   solve::BranchCallbacks callbacks;
   callbacks.stability = [&](Vec v) {
     problem.to_state(v, x.get());
@@ -118,6 +119,12 @@ void EquilibriumBranch::run(Context& context) {
     b.value = found.parameter;
     b.unit = unit;
     b.uncertainty = found.bracket;
+    const bool over_speed = options.parameter.path == "speed";
+    put_groups(b,
+               over_speed
+                   ? system->train()
+                   : system::train_of(with_parameter(context.machine, options.parameter.path, found.parameter * scale)),
+               over_speed ? found.parameter * scale : system->speed());
     const double omega = std::abs(found.critical.imag());
     if (found.event == solve::Event::hopf) {
       b.period_s = 2 * std::numbers::pi / omega;

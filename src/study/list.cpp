@@ -1,4 +1,5 @@
 #include "whirl/study/alignment.hpp"
+#include "whirl/study/bearing_map.hpp"
 #include "whirl/study/cycle_branch.hpp"
 #include "whirl/study/equilibrium_branch.hpp"
 #include "whirl/study/modes.hpp"
@@ -20,6 +21,7 @@ deck::Kind<Study> kind(std::string text) {
 const std::vector<deck::Kind<Study>>& kinds() {
   static const std::vector<deck::Kind<Study>> all{
       kind<Static>("where the journals sit in their films at one speed, loads, coefficients, film fields"),
+      kind<BearingMap>("one bearing: impedance, locus, stiffness and damping over eccentricity, Routh's threshold"),
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),

@@ -68,6 +68,11 @@ void describe(deck::Description<Bearing>& d) {
   d.check([](const Bearing& b, const deck::Report& r) {
     if (b.film.kind == film::Options::Kind::linear) return;
     if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
+    const bool pads = b.film.kind == film::Options::Kind::reynolds;
+    if (b.geometry && pads == (b.geometry->type == film::Geometry::Bore::cylindrical))
+      r.fail("film.type", pads ? "a reynolds film needs a bore with pads; a full circle with an inlet at the top is a "
+                                 "partial_arc of 360 deg"
+                               : "a film in closed form needs a cylindrical bore");
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
   });
@@ -77,6 +82,8 @@ void describe(deck::Description<Plane>& d) {
   d.add("node", &Plane::node, positive, "node of the plane").required();
   d.add("fraction", &Plane::fraction, "1", positive, "part of the unbalance of the grade that sits in this plane");
   d.add("amount", &Plane::amount, "kg m", positive, "mass times radius, where there is no grade").continuable();
+  d.add("eccentricity", &Plane::eccentricity, "m", positive, "distance of the centre of mass of a rigid rotor")
+      .continuable();
   d.add("phase", &Plane::phase, "rad", deck::any, "angle from +x at shaft angle zero, counter-clockwise");
 }
 
@@ -92,9 +99,10 @@ void describe(deck::Description<Unbalance>& d) {
     if (!u.grade && u.service_speed) r.fail("service_speed", "'service_speed' has no meaning without 'grade'");
     for (std::size_t i = 0; i < u.planes.size(); ++i) {
       const std::string path = fmt::format("planes.{}", i + 1);
-      if (u.grade && (!u.planes[i].fraction || u.planes[i].amount))
+      const Plane& p = u.planes[i];
+      if (u.grade && (!p.fraction || p.amount || p.eccentricity))
         r.fail(path, "a plane of a grade has a 'fraction' and no 'amount'");
-      if (!u.grade && (!u.planes[i].amount || u.planes[i].fraction))
+      if (!u.grade && (p.amount.has_value() == p.eccentricity.has_value() || p.fraction))
         r.fail(path, "a plane without a grade has an 'amount' and no 'fraction'");
     }
   });
@@ -106,15 +114,16 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
   std::vector<std::string> lubricants;
   for (const auto& [name, l] : m.lubricants) lubricants.push_back(name);
   const auto& reduction = m.rotor.reduction;
+  const bool rigid = m.rotor.type == rotor::Options::Type::rigid;
   for (std::size_t i = 0; i < m.bearings.size(); ++i) {
     const Bearing& b = m.bearings[i];
     const std::string path = "bearings." + b.name;
     if (b.node > n_nodes)
       r.fail(path + ".node", fmt::format("node {} does not exist: the shaft has nodes 1 to {}", b.node, n_nodes));
-    for (std::size_t j = 0; j < i; ++j)
+    for (std::size_t j = 0; j < i && !rigid; ++j)
       if (m.bearings[j].node == b.node)
         r.fail(path + ".node", fmt::format("bearing {} stands at node {} already", m.bearings[j].name, b.node));
-    if (reduction.type != rotor::Reduction::Type::none &&
+    if (!rigid && reduction.type != rotor::Reduction::Type::none &&
         std::find(reduction.masters.begin(), reduction.masters.end(), b.node) == reduction.masters.end())
       r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));
     const auto* name = std::get_if<std::string>(&b.lubricant);
@@ -122,7 +131,8 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
       r.fail(path + ".lubricant",
              fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean(*name, lubricants)));
   }
-  if (m.bearings.size() < 2) r.fail("bearings", "a shaft needs at least two bearings");
+  if (rigid && m.bearings.empty()) r.fail("bearings", "a rotor needs a bearing");
+  if (!rigid && m.bearings.size() < 2) r.fail("bearings", "a shaft needs at least two bearings");
 }
 
 void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
@@ -132,7 +142,9 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
   for (const Unbalance& u : m.unbalance) {
     const std::string path = "unbalance." + u.name;
     for (std::size_t i = 0; i < u.planes.size(); ++i)
-      if (u.planes[i].node > n_nodes)
+      if (u.planes[i].eccentricity && m.rotor.type != rotor::Options::Type::rigid)
+        r.fail(fmt::format("{}.planes.{}.eccentricity", path, i + 1), "only a rigid rotor has an 'eccentricity'");
+      else if (u.planes[i].node > n_nodes)
         r.fail(fmt::format("{}.planes.{}.node", path, i + 1),
                fmt::format("node {} does not exist: the shaft has nodes 1 to {}", u.planes[i].node, n_nodes));
     if (u.rotor.empty()) continue;
@@ -147,7 +159,7 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
 
 void describe(deck::Description<Machine>& d) {
   d.add("title", &Machine::title, "what the deck is about, for the report");
-  d.add("rotor", &Machine::rotor, "the shaft").required();
+  d.add("rotor", &Machine::rotor, "the shaft, or a rigid mass").required();
   d.add("gravity", &Machine::gravity, "m/s^2", non_negative, "acceleration of gravity, along -y").continuable();
   d.add("lubricants", &Machine::lubricants, "lubricants by name");
   d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").required();

@@ -70,7 +70,10 @@ std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u
             *u.service_speed;
   }
   std::vector<UnbalanceMass> masses;
-  for (const Plane& p : u.planes) masses.push_back({p.node, u.grade ? *p.fraction * whole : *p.amount, p.phase});
+  for (const Plane& p : u.planes) {
+    const double amount = u.grade ? *p.fraction * whole : p.eccentricity ? *p.eccentricity * m.rotor.mass : *p.amount;
+    masses.push_back({p.node, amount, p.phase});
+  }
   return masses;
 }
 

@@ -120,6 +120,8 @@ void RotorSystem::build() {
     const core::ReadArray g(m.gravity.get());
     for (PetscInt i = 0; i < g.size(); ++i) load_[static_cast<std::size_t>(i)] = train_.gravity * g[i];
   }
+  if (train_.rotor.type == rotor::Options::Type::rigid && owns(rotor_->coordinate(1, 1)))
+    load_[static_cast<std::size_t>(rotor_->coordinate(1, 1) - begin_)] -= train_.rotor.load;
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const PetscInt row = bearings_[i].pedestal[1];
     if (row >= 0 && owns(row))
@@ -139,7 +141,7 @@ void RotorSystem::build() {
   check(VecSet(ts, 0.0));
   if (core::rank_of(comm_) == 0)
     for (const UnbalanceMass& u : train_.unbalance) {
-      const PetscInt x = 4 * (u.node - 1), y = x + 1;
+      const PetscInt x = reduced ? 4 * (u.node - 1) : rotor_->coordinate(u.node, 0), y = x + 1;
       check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
       check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
       check(VecSetValue(tc, y, u.amount * std::sin(u.phase), ADD_VALUES));
@@ -453,9 +455,10 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
   clearance = films > 0 ? clearance / films : 1e-4;
   constexpr double frequency = 300;  // rad/s
   const double mass = rotor::total_mass(train_.rotor),
-               force = std::max(mass * std::abs(train_.gravity), mass * clearance * frequency * frequency) /
+               force = std::max(mass * std::abs(train_.gravity) + std::abs(train_.rotor.load),
+                                mass * clearance * frequency * frequency) /
                        std::max<double>(1.0, static_cast<double>(bearings_.size()));
-  const bool reduced = train_.rotor.reduction.type != rotor::Reduction::Type::none;
+  const bool reduced = static_cast<bool>(rotor_->matrices().basis);
   const auto masters = static_cast<PetscInt>(2 * train_.rotor.reduction.masters.size());
   const core::WriteArray s(state_scale), r(residual_scale);
   for (PetscInt i = 0; i < end_ - begin_; ++i) {
@@ -489,6 +492,7 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
   if (!m.basis) {
     std::vector<double> out(static_cast<std::size_t>(n_rotor_));
     for (PetscInt i = 0; i < n_rotor_; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
+    out.resize(static_cast<std::size_t>(4 * rotor_->n_nodes()), 0.0);  // a rigid rotor does not tilt
     return out;
   }
   core::Vector q, full;

@@ -17,6 +17,9 @@ inline Geometry lemon() {
 inline Geometry arc() {
   return {Geometry::Bore::partial_arc, 0.1, 0.1, 0.0002, 60.0 * kDegree, 0.0, 0.0};
 }
+inline Geometry cylinder() {
+  return {Geometry::Bore::cylindrical, 0.05, 0.08, 0.0001, 0.0, 0.0, 0.0};
+}
 inline Lubricant oil() {
   return {0.0067, 850.0};
 }

@@ -26,6 +26,12 @@ Options options(Options::Cavitation cavitation, Options::Turbulence turbulence, 
   return o;
 }
 
+Options rigid(Options::Kind kind) {
+  Options o;
+  o.kind = kind;
+  return o;
+}
+
 std::vector<Case> cases() {
   using C = Options::Cavitation;
   using T = Options::Turbulence;
@@ -52,6 +58,10 @@ std::vector<Case> cases() {
       {"arc_half_sommerfeld", arc(), options(C::half_sommerfeld, T::constantinescu, false, {60, 16}), shallow, moving},
       {"arc_tilted", arc(), options(C::half_sommerfeld, T::constantinescu, true, {41, 13}), shallow, moving},
       {"linear", arc(), linear, shallow, moving},
+      {"short", cylinder(), rigid(Options::Kind::short_bearing), shallow, moving},
+      {"long", cylinder(), rigid(Options::Kind::long_bearing), shallow, moving},
+      {"long_inlet", cylinder(), rigid(Options::Kind::long_inlet), shallow, moving},
+      {"finite_approximate", cylinder(), rigid(Options::Kind::finite_approximate), shallow, moving},
   };
 }
 

@@ -73,6 +73,34 @@ def self_excited(h):
         h.close(f"amplitude {a} c_b: whirl [rpm]", 60 / at(period), *h.reference(record + 1)[0])
 
 
+def period_doubling(h):
+    """Both flips of G2.5 give birth to one and the same branch of twice the period."""
+    import h5py
+    import numpy
+    run = h.run("period_doubling.yaml", "doubling")
+    flips = [b["value"] for b in run["G2.5"]["bifurcations"] if b["type"] == "flip"]
+    h.true("two flips", len(flips) == 2, f"{flips}")
+    curves = []
+    with h5py.File(h.work / "doubling" / "results.h5") as f:
+        for k, flip in enumerate(flips):
+            name = f"G2.5 flip {k + 1}"
+            h.close(f"{name}: born at [rpm]", value(run[name], "flip"), flip, 1e-6)
+            h.true(f"{name} runs back into the simple cycle", run[name]["status"] == "completed"
+                   and value(run[name], "returned") is not None, run[name]["status"])
+            b = f[f"studies/{name}/branch"]
+            speed, size = b["parameter"][()], (b["x_max"][()] - b["x_min"][()])[:, 0]
+            inside = (speed > flips[0] + 1) & (speed < flips[1] - 1)
+            turns = b["period"][()] * speed / 60
+            h.close(f"{name}: turns per period", float(numpy.ptp(turns)) + float(turns[0]), 2, 1e-9)
+            h.true(f"{name} is stable between the flips", bool((b["stable"][()][inside] == 1).all()))
+            order = numpy.argsort(speed[inside])
+            curves.append((speed[inside][order], size[inside][order]))
+    for speed in (4200, 4300, 4400):
+        a, b = (float(numpy.interp(speed, *c)) for c in curves)
+        # Chords between points 60 rpm apart on an arch of 165 um.
+        h.close(f"both branches at {speed} rpm: peak to peak x B1 [m]", a, b, 4e-6)
+
+
 def doubled(h, overrides=SHORT):
     """A located bifurcation moves by less than its reported uncertainty on a doubled time mesh and at a higher degree."""
     base = h.run("unbalance.yaml", "base", overrides)
@@ -105,6 +133,6 @@ def ranks(h):
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
     cases = {"reference": reference, "doubled": doubled, "doubled_whole": lambda h: doubled(h, []), "ranks": ranks,
-             "self_excited": self_excited}
+             "self_excited": self_excited, "period_doubling": period_doubling}
     cases[sys.argv[3]](harness)
     harness.finish()

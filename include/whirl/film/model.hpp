@@ -30,6 +30,7 @@ struct Response {
 };
 
 /// Quantities for reports, computed apart from evaluate() so that they cost nothing inside solvers.
+/// NaN where the film does not know: peak pressure and side flow of finite_approximate.
 struct Summary {
   double min_thickness = 0.0;  // m
   double max_pressure = 0.0;   // Pa

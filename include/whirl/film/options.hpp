@@ -6,9 +6,9 @@
 namespace whirl::film {
 
 /// Bore of a bearing. Every pad is a circular arc; a partial arc is centred at 270 deg, the lobes of a lemon bore at
-/// 270 deg (lower) and 90 deg (upper).
+/// 270 deg (lower) and 90 deg (upper). A cylindrical bore is one whole circle without edges.
 struct Geometry {
-  enum class Bore { partial_arc, lemon_bore };
+  enum class Bore { partial_arc, lemon_bore, cylindrical };
   Bore type = Bore::partial_arc;
   double radius = 0.0;     // m, journal radius R
   double length = 0.0;     // m, axial length L
@@ -20,7 +20,7 @@ struct Geometry {
 
 /// How the film is modelled and discretised.
 struct Options {
-  enum class Kind { reynolds, linear };
+  enum class Kind { reynolds, linear, short_bearing, long_bearing, long_inlet, finite_approximate };
   enum class Cavitation { half_sommerfeld, reynolds, none };
   enum class Turbulence { laminar, constantinescu };
   Kind kind = Kind::reynolds;

@@ -6,6 +6,7 @@
 
 namespace whirl::rotor {
 
+[[nodiscard]] std::span<const deck::Name<Options::Type>> names(Options::Type);
 [[nodiscard]] std::span<const deck::Name<Shear>> names(Shear);
 [[nodiscard]] std::span<const deck::Name<Reduction::Type>> names(Reduction::Type);
 

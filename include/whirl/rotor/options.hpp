@@ -58,7 +58,12 @@ struct Reduction {
   int modes = 0;             // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
 };
 
+/// A shaft of beam elements, or a rigid body without tilt: node 1 with x and y only.
 struct Options {
+  enum class Type { shaft, rigid };
+  Type type = Type::shaft;
+  double mass = 0;  // kg, rigid
+  double load = 0;  // N, rigid: static force along -y beside the weight
   std::vector<Segment> segments;
   std::vector<Disc> discs;
   Material material;

@@ -29,7 +29,7 @@ struct ReductionQuality {
   double neglected = 0;  // lowest fixed-interface frequency left out; infinite if none is left out
 };
 
-/// A rotor assembled from beam elements and discs.
+/// A rotor assembled from beam elements and discs, or one rigid mass (x and y of node 1, owned by the first rank).
 ///
 /// Full coordinates are 4 (node - 1) + direction with directions x, y, dx/dz, dy/dz. Reduced coordinates are the pairs
 /// (x, y) of the master nodes in ascending order of nodes, then pairs of mass-normalised fixed-interface modes in
@@ -52,7 +52,7 @@ private:
   Matrices matrices_;
   PetscInt size_ = 0;
   int n_nodes_ = 0;
-  bool reduced_ = false;
+  bool rigid_ = false, reduced_ = false;
   std::vector<int> masters_;  // ascending
   ReductionQuality quality_;
 };

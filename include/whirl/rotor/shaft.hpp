@@ -8,7 +8,7 @@ namespace whirl::rotor {
 /// Refuses options that describe no shaft. Throws core::InputError that names the segment, disc or master (1-based).
 void validate(const Options& options);
 
-/// Number of nodes: one more than segments.
+/// Number of nodes: one more than segments; one of a rigid rotor.
 [[nodiscard]] int n_nodes(const Options& options);
 
 /// Axial positions of all nodes in m, from 0 at node 1.

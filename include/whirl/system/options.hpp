@@ -39,12 +39,14 @@ struct BalanceGrade {
   double velocity = 0;  ///< [m/s]
 };
 
-/// A balancing plane. Either a fraction of the unbalance of the grade, or an own amount.
+/// A balancing plane. Either a fraction of the unbalance of the grade, or an own amount, or the eccentricity of the
+/// mass of a rigid rotor.
 struct Plane {
-  int node = 0;                    ///< 1-based
-  std::optional<double> fraction;  ///< of M_k e_u
-  std::optional<double> amount;    ///< U [kg m]
-  double phase = 0;                ///< [rad]
+  int node = 0;                        ///< 1-based
+  std::optional<double> fraction;      ///< of M_k e_u
+  std::optional<double> amount;        ///< U [kg m]
+  std::optional<double> eccentricity;  ///< U/m of a rigid rotor [m]
+  double phase = 0;                    ///< [rad]
 };
 
 /// A named unbalance. With a grade: U = fraction M_k e_u, e_u = grade / service_speed, M_k the mass between the two

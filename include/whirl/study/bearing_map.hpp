@@ -1,0 +1,26 @@
+#pragma once
+// One bearing by itself: impedance, equilibrium locus, stiffness, damping and Routh's criterion over eccentricity.
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct BearingMapOptions {
+  std::string name;
+  std::string bearing;            ///< its name; the first of the deck if empty
+  deck::Quantity speed;           ///< [rad/s]; laminar films give the same nondimensional values at every speed
+  double max_eccentricity = 0.9;  ///< [clearances]
+  int points = 90;                ///< eccentricities, evenly spaced up to the largest
+  int grid = 41;                  ///< points per direction of the impedance plot
+};
+void describe(deck::Description<BearingMapOptions>& d);
+
+class BearingMap final : public StudyWith<BearingMapOptions> {
+public:
+  static constexpr std::string_view key = "bearing_map";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

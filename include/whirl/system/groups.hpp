@@ -1,0 +1,26 @@
+#pragma once
+// The nondimensional groups that a rigid rotor in equal bearings depends on.
+
+#include <optional>
+
+#include "whirl/system/train.hpp"
+
+namespace whirl::system {
+
+/// Omega_0 = sqrt(F0/(m c)), F0* = (c/R)^2 F0/(mu Omega_0 L D), a* = U/(m c), with F0 the load of the whole rotor
+/// (weight and static load) and U its unbalance. Source: van de Vrande (2001), sec. 5.1.
+struct Groups {
+  double speed_scale = 0;         ///< Omega_0 [rad/s]; Omega* = Omega/Omega_0
+  double load = 0;                ///< F0* [-]
+  double unbalance = 0;           ///< a* [-]
+  double length_to_diameter = 0;  ///< [-]
+  int bearings = 1;               ///< [-]
+
+  /// S = F0*/(n Omega*) of one of the n bearings.
+  [[nodiscard]] double sommerfeld(double speed) const { return load * speed_scale / (bearings * speed); }
+};
+
+/// Empty unless the rotor is rigid, loaded downwards, and all its bearings have the same geometry, film and viscosity.
+[[nodiscard]] std::optional<Groups> groups_of(const Train& train);
+
+}  // namespace whirl::system

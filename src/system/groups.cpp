@@ -1,0 +1,31 @@
+#include "whirl/system/groups.hpp"
+
+#include <cmath>
+#include <complex>
+
+namespace whirl::system {
+
+std::optional<Groups> groups_of(const Train& train) {
+  const auto& r = train.rotor;
+  if (r.type != rotor::Options::Type::rigid || train.supports.empty()) return std::nullopt;
+  const Support& first = train.supports.front();
+  const film::Geometry& g = first.geometry;
+  for (const Support& s : train.supports)
+    if (s.film.kind == film::Options::Kind::linear || s.film.kind != first.film.kind || s.geometry.type != g.type ||
+        s.geometry.radius != g.radius || s.geometry.length != g.length || s.geometry.clearance != g.clearance ||
+        s.lubricant.viscosity != first.lubricant.viscosity)
+      return std::nullopt;
+  const double load = r.mass * train.gravity + r.load, ratio = g.clearance / g.radius;
+  if (!(load > 0)) return std::nullopt;
+  Groups out;
+  out.speed_scale = std::sqrt(load / (r.mass * g.clearance));
+  out.load = ratio * ratio * load / (first.lubricant.viscosity * out.speed_scale * g.length * 2 * g.radius);
+  std::complex<double> unbalance = 0;
+  for (const UnbalanceMass& u : train.unbalance) unbalance += std::polar(u.amount, u.phase);
+  out.unbalance = std::abs(unbalance) / (r.mass * g.clearance);
+  out.length_to_diameter = 0.5 * g.length / g.radius;
+  out.bearings = static_cast<int>(train.supports.size());
+  return out;
+}
+
+}  // namespace whirl::system
