@@ -1,5 +1,7 @@
 #include "whirl/solve/interval.hpp"
 
+#include <Eigen/LU>
+
 namespace whirl::solve {
 namespace {
 
@@ -63,14 +65,14 @@ public:
     k_.compute(MatrixXd::Identity(m * part_->r, m * part_->r) - times_s(part_->vy));
   }
   void solve(MatrixXd& y) const override {
-    y = part_->w0.solve(y).eval();
+    part_->solve(y);
     y.noalias() += part_->y * k_.solve(times_s(part_->inputs(y)));
   }
   void solve_transposed(MatrixXd& y) const override {
     // A^-T y = W0^-T (y + V^T S^T K^-T Y^T y)
     const MatrixXd t = k_.transpose().solve(part_->y.transpose() * y);
     y += part_->inputs_transposed(times_s_transposed(t));
-    y = part_->w0.transpose().solve(y).eval();
+    part_->solve_transposed(y);
   }
   MatrixXd start(const MatrixXd& x) const override {
     MatrixXd y = part_->w00 * x;
@@ -135,51 +137,6 @@ private:
 };
 
 }  // namespace
-
-LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const MatrixXd& l0_, const MatrixXd& b_,
-                       const MatrixXd& c_)
-    : scheme(sc), l1(l1_), l0(l0_), b(b_), c(c_), length(len), n(l1_.rows()), r(b_.cols()), w(c_.rows()) {
-  const Index m = scheme.degree;
-  MatrixXd a(m * n, m * n);
-  w00.resize(m * n, n);
-  MatrixXd ub = MatrixXd::Zero(m * n, m * r);
-  for (Index j = 0; j < m; ++j) {
-    w00.middleRows(j * n, n) = scheme.value(j, 0) * l0 + (scheme.slope(j, 0) / length) * l1;
-    for (Index l = 1; l <= m; ++l)
-      a.block(j * n, (l - 1) * n, n, n) = scheme.value(j, l) * l0 + (scheme.slope(j, l) / length) * l1;
-    ub.block(j * n, j * r, n, r) = b;
-  }
-  w0.compute(a);
-  const MatrixXd free = w0.solve(w00);
-  y = w0.solve(ub);
-  vy = inputs(y);
-  end_free = -free.bottomRows(n);
-  end_y = y.bottomRows(n);
-  inputs_free = -inputs(free);
-  for (Index j = 0; j < m; ++j) inputs_free.middleRows(j * w, w) += scheme.value(j, 0) * c;
-}
-
-MatrixXd LinearPart::inputs(const MatrixXd& x) const {
-  const Index m = scheme.degree;
-  std::vector<MatrixXd> cx(static_cast<std::size_t>(m));
-  for (Index l = 0; l < m; ++l) cx[static_cast<std::size_t>(l)].noalias() = c * x.middleRows(l * n, n);
-  MatrixXd out = MatrixXd::Zero(m * w, x.cols());
-  for (Index j = 0; j < m; ++j)
-    for (Index l = 1; l <= m; ++l)
-      if (scheme.value(j, l) != 0) out.middleRows(j * w, w) += scheme.value(j, l) * cx[static_cast<std::size_t>(l - 1)];
-  return out;
-}
-
-MatrixXd LinearPart::inputs_transposed(const MatrixXd& s) const {
-  const Index m = scheme.degree;
-  MatrixXd out = MatrixXd::Zero(m * n, s.cols());
-  for (Index j = 0; j < m; ++j) {
-    const MatrixXd cs = c.transpose() * s.middleRows(j * w, w);
-    for (Index l = 1; l <= m; ++l)
-      if (scheme.value(j, l) != 0) out.middleRows((l - 1) * n, n) += scheme.value(j, l) * cs;
-  }
-  return out;
-}
 
 std::unique_ptr<Interval> make_dense_interval(const Scheme& scheme, double length, std::vector<MatrixXd> jx,
                                               std::vector<MatrixXd> jxdot) {

@@ -14,16 +14,24 @@ double apart(const MatrixXd& a, const MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / std::max(1.0, b.cwiseAbs().maxCoeff());
 }
 
-}  // namespace
-
-TEST(Interval, LowRankAndDenseAreTheSameMatrix) {
+// `pairs` rows are of the form alpha x_a' + beta x_b = 0 that the linear part eliminates; the last of three is not, for
+// its x_a' occurs in another row too.
+void compare(int pairs, int eliminated) {
   std::srand(7);
   const int n = 7, r = 2, w = 3;
   for (const auto points : {solve::Points::radau, solve::Points::gauss})
     for (int m = 1; m <= 4; ++m) {
       const solve::Scheme scheme = solve::make_scheme(m, points);
-      const MatrixXd l1 = MatrixXd::Identity(n, n) + 0.1 * MatrixXd::Random(n, n), l0 = MatrixXd::Random(n, n),
-                     b = MatrixXd::Random(n, r), c = MatrixXd::Random(w, n);
+      MatrixXd l1 = MatrixXd::Identity(n, n) + 0.1 * MatrixXd::Random(n, n), l0 = MatrixXd::Random(n, n);
+      const MatrixXd b = MatrixXd::Random(n, r), c = MatrixXd::Random(w, n);
+      for (int e = 0; e < pairs; ++e) {
+        l1.col(2 * e).setZero();
+        l1.row(2 * e).setZero();
+        l0.row(2 * e).setZero();
+        l1(2 * e, 2 * e) = 1 + e;
+        l0(2 * e, 2 * e + 1) = -2;
+      }
+      if (pairs == 3) l1(6, 4) = 0.5;
       std::vector<MatrixXd> tangents, jx, jxdot;
       for (int j = 0; j < m; ++j) {
         tangents.push_back(MatrixXd::Random(r, w));
@@ -33,6 +41,7 @@ TEST(Interval, LowRankAndDenseAreTheSameMatrix) {
       const double length = 0.3;
       const auto dense = solve::make_dense_interval(scheme, length, jx, jxdot);
       const auto part = std::make_shared<solve::LinearPart>(scheme, length, l1, l0, b, c);
+      EXPECT_EQ(part->eliminated(), eliminated);
       const auto low = solve::make_low_rank_interval(part, tangents);
 
       // The matrix from its definition.
@@ -64,4 +73,15 @@ TEST(Interval, LowRankAndDenseAreTheSameMatrix) {
         EXPECT_LE(apart(interval->transition(), gamma), 1e-11);
       }
     }
+}
+
+}  // namespace
+
+TEST(Interval, LowRankAndDenseAreTheSameMatrix) {
+  compare(0, 0);
+}
+
+TEST(Interval, RatesThatAreStatesAreEliminatedExactly) {
+  compare(1, 1);
+  compare(3, 2);
 }

@@ -2,10 +2,10 @@
 // One collocation interval, condensed: the dense blocks inside the preconditioner of a periodic solution.
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <memory>
 #include <vector>
 
+#include "whirl/solve/linear_part.hpp"
 #include "whirl/solve/scheme.hpp"
 
 namespace whirl::solve {
@@ -36,33 +36,6 @@ public:
 [[nodiscard]] std::unique_ptr<Interval> make_dense_interval(const Scheme& scheme, double length,
                                                             std::vector<Eigen::MatrixXd> jx,
                                                             std::vector<Eigen::MatrixXd> jxdot);
-
-/// The part of all intervals of one length that does not change along the cycle, for F = L1 xdot + L0 x - B f(C x):
-/// factorised once per length.
-///
-/// With W0 = A at df/dw = 0, W00 = A0 likewise, Y = W0^-1 (I x B), V = value x C and V0 = value(:,0) x C:
-///     A^-1 y = z + Y K^-1 S V z,  z = W0^-1 y,  K = I - S V Y   (Woodbury; S = df/dw at the points, block diagonal)
-///     Gamma  = -E W0^-1 W00 + E Y K^-1 S (V0 - V W0^-1 W00)
-/// so that an interval costs one LU of size m r (r forces) and 2 m r n^2 operations instead of those of a dense LU of
-/// size mn.
-class LinearPart {
-public:
-  LinearPart(const Scheme& scheme, double length, const Eigen::MatrixXd& l1, const Eigen::MatrixXd& l0,
-             const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
-
-  const Scheme& scheme;
-  const Eigen::MatrixXd &l1, &l0, &b, &c;
-  double length;
-  Eigen::Index n, r, w;
-  Eigen::PartialPivLU<Eigen::MatrixXd> w0;
-  Eigen::MatrixXd w00, y, vy;       ///< W00 [mn x n], Y [mn x mr], V Y [mw x mr]
-  Eigen::MatrixXd end_free, end_y;  ///< -E W0^-1 W00 [n x n], E Y [n x mr]
-  Eigen::MatrixXd inputs_free;      ///< V0 - V W0^-1 W00 [mw x n]
-
-  /// V x [mw x k] for x [mn x k], and V^T s [mn x k].
-  [[nodiscard]] Eigen::MatrixXd inputs(const Eigen::MatrixXd& x) const;
-  [[nodiscard]] Eigen::MatrixXd inputs_transposed(const Eigen::MatrixXd& s) const;
-};
 
 /// Interval by low-rank update of its linear part; `tangents` holds df/dw [r x w] at each point.
 [[nodiscard]] std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part,
