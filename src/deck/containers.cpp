@@ -252,8 +252,14 @@ public:
     std::vector<std::string> names;
     for (const ChoiceKind& k : kinds_) names.push_back(k.name);
     for (const Node& item : node.items) {
-      if (item.kind != Node::Kind::map || item.items.size() != 1) {
+      if (item.kind != Node::Kind::map || item.items.empty()) {
         r.problems.add(item.place, "each item is one `- kind: {...}`; the options stand below the kind");
+        continue;
+      }
+      if (item.items.size() > 1) {
+        r.problems.add(item.items[1].key_place,
+                       fmt::format("each item is one `- kind: {{...}}`; this one has '{}' beside '{}'",
+                                   item.items[1].key, item.items[0].key));
         continue;
       }
       const Node& only = item.items.front();

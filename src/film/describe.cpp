@@ -98,7 +98,8 @@ void describe(deck::Description<Options>& d) {
       .only(&Options::kind, {reynolds});
   d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15")
       .only(&Options::kind, {reynolds});
-  d.add("cells", &Options::cells, at_least(4), "intervals around and along each pad").only(&Options::kind, {reynolds});
+  d.add("cells", &Options::cells, deck::in(4, 2000), "intervals around and along each pad")
+      .only(&Options::kind, {reynolds});
   d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
       .only(&Options::kind, {reynolds});
   d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")

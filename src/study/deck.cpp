@@ -4,6 +4,7 @@
 
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
+#include "whirl/io/record.hpp"
 
 namespace whirl::study {
 
@@ -16,9 +17,9 @@ void describe(deck::Description<Deck>& d) {
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());
       s.validate(deck.machine, r.below(path));
       for (std::size_t j = 0; j < i; ++j)
-        if (deck.studies[j]->name() == s.name())
-          r.fail(path + ".name",
-                 fmt::format("study {} is called '{}' already: give each a name of its own", j + 1, s.name()));
+        if (io::safe_name(deck.studies[j]->name()) == io::safe_name(s.name()))
+          r.fail(path + ".name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1,
+                                             deck.studies[j]->name()));
     }
   });
 }
