@@ -30,6 +30,16 @@ Vector make_vector(MPI_Comm comm, PetscInt local, PetscInt global) {
   return v;
 }
 
+std::vector<double> gather(Vec v) {
+  Scatter scatter;
+  Vector whole;
+  check(VecScatterCreateToAll(v, scatter.put(), whole.put()));
+  check(VecScatterBegin(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const ReadArray a(whole.get());
+  return {a.data(), a.data() + a.size()};
+}
+
 int rank_of(MPI_Comm comm) {
   int r = 0;
   MPI_Comm_rank(comm, &r);

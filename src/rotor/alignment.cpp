@@ -30,7 +30,6 @@ public:
     solver_ = direct_solver(held_.get());
     x_ = core::duplicate(planar_.weight.get());
     f_ = core::duplicate(x_.get());
-    check(VecScatterCreateToAll(x_.get(), gather_.put(), all_.put()));
   }
 
   // Block form with f free and s supported: K_ff u_f = f_f - K_fs u_s, reactions K_sf u_f + K_ss u_s - f_s.
@@ -44,7 +43,7 @@ public:
 
     RigidStatic r;
     {
-      const std::vector<double> u = everywhere(x_.get());
+      const std::vector<double> u = core::gather(x_.get());
       for (std::size_t i = 0; i < u.size(); i += 2) {
         r.deflection.push_back(u[i]);
         r.slope.push_back(u[i + 1]);
@@ -52,7 +51,7 @@ public:
     }
     check(MatMult(planar_.stiffness.get(), x_.get(), f_.get()));
     check(VecAXPY(f_.get(), -1, gravity_load(gravity).get()));
-    const std::vector<double> unbalanced = everywhere(f_.get());
+    const std::vector<double> unbalanced = core::gather(f_.get());
     for (int node : nodes_) r.reactions.push_back(unbalanced[static_cast<std::size_t>(2 * (node - 1))]);
     r.moment = moments(r, gravity);
     return r;
@@ -76,13 +75,6 @@ private:
     return load;
   }
 
-  std::vector<double> everywhere(Vec v) const {
-    check(VecScatterBegin(gather_.get(), v, all_.get(), INSERT_VALUES, SCATTER_FORWARD));
-    check(VecScatterEnd(gather_.get(), v, all_.get(), INSERT_VALUES, SCATTER_FORWARD));
-    const core::ReadArray a(all_.get());
-    return {a.data(), a.data() + a.size()};
-  }
-
   // End moments of the elements, K_e u_e - f_e: the one at the right end is the sagging moment, at the left its
   // negative.
   std::vector<double> moments(const RigidStatic& r, double gravity) const {
@@ -103,8 +95,6 @@ private:
   core::Matrix held_;
   core::LinearSolver solver_;
   core::Vector x_, f_;
-  core::Vector all_;
-  core::Scatter gather_;
 };
 
 void validate(const Options& o, const std::vector<Support>& supports) {

@@ -87,13 +87,9 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   }
   check(MatZeroEntries(bordered_.get()));
   // Whole column scale on every rank, because a row's entries reach over all columns.
-  core::Scatter scatter;
-  core::Vector whole;
-  check(VecScatterCreateToAll(state_scale_.get(), scatter.put(), whole.put()));
-  check(VecScatterBegin(scatter.get(), state_scale_.get(), whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(scatter.get(), state_scale_.get(), whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const std::vector<double> scale = core::gather(state_scale_.get());
   {
-    const core::ReadArray scale(whole.get()), rs(residual_scale_.get()), dp(f_.get()), wa(row);
+    const core::ReadArray rs(residual_scale_.get()), dp(f_.get()), wa(row);
     std::vector<PetscScalar> scaled;
     for (PetscInt i = begin; i < end; ++i) {
       PetscInt k = 0;
@@ -101,7 +97,8 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
       const PetscScalar* values = nullptr;
       check(MatGetRow(jacobian_.get(), i, &k, &columns, &values));
       scaled.assign(values, values + k);
-      for (PetscInt e = 0; e < k; ++e) scaled[static_cast<std::size_t>(e)] *= scale[columns[e]] / rs[i - begin];
+      for (PetscInt e = 0; e < k; ++e)
+        scaled[static_cast<std::size_t>(e)] *= scale[static_cast<std::size_t>(columns[e])] / rs[i - begin];
       check(MatSetValues(bordered_.get(), 1, &i, k, columns, scaled.data(), ADD_VALUES));
       check(MatRestoreRow(jacobian_.get(), i, &k, &columns, &values));
       check(MatSetValue(bordered_.get(), i, n, dp[i - begin] / rs[i - begin] * parameter_scale_, ADD_VALUES));

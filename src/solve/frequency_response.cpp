@@ -23,10 +23,7 @@ FrequencyResponse::FrequencyResponse(problem::System& system) : system_(system) 
   }
   rhs_ = core::make_vector(system.comm(), 2 * system.local_size(), PETSC_DETERMINE);
   answer_ = core::duplicate(rhs_.get());
-  core::Scatter scatter;
-  check(VecScatterCreateToAll(state_scale_.get(), scatter.put(), whole_scale_.put()));
-  check(VecScatterBegin(scatter.get(), state_scale_.get(), whole_scale_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(scatter.get(), state_scale_.get(), whole_scale_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  whole_scale_ = core::gather(state_scale_.get());
 }
 
 FrequencyResponse::~FrequencyResponse() = default;
@@ -60,7 +57,7 @@ void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& ri
     check(MatMPIAIJSetPreallocation(matrix_.get(), 0, local.data(), 0, count.data()));
   }
   {
-    const core::ReadArray scale(whole_scale_.get()), rs(residual_scale_.get());
+    const core::ReadArray rs(residual_scale_.get());
     std::vector<PetscInt> columns_to;
     std::vector<PetscScalar> upper, lower;
     for (PetscInt i = begin; i < end; ++i) {
@@ -77,7 +74,7 @@ void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& ri
       const double row = 1 / rs[i - begin];
       for (PetscInt e = 0; e < k; ++e) {
         const auto at = static_cast<std::size_t>(2 * e);
-        const double s = row * scale[columns[e]];
+        const double s = row * whole_scale_[static_cast<std::size_t>(columns[e])];
         columns_to[at] = 2 * columns[e];
         columns_to[at + 1] = 2 * columns[e] + 1;
         upper[at] = lower[at + 1] = s * a[e];

@@ -15,16 +15,6 @@ namespace {
 using core::check;
 using EigenSolver = core::Handle<EPS, EPSDestroy>;
 
-std::vector<double> everywhere(Vec v) {
-  core::Scatter scatter;
-  core::Vector whole;
-  check(VecScatterCreateToAll(v, scatter.put(), whole.put()));
-  check(VecScatterBegin(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  const core::ReadArray a(whole.get());
-  return {a.data(), a.data() + a.size()};
-}
-
 // The whole of a small distributed matrix, dense on this rank.
 core::Matrix redundant_dense(Mat m) {
   core::Matrix whole, dense;
@@ -49,8 +39,8 @@ Pair pair_of(EPS eps, PetscInt i, Vec re, Vec im, bool vectors) {
   Pair p;
   if (vectors) {
     check(EPSGetEigenpair(eps, i, &a, &b, re, im));
-    p.real = everywhere(re);
-    p.imaginary = everywhere(im);
+    p.real = core::gather(re);
+    p.imaginary = core::gather(im);
   } else {
     check(EPSGetEigenvalue(eps, i, &a, &b));
   }
@@ -64,7 +54,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   core::Vector rest = core::duplicate(x), xs = core::duplicate(x), fs = core::duplicate(x);
   check(VecSet(rest.get(), 0.0));
   system.scales(xs.get(), fs.get());
-  const std::vector<double> scale = everywhere(xs.get());
+  const std::vector<double> scale = core::gather(xs.get());
   check(VecReciprocal(fs.get()));
   core::Matrix a = system.make_jacobian(), b = system.make_jacobian();
   system.jacobian(0, x, rest.get(), 1, 0, a.get());

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "whirl/core/error.hpp"
 
@@ -109,6 +110,9 @@ private:
 [[nodiscard]] Vector duplicate(Vec v);
 /// A vector of `local` entries on this rank (PETSC_DECIDE to let PETSc split `global`), all zero. Collective on `comm`.
 [[nodiscard]] Vector make_vector(MPI_Comm comm, PetscInt local, PetscInt global);
+
+/// All entries of a distributed vector on every rank, in natural order. Collective.
+[[nodiscard]] std::vector<double> gather(Vec v);
 
 /// Rank of this process in `comm` / number of processes of `comm`.
 [[nodiscard]] int rank_of(MPI_Comm comm);

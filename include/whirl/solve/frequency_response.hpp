@@ -28,7 +28,8 @@ public:
 
 private:
   problem::System& system_;
-  core::Vector rest_, rhs_, answer_, state_scale_, residual_scale_, whole_scale_;
+  core::Vector rest_, rhs_, answer_, state_scale_, residual_scale_;
+  std::vector<double> whole_scale_;  // [size()] on every rank
   core::Matrix jx_, jd_, matrix_;
   core::LinearSolver solver_;
   std::unique_ptr<EliminatedResponse> eliminated_;  // on one rank
