@@ -4,6 +4,8 @@
 #include <petscsys.h>
 #include <slepcsys.h>
 
+#include <csignal>
+
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::core {
@@ -36,6 +38,8 @@ Session::Session(int argc, char** argv, const std::vector<std::string>& petsc_op
     if (has_value) ++i;
   }
   check(PetscPushErrorHandler(keep_text, nullptr));
+  // A reader who has seen enough (`whirl describe | head`) is no error to report.
+  (void)std::signal(SIGPIPE, SIG_DFL);
 }
 
 Session::~Session() {

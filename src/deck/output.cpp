@@ -129,8 +129,9 @@ void walk(const Structure& s, const std::string& path, const Visit& visit) {
   }
 }
 
-// True if `path` names `key` or something above it; steps such as NAME and 1 may be left out or be any word.
-bool is_below(const std::string& key, std::string_view path) {
+// True if `path` names `key` or something above it; steps such as NAME and 1 may be left out, and with `any_name` be
+// any word.
+bool is_below(const std::string& key, std::string_view path, bool any_name) {
   const std::vector<std::string> k = split_path(key), p = split_path(path);
   std::size_t j = 0;
   for (std::size_t i = 0; i < k.size() && j < p.size(); ++i) {
@@ -138,7 +139,7 @@ bool is_below(const std::string& key, std::string_view path) {
       ++j;
     else if (k[i] != "NAME" && k[i] != "1")
       return false;
-    else if (i + 1 < k.size() && p[j] != k[i + 1])
+    else if (any_name && i + 1 < k.size() && p[j] != k[i + 1])
       ++j;
   }
   return j == p.size();
@@ -177,12 +178,14 @@ std::string schema_text(const Structure& structure, std::string_view title) {
 std::string reference_text(const Structure& structure, std::string_view path) {
   std::string out;
   std::vector<std::string> keys;
+  walk(structure, {}, [&](const std::string& key, const Option&, const Structure&) { keys.push_back(key); });
+  // `bearings.geometry` is an option of every bearing before it is a bearing of that name.
+  const bool any_name = std::none_of(keys.begin(), keys.end(), [&](const auto& k) { return is_below(k, path, false); });
   walk(structure, {}, [&](const std::string& key, const Option& o, const Structure& s) {
-    keys.push_back(key);
     // A single word finds every option that has it in its path.
     const std::vector<std::string> steps = split_path(key);
     const bool named = std::find(steps.begin(), steps.end(), path) != steps.end();
-    if (!path.empty() && !named && !is_below(key, path)) return;
+    if (!path.empty() && !named && !is_below(key, path, any_name)) return;
     const std::string value = default_text(o, s);
     out += fmt::format("{}\n    {}{}{}\n    {}{}\n", key, o.codec->type(), value.empty() ? "" : "; ", value, o.text,
                        o.source.empty() ? "" : " [" + o.source + "]");

@@ -220,6 +220,7 @@ TEST(Description, ReferenceExplainsEveryOption) {
   EXPECT_NE(all.find("tasks.1.wait.time\n    quantity in s, positive; default 1 s\n"), std::string::npos) << all;
   const std::string one = deck::reference_text(deck::structure_of<Machine>(), "bearings.B7.preload");
   EXPECT_EQ(one.find("bearings.NAME.preload\n"), 0U);
+  EXPECT_EQ(deck::reference_text(deck::structure_of<Machine>(), "bearings.preload"), one) << "the name left out";
   EXPECT_NE(one.find("applies where type is lemon_bore"), std::string::npos);
   EXPECT_EQ(deck::reference_text(deck::structure_of<Machine>(), "preload"),
             deck::reference_text(deck::structure_of<Machine>(), "list.1.preload") + one);
