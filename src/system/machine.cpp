@@ -83,6 +83,7 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
   t.gravity = m.gravity;
   for (const Bearing& b : m.bearings) {
     Support s;
+    s.name = b.name;
     s.node = b.node;
     s.elevation = b.elevation;
     if (b.geometry) s.geometry = *b.geometry;

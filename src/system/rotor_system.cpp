@@ -47,17 +47,6 @@ core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
   return out;
 }
 
-// All of a distributed vector on every rank.
-std::vector<double> everywhere(Vec v) {
-  core::Scatter scatter;
-  core::Vector whole;
-  check(VecScatterCreateToAll(v, scatter.put(), whole.put()));
-  check(VecScatterBegin(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  const core::ReadArray a(whole.get());
-  return {a.data(), a.data() + a.size()};
-}
-
 }  // namespace
 
 RotorSystem::RotorSystem(MPI_Comm comm, Train train, double speed)
@@ -155,8 +144,8 @@ void RotorSystem::build() {
     check(MatMultTranspose(m.basis.get(), tc, c.get()));
     check(MatMultTranspose(m.basis.get(), ts, s.get()));
   }
-  unbalance_c_ = everywhere(c.get());
-  unbalance_s_ = everywhere(s.get());
+  unbalance_c_ = core::gather(c.get());
+  unbalance_s_ = core::gather(s.get());
   unbalance_c_.resize(static_cast<std::size_t>(n_), 0.0);
   unbalance_s_.resize(static_cast<std::size_t>(n_), 0.0);
 
@@ -188,8 +177,9 @@ void RotorSystem::set_parameter(double p) {
     speed_ = p;
     return;
   }
+  Train train = varying_.train(p);  // may refuse the value, and then nothing has changed
   varying_.value = p;
-  set_train(varying_.train(p));
+  set_train(std::move(train));
 }
 
 std::vector<JournalState> RotorSystem::journals_of(Vec x) {
@@ -237,7 +227,7 @@ std::vector<film::Response> RotorSystem::film_responses(const std::vector<Journa
       try {
         bearings_[i].film->evaluate(motion, need, out[i]);
       } catch (const core::DomainError& e) {
-        throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
+        throw core::DomainError("bearing " + train_.supports[i].name + ": " + e.what());
       }
     }
   });
@@ -410,10 +400,15 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
     // Everything that depends on the option is rebuilt; meshes and masters stay.
     const double p = varying_.value, step = 1e-5 * varying_.magnitude;
     core::Vector minus = core::duplicate(f);
-    set_parameter(p + step);
-    residual(angle, x, xdot, f);
-    set_parameter(p - step);
-    residual(angle, x, xdot, minus.get());
+    try {
+      set_parameter(p + step);
+      residual(angle, x, xdot, f);
+      set_parameter(p - step);
+      residual(angle, x, xdot, minus.get());
+    } catch (...) {
+      set_parameter(p);
+      throw;
+    }
     set_parameter(p);
     check(VecAXPBY(f, -1 / (2 * step), 1 / (2 * step), minus.get()));
     return;
@@ -484,7 +479,7 @@ problem::Structure* RotorSystem::structure() {
 }
 
 std::vector<double> RotorSystem::gather(Vec x) const {
-  return everywhere(x);
+  return core::gather(x);
 }
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {
@@ -505,7 +500,7 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
   }
   check(MatMult(m.basis.get(), q.get(), full.get()));
   if (with_gravity && m.offset) check(VecAXPY(full.get(), train_.gravity, m.offset.get()));
-  return everywhere(full.get());
+  return core::gather(full.get());
 }
 
 }  // namespace whirl::system

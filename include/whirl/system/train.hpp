@@ -2,6 +2,7 @@
 // A machine with every name resolved and every number in SI: what the equations are made of.
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "whirl/film/options.hpp"
@@ -11,6 +12,7 @@ namespace whirl::system {
 
 /// A bearing: film between the journal at `node` and a pedestal (or the rigid ground).
 struct Support {
+  std::string name;      ///< for messages
   int node = 0;          ///< 1-based
   double elevation = 0;  ///< of the bearing centre, positive up [m]
   film::Geometry geometry;
