@@ -67,7 +67,11 @@ solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
   }
-  return solve::make_stability(std::move(values), [](std::complex<double> v) { return v.real(); });
+  // Without damping the real parts are rounding errors of the largest eigenvalue, and none of them is a bifurcation.
+  double largest = 0;
+  for (const auto& v : values) largest = std::max(largest, std::abs(v));
+  const double rounding = 1e-11 * largest;
+  return solve::make_stability(std::move(values), [rounding](std::complex<double> v) { return v.real() - rounding; });
 }
 
 std::vector<std::string> names_of_bearings(const system::Machine& machine) {

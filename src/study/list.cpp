@@ -26,7 +26,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
-      kind<CycleBranch>("forced limit cycles over a parameter with multipliers and bifurcations"),
+      kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
   };
   return all;
 }

@@ -38,7 +38,8 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   options.count = 2 * count + 40;
   std::vector<ShaftMode> out;
   for (const auto& mode : spectral::modes(system, equilibrium, options)) {
-    if (mode.lambda.imag() <= 0 || mode.lambda.imag() > max_frequency) continue;
+    // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
+    if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
     if (static_cast<int>(out.size()) == count) break;
     std::vector<double> part[2];
     for (int k = 0; k < 2; ++k) {

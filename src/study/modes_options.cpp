@@ -13,19 +13,20 @@ std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports
 void describe(deck::Description<ModesOptions>& d) {
   d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
   d.add("supports", &ModesOptions::supports, "what holds the journals");
-  d.add("speed", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
+  d.add("range", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
   d.add("points", &ModesOptions::points, deck::at_least(2), "speeds in the range, evenly spaced with both ends");
   d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
   d.add("count", &ModesOptions::count, deck::positive, "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
   d.check([](const ModesOptions& o, const deck::Report& r) {
-    if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'speed' or 'speeds', not both");
-    if (!o.range && o.speeds.empty()) r.fail("", "'speed' is missing (range of speeds), or a list 'speeds'");
+    if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
+    // Without films the shaft is taken at rest, whatever its speed.
     if (o.supports != ModesOptions::Supports::films) return;
+    if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
     for (double s : o.all_speeds())
       if (s <= 0)
-        return r.fail(o.range ? "speed" : "speeds", "a film carries no load at rest: speeds must be positive");
+        return r.fail(o.range ? "range" : "speeds", "a film carries no load at rest: speeds must be positive");
   });
 }
 

@@ -56,7 +56,7 @@ def eigenvalues(h, what, modes, imag, real, within=None):
 
 def modes(h):
     speeds = [1200, 2000, 2800, 3600, 4400, 5000]
-    few = ["studies.3.modes.speed=", "studies.3.modes.points=",
+    few = ["studies.3.modes.range=", "studies.3.modes.points=",
            "studies.3.modes.speeds=[" + ", ".join(f"{s} rpm" for s in speeds) + "]"]
     deck = h.run("modes.yaml", "deck", few)
     for name, record in (("free shaft", 35), ("pinned shaft", 36)):
@@ -73,7 +73,7 @@ def modes(h):
     service = deck["at service speed"]["modes"]
     eigenvalues(h, "deck, 60 x 16", service, h.reference(57)[:3], h.reference(58)[:3], 0.05)
 
-    fine = ["studies.3.modes.speed=", "studies.3.modes.points=", "studies.3.modes.speeds=[3600 rpm]"]
+    fine = ["studies.3.modes.range=", "studies.3.modes.points=", "studies.3.modes.speeds=[3600 rpm]"]
     fine += every_bearing("film.cells", "[240, 48]")
     full = h.run("modes.yaml", "fine", fine)["at service speed"]["modes"]
     eigenvalues(h, "240 x 48", full, h.reference(57), h.reference(58))
