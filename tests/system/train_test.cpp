@@ -55,6 +55,31 @@ TEST(Train, DerivativesPassTheTaylorTest) {
   }
 }
 
+// Another parameter than the speed: the clearance of one bearing. A value it cannot take changes nothing.
+TEST(Train, ClearanceAsParameter) {
+  system::Varying varying;
+  varying.train = [](double clearance) {
+    if (!(clearance > 0)) throw core::DomainError("the clearance is not positive");
+    auto t = test::train({30, 10}, true);
+    test::add_gen_pair(t, 6.3);
+    t.supports[2].geometry.clearance = clearance;
+    return t;
+  };
+  varying.value = varying.magnitude = 4e-4;
+  system::RotorSystem s(MPI_COMM_WORLD, varying, 300);
+  core::Vector x = system::static_guess(s), rate = core::duplicate(x.get());
+  disturb(s, x.get(), 5e-6);
+  core::check(VecSet(rate.get(), 0.0));
+  disturb(s, rate.get(), 1e-3);
+  const auto r = problem::taylor_test(s, 0.7, x.get(), rate.get(), 1e-3);
+  EXPECT_GE(r.state_order, 1.9);
+  EXPECT_GE(r.rate_order, 1.9);
+  EXPECT_GE(r.parameter_order, 1.9);
+  EXPECT_THROW(s.set_parameter(-1e-4), core::DomainError);
+  EXPECT_EQ(s.parameter(), 4e-4);
+  EXPECT_EQ(s.train().supports[2].geometry.clearance, 4e-4);
+}
+
 TEST(Train, LoadsAtServiceSpeed) {
   system::RotorSystem s(MPI_COMM_WORLD, test::train({120, 24}, false), service);
   core::Vector x = equilibrium(s);
