@@ -3,6 +3,7 @@
 
 command_line.py PROGRAM SOURCE RANKS [LAUNCHER WORDS...]
 """
+import json
 import pathlib
 import shutil
 import subprocess
@@ -65,6 +66,17 @@ if not few:
     whirl("run", train / "static.yaml", "-o", strange / "thesis.txt", code=2, err="is a file")
 if (earlier / "resolved.yaml").read_text() != "title: another deck\n" or not (strange / "thesis.txt").exists():
     failures.append("a refused run changed files")
+
+# A machine of another kind: published frequencies (rad/s) and senses of whirl, and no threshold where nothing damps or drives.
+if not few:
+    whirl("run", source / "tests" / "app" / "friswell_591.yaml", "-o", work / "friswell", code=0)
+    modes, branch = json.loads((work / "friswell" / "summary.json").read_text())["studies"]
+    published = [(85.39, "backward"), (87.80, "forward"), (251.78, "backward"), (294.71, "forward"), (600.18, "backward")]
+    for mode, (frequency, sense) in zip(modes["modes"], published, strict=True):
+        if abs(mode["imag"] - frequency) > 0.01 or mode["whirl"] != sense:
+            failures.append(f"Friswell 5.9.1: {mode} instead of {frequency} {sense}")
+    if branch["bifurcations"] or branch["status"] != "completed":
+        failures.append(f"an undamped rotor on linear bearings has {branch['bifurcations']}, {branch['status']}")
 
 shutil.rmtree(work)
 print("\n".join(failures) or f"the command line is right on {ranks} ranks")
