@@ -21,30 +21,7 @@ double length(const std::vector<double>& mesh, Index i) {
   return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)];
 }
 
-VectorXd to_eigen(Vec v) {
-  const core::ReadArray a(v);
-  return Map<const VectorXd>(a.data(), a.size());
-}
-
-MatrixXd to_dense(Mat m, Index n) {
-  MatrixXd out = MatrixXd::Zero(n, n);
-  for (PetscInt i = 0; i < n; ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
-    check(MatRestoreRow(m, i, &count, &columns, &values));
-  }
-  return out;
-}
-
 }  // namespace
-
-// State and rate at one collocation point, scaled, with the vectors a general System works on.
-struct CycleProblem::Point {
-  VectorXd value, slope;
-};
 
 CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh)
     : comm_(time),
@@ -52,21 +29,11 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
       size_(core::size_of(time)),
       system_(local),
       structure_(options.use_structure ? local.structure() : nullptr),
+      point_(local, structure_),
       options_(options),
       scheme_(make_scheme(options.degree, options.points)),
       n_(local.size()),
       borders_(options.autonomous ? 2 : 1) {
-  core::require(core::size_of(local.comm()) == 1, "the system of a time group must live on one rank");
-  core::Vector xs = core::make_vector(local.comm(), static_cast<PetscInt>(n_), PETSC_DETERMINE),
-               fs = core::duplicate(xs.get());
-  local.scales(xs.get(), fs.get());
-  state_scale_ = to_eigen(xs.get());
-  residual_scale_ = to_eigen(fs.get());
-  if (structure_) {
-    l1_ = residual_scale_.cwiseInverse().asDiagonal() * structure_->l1() * state_scale_.asDiagonal();
-    b_ = residual_scale_.cwiseInverse().asDiagonal() * structure_->b();
-    c_ = structure_->c() * state_scale_.asDiagonal();
-  }
   layout(std::move(mesh));
 }
 
@@ -132,50 +99,11 @@ void CycleProblem::residual(Vec u, Vec r) {
     set_parameter(border);
     const double period = period_of(border);
     if (!(period > 0)) throw core::DomainError("the period is not positive");
-    core::Vector x, xdot, f;
-    MatrixXd l0;  // not l0_, which belongs to the linearisation
-    if (structure_) {
-      l0 = residual_scale_.cwiseInverse().asDiagonal() * structure_->l0() * state_scale_.asDiagonal();
-    } else {
-      x = core::make_vector(system_.comm(), static_cast<PetscInt>(n_), PETSC_DETERMINE);
-      xdot = core::duplicate(x.get());
-      f = core::duplicate(x.get());
-    }
-    VectorXd value(n_), slope(n_), load(n_), forces;
+    point_.refresh();
     for (Index i = 0; i < count_; ++i) {
-      const double h = length(mesh_, first_ + i);
       const double* own = ua.data() + i * m * n_;
       const double* start = i == 0 ? before.data() : own - n_;
-      for (Index j = 0; j < m; ++j) {
-        value = scheme_.value(j, 0) * Map<const VectorXd>(start, n_);
-        slope = scheme_.slope(j, 0) * Map<const VectorXd>(start, n_);
-        for (Index l = 1; l <= m; ++l) {
-          const Map<const VectorXd> node(own + (l - 1) * n_, n_);
-          value += scheme_.value(j, l) * node;
-          slope += scheme_.slope(j, l) * node;
-        }
-        slope /= h * period;
-        const double angle = options_.autonomous ? 0.0
-                                                 : two_pi * options_.turns *
-                                                       (mesh_[static_cast<std::size_t>(first_ + i)] + h * scheme_.c(j));
-        Map<VectorXd> out(ra.data() + (i * m + j) * n_, n_);
-        if (structure_) {
-          structure_->load(angle, load, nullptr);
-          structure_->forces(c_ * value, forces, nullptr, nullptr);
-          out.noalias() = l0 * value;
-          out.noalias() += l1_ * slope;
-          out -= load.cwiseQuotient(residual_scale_);
-          out.noalias() -= b_ * forces;
-        } else {
-          {
-            const core::WriteArray xa(x.get()), da(xdot.get());
-            Map<VectorXd>(xa.data(), n_) = value.cwiseProduct(state_scale_);
-            Map<VectorXd>(da.data(), n_) = slope.cwiseProduct(state_scale_);
-          }
-          system_.residual(angle, x.get(), xdot.get(), f.get());
-          out = to_eigen(f.get()).cwiseQuotient(residual_scale_);
-        }
-      }
+      interval_residual(i, own, Map<const VectorXd>(start, n_), period, ra.data() + i * m * n_);
     }
   });
   if (options_.autonomous) {
@@ -186,54 +114,59 @@ void CycleProblem::residual(Vec u, Vec r) {
   }
 }
 
+double CycleProblem::interval_length(Index i) const {
+  return length(mesh_, first_ + i);
+}
+
+double CycleProblem::angle_at(Index i, double t) const {
+  const auto k = static_cast<std::size_t>(first_ + i);
+  return options_.autonomous ? 0.0 : two_pi * options_.turns * (mesh_[k] + length(mesh_, first_ + i) * t);
+}
+
+// State and rate at point j of interval i.
+void CycleProblem::interpolate(Index i, Index j, const double* own, const VectorXd& start, double period,
+                               VectorXd& value, VectorXd& slope) const {
+  value = scheme_.value(j, 0) * start;
+  slope = scheme_.slope(j, 0) * start;
+  for (Index l = 1; l <= scheme_.degree; ++l) {
+    const Map<const VectorXd> node(own + (l - 1) * n_, n_);
+    value += scheme_.value(j, l) * node;
+    slope += scheme_.slope(j, l) * node;
+  }
+  slope /= length(mesh_, first_ + i) * period;
+}
+
+void CycleProblem::interval_residual(Index i, const double* own, const VectorXd& start, double period, double* out) {
+  VectorXd value(n_), slope(n_);
+  for (Index j = 0; j < scheme_.degree; ++j) {
+    interpolate(i, j, own, start, period, value, slope);
+    point_.residual(angle_at(i, scheme_.c(j)), value, slope, Map<VectorXd>(out + j * n_, n_));
+  }
+}
+
 std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double* own, const VectorXd& start,
                                                            double period, MatrixXd& columns) {
   const Index m = scheme_.degree;
   const double h = length(mesh_, first_ + i);
   columns.resize(m * n_, borders_);
   std::vector<MatrixXd> tangents(static_cast<std::size_t>(m)), jx, jxdot;
-  core::Vector x, xdot, f;
-  core::Matrix matrix;
   if (!structure_) {
-    x = core::make_vector(system_.comm(), static_cast<PetscInt>(n_), PETSC_DETERMINE);
-    xdot = core::duplicate(x.get());
-    f = core::duplicate(x.get());
-    matrix = system_.make_jacobian();
     jx.resize(static_cast<std::size_t>(m));
     jxdot.resize(static_cast<std::size_t>(m));
   }
   VectorXd value(n_), slope(n_), load(n_), d_load(n_), forces, d_forces, rate(n_);
   for (Index j = 0; j < m; ++j) {
     const auto jj = static_cast<std::size_t>(j);
-    value = scheme_.value(j, 0) * start;
-    slope = scheme_.slope(j, 0) * start;
-    for (Index l = 1; l <= m; ++l) {
-      const Map<const VectorXd> node(own + (l - 1) * n_, n_);
-      value += scheme_.value(j, l) * node;
-      slope += scheme_.slope(j, l) * node;
-    }
-    slope /= h * period;
-    const double angle = options_.autonomous ? 0.0
-                                             : two_pi * options_.turns *
-                                                   (mesh_[static_cast<std::size_t>(first_ + i)] + h * scheme_.c(j));
+    interpolate(i, j, own, start, period, value, slope);
+    const double angle = angle_at(i, scheme_.c(j));
     VectorXd d_parameter;
     if (structure_) {
       structure_->load(angle, load, &d_load);
-      structure_->forces(c_ * value, forces, &tangents[jj], &d_forces);
-      d_parameter = dl0_ * value - d_load.cwiseQuotient(residual_scale_) - b_ * d_forces;
-      rate.noalias() = l1_ * slope;
+      structure_->forces(point_.c() * value, forces, &tangents[jj], &d_forces);
+      d_parameter = dl0_ * value - d_load.cwiseQuotient(point_.residual_scale()) - point_.b() * d_forces;
+      rate.noalias() = point_.l1() * slope;
     } else {
-      {
-        const core::WriteArray xa(x.get()), da(xdot.get());
-        Map<VectorXd>(xa.data(), n_) = value.cwiseProduct(state_scale_);
-        Map<VectorXd>(da.data(), n_) = slope.cwiseProduct(state_scale_);
-      }
-      system_.jacobian(angle, x.get(), xdot.get(), 1, 0, matrix.get());
-      jx[jj] = residual_scale_.cwiseInverse().asDiagonal() * to_dense(matrix.get(), n_) * state_scale_.asDiagonal();
-      system_.jacobian(angle, x.get(), xdot.get(), 0, 1, matrix.get());
-      jxdot[jj] = residual_scale_.cwiseInverse().asDiagonal() * to_dense(matrix.get(), n_) * state_scale_.asDiagonal();
-      system_.parameter_derivative(angle, x.get(), xdot.get(), f.get());
-      d_parameter = to_eigen(f.get()).cwiseQuotient(residual_scale_);
+      point_.linearise(angle, value, slope, jx[jj], jxdot[jj], &d_parameter);
       rate.noalias() = jxdot[jj] * slope;
     }
     // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
@@ -244,7 +177,7 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
   if (!structure_) return make_dense_interval(scheme_, h * period, std::move(jx), std::move(jxdot));
   const double rounded = std::round(h * 1e12) / 1e12;
   auto& part = parts_[rounded];
-  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, l1_, l0_, b_, c_);
+  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, point_.l1(), l0_, point_.b(), point_.c());
   return make_low_rank_interval(part, std::move(tangents));
 }
 
@@ -262,9 +195,10 @@ void CycleProblem::linearise(Vec u, Vec row) {
     set_parameter(border);
     const double period = period_of(border);
     if (!(period > 0)) throw core::DomainError("the period is not positive");
+    point_.refresh();
     if (structure_) {
-      l0_ = residual_scale_.cwiseInverse().asDiagonal() * structure_->l0() * state_scale_.asDiagonal();
-      dl0_ = residual_scale_.cwiseInverse().asDiagonal() * structure_->dl0() * state_scale_.asDiagonal();
+      l0_ = point_.scaled(structure_->l0());
+      dl0_ = point_.scaled(structure_->dl0());
     }
     for (Index i = 0; i < count_; ++i) {
       const double* own = ua.data() + i * m * n_;
@@ -491,7 +425,7 @@ Cycle CycleProblem::gather(Vec u) const {
   const core::ReadArray ua(u);
   MPI_Allgatherv(ua.data(), static_cast<int>(count_ * m * n_), MPI_DOUBLE, cycle.x.data(), counts.data(),
                  offsets.data(), MPI_DOUBLE, comm_);
-  cycle.x = state_scale_.asDiagonal() * cycle.x;
+  cycle.x = state_scale().asDiagonal() * cycle.x;
   if (options_.autonomous)
     cycle.period = border(0) * period_scale_;
   else
@@ -506,12 +440,20 @@ core::Vector CycleProblem::scatter(const Cycle& cycle) const {
   core::Vector u = make_unknown();
   core::WriteArray ua(u.get());
   Map<MatrixXd>(ua.data(), n_, count_ * m) =
-      state_scale_.cwiseInverse().asDiagonal() * here.x.middleCols(first_ * m, count_ * m);
+      state_scale().cwiseInverse().asDiagonal() * here.x.middleCols(first_ * m, count_ * m);
   if (rank_ == size_ - 1) {
     if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
     ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
   }
   return u;
+}
+
+VectorXd CycleProblem::reference_rate(const Cycle& reference, Index g, Index l) {
+  const Index m = scheme_.degree;
+  const VectorXd w = lagrange_slope(scheme_, scheme_.node(l)) / length(mesh_, g);
+  VectorXd rate = w(0) * reference.x.col(g == 0 ? reference.x.cols() - 1 : g * m - 1);
+  for (Index q = 1; q <= m; ++q) rate += w(q) * reference.x.col(g * m + q - 1);
+  return rate;
 }
 
 void CycleProblem::set_phase_reference(const Cycle& reference) {
@@ -525,11 +467,9 @@ void CycleProblem::set_phase_reference(const Cycle& reference) {
     const Index g = first_ + i;
     const double h = length(mesh_, g);
     for (Index l = 1; l <= m; ++l) {
-      const VectorXd w = lagrange_slope(scheme_, scheme_.node(l)) / h;
-      VectorXd rate = w(0) * here.x.col(g == 0 ? here.x.cols() - 1 : g * m - 1);
-      for (Index q = 1; q <= m; ++q) rate += w(q) * here.x.col(g * m + q - 1);
-      rate = rate.cwiseQuotient(state_scale_);
-      const VectorXd value = here.x.col(g * m + l - 1).cwiseQuotient(state_scale_);
+      VectorXd rate = reference_rate(here, g, l);
+      rate = rate.cwiseQuotient(state_scale());
+      const VectorXd value = here.x.col(g * m + l - 1).cwiseQuotient(state_scale());
       const double weight = h * scheme_.node_weight(l - 1);
       phase_row_.col(i * m + l - 1) = weight * rate;
       values[0] += weight * rate.squaredNorm();
@@ -550,7 +490,7 @@ bool CycleProblem::adapt(core::Vector& u, core::Vector& tangent) {
   for (Index i = 0; i < cycle.intervals(); ++i) longest = std::max(longest, length(mesh_, i));
   const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
   std::vector<double> mesh =
-      adapted_mesh(scheme_, cycle, state_scale_, options_.mesh_tolerance, base, options_.max_intervals);
+      adapted_mesh(scheme_, cycle, state_scale(), options_.mesh_tolerance, base, options_.max_intervals);
   if (mesh == mesh_ || static_cast<int>(mesh.size()) - 1 < size_) return false;
   layout(std::move(mesh));
   u = scatter(cycle);

@@ -9,6 +9,7 @@
 #include "whirl/solve/cycle.hpp"
 #include "whirl/solve/extended_problem.hpp"
 #include "whirl/solve/interval.hpp"
+#include "whirl/solve/scaled_point.hpp"
 
 namespace whirl::solve {
 
@@ -53,7 +54,7 @@ public:
   [[nodiscard]] const Scheme& scheme() const { return scheme_; }
   [[nodiscard]] const std::vector<double>& mesh() const { return mesh_; }
   [[nodiscard]] const CycleOptions& options() const { return options_; }
-  [[nodiscard]] const Eigen::VectorXd& state_scale() const { return state_scale_; }
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const { return point_.state_scale(); }
 
   /// Between the distributed unknown and the replicated cycle; an autonomous problem wants its phase reference first.
   /// Collective.
@@ -68,16 +69,34 @@ public:
   /// scaled [n x N m]; its last column is monodromy() v. Collective.
   [[nodiscard]] Eigen::MatrixXd propagate(const Eigen::VectorXd& v) const;
 
+protected:
+  /// What an interval's equations are; the scheme's collocation unless a derived problem says otherwise. `i` counts
+  /// this rank's intervals, `own` are the scaled values at its nodes [n x m], `start` is the state before them. Not
+  /// collective; thrown errors are agreed by the caller.
+  virtual void interval_residual(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
+                                 double* out);
+  /// The linearised interval, with dR/d(period, parameter) [mn x borders] in `columns`.
+  [[nodiscard]] virtual std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* own,
+                                                                     const Eigen::VectorXd& start, double period,
+                                                                     Eigen::MatrixXd& columns);
+  /// x'(s) in SI at node l = 1..m of interval g of the whole mesh, for the phase condition.
+  [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l);
+
+  /// Shaft angle at t in [0, 1] of this rank's interval i; 0 on an autonomous cycle.
+  [[nodiscard]] double angle_at(Eigen::Index i, double t) const;
+  [[nodiscard]] double interval_length(Eigen::Index i) const;
+  [[nodiscard]] double period_scale() const { return period_scale_; }
+  [[nodiscard]] problem::System& system() { return system_; }
+  [[nodiscard]] ScaledPoint& point() { return point_; }
+
 private:
-  struct Point;
   void layout(std::vector<double> mesh);
   [[nodiscard]] double period_of(const Eigen::VectorXd& border) const;
   [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
   [[nodiscard]] Eigen::VectorXd previous_end(const double* local) const;
   void set_parameter(const Eigen::VectorXd& border);
-  [[nodiscard]] std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* x,
-                                                             const Eigen::VectorXd& start, double period,
-                                                             Eigen::MatrixXd& columns);
+  void interpolate(Eigen::Index i, Eigen::Index j, const double* own, const Eigen::VectorXd& start, double period,
+                   Eigen::VectorXd& value, Eigen::VectorXd& slope) const;
   void compose(const std::vector<Eigen::MatrixXd>& rows);
   void assemble(const std::vector<Eigen::MatrixXd>& rows);
 
@@ -85,10 +104,10 @@ private:
   int rank_, size_;
   problem::System& system_;
   problem::Structure* structure_;
+  ScaledPoint point_;
   CycleOptions options_;
   Scheme scheme_;
   Eigen::Index n_, borders_;
-  Eigen::VectorXd state_scale_, residual_scale_;
   double period_scale_ = 0;
 
   std::vector<double> mesh_;
@@ -98,7 +117,7 @@ private:
   double phase_offset_ = 0;
 
   // The linearisation: scaled structure blocks, intervals, border columns, and the composed small system.
-  Eigen::MatrixXd l1_, l0_, dl0_, b_, c_;
+  Eigen::MatrixXd l0_, dl0_;
   std::map<double, std::shared_ptr<const LinearPart>> parts_;
   std::vector<std::unique_ptr<Interval>> intervals_;
   std::vector<Eigen::MatrixXd> columns_, eliminated_;  // dR/d(border) [mn x nb] and A^-1 of it

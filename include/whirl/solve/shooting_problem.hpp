@@ -1,0 +1,47 @@
+#pragma once
+// Periodic solutions by one-step maps: single and multiple shooting, and the finite differences of explicit schemes.
+
+#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/solve/runge_kutta.hpp"
+
+namespace whirl::solve {
+
+/// Equations x_(i+1) = phi_i(x_i; T, p), i over the intervals of the mesh with x_N = x_0, where phi_i are `steps` equal
+/// Runge-Kutta steps.
+///
+/// One interval: single shooting. Several: multiple shooting, distributed over the ranks like collocation. An explicit
+/// scheme with one step per interval: the finite-difference method of van de Vrande (2001), Sec. 3.1, whose system
+/// (3.4) is condensed by the same products of G_i. Unknowns, border, phase condition, monodromy and parallel
+/// condensation are those of CycleProblem with the states at the ends of the intervals (degree 1) as unknowns; the
+/// residual is in scaled states. With Radau IIA steps the states at the mesh points and the monodromy are those of
+/// collocation.
+class ShootingProblem : public CycleProblem {
+public:
+  /// Degree, points and mesh tolerance of `options` are not used. `mesh` has at least one interval per rank.
+  ShootingProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, Tableau tableau, int steps,
+                  std::vector<double> mesh);
+
+  [[nodiscard]] const Tableau& tableau() const { return stepper_.tableau(); }
+  /// Steps per interval.
+  [[nodiscard]] int steps() const { return steps_; }
+
+protected:
+  void interval_residual(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
+                         double* out) override;
+  [[nodiscard]] std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* own,
+                                                             const Eigen::VectorXd& start, double period,
+                                                             Eigen::MatrixXd& columns) override;
+  /// From the equation itself, because the neighbours of a shooting point can be far.
+  [[nodiscard]] Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l) override;
+
+private:
+  void march(Eigen::Index i, double period, Eigen::VectorXd& x, Eigen::MatrixXd* tangents);
+  RungeKutta stepper_;
+  int steps_;
+};
+
+/// The states of `cycle` (made with `scheme`) at the points of another mesh, in the layout of degree 1: a guess for
+/// ShootingProblem.
+[[nodiscard]] Cycle at_points(const Scheme& scheme, const Cycle& cycle, const std::vector<double>& mesh);
+
+}  // namespace whirl::solve

@@ -1,0 +1,103 @@
+#include "whirl/solve/shooting_problem.hpp"
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::solve {
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// x_end - G x_start: the linearised one-step map.
+class MapInterval : public Interval {
+public:
+  explicit MapInterval(MatrixXd g) : g_(std::move(g)) {}
+  void solve(MatrixXd&) const override {}
+  void solve_transposed(MatrixXd&) const override {}
+  MatrixXd start(const MatrixXd& x) const override { return -(g_ * x); }
+  MatrixXd start_transposed(const MatrixXd& y) const override { return -(g_.transpose() * y); }
+  VectorXd multiply(const VectorXd& x_start, const VectorXd& x) const override { return x - g_ * x_start; }
+  MatrixXd transition() const override { return g_; }
+  MatrixXd block(int, int l) const override {
+    return l == 0 ? MatrixXd(-g_) : MatrixXd::Identity(g_.rows(), g_.rows());
+  }
+
+private:
+  MatrixXd g_;
+};
+
+CycleOptions of_degree_one(CycleOptions options) {
+  options.degree = 1;
+  options.points = Points::radau;
+  options.mesh_tolerance = 0;
+  return options;
+}
+
+}  // namespace
+
+ShootingProblem::ShootingProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, Tableau tableau,
+                                 int steps, std::vector<double> mesh)
+    : CycleProblem(time, local, of_degree_one(options), std::move(mesh)),
+      stepper_(point(), std::move(tableau)),
+      steps_(steps) {
+  core::require(steps > 0, "shooting needs at least one step per interval");
+}
+
+// Tangents [d/dx_start | d/dH | d/dp] over all steps of the interval, H the length of one of them.
+void ShootingProblem::march(Index i, double period, VectorXd& x, MatrixXd* tangents) {
+  const double length = interval_length(i) * period / steps_;
+  MatrixXd one;
+  for (int k = 0; k < steps_; ++k) {
+    const double begin = angle_at(i, static_cast<double>(k) / steps_),
+                 end = angle_at(i, static_cast<double>(k + 1) / steps_);
+    stepper_.step(begin, end - begin, length, x, tangents ? &one : nullptr);
+    if (!tangents) continue;
+    if (k == 0) {
+      *tangents = one;
+    } else {
+      *tangents = (one.leftCols(x.size()) * *tangents).eval();
+      tangents->rightCols(2) += one.rightCols(2);
+    }
+  }
+}
+
+void ShootingProblem::interval_residual(Index i, const double* own, const VectorXd& start, double period, double* out) {
+  VectorXd x = start;
+  march(i, period, x, nullptr);
+  Map<VectorXd>(out, x.size()) = Map<const VectorXd>(own, x.size()) - x;
+}
+
+std::unique_ptr<Interval> ShootingProblem::linearise_interval(Index i, const double*, const VectorXd& start,
+                                                              double period, MatrixXd& columns) {
+  const Index n = start.size();
+  VectorXd x = start;
+  MatrixXd tangents;
+  march(i, period, x, &tangents);
+  const double share = interval_length(i) / steps_;
+  VectorXd d_parameter = tangents.col(n + 1);
+  // On a forced cycle T = 2 pi k/Omega.
+  if (!options().autonomous && system().parameter_is_speed())
+    d_parameter -= share * period / system().speed() * tangents.col(n);
+  columns.resize(n, options().autonomous ? 2 : 1);
+  columns.rightCols(1) = -d_parameter * options().parameter_scale;
+  if (options().autonomous) columns.col(0) = -share * period_scale() * tangents.col(n);
+  return std::make_unique<MapInterval>(tangents.leftCols(n));
+}
+
+VectorXd ShootingProblem::reference_rate(const Cycle& reference, Index g, Index) {
+  system().set_parameter(reference.parameter);
+  point().refresh();
+  const VectorXd x = reference.x.col(g).cwiseQuotient(state_scale());
+  return reference.period * point().rate(0, x).cwiseProduct(state_scale());
+}
+
+Cycle at_points(const Scheme& scheme, const Cycle& cycle, const std::vector<double>& mesh) {
+  Cycle out{mesh, {}, cycle.period, cycle.parameter};
+  out.x.resize(cycle.x.rows(), out.intervals());
+  for (Index i = 0; i < out.intervals(); ++i) out.x.col(i) = cycle.at(scheme, mesh[static_cast<std::size_t>(i) + 1]);
+  return out;
+}
+
+}  // namespace whirl::solve
