@@ -1,0 +1,113 @@
+#pragma once
+// Newton-Picard Gauss-Seidel for cycles of systems distributed in space.
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <complex>
+#include <memory>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/cycle.hpp"
+#include "whirl/solve/extended_problem.hpp"
+#include "whirl/solve/tableau.hpp"
+
+namespace whirl::solve {
+
+class SparseRungeKutta;
+class StepProduct;
+
+struct NewtonPicardOptions {
+  int turns = 1;               ///< shaft turns per period of a forced cycle
+  bool autonomous = false;     ///< the period is an unknown and a phase condition is added
+  double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
+  double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
+  double radius = 0.3;         ///< multipliers above it are solved by Newton, the rest by Picard iterations
+  int picard = 3;              ///< Picard iterations on the rest per linear solve
+  double multiplier_tolerance = 1e-9;
+};
+
+/// Equations x_(i+1) = phi_i(x_i; T, p) of ShootingProblem, with M known only by its products: the cost grows with the
+/// nonzeros of dF/dx instead of n^2.
+///
+/// One interval: shooting-based. An explicit scheme with one step per interval: finite-difference-based. With V an
+/// orthonormal basis of the invariant subspace of the multipliers above `radius`, Q = I - V V^T and the condensed
+/// system (I - M) x_0 - E d = R, K x_0 + D d = r_c (d = period, parameter), solve() takes in this order
+///
+///     q_R, q_E : (I - Q M) q = Q R, Q E by Picard iteration q <- Q M q + Q R
+///     [ I - V^T M V   -V^T (E + M q_E) ] [ p ]   [ V^T (R + M q_R) ]
+///     [ K V           K q_E + D        ] [ d ] = [ r_c - K q_R     ]
+///     x_0 = V p + q_R + q_E d,  then x_(i+1) = G_i x_i + ... forward.
+///
+/// It preconditions GMRES around multiply(), which is exact: Newton keeps its quadratic convergence, folds stay regular
+/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation and by
+/// multipliers(), with a size that follows the radius; in between one orthogonal subspace iteration V <- orth(M V)
+/// costs nothing, because M V is known. Source: Lust (1997); van de Vrande (2001), Sec. 3.2 and (3.18), with errata.
+class NewtonPicardProblem : public ExtendedProblem {
+public:
+  /// `tableau` has sequential stages; `steps` per interval of `mesh`. The communicator is that of `system`.
+  NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau, int steps,
+                      std::vector<double> mesh);
+  ~NewtonPicardProblem() override;
+
+  [[nodiscard]] MPI_Comm comm() const override { return system_.comm(); }
+  [[nodiscard]] core::Vector make_unknown() const override;
+  [[nodiscard]] Vec weights() const override { return weights_.get(); }
+  [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
+  void residual(Vec u, Vec r) override;
+  void linearise(Vec u, Vec row) override;
+  void multiply(Vec v, Vec y) override;
+  void solve(Vec rhs, Vec x) override;
+
+  /// Between the distributed unknown and the replicated cycle in the layout of degree 1. Collective.
+  [[nodiscard]] Cycle gather(Vec u) const;
+  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const;
+  /// Phase reference of an autonomous cycle: sum h_i <x_i - ref_i, ref'_i> = 0 from now on.
+  void set_phase_reference(const Cycle& reference);
+
+  /// All multipliers above the radius, and at least one below, by falling modulus, at the last linearisation; renews
+  /// the subspace. Throws core::NotConverged.
+  [[nodiscard]] std::vector<std::complex<double>> multipliers();
+  /// Size of the subspace, and vectors carried over a whole period since the start (each n steps of products).
+  [[nodiscard]] Eigen::Index subspace() const { return basis_.cols(); }
+  [[nodiscard]] long products() const { return products_; }
+
+private:
+  [[nodiscard]] Eigen::Index intervals() const { return static_cast<Eigen::Index>(mesh_.size()) - 1; }
+  [[nodiscard]] double length(Eigen::Index i) const;
+  [[nodiscard]] double angle(double s) const;
+  [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
+  [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
+  void march(Eigen::Index i, double period, Vec x, Eigen::MatrixXd* columns);
+  void sum(Eigen::MatrixXd& values) const;
+  void apply(Eigen::Index i, Eigen::VectorXd& v) const;
+  Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
+  [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
+  [[nodiscard]] Eigen::MatrixXd picard(const Eigen::MatrixXd& right) const;
+  std::vector<std::complex<double>> find_subspace();
+  void prepare();
+
+  problem::System& system_;
+  NewtonPicardOptions options_;
+  int steps_;
+  std::vector<double> mesh_;
+  std::unique_ptr<SparseRungeKutta> stepper_;
+  Eigen::Index local_, borders_;  // this rank's states; 1 or 2
+  bool last_;
+  double period_scale_ = 0, phase_offset_ = 0;
+  Eigen::VectorXd scale_;
+  core::Vector weights_, work_;
+  Eigen::MatrixXd phase_row_;  // [local x N]
+
+  // The linearisation.
+  std::vector<std::vector<StepProduct>> links_;
+  std::vector<Eigen::MatrixXd> columns_;        // dR/d(border) per interval [local x nb]
+  std::vector<Eigen::MatrixXd> rows_;           // added rows per interval [nb x local]
+  Eigen::MatrixXd corner_, ends_, ends_added_;  // E [local x nb], and what it adds to the rows
+  Eigen::MatrixXd basis_, image_, q_ends_, image_q_ends_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  mutable long products_ = 0;
+  int solves_ = 0;  // since the linearisation: many mean that the subspace is stale
+};
+
+}  // namespace whirl::solve

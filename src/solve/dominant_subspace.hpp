@@ -1,0 +1,31 @@
+#pragma once
+// The invariant subspace of the largest eigenvalues of an operator that is known by its products only, by SLEPc.
+
+#include <petscvec.h>
+
+#include <Eigen/Core>
+#include <complex>
+#include <functional>
+#include <vector>
+
+namespace whirl::solve {
+
+/// Eigenvalues of largest modulus, and an orthonormal basis (this rank's rows [n_local x p]) of the invariant subspace
+/// of those above `radius`.
+struct DominantSubspace {
+  std::vector<std::complex<double>> values;  ///< falling modulus: all above the radius, and at least one below
+  Eigen::MatrixXd basis;
+};
+
+struct SubspaceOptions {
+  double radius = 0.3;
+  double tolerance = 1e-9;  ///< relative residual of an eigenpair
+  int guess = 4;            ///< eigenvalues asked for first; more are found until one is below the radius
+};
+
+/// Krylov-Schur (prefix "monodromy_") on v := M v from `start`. The number of vectors follows from the radius.
+/// Collective on the communicator of `start`; throws core::NotConverged.
+[[nodiscard]] DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec start,
+                                                 const SubspaceOptions& options);
+
+}  // namespace whirl::solve

@@ -1,0 +1,388 @@
+#include "whirl/solve/newton_picard.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+#include "solve/dominant_subspace.hpp"
+#include "solve/sparse_step.hpp"
+#include "whirl/core/agree.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr int stale_after = 12;
+
+void put(const VectorXd& values, Vec v) {
+  const core::WriteArray a(v);
+  Map<VectorXd>(a.data(), values.size()) = values;
+}
+
+VectorXd get(Vec v) {
+  const core::ReadArray a(v);
+  return Map<const VectorXd>(a.data(), a.size());
+}
+
+}  // namespace
+
+NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau,
+                                         int steps, std::vector<double> mesh)
+    : system_(system),
+      options_(options),
+      steps_(steps),
+      mesh_(std::move(mesh)),
+      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau))),
+      local_(system.local_size()),
+      borders_(options.autonomous ? 2 : 1),
+      last_(core::rank_of(system.comm()) == core::size_of(system.comm()) - 1),
+      scale_(get(stepper_->state_scale())) {
+  core::require(steps > 0, "shooting needs at least one step per interval");
+  work_ = core::make_vector(comm(), system.local_size(), PETSC_DETERMINE);
+  weights_ = make_unknown();
+  const core::WriteArray w(weights_.get());
+  for (Index i = 0; i < intervals(); ++i)
+    Map<VectorXd>(w.data() + i * local_, local_)
+        .setConstant(options_.state_weight * length(i) / static_cast<double>(system.size()));
+  if (last_) w[w.size() - 1] = 1;
+}
+
+NewtonPicardProblem::~NewtonPicardProblem() = default;
+
+double NewtonPicardProblem::length(Index i) const {
+  return mesh_[static_cast<std::size_t>(i) + 1] - mesh_[static_cast<std::size_t>(i)];
+}
+
+double NewtonPicardProblem::angle(double s) const {
+  return options_.autonomous ? 0.0 : 2 * std::numbers::pi * options_.turns * s;
+}
+
+core::Vector NewtonPicardProblem::make_unknown() const {
+  return core::make_vector(comm(), static_cast<PetscInt>(intervals() * local_ + (last_ ? borders_ : 0)),
+                           PETSC_DETERMINE);
+}
+
+VectorXd NewtonPicardProblem::border_of(Vec u) const {
+  VectorXd border(borders_);
+  if (last_) border = get(u).tail(borders_);
+  MPI_Bcast(border.data(), static_cast<int>(borders_), MPI_DOUBLE, core::size_of(comm()) - 1, comm());
+  return border;
+}
+
+// Sets the parameter and returns the period.
+double NewtonPicardProblem::begin_point(const VectorXd& border) {
+  system_.set_parameter(border(borders_ - 1) * options_.parameter_scale);
+  const double period =
+      options_.autonomous ? border(0) * period_scale_ : 2 * std::numbers::pi * options_.turns / system_.speed();
+  core::agree(comm(), [&] {
+    if (!(period > 0)) throw core::DomainError("the period is not positive");
+  });
+  return period;
+}
+
+void NewtonPicardProblem::sum(MatrixXd& values) const {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm());
+}
+
+// Carries x over interval i; with `columns`, keeps the products of its steps and fills -d phi/d(border).
+void NewtonPicardProblem::march(Index i, double period, Vec x, MatrixXd* columns) {
+  const double begin = mesh_[static_cast<std::size_t>(i)], h = length(i) / steps_;
+  if (!columns) {
+    for (int k = 0; k < steps_; ++k) stepper_->step(angle(begin + k * h), angle(h), h * period, x, nullptr);
+    return;
+  }
+  columns->setZero(local_, borders_);
+  auto& link = links_[static_cast<std::size_t>(i)];
+  link = std::vector<StepProduct>(static_cast<std::size_t>(steps_));
+  const bool by_speed = !options_.autonomous && system_.parameter_is_speed();
+  for (int k = 0; k < steps_; ++k) {
+    StepProduct& step = link[static_cast<std::size_t>(k)];
+    stepper_->step(angle(begin + k * h), angle(h), h * period, x, &step);
+    for (Index b = 0; b < borders_; ++b) {
+      put(columns->col(b), work_.get());
+      if (k > 0) step.apply(work_.get());
+      columns->col(b) = get(work_.get());
+    }
+    VectorXd d_parameter = get(step.d_parameter());
+    if (by_speed) d_parameter -= h * period / system_.speed() * get(step.d_length());
+    columns->col(borders_ - 1) -= d_parameter * options_.parameter_scale;
+    if (options_.autonomous) columns->col(0) -= h * period_scale_ * get(step.d_length());
+  }
+}
+
+void NewtonPicardProblem::residual(Vec u, Vec r) {
+  const double period = begin_point(border_of(u));
+  const core::ReadArray ua(u);
+  const core::WriteArray ra(r);
+  const Map<const MatrixXd> x(ua.data(), local_, intervals());
+  for (Index i = 0; i < intervals(); ++i) {
+    put(x.col(i == 0 ? intervals() - 1 : i - 1), work_.get());
+    march(i, period, work_.get(), nullptr);
+    Map<VectorXd>(ra.data() + i * local_, local_) = x.col(i) - get(work_.get());
+  }
+  if (!options_.autonomous) return;
+  MatrixXd phase(1, 1);
+  phase(0, 0) = (x.array() * phase_row_.array()).sum();
+  sum(phase);
+  if (last_) ra[ra.size() - 2] = phase(0, 0) - phase_offset_;
+}
+
+void NewtonPicardProblem::apply(Index i, VectorXd& v) const {
+  put(v, work_.get());
+  for (const StepProduct& step : links_[static_cast<std::size_t>(i)]) step.apply(work_.get());
+  v = get(work_.get());
+}
+
+// M v column by column, and what the motions add to the rows [nb x columns].
+MatrixXd NewtonPicardProblem::monodromy_times(const MatrixXd& v, MatrixXd& added) const {
+  MatrixXd out(local_, v.cols());
+  added = MatrixXd::Zero(borders_, v.cols());
+  for (Index c = 0; c < v.cols(); ++c) {
+    VectorXd state = v.col(c);
+    for (Index i = 0; i < intervals(); ++i) {
+      apply(i, state);
+      added.col(c) += rows_[static_cast<std::size_t>(i)] * state;
+    }
+    out.col(c) = state;
+  }
+  sum(added);
+  products_ += v.cols();
+  return out;
+}
+
+MatrixXd NewtonPicardProblem::complement(const MatrixXd& v) const {
+  MatrixXd inner = basis_.transpose() * v;
+  sum(inner);
+  return v - basis_ * inner;
+}
+
+MatrixXd NewtonPicardProblem::picard(const MatrixXd& right) const {
+  const MatrixXd fixed = complement(right);
+  MatrixXd q = fixed, added;
+  for (int k = 0; k < options_.picard; ++k) q = complement(monodromy_times(q, added)) + fixed;
+  return q;
+}
+
+void NewtonPicardProblem::linearise(Vec u, Vec row) {
+  const double period = begin_point(border_of(u));
+  const core::ReadArray ua(u), wa(row);
+  const Index count = intervals();
+  const Map<const MatrixXd> x(ua.data(), local_, count), w(wa.data(), local_, count);
+  links_.resize(static_cast<std::size_t>(count));
+  columns_.resize(static_cast<std::size_t>(count));
+  rows_.assign(static_cast<std::size_t>(count), MatrixXd(borders_, local_));
+  core::Vector state = core::duplicate(work_.get());
+  for (Index i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    put(x.col(i == 0 ? count - 1 : i - 1), state.get());
+    march(i, period, state.get(), &columns_[k]);
+    if (options_.autonomous) rows_[k].row(0) = phase_row_.col(i).transpose();
+    rows_[k].bottomRows(1) = w.col(i).transpose();
+  }
+  corner_ = MatrixXd::Zero(borders_, borders_);
+  corner_.row(borders_ - 1) = border_of(row).transpose();
+
+  ends_ = MatrixXd::Zero(local_, borders_);
+  ends_added_ = MatrixXd::Zero(borders_, borders_);
+  for (Index i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    for (Index b = 0; b < borders_ && i > 0; ++b) {
+      VectorXd column = ends_.col(b);
+      apply(i, column);
+      ends_.col(b) = column;
+    }
+    ends_ -= columns_[k];
+    ends_added_ += rows_[k] * ends_;
+  }
+  sum(ends_added_);
+
+  const bool stale = solves_ > stale_after || image_.rows() != local_;
+  if (stale) {
+    (void)find_subspace();
+  } else if (basis_.cols() > 0) {
+    // V <- orth(M V) with the image of the last linearisation, by Cholesky of its Gram matrix, twice.
+    basis_ = image_;
+    for (int k = 0; k < 2; ++k) {
+      MatrixXd gram = basis_.transpose() * basis_;
+      sum(gram);
+      basis_ = gram.llt().matrixU().solve<Eigen::OnTheRight>(basis_).eval();
+    }
+  }
+  prepare();
+}
+
+// Everything that solve() needs of the subspace.
+void NewtonPicardProblem::prepare() {
+  const Index p = basis_.cols();
+  MatrixXd basis_added, q_added;
+  image_ = monodromy_times(basis_, basis_added);
+  q_ends_ = picard(ends_);
+  image_q_ends_ = monodromy_times(q_ends_, q_added);
+  MatrixXd top(p, p + borders_);
+  top << basis_.transpose() * image_, basis_.transpose() * (ends_ + image_q_ends_);
+  sum(top);
+  MatrixXd small(p + borders_, p + borders_);
+  small.topRows(p) = MatrixXd::Identity(p, p + borders_) - top;
+  small.bottomLeftCorner(borders_, p) = basis_added;
+  small.bottomRightCorner(borders_, borders_) = q_added + ends_added_ + corner_;
+  small_.compute(small);
+  solves_ = 0;
+}
+
+std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
+  VectorXd start(local_);
+  if (basis_.cols() > 0) {
+    start = basis_.rowwise().sum();
+  } else {
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
+    for (Index k = 0; k < local_; ++k) start(k) = 1 + std::sin(0.7 * static_cast<double>(begin + k));
+  }
+  core::Vector first = core::duplicate(work_.get());
+  put(start, first.get());
+  SubspaceOptions options;
+  options.radius = options_.radius;
+  options.tolerance = options_.multiplier_tolerance;
+  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
+  DominantSubspace found = dominant_subspace(
+      [this](Vec v) {
+        for (const auto& link : links_)
+          for (const StepProduct& step : link) step.apply(v);
+        ++products_;
+      },
+      first.get(), options);
+  basis_ = std::move(found.basis);
+  return found.values;
+}
+
+std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
+  auto values = find_subspace();
+  prepare();
+  return values;
+}
+
+void NewtonPicardProblem::multiply(Vec v, Vec y) {
+  const VectorXd border = border_of(v);
+  const core::ReadArray va(v);
+  const core::WriteArray ya(y);
+  const Index count = intervals();
+  const Map<const MatrixXd> x(va.data(), local_, count);
+  MatrixXd added = MatrixXd::Zero(borders_, 1);
+  for (Index i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    VectorXd state = x.col(i == 0 ? count - 1 : i - 1);
+    apply(i, state);
+    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + columns_[k] * border;
+    added += rows_[k] * x.col(i);
+  }
+  ++products_;
+  sum(added);
+  added += corner_ * border;
+  if (last_) Map<VectorXd>(ya.data() + ya.size() - borders_, borders_) = added;
+}
+
+void NewtonPicardProblem::solve(Vec rhs, Vec out) {
+  const VectorXd r_border = border_of(rhs);
+  const core::ReadArray ra(rhs);
+  const core::WriteArray xa(out);
+  const Index count = intervals(), p = basis_.cols();
+  const Map<const MatrixXd> r(ra.data(), local_, count);
+  // The motion that the right-hand side alone drives.
+  MatrixXd added = MatrixXd::Zero(borders_, 1);
+  VectorXd state = VectorXd::Zero(local_);
+  for (Index i = 0; i < count; ++i) {
+    if (i > 0) apply(i, state);
+    state += r.col(i);
+    added += rows_[static_cast<std::size_t>(i)] * state;
+  }
+  sum(added);
+  products_ += count > 1;
+
+  const MatrixXd q = picard(state);
+  MatrixXd q_added;
+  const MatrixXd image_q = monodromy_times(q, q_added);
+  MatrixXd top = basis_.transpose() * (state + image_q);
+  sum(top);
+  VectorXd small(p + borders_);
+  small << top, r_border - added - q_added;
+  small = small_.solve(small).eval();
+  const VectorXd border = small.tail(borders_);
+  state = basis_ * small.head(p) + q + q_ends_ * border;
+  for (Index i = 0; i < count; ++i) {
+    apply(i, state);
+    state += r.col(i) - columns_[static_cast<std::size_t>(i)] * border;
+    Map<VectorXd>(xa.data() + i * local_, local_) = state;
+  }
+  ++products_;
+  ++solves_;
+  if (last_) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
+}
+
+Cycle NewtonPicardProblem::gather(Vec u) const {
+  const VectorXd border = border_of(u);
+  const core::ReadArray ua(u);
+  Cycle cycle{mesh_, MatrixXd(system_.size(), intervals()), 0, border(borders_ - 1) * options_.parameter_scale};
+  core::Scatter scatter;
+  core::Vector whole;
+  check(VecScatterCreateToAll(work_.get(), scatter.put(), whole.put()));
+  for (Index i = 0; i < intervals(); ++i) {
+    put(Map<const VectorXd>(ua.data() + i * local_, local_).cwiseProduct(scale_), work_.get());
+    check(VecScatterBegin(scatter.get(), work_.get(), whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(scatter.get(), work_.get(), whole.get(), INSERT_VALUES, SCATTER_FORWARD));
+    cycle.x.col(i) = get(whole.get());
+  }
+  if (options_.autonomous)
+    cycle.period = border(0) * period_scale_;
+  else
+    cycle.period =
+        2 * std::numbers::pi * options_.turns / (system_.parameter_is_speed() ? cycle.parameter : system_.speed());
+  return cycle;
+}
+
+core::Vector NewtonPicardProblem::scatter(const Cycle& cycle) const {
+  core::require(cycle.x.cols() == intervals(), "the cycle has other points than the problem");
+  core::Vector u = make_unknown();
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
+  const core::WriteArray ua(u.get());
+  Map<MatrixXd>(ua.data(), local_, intervals()) =
+      scale_.cwiseInverse().asDiagonal() * cycle.x.middleRows(begin, local_);
+  if (last_) {
+    if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
+    ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
+  }
+  return u;
+}
+
+void NewtonPicardProblem::set_phase_reference(const Cycle& reference) {
+  core::require(options_.autonomous, "only an autonomous cycle has a phase condition");
+  if (period_scale_ == 0) period_scale_ = reference.period;
+  system_.set_parameter(reference.parameter);
+  const core::Vector u = scatter(reference);
+  const core::ReadArray ua(u.get());
+  const Map<const MatrixXd> x(ua.data(), local_, intervals());
+  core::Vector state = core::duplicate(work_.get()), slope = core::duplicate(work_.get());
+  phase_row_.resize(local_, intervals());
+  MatrixXd values = MatrixXd::Zero(2, 1);
+  for (Index i = 0; i < intervals(); ++i) {
+    put(x.col(i), state.get());
+    stepper_->rate(0, state.get(), slope.get());
+    const VectorXd rate = get(slope.get());
+    phase_row_.col(i) = length(i) * rate;
+    values(0) += length(i) * rate.squaredNorm();
+    values(1) += length(i) * rate.dot(x.col(i));
+  }
+  sum(values);
+  const double norm = std::sqrt(values(0));
+  core::require(norm > 0, "the phase reference does not move");
+  phase_row_ /= norm;
+  phase_offset_ = values(1) / norm;
+}
+
+}  // namespace whirl::solve
