@@ -16,33 +16,70 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// Iterated to rounding, so that products are exact whatever the preconditioner leaves.
+constexpr PetscInt direct_below = 3000;
+
+bool is_diagonal(MPI_Comm comm, Mat matrix) {
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(matrix, &begin, &end));
+  int diagonal = 1;
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrix, i, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k)
+      if (columns[k] != i && values[k] != 0) diagonal = 0;
+    check(MatRestoreRow(matrix, i, &count, &columns, &values));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &diagonal, 1, MPI_INT, MPI_MIN, comm);
+  return diagonal != 0;
+}
+
+// The block Jacobi of large matrices solves its blocks exactly.
+void exact_blocks(PC pc) {
+  PetscBool blocks = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCBJACOBI, &blocks));
+  if (!blocks) return;
+  PetscInt count = 0;
+  KSP* sub = nullptr;
+  check(PCBJacobiGetSubKSP(pc, &count, nullptr, &sub));
+  for (PetscInt i = 0; i < count; ++i) {
+    PC inner = nullptr;
+    check(KSPGetPC(sub[i], &inner));
+    check(PCSetType(inner, PCLU));
+  }
+}
+
+// Solves to rounding, so that products are exact. Small matrices are factorised, on every rank if there are several,
+// with one step of refinement for what LU without pivoting loses: no reductions, which cost more than the arithmetic.
 std::shared_ptr<const core::LinearSolver> make_solver(MPI_Comm comm, Mat matrix) {
   auto solver = std::make_shared<core::LinearSolver>();
   check(KSPCreate(comm, solver->put()));
   KSP ksp = solver->get();
+  PC pc = nullptr;
+  PetscInt n = 0;
+  check(MatGetSize(matrix, &n, nullptr));
   check(KSPSetOptionsPrefix(ksp, "stage_"));
   check(KSPSetOperators(ksp, matrix, matrix));
-  check(KSPSetType(ksp, KSPGMRES));
-  check(KSPSetTolerances(ksp, 1e-13, 1e-300, PETSC_DEFAULT, 200));
-  PC pc = nullptr;
   check(KSPGetPC(ksp, &pc));
   const bool alone = core::size_of(comm) == 1;
-  check(PCSetType(pc, alone ? PCLU : PCBJACOBI));
+  if (is_diagonal(comm, matrix)) {
+    check(KSPSetType(ksp, KSPPREONLY));
+    check(PCSetType(pc, PCJACOBI));
+  } else if (alone || n < direct_below) {
+    check(KSPSetType(ksp, KSPRICHARDSON));
+    check(KSPSetNormType(ksp, KSP_NORM_NONE));
+    check(KSPSetConvergenceTest(ksp, KSPConvergedSkip, nullptr, nullptr));
+    check(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 2));
+    check(PCSetType(pc, alone ? PCLU : PCREDUNDANT));
+  } else {
+    check(KSPSetType(ksp, KSPGMRES));
+    check(KSPSetTolerances(ksp, 1e-13, 1e-300, PETSC_DEFAULT, 200));
+    check(PCSetType(pc, PCBJACOBI));
+  }
   check(KSPSetFromOptions(ksp));
   check(KSPSetUp(ksp));
-  PetscBool blocks = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCBJACOBI, &blocks));
-  if (blocks) {
-    PetscInt count = 0;
-    KSP* sub = nullptr;
-    check(PCBJacobiGetSubKSP(pc, &count, nullptr, &sub));
-    for (PetscInt i = 0; i < count; ++i) {
-      PC inner = nullptr;
-      check(KSPGetPC(sub[i], &inner));
-      check(PCSetType(inner, PCLU));
-    }
-  }
+  exact_blocks(pc);
   return solver;
 }
 

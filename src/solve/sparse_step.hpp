@@ -35,7 +35,8 @@ private:
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
-/// system.comm(): exact LU on one rank, GMRES with block Jacobi on several (prefix "stage_").
+/// system.comm(): exact LU (on each rank, for small systems), GMRES with
+/// block Jacobi for large ones on several ranks (PETSc prefix "stage_").
 class SparseRungeKutta {
 public:
   SparseRungeKutta(problem::System& system, Tableau tableau);
