@@ -159,11 +159,11 @@ bool alone() {
 }
 
 TEST(Brusselator, ShootingBasedNewtonPicard) {
-  newton_picard(test::brusselator_cycles[0], solve::sdirk(4), 1, 80, "shooting-based");
-  if (alone()) newton_picard(test::brusselator_cycles[1], solve::sdirk(4), 1, 80, "shooting-based");
+  newton_picard(test::brusselator_cycles[0], solve::sdirk(4), 1, 100, "shooting-based");
+  if (alone()) newton_picard(test::brusselator_cycles[1], solve::sdirk(4), 1, 100, "shooting-based");
 }
 
 TEST(Brusselator, FiniteDifferenceBasedNewtonPicard) {
-  newton_picard(test::brusselator_cycles[0], solve::classical(), 120, 1, "finite-difference-based");
-  if (alone()) newton_picard(test::brusselator_cycles[2], solve::classical(), 120, 1, "finite-difference-based");
+  newton_picard(test::brusselator_cycles[0], solve::classical(), 160, 1, "finite-difference-based");
+  if (alone()) newton_picard(test::brusselator_cycles[2], solve::classical(), 160, 1, "finite-difference-based");
 }
