@@ -153,17 +153,36 @@ TEST(Brusselator, CollocationAndMultipleShooting) {
   }
 }
 
-// Many small messages: the finer meshes on one rank only.
-bool alone() {
-  return core::size_of(MPI_COMM_WORLD) == 1;
-}
-
+// Many small messages: the whole accuracy on one rank only.
 TEST(Brusselator, ShootingBasedNewtonPicard) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP();
   newton_picard(test::brusselator_cycles[0], solve::sdirk(4), 1, 100, "shooting-based");
-  if (alone()) newton_picard(test::brusselator_cycles[1], solve::sdirk(4), 1, 100, "shooting-based");
+  newton_picard(test::brusselator_cycles[1], solve::sdirk(4), 1, 100, "shooting-based");
 }
 
 TEST(Brusselator, FiniteDifferenceBasedNewtonPicard) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP();
   newton_picard(test::brusselator_cycles[0], solve::classical(), 160, 1, "finite-difference-based");
-  if (alone()) newton_picard(test::brusselator_cycles[2], solve::classical(), 160, 1, "finite-difference-based");
+  newton_picard(test::brusselator_cycles[2], solve::classical(), 160, 1, "finite-difference-based");
+}
+
+// The same coarse steps in space over all ranks and on each rank alone.
+TEST(Brusselator, NewtonPicardOnAnyNumberOfRanks) {
+  const auto run = [](MPI_Comm comm, const solve::Tableau& t, int intervals, int steps) {
+    test::Brusselator s(comm, 8);
+    solve::NewtonPicardOptions o;
+    o.autonomous = true;
+    solve::NewtonPicardProblem problem(s, o, t, steps, solve::uniform_mesh(intervals));
+    const auto start = solve::at_points(points(), guess(8), solve::uniform_mesh(intervals));
+    problem.set_phase_reference(start);
+    core::Vector u = problem.scatter(start);
+    fixed(problem, u.get());
+    return std::pair(problem.gather(u.get()), problem.multipliers());
+  };
+  for (const auto& [t, intervals, steps] : {std::tuple(solve::sdirk(2), 1, 16), std::tuple(solve::heun(), 32, 1)}) {
+    const auto whole = run(MPI_COMM_WORLD, t, intervals, steps), alone = run(PETSC_COMM_SELF, t, intervals, steps);
+    EXPECT_NEAR(whole.first.period, alone.first.period, 1e-9);
+    EXPECT_LE((whole.first.x - alone.first.x).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_NEAR(std::abs(whole.second[1]), std::abs(alone.second[1]), 1e-8);
+  }
 }
