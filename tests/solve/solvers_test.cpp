@@ -73,7 +73,7 @@ Answer shooting(const solve::Tableau& t, int intervals, int steps) {
 }
 
 Answer newton_picard(const solve::Tableau& t, int intervals, int steps) {
-  test::SmallSystem s(MPI_COMM_WORLD, 8, speed, 0, LaggedDuffing<8>{});
+  test::SmallSystem s(PETSC_COMM_SELF, 8, speed, 0, LaggedDuffing<8>{});
   solve::NewtonPicardProblem problem(s, {}, t, steps, solve::uniform_mesh(intervals));
   core::Vector u = problem.scatter(rest(solve::uniform_mesh(intervals), points(), speed)),
                row = core::duplicate(u.get());
@@ -152,7 +152,7 @@ TEST(Solvers, FoldsByEachOfThem) {
                         [&] { return spectral::eigenvalues(problem.monodromy()); }),
                  reference, tolerance, what);
   };
-  shooting(solve::radau_iia(2), 1, 32, 1e-3, "single shooting");
+  shooting(solve::radau_iia(2), 1, 32, 5e-3, "single shooting");
   shooting(solve::radau_iia(3), 8, 3, 1e-4, "multiple shooting");
   shooting(solve::classical(), 48, 1, 1e-3, "finite differences");
   const auto picard = [&](const solve::Tableau& t, int intervals, int steps, double tolerance, const char* what) {
