@@ -41,6 +41,7 @@ ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure)
   f_ = core::duplicate(x_.get());
   system.scales(x_.get(), f_.get());
   state_scale_ = to_eigen(x_.get());
+  load_.resize(size());
   residual_scale_ = to_eigen(f_.get());
   if (structure_) {
     l1_ = scaled(structure_->l1());
@@ -69,13 +70,12 @@ void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
 
 void ScaledPoint::residual(double angle, const VectorXd& x, const VectorXd& xdot, Eigen::Ref<VectorXd> out) {
   if (structure_) {
-    VectorXd load(size()), forces;
-    structure_->load(angle, load, nullptr);
-    structure_->forces(c_ * x, forces, nullptr, nullptr);
+    structure_->load(angle, load_, nullptr);
+    structure_->forces(c_ * x, forces_, nullptr, nullptr);
     out.noalias() = l0_ * x;
     out.noalias() += l1_ * xdot;
-    out -= load.cwiseQuotient(residual_scale_);
-    out.noalias() -= b_ * forces;
+    out -= load_.cwiseQuotient(residual_scale_);
+    out.noalias() -= b_ * forces_;
     return;
   }
   put(x, xdot);
@@ -86,10 +86,10 @@ void ScaledPoint::residual(double angle, const VectorXd& x, const VectorXd& xdot
 void ScaledPoint::linearise(double angle, const VectorXd& x, const VectorXd& xdot, MatrixXd& jx, MatrixXd& jxdot,
                             VectorXd* d_parameter) {
   if (structure_) {
-    VectorXd load(size()), d_load(size()), forces, d_forces;
+    VectorXd d_load(size()), d_forces;
     MatrixXd tangent;
-    structure_->load(angle, load, &d_load);
-    structure_->forces(c_ * x, forces, &tangent, &d_forces);
+    structure_->load(angle, load_, &d_load);
+    structure_->forces(c_ * x, forces_, &tangent, &d_forces);
     jx = l0_;
     jx.noalias() -= b_ * (tangent * c_);
     jxdot = l1_;

@@ -68,7 +68,7 @@ public:
   /// All multipliers above the radius, and at least one below, by falling modulus, at the last linearisation; renews
   /// the subspace. Throws core::NotConverged.
   [[nodiscard]] std::vector<std::complex<double>> multipliers();
-  /// Size of the subspace, and vectors carried over a whole period since the start (each n steps of products).
+  /// Size of the subspace, and products of the monodromy matrix with a vector since the start.
   [[nodiscard]] Eigen::Index subspace() const { return basis_.cols(); }
   [[nodiscard]] long products() const { return products_; }
 

@@ -17,10 +17,11 @@ public:
   [[nodiscard]] Eigen::Index size() const { return state_scale_.size(); }
   [[nodiscard]] const Eigen::VectorXd& state_scale() const { return state_scale_; }
   [[nodiscard]] const Eigen::VectorXd& residual_scale() const { return residual_scale_; }
-  /// Scaled blocks of the structure that do not depend on the parameter, and dL/dx-like blocks at the present one.
+  /// Scaled L1, B and C of the structure.
   [[nodiscard]] const Eigen::MatrixXd& l1() const { return l1_; }
   [[nodiscard]] const Eigen::MatrixXd& b() const { return b_; }
   [[nodiscard]] const Eigen::MatrixXd& c() const { return c_; }
+  /// A block of dF/dx or dF/d(dx/dt), scaled.
   [[nodiscard]] Eigen::MatrixXd scaled(const Eigen::MatrixXd& block) const;
 
   /// To be called after each change of the system's parameter.
@@ -38,6 +39,7 @@ private:
   problem::System& system_;
   problem::Structure* structure_;
   Eigen::VectorXd state_scale_, residual_scale_;
+  Eigen::VectorXd load_, forces_;  // work space
   Eigen::MatrixXd l1_, b_, c_, l0_, dl0_;
   core::Vector x_, xdot_, f_;
   core::Matrix matrix_;
