@@ -44,6 +44,9 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("multipliers", &O::multipliers, deck::positive, "Floquet multipliers to report, the largest");
   d.add("period", &O::period, deck::positive, "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
+  d.add("max_eccentricity", &O::max_eccentricity, deck::between(0, 1),
+        "the branch ends, as in contact, where the journal's eccentricity per clearance reaches this; no limit if not "
+        "given");
   d.add("detect", &O::detect, "bifurcations to locate");
   d.add("follow_flips", &O::follow_flips,
         "also follow the cycles of twice the period born at the flips found, each as a study 'NAME flip K'");
