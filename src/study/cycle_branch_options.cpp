@@ -35,6 +35,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("points", &O::points, "collocation points");
   d.add("adapt_mesh", &O::adapt_mesh,
         "split and merge intervals of the time mesh as the cycle changes along the branch");
+  d.add("adapt_every", &O::adapt_every, deck::positive, "points of the branch between adaptations of the time mesh");
   d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive,
         "estimated error per interval above which it is split, relative to the orbit");
   d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),

@@ -73,7 +73,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.min_step = options_.parameter.step ? options_.parameter.step->min.value / scale_ : width / 1e6;
   continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
   continuation_.max_points = options_.max_points;
-  continuation_.adapt_every = options_.adapt_mesh ? 2 : 0;
+  continuation_.adapt_every = options_.adapt_mesh ? options_.adapt_every : 0;
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;

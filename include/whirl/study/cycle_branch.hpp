@@ -23,6 +23,7 @@ struct CycleBranchOptions {
   int degree = 2;                       ///< of the polynomials
   Points points = Points::radau;        ///< of collocation
   bool adapt_mesh = true;
+  int adapt_every = 5;             ///< points between adaptations
   double mesh_tolerance = 1e-3;    ///< estimated error per interval, relative to the size of the orbit
   double tolerance = 1e-9;         ///< of Newton's method: root mean square of the scaled residual
   std::vector<deck::Quantity> at;  ///< parameters at which the cycle is solved and reported
