@@ -12,6 +12,7 @@ import sys
 from harness import Harness, value
 
 FINE, FOLD, WALL = 1e-5, 1e-4, 5e-3
+GIVEN = 1e-3  # the reference states 13.797(1)
 SUB, SUPER = "subcritical", "supercritical"
 
 # study: [(type, Omega*, tolerance, criticality), ...]; folds where the largest eccentricity exceeds 0.9 to WALL.
@@ -21,8 +22,8 @@ FIGURES = {
             "a1": [("flip", 2.468901, FINE, SUB), ("flip", 3.412566, FINE, None)],
             "a1 flip 1": [("cyclic_fold", 2.461408, FOLD, None), ("cyclic_fold", 18.7947, WALL, None)],
             "a2": [("flip", 2.874299, FINE, None), ("flip", 5.760622, FINE, None)],
-            "a2 flip 1": [("cyclic_fold", 19.7691, WALL, None)],
-            "a2 flip 2": [("cyclic_fold", 19.7691, WALL, None)],
+            "a2 flip 1": [("cyclic_fold", 19.7691, FOLD, None)],
+            "a2 flip 2": [("cyclic_fold", 19.7691, FOLD, None)],
             "a3": [("neimark_sacker", 10.389171, FINE, None)]},
     "5_3": {"whirl": [("hopf", 2.73526314, FINE, SUB), ("cyclic_fold", 2.61397, FOLD, None)]},
     "5_4": {"balanced": [("hopf", 2.75634869, FINE, None)],
@@ -40,8 +41,8 @@ FIGURES = {
             "a1 flip 1": [("cyclic_fold", 2.453899, FOLD, None), ("cyclic_fold", 15.6479, WALL, None)],
             "a1 flip 2": [("cyclic_fold", 3.137197, FOLD, None)],
             "a2": [("flip", 2.396433, FINE, None), ("flip", 3.959917, FINE, None)],
-            "a2 flip 1": [("cyclic_fold", 13.797, WALL, None)],
-            "a2 flip 2": [("cyclic_fold", 13.797, WALL, None)],
+            "a2 flip 1": [("cyclic_fold", 13.797, GIVEN, None)],
+            "a2 flip 2": [("cyclic_fold", 13.797, GIVEN, None)],
             "a3": [("flip", 4.695147, FINE, None), ("flip", 6.370272, FINE, None)],
             "a3 flip 1": [("cyclic_fold", 9.625632, FOLD, None)],
             "a3 flip 2": [("cyclic_fold", 9.625632, FOLD, None)]},
