@@ -2,7 +2,7 @@
 import pathlib
 import sys
 
-from . import campbell, bifurcation, film, multipliers, orbits, response, shapes
+from . import campbell, bifurcation, eccentricity, film, multipliers, orbits, response, shapes
 from .data import open_results
 from .style import use_style
 
@@ -38,7 +38,7 @@ def main(argv):
                 else:
                     for file in files:
                         print(file)
-        for file in bifurcation.draw_together(results):
+        for file in [*bifurcation.draw_together(results), *eccentricity.draw(results)]:
             print(file)
     return 1 if failed else 0
 

@@ -22,12 +22,19 @@ def branch_of(study):
     return parameter, np.asarray(stable) > 0.5, unstable
 
 
-def mark_events(axis, study, curves, scale, label=True, size=6):
+def heights(study, curves, kind, value):
+    """Of each curve at a bifurcation. Self-excited cycles begin at their Hopf point, which the branch may pass again."""
     parameter, _, unstable = branch_of(study)
+    if kind == "hopf" and study.kind == "cycle_branch":
+        return [c[0] for c in curves]
+    return place_on_branch(parameter, curves, unstable, kind, value)
+
+
+def mark_events(axis, study, curves, scale, label=True, size=6):
+    parameter, _, _ = branch_of(study)
     events = events_of(study)
     for (kind, value), level in zip(events, levels([v for _, v in events], np.ptp(parameter))):
-        heights = place_on_branch(parameter, [c * scale for c in curves], unstable, kind, value)
-        for i, height in enumerate(heights):
+        for i, height in enumerate(heights(study, [c * scale for c in curves], kind, value)):
             mark(axis, kind, value, height, label=label and i == 0, size=size, level=level)
 
 

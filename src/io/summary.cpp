@@ -38,6 +38,7 @@ Json to_json(const Bifurcation& b) {
             {"period_s", number(b.period_s)},
             {"uncertainty", number(b.uncertainty)},
             {"criticality", text_or_null(b.criticality)}};
+  if (!b.criticality_by.empty()) j["criticality_by"] = b.criticality_by;
   for (const auto& [name, value] : b.more) j[name] = number(value);
   return j;
 }
@@ -61,6 +62,8 @@ Bifurcation bifurcation(const Json& j) {
       b.uncertainty = number(v);
     } else if (key == "criticality") {
       b.criticality = v.is_null() ? "" : v.get<std::string>();
+    } else if (key == "criticality_by") {
+      v.get_to(b.criticality_by);
     } else {
       b.more[key] = number(v);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "whirl/core/error.hpp"
 
@@ -62,6 +63,7 @@ private:
   const ContinuationOptions& options_;
   const BranchCallbacks& callbacks_;
   int direction_;
+  double fold_ = 0, fold_span_ = 0;  // of the step whose events are sought: NaN without a located fold
 };
 
 NewtonResult Follower::correct_at(core::Vector& u, double parameter) {
@@ -197,12 +199,15 @@ void Follower::crossings(const State& a, const State& b, int depth) {
     found.event = Event::flip;
   else
     found.event = Event::branch_point;
-  // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such.
-  if (found.event == Event::branch_point && a.point.slope * b.point.slope < 0) return;
+  // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such. After a split the
+  // two may lie on different sides of the middle.
+  const double apart = std::abs(found.parameter - fold_);
+  if (found.event == Event::branch_point && (a.point.slope * b.point.slope < 0 || apart <= 0.01 * fold_span_)) return;
   callbacks_.on_event(found, at.u.get());
 }
 
 void Follower::events(const State& a, const State& b) {
+  fold_ = std::numeric_limits<double>::quiet_NaN();
   if (a.point.slope * b.point.slope < 0) {
     LocatedEvent found{};
     State at;
@@ -210,6 +215,10 @@ void Follower::events(const State& a, const State& b) {
     found.located = locate(
         a, b, [](const State& s) { return s.point.slope; }, found, at);
     found.sensitivity = 0;
+    if (found.located) {
+      fold_ = found.parameter;
+      fold_span_ = std::max(std::abs(a.point.parameter - fold_), std::abs(b.point.parameter - fold_));
+    }
     callbacks_.on_event(found, at.u.get());
   }
   crossings(a, b, 0);

@@ -131,7 +131,8 @@ std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const
       merged.back() = joined;
     }
   }
-  if (static_cast<int>(merged.size()) > max_intervals) return cycle.mesh;
+  if (static_cast<int>(merged.size()) > max_intervals && base <= max_intervals)
+    return adapted_mesh(scheme, cycle, scale, 2 * tolerance, base, max_intervals);
   std::vector<double> mesh;
   for (const Piece& p : merged) {
     const double h = unit / std::pow(2.0, p.level);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <slepceps.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -138,6 +139,16 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
 }
 
 std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
+  const auto by_modulus = [](Complex a, Complex b) { return std::abs(a) > std::abs(b); };
+  // A few states: setting up an EPS costs more than all the rest of a cycle.
+  if (matrix.rows() <= 16) {
+    if (!matrix.allFinite()) throw core::NotConverged("eigenvalues of a matrix that is not finite");
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, false);
+    if (solver.info() != Eigen::Success) throw core::NotConverged("the eigenvalues did not converge");
+    std::vector<Complex> out(solver.eigenvalues().begin(), solver.eigenvalues().end());
+    std::stable_sort(out.begin(), out.end(), by_modulus);
+    return out;
+  }
   Eigen::MatrixXd copy = matrix;
   const auto n = static_cast<PetscInt>(matrix.rows());
   core::Matrix m;
@@ -156,7 +167,7 @@ std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
   check(EPSGetConverged(eps.get(), &converged));
   std::vector<Complex> out;
   for (PetscInt i = 0; i < converged; ++i) out.push_back(pair_of(eps.get(), i, nullptr, nullptr, false).value);
-  std::stable_sort(out.begin(), out.end(), [](Complex a, Complex b) { return std::abs(a) > std::abs(b); });
+  std::stable_sort(out.begin(), out.end(), by_modulus);
   return out;
 }
 

@@ -78,6 +78,12 @@ std::vector<std::string> names_of_bearings(const system::Machine& machine) {
   return system::bearing_names(machine);
 }
 
+std::vector<double> clearances_of_bearings(const system::Machine& machine) {
+  std::vector<double> out;
+  for (const auto& b : machine.bearings) out.push_back(b.geometry ? b.geometry->clearance : 0.0);
+  return out;
+}
+
 void put_bearings(io::Group& group, const system::Machine& machine) {
   std::vector<double> clearance, preload, offset, arc;
   std::vector<std::int64_t> node;
@@ -166,6 +172,15 @@ system::Train with_half_film_mesh(system::Train train) {
   for (auto& s : train.supports)
     for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = std::max(4, s.film.cells[d] / 2);
   return train;
+}
+
+bool has_film_mesh(const system::Train& train) {
+  using enum film::Options::Kind;
+  return std::any_of(train.supports.begin(), train.supports.end(), [](const system::Support& s) {
+    const auto kind = s.film.kind;
+    return kind != linear && kind != short_bearing && kind != long_bearing && kind != long_inlet &&
+           kind != finite_approximate;
+  });
 }
 
 }  // namespace whirl::study

@@ -34,6 +34,8 @@ private:
 /// Names and clearances of the bearings, into `group`/bearings.
 void put_bearings(io::Group& group, const system::Machine& machine);
 [[nodiscard]] std::vector<std::string> names_of_bearings(const system::Machine& machine);
+/// Radial clearances [m]; zero for a film without geometry.
+[[nodiscard]] std::vector<double> clearances_of_bearings(const system::Machine& machine);
 
 /// "3600" for 376.99 rad/s in rpm: the shortest text with six digits, for dotted names.
 [[nodiscard]] std::string number_text(double value_si, const std::string& unit);
@@ -54,5 +56,7 @@ void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all)
 /// the uncertainty d: a mesh of second order errs by d/3, and two meshes that cannot show the order call for a safety
 /// factor of 3 (Roache 1994).
 [[nodiscard]] system::Train with_half_film_mesh(system::Train train);
+/// Whether any film is computed on a mesh.
+[[nodiscard]] bool has_film_mesh(const system::Train& train);
 
 }  // namespace whirl::study

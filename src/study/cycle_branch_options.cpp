@@ -35,6 +35,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("points", &O::points, "collocation points");
   d.add("adapt_mesh", &O::adapt_mesh,
         "split and merge intervals of the time mesh as the cycle changes along the branch");
+  d.add("adapt_every", &O::adapt_every, deck::positive, "points of the branch between adaptations of the time mesh");
   d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive,
         "estimated error per interval above which it is split, relative to the orbit");
   d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),
@@ -44,6 +45,9 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("multipliers", &O::multipliers, deck::positive, "Floquet multipliers to report, the largest");
   d.add("period", &O::period, deck::positive, "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
+  d.add("max_eccentricity", &O::max_eccentricity, deck::between(0, 1),
+        "the branch ends, as in contact, where the journal's eccentricity per clearance reaches this; no limit if not "
+        "given");
   d.add("detect", &O::detect, "bifurcations to locate");
   d.add("follow_flips", &O::follow_flips,
         "also follow the cycles of twice the period born at the flips found, each as a study 'NAME flip K'");

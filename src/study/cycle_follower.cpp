@@ -63,7 +63,8 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       seed_(std::move(seed)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
-      record_(names_of_bearings(context.machine), unit_, options_.multipliers) {
+      record_(names_of_bearings(context.machine), clearances_of_bearings(context.machine), unit_,
+              options_.multipliers) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
   continuation_.from = (options_.start ? options_.start->value : range.from) / scale_;
@@ -72,8 +73,8 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.min_step = options_.parameter.step ? options_.parameter.step->min.value / scale_ : width / 1e6;
   continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
   continuation_.max_points = options_.max_points;
-  continuation_.adapt_every = options_.adapt_mesh ? 5 : 0;
-  continuation_.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
+  continuation_.adapt_every = options_.adapt_mesh ? options_.adapt_every : 0;
+  continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;
   system_ = make_system(false);
@@ -208,8 +209,15 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
       found.event != solve::Event::branch_point)
     return;
   const solve::Cycle cycle = problem_->gather(u);
-  if (found.event == solve::Event::flip && found.located && options_.follow_flips) seeds_.push_back(seed_at(cycle));
+  if (found.event == solve::Event::cyclic_fold && at_simple_cycle(cycle)) return;
   io::Bifurcation b;
+  if (found.event == solve::Event::flip && found.located) {
+    const FlipSeed seed = seed_at(cycle);
+    if (options_.follow_flips) seeds_.push_back(seed);
+    const auto twice = twice_the_period(seed);
+    const solve::Restart leaving = leave_flip(*twice, seed);
+    set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity);
+  }
   b.type = type_of(found.event);
   b.parameter = options_.parameter.path;
   b.value = found.parameter;
@@ -231,14 +239,15 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.more["whirl_frequency_rad_s"] = frequency;
   }
   if (found.located) {
-    const double time = shift(found, cycle, true, false), film = shift(found, cycle, false, true);
+    const double time = shift(found, cycle, true, false);
+    const double film = has_film_mesh(system_->train()) ? shift(found, cycle, false, true) : 0;
     // Twice the change to the doubled time mesh: the rest that a yet finer one would bring is smaller than that change.
     b.more["uncertainty_time_mesh"] = 2 * time;
     b.more["uncertainty_film_mesh"] = film;
     b.uncertainty = 2 * time + film + found.bracket;
   } else {
     b.more["bracket"] = found.bracket;
-    b.criticality = "not located: lies within the bracket";
+    b.criticality_by = "not located: lies within the bracket";
     b.uncertainty = found.bracket;
   }
   context_.results.summary().bifurcations.push_back(b);
@@ -308,7 +317,8 @@ void CycleFollower::run() {
   callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
     save(p, v, t, step);
     returned_ = seed_ && returned(problem_->gather(v));
-    return !returned_;
+    contact_ = options_.max_eccentricity && record_.eccentricity() >= *options_.max_eccentricity;
+    return !returned_ && !contact_;
   };
   const solve::BranchEnd end =
       solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
@@ -326,7 +336,8 @@ void CycleFollower::run() {
   results.summary().points = end.points;
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
-  results.finish(returned_ ? "completed" : branch_status(end, unit_), end.points > 0);
+  if (contact_) results.summary().set("contact", end.parameter, unit_);
+  results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
 }
 
 }  // namespace whirl::study

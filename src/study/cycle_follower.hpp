@@ -35,10 +35,20 @@ public:
 private:
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
   [[nodiscard]] solve::CycleOptions cycle_options() const;
+  [[nodiscard]] std::unique_ptr<solve::CycleProblem> twice_the_period(const FlipSeed& seed) const;
+  [[nodiscard]] solve::Restart leave_flip(const solve::CycleProblem& twice, const FlipSeed& seed) const;
   [[nodiscard]] core::Vector start(solve::CycleProblem& problem) const;
   [[nodiscard]] solve::Restart start_at_hopf();
   [[nodiscard]] solve::Restart start_at_flip();
   [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle) const;
+  /// Reads off, on the branch through u along the unit `tangent`, whether a branch born at a bifurcation lives where
+  /// the old one is unstable (supercritical) or where it is stable; `sensitivity` is the slope of the old one's
+  /// distance from its border of stability over the scaled parameter.
+  void set_criticality(io::Bifurcation& b, solve::CycleProblem& problem, Vec u, Vec tangent, double sensitivity) const;
+  void record_hopf(const solve::LocatedEvent& hopf, const solve::Restart& leaving, double omega);
+  [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& cycle) const;
+  /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
+  [[nodiscard]] bool at_simple_cycle(const solve::Cycle& cycle) const;
   [[nodiscard]] bool returned(const solve::Cycle& cycle);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   [[nodiscard]] solve::Stability stability() const;
@@ -65,7 +75,7 @@ private:
   std::vector<FlipSeed> seeds_;
   Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
   double largest_difference_ = 0;   // its largest norm so far
-  bool returned_ = false;
+  bool returned_ = false, contact_ = false;
 };
 
 /// Signed distance of a Floquet multiplier from the unit circle.

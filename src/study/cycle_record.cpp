@@ -11,7 +11,7 @@ namespace {
 constexpr int samples_per_orbit = 128;
 
 struct Extremes {
-  std::vector<double> x_max, x_min, y_max, y_min;
+  std::vector<double> x_max, x_min, y_max, y_min, radius;
 };
 
 // Journal motion of all bearings at `count` equidistant times: [time][bearing][x, y].
@@ -30,24 +30,28 @@ std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& schem
   return out;
 }
 
-// Extremes of a periodic signal by the parabola through the largest sample and its neighbours.
-double peak(const std::vector<double>& motion, std::size_t bearings, std::size_t column, double sign) {
-  const std::size_t n = motion.size() / (2 * bearings);
-  const auto value = [&](std::size_t k) { return sign * motion[(k % n) * 2 * bearings + column]; };
+// Largest value of a periodic signal by the parabola through the largest sample and its neighbours.
+template <class Signal>
+double peak(std::size_t n, const Signal& signal) {
+  const auto value = [&](std::size_t k) { return signal(k % n); };
   std::size_t best = 0;
   for (std::size_t k = 1; k < n; ++k)
     if (value(k) > value(best)) best = k;
   const double a = value(best + n - 1), b = value(best), c = value(best + 1), curvature = a - 2 * b + c;
-  return sign * (curvature < 0 ? b - (a - c) * (a - c) / (8 * curvature) : b);
+  return curvature < 0 ? b - (a - c) * (a - c) / (8 * curvature) : b;
 }
 
 Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
   Extremes e;
+  const std::size_t n = motion.size() / (2 * bearings);
   for (std::size_t i = 0; i < bearings; ++i) {
-    e.x_max.push_back(peak(motion, bearings, 2 * i, 1));
-    e.x_min.push_back(peak(motion, bearings, 2 * i, -1));
-    e.y_max.push_back(peak(motion, bearings, 2 * i + 1, 1));
-    e.y_min.push_back(peak(motion, bearings, 2 * i + 1, -1));
+    const auto x = [&](std::size_t k) { return motion[(k * bearings + i) * 2]; };
+    const auto y = [&](std::size_t k) { return motion[(k * bearings + i) * 2 + 1]; };
+    e.x_max.push_back(peak(n, x));
+    e.x_min.push_back(-peak(n, [&](std::size_t k) { return -x(k); }));
+    e.y_max.push_back(peak(n, y));
+    e.y_min.push_back(-peak(n, [&](std::size_t k) { return -y(k); }));
+    e.radius.push_back(peak(n, [&](std::size_t k) { return std::hypot(x(k), y(k)); }));
   }
   return e;
 }
@@ -65,14 +69,17 @@ std::vector<io::Table::Column> columns(std::size_t bearings, const std::string& 
           {"x_min", "m", "smallest", b},
           {"y_max", "m", "largest vertical journal position relative to the bearing centre", b},
           {"y_min", "m", "smallest", b},
+          {"eccentricity_max", "1", "largest eccentricity per clearance; zero for a bearing without clearance", b},
           {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
           {"multipliers_imag", "1", "their imaginary parts", m}};
 }
 
 }  // namespace
 
-CycleRecord::CycleRecord(std::vector<std::string> bearings, std::string unit, int multipliers)
+CycleRecord::CycleRecord(std::vector<std::string> bearings, std::vector<double> clearances, std::string unit,
+                         int multipliers)
     : bearings_(std::move(bearings)),
+      clearances_(std::move(clearances)),
       unit_(std::move(unit)),
       multipliers_(multipliers),
       table_(columns(bearings_.size(), unit_, static_cast<std::size_t>(multipliers))) {}
@@ -81,6 +88,9 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                          const system::RotorSystem& system, double scale) {
   std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
   const Extremes e = extremes(motion, bearings_.size());
+  std::vector<double> eccentricity(bearings_.size(), 0.0);
+  for (std::size_t i = 0; i < eccentricity.size(); ++i)
+    if (clearances_[i] > 0) eccentricity[i] = e.radius[i] / clearances_[i];
   std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
   for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
     re[k] = point.stability.values[k].real();
@@ -98,9 +108,15 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                  e.x_min,
                  e.y_max,
                  e.y_min,
+                 eccentricity,
                  re,
                  im});
   orbits_.push_back(std::move(motion));
+}
+
+double CycleRecord::eccentricity() const {
+  const auto& all = table_.column("eccentricity_max");
+  return *std::max_element(all.end() - static_cast<std::ptrdiff_t>(bearings_.size()), all.end());
 }
 
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,

@@ -18,11 +18,14 @@ namespace whirl::study {
 /// all ranks.
 class CycleRecord {
 public:
-  CycleRecord(std::vector<std::string> bearings, std::string unit, int multipliers);
+  /// `clearances` [m] of the bearings; zero where there is none.
+  CycleRecord(std::vector<std::string> bearings, std::vector<double> clearances, std::string unit, int multipliers);
 
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
   void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
               const system::RotorSystem& system, double scale);
+  /// Largest eccentricity per clearance of any journal on the last point.
+  [[nodiscard]] double eccentricity() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
   void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
               const system::RotorSystem& system, const solve::Stability& stability, io::StudySummary& summary);
@@ -36,6 +39,7 @@ public:
 
 private:
   std::vector<std::string> bearings_;
+  std::vector<double> clearances_;
   std::string unit_;
   int multipliers_;
   io::Table table_;

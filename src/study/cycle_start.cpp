@@ -67,6 +67,7 @@ solve::Restart CycleFollower::start_at_hopf() {
   }
   equilibria.from_state(x.get(), system_->parameter(), u.get());
   double parameter = 0;
+  solve::LocatedEvent hopf{};
   solve::BranchCallbacks callbacks;
   callbacks.stability = [&](Vec v) {
     equilibria.to_state(v, x.get());
@@ -77,6 +78,7 @@ solve::Restart CycleFollower::start_at_hopf() {
     at_hopf = core::duplicate(x.get());
     equilibria.to_state(v, at_hopf.get());
     parameter = found.parameter * scale_;
+    hopf = found;
   };
   callbacks.checkpoint = [&](const solve::BranchPoint&, Vec, Vec, double) { return !at_hopf; };
   solve::ContinuationOptions search = continuation_;
@@ -118,6 +120,7 @@ solve::Restart CycleFollower::start_at_hopf() {
   restart.point.parameter = parameter / scale_;
   context_.results.summary().set("hopf", parameter / scale_, unit_);
   context_.results.summary().set("hopf.whirl_frequency", critical->lambda.imag(), "rad/s");
+  record_hopf(hopf, restart, critical->lambda.imag());
   return restart;
 }
 
@@ -134,24 +137,36 @@ FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) const {
   return seed;
 }
 
+std::unique_ptr<solve::CycleProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
+  solve::CycleOptions o = cycle_options();
+  o.turns *= 2;
+  o.base_intervals *= 2;
+  return std::make_unique<solve::CycleProblem>(context_.comm, *system_, o, two_laps(seed.cycle.mesh));
+}
+
 // The branch leaves along +delta on the first lap and -delta on the second, at first without a change of the parameter.
-solve::Restart CycleFollower::start_at_flip() {
-  const auto twice = [](const solve::Cycle& one, double second) {
-    solve::Cycle two{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period,
+solve::Restart CycleFollower::leave_flip(const solve::CycleProblem& twice, const FlipSeed& seed) const {
+  const auto two = [](const solve::Cycle& one, double second) {
+    solve::Cycle out{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period,
                      one.parameter};
-    two.x << one.x, second * one.x;
-    return two;
+    out.x << one.x, second * one.x;
+    return out;
   };
-  solve::Cycle direction = twice(seed_->direction, -1);
+  solve::Cycle direction = two(seed.direction, -1);
   direction.parameter = 0;
+  solve::Restart restart;
+  restart.u = twice.scatter(two(seed.cycle, 1));
+  restart.tangent = twice.scatter(direction);
+  check(VecScale(restart.tangent.get(),
+                 1 / std::sqrt(solve::inner(twice, restart.tangent.get(), restart.tangent.get()))));
+  return restart;
+}
+
+solve::Restart CycleFollower::start_at_flip() {
   system_->set_parameter(seed_->cycle.parameter);
   problem_ =
       std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), two_laps(seed_->cycle.mesh));
-  solve::Restart restart;
-  restart.u = problem_->scatter(twice(seed_->cycle, 1));
-  restart.tangent = problem_->scatter(direction);
-  check(VecScale(restart.tangent.get(),
-                 1 / std::sqrt(solve::inner(*problem_, restart.tangent.get(), restart.tangent.get()))));
+  solve::Restart restart = leave_flip(*problem_, *seed_);
   restart.step = continuation_.initial_step;
   restart.point.index = -1;  // the flip itself belongs to the branch of the simple period
   restart.point.parameter = seed_->cycle.parameter / scale_;
@@ -159,10 +174,8 @@ solve::Restart CycleFollower::start_at_flip() {
   return restart;
 }
 
-// A branch of twice the period may run back into the one it came from. Beyond that point it either repeats itself with
-// the laps exchanged, when the difference of the laps changes its sign, or the step has landed on the simple cycle run
-// twice, when there is no difference.
-bool CycleFollower::returned(const solve::Cycle& cycle) {
+// First lap minus second one at equidistant times, scaled.
+Eigen::MatrixXd CycleFollower::lap_difference(const solve::Cycle& cycle) const {
   constexpr int samples = 24;
   Eigen::MatrixXd difference(cycle.x.rows(), samples);
   for (int k = 0; k < samples; ++k) {
@@ -170,6 +183,21 @@ bool CycleFollower::returned(const solve::Cycle& cycle) {
     difference.col(k) = (cycle.at(problem_->scheme(), s) - cycle.at(problem_->scheme(), s + 0.5))
                             .cwiseQuotient(problem_->state_scale());
   }
+  return difference;
+}
+
+// Where the branch runs into the simple cycle its parameter turns as at a fold, which it is not.
+bool CycleFollower::at_simple_cycle(const solve::Cycle& cycle) const {
+  if (!seed_ || lap_difference_.size() == 0) return false;
+  const Eigen::MatrixXd difference = lap_difference(cycle);
+  return (difference.array() * lap_difference_.array()).sum() < 0 || difference.norm() < 0.02 * largest_difference_;
+}
+
+// A branch of twice the period may run back into the one it came from. Beyond that point it either repeats itself with
+// the laps exchanged, when the difference of the laps changes its sign, or the step has landed on the simple cycle run
+// twice, when there is no difference.
+bool CycleFollower::returned(const solve::Cycle& cycle) {
+  Eigen::MatrixXd difference = lap_difference(cycle);
   const bool turned = lap_difference_.size() > 0 && (difference.array() * lap_difference_.array()).sum() < 0;
   largest_difference_ = std::max(largest_difference_, difference.norm());
   const bool vanished = difference.norm() < 1e-3 * largest_difference_;

@@ -132,7 +132,7 @@ void EquilibriumBranch::run(Context& context) {
       b.more["whirl_frequency_rpm"] = omega * 30 / std::numbers::pi;
     }
     // The same equilibrium on the halved film mesh: how far the border of stability moves.
-    if (found.located && found.sensitivity != 0) {
+    if (found.located && found.sensitivity != 0 && has_film_mesh(system->train())) {
       const auto coarse = make_system(context, options, true);
       coarse->set_parameter(found.parameter * scale);
       core::Vector xc = core::duplicate(x.get());

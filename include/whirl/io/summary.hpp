@@ -30,6 +30,7 @@ struct Bifurcation {
   double period_s = no_value;               ///< of the cycle, or 2 pi/omega of a Hopf point
   double uncertainty = no_value;            ///< estimated absolute error of `value`
   std::string criticality = {};             ///< "supercritical", "subcritical", or empty if not computed
+  std::string criticality_by = {};          ///< how it was obtained, or why it was not
   std::map<std::string, double> more = {};  ///< further numbers, e.g. "whirl_frequency_rad_s", "angle_rad"
 };
 

@@ -39,7 +39,7 @@ struct Cycle {
 
 /// A mesh whose intervals are split or merged by factors of two until their estimated errors stand between tolerance/8
 /// and tolerance; lengths stay powers of two of 1/base, so that few distinct lengths occur and each is factorised once.
-/// The mesh stays as it is where more than `max_intervals` would be needed.
+/// Where more than `max_intervals` would be needed the tolerance is doubled until they suffice (but for `base` itself).
 [[nodiscard]] std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
                                                double tolerance, int base, int max_intervals);
 

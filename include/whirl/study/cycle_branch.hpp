@@ -23,12 +23,14 @@ struct CycleBranchOptions {
   int degree = 2;                       ///< of the polynomials
   Points points = Points::radau;        ///< of collocation
   bool adapt_mesh = true;
+  int adapt_every = 5;             ///< points between adaptations
   double mesh_tolerance = 1e-3;    ///< estimated error per interval, relative to the size of the orbit
   double tolerance = 1e-9;         ///< of Newton's method: root mean square of the scaled residual
   std::vector<deck::Quantity> at;  ///< parameters at which the cycle is solved and reported
   int multipliers = 6;             ///< Floquet multipliers to report, the largest
   int period = 1;                  ///< revolutions per cycle
   int max_points = 500;
+  std::optional<double> max_eccentricity;  ///< of a journal per clearance, at which a branch ends as in contact
   std::vector<Event> detect{Event::cyclic_fold, Event::flip, Event::neimark_sacker};
   bool follow_flips = false;  ///< also follow the cycles of twice the period born at the flips found
   int orbits = 20;            ///< cycles whose time history is stored, spread over the branch
