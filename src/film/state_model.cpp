@@ -32,18 +32,19 @@ double norm(const std::vector<double>& v) {
 
 }  // namespace
 
+// Converged by the step and not by the residual, whose rounding error grows with the square of the mesh.
 void relax(StateModel& film, const Motion& motion, std::vector<double>& states) {
   const std::vector<double> rest(states.size(), 0.0);
   StateResponse here, there;
   film.evaluate(motion, states, rest, Need::tangents, here);
-  const double enough = 1e-10 * film.state_scale() * std::abs(motion.speed) * std::sqrt(double(states.size()));
-  for (int iteration = 0; iteration < 60 && norm(here.residual) > enough; ++iteration) {
+  const auto n = static_cast<Eigen::Index>(states.size());
+  const double enough = 1e-10 * film.state_scale() * std::sqrt(static_cast<double>(n));
+  for (int iteration = 0; iteration < 60; ++iteration) {
     Eigen::SparseLU<Sparse<double>> lu(matrix(here, 0.0));
     if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
-    const Eigen::VectorXd step =
-        lu.solve(Eigen::Map<const Eigen::VectorXd>(here.residual.data(), static_cast<Eigen::Index>(states.size())));
-    double damping = 1.0;
-    for (;; damping *= 0.5) {
+    const Eigen::VectorXd step = lu.solve(Eigen::Map<const Eigen::VectorXd>(here.residual.data(), n));
+    const bool last = step.norm() <= enough;
+    for (double damping = 1.0;; damping *= 0.5) {
       if (damping < 1e-6) throw core::NotConverged("the film by itself did not relax");
       std::vector<double> trial = states;
       for (std::size_t k = 0; k < trial.size(); ++k) trial[k] -= damping * step[static_cast<Eigen::Index>(k)];
@@ -52,13 +53,14 @@ void relax(StateModel& film, const Motion& motion, std::vector<double>& states) 
       } catch (const core::DomainError&) {
         continue;
       }
-      if (norm(there.residual) > (1.0 - 1e-4 * damping) * norm(here.residual)) continue;
+      if (!last && norm(there.residual) > (1.0 - 1e-4 * damping) * norm(here.residual)) continue;
       states = std::move(trial);
       std::swap(here, there);
       break;
     }
+    if (last) return;
   }
-  if (norm(here.residual) > enough) throw core::NotConverged("the film by itself did not relax");
+  throw core::NotConverged("the film by itself did not relax");
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + df/ds s.
