@@ -157,15 +157,15 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
 // How far the bifurcation moves when the discretisation changes: one corrected cycle at the same parameter, and the
 // distance from the border there over its slope along the branch. Folds have no such slope; there the branch itself is
 // moved and its parameter read off.
-double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle& at, bool doubled_mesh,
+double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle& given, bool doubled_mesh,
                             bool half_film) const {
   const auto other = half_film ? make_system(true) : nullptr;
   system::RotorSystem& system = other ? *other : *system_;
-  solve::Cycle cycle = at;
+  solve::Cycle cycle = given;
   if (system.size() != system_->size()) {
-    cycle.x.resize(system.size(), at.x.cols());
-    for (Eigen::Index k = 0; k < at.x.cols(); ++k) {
-      const Eigen::VectorXd column = at.x.col(k);
+    cycle.x.resize(system.size(), given.x.cols());
+    for (Eigen::Index k = 0; k < given.x.cols(); ++k) {
+      const Eigen::VectorXd column = given.x.col(k);
       const std::vector<double> here = system.resampled(*system_, column.data());
       cycle.x.col(k) = Eigen::Map<const Eigen::VectorXd>(here.data(), system.size());
     }
