@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "whirl/core/error.hpp"
@@ -240,7 +241,15 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.more["whirl_frequency_rad_s"] = frequency;
   }
   if (found.located) {
-    const double time = shift(found, cycle, true, false), film = shift(found, cycle, false, true);
+    // Near contact the same cycle may leave the validity of the film on another mesh: no estimate then.
+    const auto estimate = [&](bool doubled_mesh, bool half_film) {
+      try {
+        return shift(found, cycle, doubled_mesh, half_film);
+      } catch (const core::DomainError&) {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+    };
+    const double time = estimate(true, false), film = estimate(false, true);
     // Twice the change to the doubled time mesh: the rest that a yet finer one would bring is smaller than that change.
     b.more["uncertainty_time_mesh"] = 2 * time;
     b.more["uncertainty_film_mesh"] = film;
