@@ -7,7 +7,6 @@
 namespace whirl::film {
 namespace {
 
-using deck::at_least;
 using deck::positive;
 using std::numbers::pi;
 
@@ -42,7 +41,10 @@ std::span<const deck::Name<Options::Kind>> names(Options::Kind) {
       {Options::Kind::long_bearing, "long", "closed form without side flow, periodic pressure, half of it positive"},
       {Options::Kind::long_inlet, "long_inlet", "closed form without side flow, pressure zero at the top (90 deg)"},
       {Options::Kind::finite_approximate, "finite_approximate",
-       "harmonic sum of the short and the long film, along and across the eccentricity"}};
+       "harmonic sum of the short and the long film, along and across the eccentricity"},
+      {Options::Kind::compliant_short, "compliant_short", "short film on an elastic liner, thickness as state"},
+      {Options::Kind::compliant_long, "compliant_long",
+       "film without side flow on an elastic liner, thickness as state, pressure zero at the top (90 deg)"}};
   return table;
 }
 
@@ -51,6 +53,20 @@ std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
       {Options::Cavitation::half_sommerfeld, "half_sommerfeld", "negative pressure is cut off after the solution"},
       {Options::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
       {Options::Cavitation::none, "none", "negative pressure stays"}};
+  return table;
+}
+
+std::span<const deck::Name<Options::Quadrature>> names(Options::Quadrature) {
+  static constexpr deck::Name<Options::Quadrature> table[] = {
+      {Options::Quadrature::sub_cell, "sub_cell", "positive part of the piecewise linear pressure, exactly"},
+      {Options::Quadrature::simpson, "simpson", "Simpson's rule over the positive nodal pressures, as in the source"}};
+  return table;
+}
+
+std::span<const deck::Name<Options::Differences>> names(Options::Differences) {
+  static constexpr deck::Name<Options::Differences> table[] = {
+      {Options::Differences::central, "central", "central differences of second order"},
+      {Options::Differences::upwind, "upwind", "backward differences of second order, as in the source"}};
   return table;
 }
 
@@ -91,6 +107,16 @@ void describe(deck::Description<Geometry>& d) {
   });
 }
 
+void describe(deck::Description<Liner>& d) {
+  d.add("thickness", &Liner::thickness, "m", positive, "thickness of the layer, small against the length")
+      .required()
+      .continuable();
+  d.add("modulus", &Liner::modulus, "Pa", positive, "Young's modulus").required().continuable();
+  d.add("poisson", &Liner::poisson, deck::Check{.min = 0, .max = 0.5, .max_open = true},
+        "Poisson's ratio, not close to 1/2", "000 sec. 4.2")
+      .required();
+}
+
 void describe(deck::Description<Options>& d) {
   using enum Options::Kind;
   d.add("type", &Options::kind, "model of the film");
@@ -98,8 +124,9 @@ void describe(deck::Description<Options>& d) {
       .only(&Options::kind, {reynolds});
   d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15")
       .only(&Options::kind, {reynolds});
-  d.add("cells", &Options::cells, deck::in(4, 2000), "intervals around and along each pad")
-      .only(&Options::kind, {reynolds});
+  d.add("cells", &Options::cells, deck::in(4, 2000),
+        "intervals around and along each pad; of a compliant film around only")
+      .only(&Options::kind, {reynolds, compliant_short, compliant_long});
   d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
       .only(&Options::kind, {reynolds});
   d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
@@ -108,6 +135,26 @@ void describe(deck::Description<Options>& d) {
   d.add("damping", &Options::damping, "N s/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
       .continuable()
       .only(&Options::kind, {linear});
+  d.add("liner", &Options::liner, "elastic layer of the bore").only(&Options::kind, {compliant_short, compliant_long});
+  d.add("compliance", &Options::compliance, "1", positive,
+        "B = 6 mu Omega_0 U R^2/(p c^3), instead of a liner: its deflection U under pressure p", "000 eq. 4.23")
+      .continuable()
+      .only(&Options::kind, {compliant_short, compliant_long});
+  d.add("reference_speed", &Options::reference_speed, "rad/s", deck::non_negative, "Omega_0 of 'compliance'")
+      .only(&Options::kind, {compliant_short, compliant_long});
+  d.add("quadrature", &Options::quadrature, "how the force is integrated")
+      .only(&Options::kind, {compliant_short, compliant_long});
+  d.add("differences", &Options::differences, "differences of the thickness around the bearing")
+      .only(&Options::kind, {compliant_short, compliant_long});
+  d.check([](const Options& o, const deck::Report& r) {
+    if (o.kind != compliant_short && o.kind != compliant_long) return;
+    if (o.liner.has_value() == o.compliance.has_value())
+      r.fail("", "a compliant film has either a 'liner' or a 'compliance'");
+    if (o.compliance && !(o.reference_speed > 0))
+      r.fail("compliance", "'compliance' needs 'reference_speed', the speed Omega_0 that scales it");
+    if (o.quadrature == Options::Quadrature::simpson && o.cells[0] % 2 != 0)
+      r.fail("cells", "Simpson's rule needs an even number of cells");
+  });
 }
 
 void describe(deck::Description<Lubricant>& d) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "whirl/film/model.hpp"
+#include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
 
@@ -13,5 +14,9 @@ std::unique_ptr<Model> make_reynolds(const Geometry& geometry, const Options& op
 std::unique_ptr<Model> make_rigid(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 /// force = -K d - C d' in x and y.
 std::unique_ptr<Model> make_linear(const Options& options);
+
+/// Short or long film of a cylindrical bore with an elastic liner; throws core::InputError alike.
+std::unique_ptr<StateModel> make_compliant(const Geometry& geometry, const Options& options,
+                                           const Lubricant& lubricant);
 
 }  // namespace whirl::film

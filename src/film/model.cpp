@@ -16,8 +16,21 @@ std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& optio
       return make_rigid(geometry, options, lubricant);
     case Options::Kind::linear:
       return make_linear(options);
+    case Options::Kind::compliant_short:
+    case Options::Kind::compliant_long:
+      break;
   }
   throw core::Bug("film kind without a maker");
+}
+
+bool has_states(Options::Kind kind) {
+  return kind == Options::Kind::compliant_short || kind == Options::Kind::compliant_long;
+}
+
+std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,
+                                             const Lubricant& lubricant) {
+  if (!has_states(options.kind)) throw core::Bug("this kind of film has no states");
+  return make_compliant(geometry, options, lubricant);
 }
 
 }  // namespace whirl::film

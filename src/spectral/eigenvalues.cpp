@@ -49,6 +49,28 @@ Pair pair_of(EPS eps, PetscInt i, Vec re, Vec im, bool vectors) {
   return p;
 }
 
+// The generalised Schur form of strongly non-normal pencils (thin films swept along by the journal) may refuse to be
+// sorted: LAPACK's dtgexc calls neighbours too close. Their standard form b^-1 a sorts.
+void solve_dense(EigenSolver& eps, Mat a, Mat b) {
+  try {
+    check(EPSSolve(eps.get()));
+    return;
+  } catch (const core::LibraryError&) {
+    check(MatLUFactor(b, nullptr, nullptr, nullptr));
+  }
+  core::Matrix standard;
+  check(MatDuplicate(a, MAT_DO_NOT_COPY_VALUES, standard.put()));
+  check(MatMatSolve(b, a, standard.get()));
+  eps.reset();
+  check(EPSCreate(PETSC_COMM_SELF, eps.put()));
+  check(EPSSetOptionsPrefix(eps.get(), "modes_"));
+  check(EPSSetOperators(eps.get(), standard.get(), nullptr));
+  check(EPSSetProblemType(eps.get(), EPS_NHEP));
+  check(EPSSetType(eps.get(), EPSLAPACK));
+  check(EPSSetFromOptions(eps.get()));
+  check(EPSSolve(eps.get()));
+}
+
 }  // namespace
 
 std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options) {
@@ -107,7 +129,10 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     check(EPSSetInitialSpace(eps.get(), 1, &first));
   }
   check(EPSSetFromOptions(eps.get()));
-  check(EPSSolve(eps.get()));
+  if (dense)
+    solve_dense(eps, a.get(), b.get());
+  else
+    check(EPSSolve(eps.get()));
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
   if (converged < std::min<PetscInt>(options.count, system.size() - 2))

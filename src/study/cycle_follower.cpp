@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "whirl/core/error.hpp"
@@ -158,10 +159,19 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
 // How far the bifurcation moves when the discretisation changes: one corrected cycle at the same parameter, and the
 // distance from the border there over its slope along the branch. Folds have no such slope; there the branch itself is
 // moved and its parameter read off.
-double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
+double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle& given, bool doubled_mesh,
                             bool half_film) const {
   const auto other = half_film ? make_system(true) : nullptr;
   system::RotorSystem& system = other ? *other : *system_;
+  solve::Cycle cycle = given;
+  if (system.size() != system_->size()) {
+    cycle.x.resize(system.size(), given.x.cols());
+    for (Eigen::Index k = 0; k < given.x.cols(); ++k) {
+      const Eigen::VectorXd column = given.x.col(k);
+      const std::vector<double> here = system.resampled(*system_, column.data());
+      cycle.x.col(k) = Eigen::Map<const Eigen::VectorXd>(here.data(), system.size());
+    }
+  }
   solve::CycleProblem problem(context_.comm, system, cycle_options(),
                               doubled_mesh ? solve::doubled(cycle.mesh) : cycle.mesh);
   if (autonomous()) problem.set_phase_reference(cycle);
@@ -239,8 +249,16 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.more["whirl_frequency_rad_s"] = frequency;
   }
   if (found.located) {
-    const double time = shift(found, cycle, true, false);
-    const double film = has_film_mesh(system_->train()) ? shift(found, cycle, false, true) : 0;
+    // Near contact the same cycle may leave the validity of the film on another mesh: no estimate then.
+    const auto estimate = [&](bool doubled_mesh, bool half_film) {
+      try {
+        return shift(found, cycle, doubled_mesh, half_film);
+      } catch (const core::DomainError&) {
+        return std::numeric_limits<double>::quiet_NaN();
+      }
+    };
+    const double time = estimate(true, false);
+    const double film = has_film_mesh(system_->train()) ? estimate(false, true) : 0;
     // Twice the change to the doubled time mesh: the rest that a yet finer one would bring is smaller than that change.
     b.more["uncertainty_time_mesh"] = 2 * time;
     b.more["uncertainty_film_mesh"] = film;

@@ -135,8 +135,15 @@ void EquilibriumBranch::run(Context& context) {
     if (found.located && found.sensitivity != 0 && has_film_mesh(system->train())) {
       const auto coarse = make_system(context, options, true);
       coarse->set_parameter(found.parameter * scale);
-      core::Vector xc = core::duplicate(x.get());
-      problem.to_state(v, xc.get());
+      core::Vector xc = core::make_vector(coarse->comm(), coarse->local_size(), PETSC_DETERMINE);
+      problem.to_state(v, x.get());
+      {
+        const std::vector<double> whole = coarse->resampled(*system, system->gather(x.get()).data());
+        PetscInt begin = 0;
+        check(VecGetOwnershipRange(xc.get(), &begin, nullptr));
+        const core::WriteArray to(xc.get());
+        for (PetscInt i = 0; i < to.size(); ++i) to[i] = whole[static_cast<std::size_t>(begin + i)];
+      }
       if (solve::find_equilibrium(*coarse, xc.get(), continuation.newton).converged) {
         const auto s = equilibrium_stability(*coarse, xc.get());
         double nearest = std::numeric_limits<double>::infinity(), distance = 0;

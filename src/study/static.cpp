@@ -11,18 +11,8 @@
 namespace whirl::study {
 namespace {
 
-film::Motion motion_of(const system::JournalState& j, double speed) {
-  film::Motion m;
-  for (std::size_t d = 0; d < 2; ++d) {
-    m.position[d] = j.position[d];
-    m.velocity[d] = j.velocity[d];
-  }
-  m.speed = speed;
-  return m;
-}
-
 // Pressure and thickness of every pad, and where ParaView finds them.
-void put_films(Context& context, system::RotorSystem& system, const std::vector<system::JournalState>& journals,
+void put_films(Context& context, system::RotorSystem& system, const std::vector<double>& x,
                const std::vector<double>& z) {
   auto& group = context.results.group();
   const auto names = names_of_bearings(context.machine);
@@ -31,7 +21,7 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
     const auto k = static_cast<std::size_t>(b);
     const auto& support = system.train().supports[k];
     std::vector<film::Field> fields;
-    core::agree(context.comm, [&] { fields = system.film(b).fields(motion_of(journals[k], system.speed())); });
+    core::agree(context.comm, [&] { fields = system.film_fields(b, x.data()); });
     for (const film::Field& f : fields) {
       auto& pad = group.child("films").child(io::safe_name(names[k])).child(fmt::format("pad{}", f.pad + 1));
       pad.put(f.name, f.shape, f.values, f.unit, f.name + " at the nodes of the film mesh");
@@ -66,7 +56,7 @@ void Static::run(Context& context) {
   Walker walker(system);
   const std::vector<double> x = system.gather(walker.at(options.speed.value));
   const auto journals = system.journals(x.data());
-  const auto films = system.film_responses(journals, film::Need::tangents);
+  const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
   auto& summary = context.results.summary();
   auto& group = context.results.group();
@@ -92,8 +82,7 @@ void Static::run(Context& context) {
       for (std::size_t d = 0; d < 2; ++d)
         summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
       film::Summary report;
-      core::agree(context.comm,
-                  [&] { report = system.film(static_cast<int>(b)).summary(motion_of(journals[b], system.speed())); });
+      core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
       summary.set(head + "min_thickness", report.min_thickness, "m");
       summary.set(head + "min_thickness_ratio", report.min_thickness / support.geometry.clearance, "1");
       summary.set(head + "max_pressure", report.max_pressure, "Pa");
@@ -101,10 +90,14 @@ void Static::run(Context& context) {
       summary.set(head + "power_loss", report.power_loss, "W");
       total_loss += report.power_loss;
     }
+    // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
+    film::Coefficients tangents;
+    core::agree(context.comm,
+                [&] { tangents = system.film_coefficients(static_cast<int>(b), x.data(), system.speed()); });
     for (std::size_t d = 0; d < 2; ++d)
       for (std::size_t e = 0; e < 2; ++e) {
-        summary.set(head + "K." + axis[d] + axis[e], -films[b].d_position[d][e], "N/m");
-        summary.set(head + "C." + axis[d] + axis[e], -films[b].d_velocity[d][e], "N s/m");
+        summary.set(head + "K." + axis[d] + axis[e], tangents.stiffness[2 * d + e], "N/m");
+        summary.set(head + "C." + axis[d] + axis[e], tangents.damping[2 * d + e], "N s/m");
       }
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
@@ -135,7 +128,7 @@ void Static::run(Context& context) {
   for (const auto& s : system.train().supports) bz.push_back(z[static_cast<std::size_t>(s.node - 1)]);
   bearings.put("z", bz, "m", "axial position");
   group.set("speed", options.speed.value);
-  if (options.fields) put_films(context, system, journals, z);
+  if (options.fields) put_films(context, system, x, z);
   summary.points = 1;
   context.results.finish("completed", true);
 }

@@ -82,15 +82,24 @@ void RotorSystem::build() {
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const Support& s = train_.supports[i];
-      bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
+      if (film::has_states(s.film.kind))
+        bearings_[i].states = film::make_state_model(s.geometry, s.film, s.lubricant);
+      else
+        bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
     }
   });
+  n_own_ = 0;
+  for (Bearing& b : bearings_) {
+    b.first = n_own_;
+    if (b.states) b.count = static_cast<PetscInt>(b.states->states());
+    n_own_ += b.count;
+  }
 
   PetscInt rotor_begin = 0, rotor_end = 0;
   check(MatGetOwnershipRange(m.mass.get(), &rotor_begin, &rotor_end));
-  const bool last = core::rank_of(comm_) == core::size_of(comm_) - 1;
+  on_last_ = core::rank_of(comm_) == core::size_of(comm_) - 1;
   begin_ = rotor_begin;
-  end_ = last ? n_ : rotor_end;
+  end_ = on_last_ ? n_ : rotor_end;
   std::vector<std::pair<PetscInt, double>> pm, pc, pk, pg;
   for (std::size_t i = 0; i < bearings_.size(); ++i)
     for (std::size_t d = 0; d < 2; ++d)
@@ -212,30 +221,68 @@ std::vector<JournalState> RotorSystem::journals(const double* x) const {
   return out;
 }
 
+film::Motion RotorSystem::motion(const JournalState& journal) const {
+  film::Motion motion;
+  for (std::size_t d = 0; d < 2; ++d) {
+    motion.position[d] = journal.position[d];
+    motion.velocity[d] = journal.velocity[d];
+  }
+  motion.speed = speed_;
+  return motion;
+}
+
+int RotorSystem::evaluator(std::size_t bearing) const {
+  const int size = core::size_of(comm_);
+  return bearings_[bearing].states ? size - 1 : static_cast<int>(bearing) % size;
+}
+
 std::vector<film::Response> RotorSystem::film_responses(const std::vector<JournalState>& journals, film::Need need) {
+  core::require(n_own_ == 0, "films with own states need the whole state");
+  return films_at(journals, nullptr, nullptr, need).journal;
+}
+
+std::vector<film::Response> RotorSystem::film_responses(const double* x, film::Need need) {
+  return films_at(journals(x), x + 2 * n_, nullptr, need).journal;
+}
+
+RotorSystem::Films RotorSystem::films_at(Vec x, Vec xdot, film::Need need) {
+  const std::vector<JournalState> journals = journals_of(x);
+  const core::ReadArray xa(x), da(xdot);
+  const PetscInt own = 2 * (end_ - begin_);
+  return films_at(journals, xa.data() + own, da.data() + own, need);
+}
+
+RotorSystem::Films RotorSystem::films_at(const std::vector<JournalState>& journals, const double* own,
+                                         const double* rates, film::Need need) {
   const int rank = core::rank_of(comm_), size = core::size_of(comm_);
-  std::vector<film::Response> out(bearings_.size());
+  Films films;
+  std::vector<film::Response>& out = films.journal;
+  out.resize(bearings_.size());
+  films.own.resize(bearings_.size());
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      if (static_cast<int>(i) % size != rank) continue;
-      film::Motion motion;
-      for (std::size_t d = 0; d < 2; ++d) {
-        motion.position[d] = journals[i].position[d];
-        motion.velocity[d] = journals[i].velocity[d];
-      }
-      motion.speed = speed_;
+      if (evaluator(i) != rank) continue;
+      const Bearing& b = bearings_[i];
       try {
-        bearings_[i].film->evaluate(motion, need, out[i]);
+        if (b.states) {
+          const auto n = static_cast<std::size_t>(b.count);
+          const std::vector<double> zero(rates ? 0 : n, 0.0);
+          b.states->evaluate(motion(journals[i]), {own + b.first, n}, rates ? std::span(rates + b.first, n) : zero,
+                             need, films.own[i]);
+          out[i] = films.own[i].journal;
+        } else {
+          b.film->evaluate(motion(journals[i]), need, out[i]);
+        }
       } catch (const core::DomainError& e) {
         throw core::DomainError("bearing " + train_.supports[i].name + ": " + e.what());
       }
     }
   });
-  if (size == 1) return out;
+  if (size == 1) return films;
   constexpr std::size_t width = 2 + 4 + 4 + 2 + 1;
   std::vector<double> flat(width * out.size(), 0.0);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (static_cast<int>(i) % size != rank) continue;
+    if (evaluator(i) != rank) continue;
     double* f = flat.data() + width * i;
     for (std::size_t d = 0; d < 2; ++d) {
       f[d] = out[i].force[d];
@@ -260,11 +307,12 @@ std::vector<film::Response> RotorSystem::film_responses(const std::vector<Journa
     }
     out[i].min_thickness = f[12];
   }
-  return out;
+  return films;
 }
 
 void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
-  const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::force);
+  const Films all = films_at(x, xdot, film::Need::force);
+  const std::vector<film::Response>& films = all.journal;
   // q, v and their rates as vectors of coordinates, for the matrix products.
   core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()),
                a = core::duplicate(q.get()), sum = core::duplicate(q.get());
@@ -296,31 +344,54 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
       if (owns(j)) fa[2 * (j - begin_)] -= films[b].force[d];
       if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].force[d];
     }
+  for (std::size_t b = 0; b < bearings_.size() && on_last_; ++b)
+    for (PetscInt k = 0; k < bearings_[b].count; ++k)
+      fa[2 * (end_ - begin_) + bearings_[b].first + k] = all.own[b].residual[static_cast<std::size_t>(k)];
 }
 
 // The parts of the Jacobian that are constant between builds, all in the pattern of make_jacobian(): so a Jacobian is a
 // sum of arrays plus the few entries of the films.
 void RotorSystem::make_constant_parts() {
   const PetscInt rows = end_ - begin_;
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(2 * rows, 1)), 2);
+  const PetscInt local_rows = local_size();
+  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local_rows, 1)), 2);
+  std::vector<PetscInt> coupled(static_cast<std::size_t>(n_), 0);  // own states that act on a coordinate
+  Films pattern;
+  pattern.journal.resize(bearings_.size());
+  pattern.own.resize(bearings_.size());
+  for (std::size_t b = 0; b < bearings_.size(); ++b) {
+    const Bearing& bearing = bearings_[b];
+    if (!bearing.states) continue;
+    for (std::size_t d = 0; d < 2; ++d)
+      for (const PetscInt q : {bearing.journal[d], bearing.pedestal[d]})
+        if (q >= 0) coupled[static_cast<std::size_t>(q)] += bearing.count;
+    if (!on_last_) continue;
+    const std::vector<double> zero(static_cast<std::size_t>(bearing.count), 0.0);
+    std::vector<double> states = zero;
+    bearing.states->unloaded(motion({}), states);
+    bearing.states->evaluate(motion({}), states, zero, film::Need::tangents, pattern.own[b]);
+    for (PetscInt k = 0; k < bearing.count; ++k)
+      count[static_cast<std::size_t>(2 * rows + bearing.first + k)] =
+          std::min(bearing.states->row_entries() + 8, size());
+  }
   for (PetscInt i = 0; i < rows; ++i) {
-    PetscInt k = 0, total = 0;
+    PetscInt k = 0, total = coupled[static_cast<std::size_t>(begin_ + i)];
     for (Mat m : {mass_.get(), damping_.get(), stiffness_.get(), gyroscopic_.get()}) {
       check(MatGetRow(m, begin_ + i, &k, nullptr, nullptr));
       total += 2 * k;
       check(MatRestoreRow(m, begin_ + i, &k, nullptr, nullptr));
     }
-    count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, 2 * n_);
+    count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, size());
   }
   std::vector<PetscInt> local = count;
-  for (auto& k : local) k = std::min(k, 2 * rows);
+  for (auto& k : local) k = std::min(k, local_rows);
   std::vector<PetscInt> columns_to;
   std::vector<PetscScalar> scaled;
   // Every part sets every entry, if need be to zero.
   const auto make = [&](double at_rest, double gyroscopic, double rates) {
     core::Matrix j;
     check(MatCreate(comm_, j.put()));
-    check(MatSetSizes(j.get(), 2 * rows, 2 * rows, PETSC_DETERMINE, PETSC_DETERMINE));
+    check(MatSetSizes(j.get(), local_rows, local_rows, PETSC_DETERMINE, PETSC_DETERMINE));
     check(MatSetType(j.get(), MATAIJ));
     check(MatSeqAIJSetPreallocation(j.get(), 0, count.data()));
     check(MatMPIAIJSetPreallocation(j.get(), 0, local.data(), 0, count.data()));
@@ -349,7 +420,7 @@ void RotorSystem::make_constant_parts() {
       check(MatSetValue(j.get(), 2 * i + 1, 2 * i, rates, ADD_VALUES));
       check(MatSetValue(j.get(), 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
     }
-    add_films(j.get(), std::vector<film::Response>(bearings_.size()), 0);
+    add_films(j.get(), pattern, 0, 0);
     check(MatAssemblyBegin(j.get(), MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(j.get(), MAT_FINAL_ASSEMBLY));
     return j;
@@ -366,18 +437,17 @@ core::Matrix RotorSystem::make_jacobian() {
   return j;
 }
 
-void RotorSystem::jacobian(double /*angle*/, Vec x, Vec /*xdot*/, double alpha, double sigma, Mat j) {
+void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
   if (!j_at_rest_) make_constant_parts();
   check(MatCopy(j_at_rest_.get(), j, SAME_NONZERO_PATTERN));
   if (alpha != 1) check(MatScale(j, alpha));
-  if (alpha != 0) {
-    check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
-    add_films(j, film_responses(journals_of(x), film::Need::tangents), alpha);
-  }
+  if (alpha != 0) check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
+  if (alpha != 0 || n_own_ > 0) add_films(j, films_at(x, xdot, film::Need::tangents), alpha, sigma);
   if (sigma != 0) check(MatAXPY(j, sigma, j_rates_.get(), SAME_NONZERO_PATTERN));
 }
 
-void RotorSystem::add_films(Mat j, const std::vector<film::Response>& films, double alpha) const {
+void RotorSystem::add_films(Mat j, const Films& all, double alpha, double sigma) const {
+  const std::vector<film::Response>& films = all.journal;
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     for (std::size_t d = 0; d < 2; ++d)
       for (const auto& [row, sign] :
@@ -391,6 +461,24 @@ void RotorSystem::add_films(Mat j, const std::vector<film::Response>& films, dou
             check(MatSetValue(j, 2 * row, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
           }
       }
+  for (std::size_t b = 0; b < bearings_.size() && on_last_; ++b) {
+    const Bearing& bearing = bearings_[b];
+    const film::StateResponse& own = all.own[b];
+    const PetscInt first = 2 * n_ + bearing.first;
+    for (const film::Entry& e : own.d_states)
+      check(MatSetValue(j, first + e.row, first + e.column, alpha * e.value, ADD_VALUES));
+    for (const film::Entry& e : own.d_rates)
+      check(MatSetValue(j, first + e.row, first + e.column, sigma * e.value, ADD_VALUES));
+    for (std::size_t d = 0; d < 2; ++d)
+      for (const auto& [q, side] : {std::pair{bearing.journal[d], 1.0}, std::pair{bearing.pedestal[d], -1.0}})
+        for (PetscInt k = 0; k < bearing.count && q >= 0; ++k) {
+          const auto state = static_cast<std::size_t>(k);
+          const PetscInt row = first + k;
+          check(MatSetValue(j, row, 2 * q, alpha * side * own.d_position[state][d], ADD_VALUES));
+          check(MatSetValue(j, row, 2 * q + 1, alpha * side * own.d_velocity[state][d], ADD_VALUES));
+          check(MatSetValue(j, 2 * q, row, -alpha * side * own.force_d_states[state][d], ADD_VALUES));
+        }
+  }
   check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
 }
@@ -413,7 +501,8 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
     check(VecAXPBY(f, -1 / (2 * step), 1 / (2 * step), minus.get()));
     return;
   }
-  const std::vector<film::Response> films = film_responses(journals_of(x), film::Need::tangents);
+  const Films all = films_at(x, xdot, film::Need::tangents);
+  const std::vector<film::Response>& films = all.journal;
   core::Vector v = core::make_vector(comm_, end_ - begin_, n_), sum = core::duplicate(v.get());
   {
     const core::ReadArray xa(x);
@@ -435,6 +524,9 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
       if (owns(j)) fa[2 * (j - begin_)] -= films[b].d_speed[d];
       if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].d_speed[d];
     }
+  for (std::size_t b = 0; b < bearings_.size() && on_last_; ++b)
+    for (PetscInt k = 0; k < bearings_[b].count; ++k)
+      fa[2 * (end_ - begin_) + bearings_[b].first + k] = all.own[b].d_speed[static_cast<std::size_t>(k)];
 }
 
 // Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the
@@ -470,10 +562,81 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
     r[2 * i + 1] = length * frequency;
     r[2 * i] = load;
   }
+  for (const Bearing& b : bearings_)
+    for (PetscInt k = 0; k < b.count && on_last_; ++k) {
+      const PetscInt i = 2 * (end_ - begin_) + b.first + k;
+      s[i] = b.states->state_scale();
+      r[i] = s[i] * frequency;
+    }
+}
+
+film::Summary RotorSystem::film_summary(int b, const double* x) {
+  const auto i = static_cast<std::size_t>(b);
+  const Bearing& bearing = bearings_[i];
+  const film::Motion at = motion(journals(x)[i]);
+  if (!bearing.states) return bearing.film->summary(at);
+  return bearing.states->summary(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
+}
+
+std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
+  const auto i = static_cast<std::size_t>(b);
+  const Bearing& bearing = bearings_[i];
+  const film::Motion at = motion(journals(x)[i]);
+  if (!bearing.states) return bearing.film->fields(at);
+  return bearing.states->fields(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
+}
+
+film::Coefficients RotorSystem::film_coefficients(int b, const double* x, double omega) {
+  const auto i = static_cast<std::size_t>(b);
+  const Bearing& bearing = bearings_[i];
+  const film::Motion at = motion(journals(x)[i]);
+  if (bearing.states)
+    return film::coefficients(*bearing.states, at, {x + 2 * n_ + bearing.first, bearing.states->states()}, omega);
+  film::Response response;
+  bearing.film->evaluate(at, film::Need::tangents, response);
+  film::Coefficients out;
+  for (std::size_t d = 0; d < 2; ++d)
+    for (std::size_t e = 0; e < 2; ++e) {
+      out.stiffness[2 * d + e] = -response.d_position[d][e];
+      out.damping[2 * d + e] = -response.d_velocity[d][e];
+    }
+  return out;
+}
+
+void RotorSystem::relax_films(Vec x) {
+  const std::vector<JournalState> journals = journals_of(x);
+  core::agree(comm_, [&] {
+    const core::WriteArray xa(x);
+    for (std::size_t i = 0; i < bearings_.size() && on_last_; ++i) {
+      const Bearing& b = bearings_[i];
+      if (!b.states) continue;
+      film::Motion still = motion(journals[i]);
+      still.velocity = {};
+      std::vector<double> states(b.states->states());
+      b.states->unloaded(still, states);
+      film::relax(*b.states, still, states);
+      for (PetscInt k = 0; k < b.count; ++k)
+        xa[2 * (end_ - begin_) + b.first + k] = states[static_cast<std::size_t>(k)];
+    }
+  });
+}
+
+std::vector<double> RotorSystem::resampled(const RotorSystem& other, const double* x) const {
+  core::require(other.n_ == n_, "systems that differ in more than film meshes");
+  std::vector<double> out(x, x + 2 * n_);
+  out.resize(static_cast<std::size_t>(size()));
+  const std::vector<JournalState> at = journals(x);
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    const Bearing &to = bearings_[i], &from = other.bearings_[i];
+    if (to.states)
+      to.states->resample(motion(at[i]), {x + 2 * n_ + from.first, static_cast<std::size_t>(from.count)},
+                          {out.data() + 2 * n_ + to.first, static_cast<std::size_t>(to.count)});
+  }
+  return out;
 }
 
 problem::Structure* RotorSystem::structure() {
-  if (core::size_of(comm_) != 1 || varying_.train) return nullptr;
+  if (core::size_of(comm_) != 1 || varying_.train || n_own_ > 0) return nullptr;
   if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
   return blocks_.get();
 }

@@ -18,8 +18,8 @@ core::Vector static_guess(RotorSystem& system) {
     s.elevation -= 0.45 * s.geometry.clearance;
   }
   RotorSystem springs(system.comm(), std::move(train), system.speed());
-  core::Vector x = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE), f = core::duplicate(x.get()),
-               rest = core::duplicate(x.get());
+  core::Vector x = core::make_vector(system.comm(), springs.local_size(), PETSC_DETERMINE),
+               f = core::duplicate(x.get()), rest = core::duplicate(x.get());
   core::Matrix j = springs.make_jacobian();
   springs.residual(0, x.get(), rest.get(), f.get());
   springs.jacobian(0, x.get(), rest.get(), 1, 0, j.get());
@@ -36,7 +36,15 @@ core::Vector static_guess(RotorSystem& system) {
   check(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
   check(KSPSolve(ksp.get(), f.get(), x.get()));
   check(VecScale(x.get(), -1));
-  return x;
+  if (system.own_states() == 0) return x;
+  core::Vector whole = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  {
+    const core::ReadArray from(x.get());
+    const core::WriteArray to(whole.get());
+    for (PetscInt i = 0; i < from.size(); ++i) to[i] = from[i];
+  }
+  system.relax_films(whole.get());
+  return whole;
 }
 
 }  // namespace whirl::system

@@ -10,8 +10,11 @@ namespace whirl::film {
 [[nodiscard]] std::span<const deck::Name<Options::Kind>> names(Options::Kind);
 [[nodiscard]] std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation);
 [[nodiscard]] std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence);
+[[nodiscard]] std::span<const deck::Name<Options::Quadrature>> names(Options::Quadrature);
+[[nodiscard]] std::span<const deck::Name<Options::Differences>> names(Options::Differences);
 
 void describe(deck::Description<Geometry>& d);
+void describe(deck::Description<Liner>& d);
 void describe(deck::Description<Options>& d);
 void describe(deck::Description<Lubricant>& d);
 

@@ -2,6 +2,7 @@
 // What a fluid film is made of: bore, lubricant, and how its pressure is computed. Plain data, SI and radians.
 
 #include <array>
+#include <optional>
 
 namespace whirl::film {
 
@@ -18,9 +19,28 @@ struct Geometry {
   double offset = 0.0;     // m, horizontal distance between the lobe centres: lower +offset/2, upper -offset/2
 };
 
+/// A thin elastic layer on a rigid bore, in plane strain: U = p d (1 + nu)(1 - 2 nu)/(E (1 - nu)), nu not close to 1/2.
+/// Source: van de Vrande (2001), sec. 4.2, after Higginson (1966).
+struct Liner {
+  double thickness = 0.0;  // m, d
+  double modulus = 0.0;    // Pa, E
+  double poisson = 0.0;    // -, nu
+};
+
 /// How the film is modelled and discretised.
 struct Options {
-  enum class Kind { reynolds, linear, short_bearing, long_bearing, long_inlet, finite_approximate };
+  enum class Kind {
+    reynolds,
+    linear,
+    short_bearing,
+    long_bearing,
+    long_inlet,
+    finite_approximate,
+    compliant_short,
+    compliant_long
+  };
+  enum class Quadrature { sub_cell, simpson };
+  enum class Differences { central, upwind };
   enum class Cavitation { half_sommerfeld, reynolds, none };
   enum class Turbulence { laminar, constantinescu };
   Kind kind = Kind::reynolds;
@@ -30,6 +50,12 @@ struct Options {
   bool tilt = false;                                       // -, false: tilt is ignored and moments are zero
   std::array<double, 4> stiffness = {0.0, 0.0, 0.0, 0.0};  // N/m, xx xy yx yy; linear film: force = -K d - C d'
   std::array<double, 4> damping = {0.0, 0.0, 0.0, 0.0};    // N s/m, xx xy yx yy
+  // Compliant films: the liner, or B = 6 mu Omega_0 U R^2/(p c^3) with the speed Omega_0 that scales it.
+  std::optional<Liner> liner;
+  std::optional<double> compliance;                // -, B
+  double reference_speed = 0.0;                    // rad/s, Omega_0 of B
+  Quadrature quadrature = Quadrature::sub_cell;    // of the force
+  Differences differences = Differences::central;  // of dh/dtheta
 };
 
 /// Isoviscous incompressible lubricant.

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "whirl/film/model.hpp"
+#include "whirl/film/state_model.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/rotor/rotor.hpp"
 #include "whirl/system/train.hpp"
@@ -33,7 +33,9 @@ struct JournalState {
 ///
 /// in this order, so that no diagonal entry of dF/dx is zero. f_film acts on the journal and with the opposite sign on
 /// the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
-/// mod size, its force and tangents are summed over the ranks. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
+/// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0; they and their evaluation are on the last rank.
+/// Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public problem::System {
 public:
   /// The speed [rad/s] is the parameter.
@@ -43,8 +45,8 @@ public:
   ~RotorSystem() override;
 
   [[nodiscard]] MPI_Comm comm() const override { return comm_; }
-  [[nodiscard]] PetscInt size() const override { return 2 * n_; }
-  [[nodiscard]] PetscInt local_size() const override { return 2 * (end_ - begin_); }
+  [[nodiscard]] PetscInt size() const override { return 2 * n_ + n_own_; }
+  [[nodiscard]] PetscInt local_size() const override { return 2 * (end_ - begin_) + (on_last_ ? n_own_ : 0); }
   [[nodiscard]] double parameter() const override { return varying_.train ? varying_.value : speed_; }
   void set_parameter(double p) override;
   [[nodiscard]] double speed() const override { return speed_; }
@@ -77,7 +79,20 @@ public:
   /// Film responses at the states of the journals, each evaluated by its rank; the same answer on all ranks.
   /// Collective.
   [[nodiscard]] std::vector<film::Response> film_responses(const std::vector<JournalState>& journals, film::Need need);
-  [[nodiscard]] film::Model& film(int b) { return *bearings_[static_cast<std::size_t>(b)].film; }
+  /// The same at a whole state [size()] of a train whose films may have own states; these are held constant.
+  [[nodiscard]] std::vector<film::Response> film_responses(const double* x, film::Need need);
+  /// Number of own states of all films, which stand at the end of a whole state.
+  [[nodiscard]] PetscInt own_states() const { return n_own_; }
+  /// Report quantities and fields of film b at a whole state [size()]. Not collective.
+  [[nodiscard]] film::Summary film_summary(int b, const double* x);
+  [[nodiscard]] std::vector<film::Field> film_fields(int b, const double* x);
+  /// Stiffness and damping of film b about an equilibrium: its tangents, or with own states those at the frequency
+  /// `omega` [rad/s]. Not collective.
+  [[nodiscard]] film::Coefficients film_coefficients(int b, const double* x, double omega);
+  /// Gives every film the own states at which it rests with the journals where x has them. Collective.
+  void relax_films(Vec x);
+  /// A whole state of `other`, which differs in film meshes only, on the meshes of this system. Not collective.
+  [[nodiscard]] std::vector<double> resampled(const RotorSystem& other, const double* x) const;
   /// Whole state on every rank [size()]. Collective.
   [[nodiscard]] std::vector<double> gather(Vec x) const;
   /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes
@@ -90,15 +105,29 @@ public:
 private:
   struct Bearing {
     std::array<PetscInt, 2> journal{-1, -1}, pedestal{-1, -1};
-    std::unique_ptr<film::Model> film;
+    std::unique_ptr<film::Model> film;         // null for a film with own states
+    std::unique_ptr<film::StateModel> states;  // null for a film without
+    PetscInt first = 0, count = 0;             // its own states
+  };
+  /// Films at one state: what they do to the journals on all ranks, and what concerns own states on the last one.
+  struct Films {
+    std::vector<film::Response> journal;
+    std::vector<film::StateResponse> own;
   };
   class Blocks;
 
   void build();
   void set_train(Train train);
   void make_constant_parts();
-  /// j += alpha times the derivatives of the film forces. Collective: assembles j.
-  void add_films(Mat j, const std::vector<film::Response>& films, double alpha) const;
+  /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates. Collective:
+  /// assembles j.
+  void add_films(Mat j, const Films& films, double alpha, double sigma) const;
+  [[nodiscard]] Films films_at(Vec x, Vec xdot, film::Need need);
+  /// `own` and `rates` are read on the last rank, and only if there are own states; no rates are zero rates.
+  [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, const double* own, const double* rates,
+                               film::Need need);
+  [[nodiscard]] film::Motion motion(const JournalState& journal) const;
+  [[nodiscard]] int evaluator(std::size_t bearing) const;
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// Journal states on every rank from the distributed state. Collective.
   [[nodiscard]] std::vector<JournalState> journals_of(Vec x);
@@ -111,6 +140,8 @@ private:
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
+  PetscInt n_own_ = 0;                                    // own states of films
+  bool on_last_ = true;                                   // this is the last rank
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
   std::vector<double> load_;                              // gravity on this rank's coordinates [N]

@@ -1,0 +1,73 @@
+#pragma once
+// Films with states of their own: motion, states and their rates in, residual and journal force out.
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "whirl/film/model.hpp"
+
+namespace whirl::film {
+
+/// One entry of a sparse matrix; entries of the same place add up.
+struct Entry {
+  int row, column;
+  double value;
+};
+
+/// g(motion, s, s') [n] of the own states s [n] with rates s', the force on the journal, and all derivatives.
+struct StateResponse {
+  Response journal;                                           // force and its derivatives at constant s
+  std::vector<double> residual;                               // [n] g
+  std::vector<Entry> d_states;                                // dg/ds, the same places in the same order in every call
+  std::vector<Entry> d_rates;                                 // dg/ds', likewise
+  std::vector<std::array<double, 4>> d_position, d_velocity;  // [n] dg/d(position), dg/d(velocity)
+  std::vector<double> d_speed;                                // [n] dg/dOmega
+  std::vector<std::array<double, 4>> force_d_states;          // [n] d force_i/d s_k at [k][i]
+};
+
+/// A film with own states: g(motion, s, s') = 0, force = f(motion, s). Not thread-safe (own workspace).
+class StateModel {
+public:
+  StateModel() = default;
+  StateModel(const StateModel&) = delete;
+  StateModel& operator=(const StateModel&) = delete;
+  virtual ~StateModel() = default;
+  /// Number n of own states.
+  [[nodiscard]] virtual std::size_t states() const = 0;
+  /// At most so many entries of d_states and d_rates together have the same row.
+  [[nodiscard]] virtual int row_entries() const = 0;
+  /// Typical magnitude of every state.
+  [[nodiscard]] virtual double state_scale() const = 0;
+  /// The states of a film that carries nothing, to start from. Throws as evaluate() does.
+  virtual void unloaded(const Motion& motion, std::span<double> states) const = 0;
+  /// Fills `response`; derivatives are empty or zero if only the force is needed. Throws core::DomainError outside the
+  /// validity (film thickness not positive: contact).
+  virtual void evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates, Need need,
+                        StateResponse& response) = 0;
+  /// Own states on this mesh from those of the same film on another one.
+  virtual void resample(const Motion& motion, std::span<const double> from, std::span<double> to) const = 0;
+  virtual Summary summary(const Motion& motion, std::span<const double> states) = 0;
+  virtual std::vector<Field> fields(const Motion& motion, std::span<const double> states) = 0;
+};
+
+/// True for the kinds that make_state_model() makes; the others belong to make_model().
+[[nodiscard]] bool has_states(Options::Kind kind);
+
+/// The film described by the options; throws core::InputError on values outside their range.
+std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,
+                                             const Lubricant& lubricant);
+
+/// Own states at which g(motion, s, 0) = 0, by Newton from `states`. Throws core::NotConverged or core::DomainError.
+void relax(StateModel& film, const Motion& motion, std::vector<double>& states);
+
+/// Stiffness K [N/m] and damping C [N s/m] (xx, xy, yx, yy) of a film about equilibrium: K + i omega C is minus the
+/// transfer function from the position to the force, with the own states eliminated at the frequency omega [rad/s].
+/// Source: van de Vrande (2001) sec. 4.4, where omega/Omega is the parameter.
+struct Coefficients {
+  std::array<double, 4> stiffness{}, damping{};
+};
+Coefficients coefficients(StateModel& film, const Motion& motion, std::span<const double> states, double omega);
+
+}  // namespace whirl::film

@@ -1,0 +1,80 @@
+// Located bifurcations of synchronous cycles of a rigid rotor in compliant bearings at a* = 0.2, through the decks,
+// with the film mesh of the source (N = 50, Simpson, upwind). Reference values: an independent computation (Radau IIA,
+// its time-mesh error 0.005 to 0.02 where the force has kinks) of the cases of van de Vrande (2001), sec. 5.3.
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "whirl/core/petsc.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/study/deck.hpp"
+
+namespace {
+
+using namespace whirl;
+using Type = io::BifurcationType;
+
+struct Point {
+  Type type;
+  double speed;      // Omega*
+  double tolerance;  // relative
+};
+struct Case {
+  std::string name, deck;
+  double scale, compliance, from, to;  // Omega_0 [rad/s]; B; Omega*
+  int intervals;
+  std::vector<Point> points;
+};
+
+class CompliantLocated : public ::testing::TestWithParam<Case> {};
+
+TEST_P(CompliantLocated, AgreesWithTheReference) {
+  const Case& c = GetParam();
+  const std::string film = "bearings.half.film.", branch = "studies.2.cycle_branch.";
+  study::Deck deck = study::load(
+      MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/" + c.deck,
+      {fmt::format("{}compliance={}", film, c.compliance), film + "cells=[50, 4]", film + "quadrature=simpson",
+       film + "differences=upwind",
+       fmt::format("{}range={{from: {:.17g} rad/s, to: {:.17g} rad/s}}", branch, c.from * c.scale, c.to * c.scale),
+       fmt::format("{}intervals={}", branch, c.intervals)});
+  deck.studies.erase(deck.studies.begin());
+  const std::filesystem::path directory = std::filesystem::temp_directory_path() / ("whirl_compliant_" + c.name);
+  if (core::rank_of(MPI_COMM_WORLD) == 0) {
+    std::filesystem::remove_all(directory);
+    std::filesystem::create_directories(directory);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty());
+  MPI_Barrier(MPI_COMM_WORLD);
+  const io::StudySummary s = io::Summary::read(directory / "summary.json").studies.at(0);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (core::rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(directory);
+  EXPECT_EQ(s.status, "completed");
+  ASSERT_EQ(s.bifurcations.size(), c.points.size());
+  for (std::size_t k = 0; k < c.points.size(); ++k) {
+    EXPECT_EQ(s.bifurcations[k].type, c.points[k].type);
+    EXPECT_NEAR(s.bifurcations[k].value / c.scale, c.points[k].speed, c.points[k].tolerance * c.points[k].speed);
+    EXPECT_GE(s.bifurcations[k].uncertainty, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, CompliantLocated,
+    ::testing::Values(
+        Case{"short_b001",
+             "short.yaml",
+             160,
+             0.01,
+             2.5,
+             6.2,
+             80,
+             {{Type::flip, 2.9855, 1e-3}, {Type::flip, 5.86, 2e-3}}},
+        Case{"short_b01", "short.yaml", 160, 0.1, 3, 6.4, 40, {{Type::flip, 4.286, 2e-3}, {Type::flip, 5.963, 1e-3}}},
+        Case{"short_b1", "short.yaml", 160, 1, 1.9, 3.4, 40, {{Type::flip, 2.366, 1e-3}, {Type::flip, 3.080, 1e-3}}},
+        Case{"long_b001", "long.yaml", 320, 0.01, 0.36, 0.48, 40, {{Type::neimark_sacker, 0.4198, 2e-3}}},
+        Case{"long_b01", "long.yaml", 320, 0.1, 0.36, 0.56, 40, {{Type::neimark_sacker, 0.5070, 1e-3}}},
+        Case{"long_b1", "long.yaml", 320, 1, 0.9, 1.25, 40, {{Type::neimark_sacker, 1.1602, 1e-3}}}),
+    [](const auto& which) { return which.param.name; });
+
+}  // namespace

@@ -1,0 +1,175 @@
+// A rigid rotor in compliant bearings: derivatives, and the speeds at which half-speed whirl begins (Hopf) against an
+// independent reference computation (see the errata kept by this project to van de Vrande (2001), chapter 5).
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "whirl/problem/taylor.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+using namespace whirl;
+using Kind = film::Options::Kind;
+
+namespace {
+
+// Half the rotor on one bearing, L/D = 1, with F0* = 1 (short) or 2 (long) of the whole rotor; Omega_0 = 1.
+struct Bench {
+  Kind kind = Kind::compliant_short;
+  double compliance = 0.1;
+  int cells = 50;
+  bool as_source = true;
+};
+
+system::Train train(const Bench& b) {
+  system::Train t;
+  t.gravity = 0;
+  t.rotor.type = rotor::Options::Type::rigid;
+  const double load = b.kind == Kind::compliant_short ? 0.64 : 2.56;  // N, whole rotor of 1 kg, c = 25 um
+  t.rotor.mass = 0.5;
+  t.rotor.load = load / 2;
+  system::Support s;
+  s.node = 1;
+  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
+  s.film.kind = b.kind;
+  s.film.compliance = b.compliance;
+  s.film.reference_speed = std::sqrt(load / 25e-6);
+  s.film.cells = {b.cells, 4};
+  if (b.as_source) {
+    s.film.quadrature = film::Options::Quadrature::simpson;
+    s.film.differences = film::Options::Differences::upwind;
+  }
+  s.lubricant = {0.001, 1000};
+  t.supports = {s};
+  return t;
+}
+
+struct Hopf {
+  double speed = 0;      // in Omega_0
+  double frequency = 0;  // rad/s
+  std::vector<double> state;
+};
+
+// Secant on the real part of the least stable pair, along equilibria from `low` to beyond `high` (in Omega_0).
+Hopf hopf(system::RotorSystem& s, double scale, double low, double high) {
+  core::Vector x;
+  Hopf out;
+  const auto growth = [&](double speed) {
+    s.set_parameter(speed * scale);
+    if (!x) x = system::static_guess(s);
+    solve::NewtonOptions o;
+    o.max_iterations = 40;
+    const auto r = solve::find_equilibrium(s, x.get(), o);
+    EXPECT_TRUE(r.converged) << speed << ": " << r.reason;
+    double most = -1e300;
+    for (const auto& m : spectral::modes(s, x.get(), {}))
+      if (m.lambda.imag() > 1e-6 * scale && m.lambda.real() > most) {
+        most = m.lambda.real();
+        out.frequency = m.lambda.imag();
+      }
+    return most / scale;
+  };
+  double a = low, b = high, ga = growth(a), gb = growth(b);
+  EXPECT_LT(ga, 0);
+  EXPECT_GT(gb, 0);
+  for (int k = 0; k < 60 && std::abs(b - a) > 1e-9; ++k) {
+    // False position, with a bisection now and then because the force has kinks.
+    const double middle = k % 3 == 2 ? 0.5 * (a + b) : b - gb * (b - a) / (gb - ga), g = growth(middle);
+    (g < 0 ? a : b) = middle;
+    (g < 0 ? ga : gb) = g;
+    out.speed = middle;
+    if (std::abs(g) < 1e-10) break;
+  }
+  (void)growth(out.speed);
+  out.state = s.gather(x.get());
+  return out;
+}
+
+Hopf hopf(const Bench& b, double expected, MPI_Comm comm = MPI_COMM_WORLD) {
+  const auto t = train(b);
+  system::RotorSystem s(comm, t, 0.8 * expected * t.supports[0].film.reference_speed);
+  return hopf(s, t.supports[0].film.reference_speed, 0.95 * expected, 1.05 * expected);
+}
+
+}  // namespace
+
+TEST(CompliantRotor, DerivativesPassTheTaylorTest) {
+  for (const Kind kind : {Kind::compliant_short, Kind::compliant_long})
+    for (const bool as_source : {false, true}) {
+      auto t = train({kind, 1, 24, as_source});
+      t.unbalance = {{1, 1e-6, 0.3}};
+      system::Support other = t.supports[0];  // a second one on a pedestal, and one without own states between them
+      other.has_pedestal = true;
+      other.mass = {0.1, 0.2};
+      other.stiffness = {2e4, 3e4};
+      other.damping = {2, 3};
+      system::Support rigid = t.supports[0];
+      rigid.film.kind = Kind::short_bearing;
+      t.supports = {other, rigid, t.supports[0]};
+      system::RotorSystem s(MPI_COMM_WORLD, t, 300);
+      ASSERT_EQ(s.own_states(), kind == Kind::compliant_short ? 48 : 46);
+      ASSERT_EQ(s.size(), s.coordinates() * 2 + s.own_states());
+      core::Vector x = system::static_guess(s), rate = core::duplicate(x.get());
+      PetscInt begin = 0;
+      core::check(VecGetOwnershipRange(x.get(), &begin, nullptr));
+      {
+        const core::WriteArray a(x.get()), r(rate.get());
+        for (PetscInt i = 0; i < r.size(); ++i) {
+          const double wave = std::sin(3.7 * static_cast<double>(begin + i));
+          r[i] = 1e-4 * wave;
+          if (begin + i >= 2 * s.coordinates()) a[i] += 2e-7 * wave;
+        }
+      }
+      const auto r = problem::taylor_test(s, 0.7, x.get(), rate.get(), 1e-4);
+      EXPECT_GT(r.first_difference, 1e-7);
+      EXPECT_GE(r.state_order, 1.9);
+      EXPECT_GE(r.rate_order, 1.9);
+      EXPECT_GE(r.parameter_order, 1.9);
+    }
+}
+
+// The mesh and the quadrature of the source: van de Vrande prints 2.72, 2.71, 2.22 and .413, .494, 1.10.
+TEST(CompliantRotor, HopfSpeedsOfTheSourcesMesh) {
+  const std::array<double, 3> b = {0.01, 0.1, 1};
+  const std::array<double, 3> is_short = {2.72111, 2.70835, 2.21693}, is_long = {0.41280, 0.49409, 1.09544};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(hopf({Kind::compliant_short, b[k], 50, true}, is_short[k]).speed, is_short[k], 1e-5) << b[k];
+    EXPECT_NEAR(hopf({Kind::compliant_long, b[k], 50, true}, is_long[k]).speed, is_long[k], 1e-5) << b[k];
+  }
+}
+
+TEST(CompliantRotor, HopfSpeedsApproachTheMeshFreeOnesAtSecondOrder) {
+  const std::array<double, 3> b = {0.01, 0.1, 1};
+  const std::array<double, 3> is_short = {2.736456, 2.732563, 2.214669}, is_long = {0.412772, 0.498391, 1.098215};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const bool inlet : {false, true}) {
+      const Kind kind = inlet ? Kind::compliant_long : Kind::compliant_short;
+      const double limit = inlet ? is_long[k] : is_short[k];
+      const double coarse = std::abs(hopf({kind, b[k], 40, false}, limit, MPI_COMM_SELF).speed - limit),
+                   fine = std::abs(hopf({kind, b[k], 120, false}, limit, MPI_COMM_SELF).speed - limit);
+      EXPECT_LT(fine, 6e-4 * limit + 1e-4) << "B = " << b[k] << (inlet ? " long" : " short");
+      EXPECT_GE(std::log(coarse / fine) / std::log(3.0), 1.6) << "B = " << b[k] << (inlet ? " long" : " short");
+    }
+}
+
+// At the Hopf point the rotor on the film's coefficients at the whirl frequency swings freely:
+// det(-m w^2 + K(w) + i w C(w)) = 0.
+TEST(CompliantRotor, CoefficientsAtTheWhirlFrequencyGiveTheHopfPoint) {
+  for (const Kind kind : {Kind::compliant_short, Kind::compliant_long}) {
+    const auto t = train({kind, 0.1, 60, false});
+    const double scale = t.supports[0].film.reference_speed, guess = kind == Kind::compliant_short ? 2.7326 : 0.4984;
+    system::RotorSystem s(MPI_COMM_WORLD, t, 0.8 * guess * scale);
+    const Hopf h = hopf(s, scale, 0.95 * guess, 1.05 * guess);
+    const auto c = s.film_coefficients(0, h.state.data(), h.frequency);
+    using Complex = std::complex<double>;
+    const auto entry = [&](std::size_t k) { return c.stiffness[k] + Complex(0, h.frequency * c.damping[k]); };
+    const double inertia = t.rotor.mass * h.frequency * h.frequency;
+    const Complex det = (entry(0) - inertia) * (entry(3) - inertia) - entry(1) * entry(2);
+    const double size = std::abs(entry(0) * entry(3)) + std::abs(entry(1) * entry(2));
+    EXPECT_LT(std::abs(det), 1e-6 * size);
+  }
+}
