@@ -136,10 +136,12 @@ TEST(Mesh, SplitsAtAFrontAndMergesBack) {
   EXPECT_EQ(mesh.size(), static_cast<std::size_t>(base) + 1);
 }
 
-TEST(Mesh, StaysWhereTooManyIntervalsWouldBeNeeded) {
+TEST(Mesh, AllowsALargerErrorWhereTooManyIntervalsWouldBeNeeded) {
   const solve::Scheme scheme = solve::make_scheme(2, solve::Points::radau);
   const auto c = test::sampled(scheme, solve::uniform_mesh(10), 1, 1, [](double a) { return front(a, 0.02); });
-  EXPECT_EQ(solve::adapted_mesh(scheme, c, Eigen::Vector2d(1, 1), 1e-9, 10, 30), c.mesh);
+  const auto mesh = solve::adapted_mesh(scheme, c, Eigen::Vector2d(1, 1), 1e-9, 10, 30);
+  EXPECT_GT(mesh.size(), c.mesh.size());
+  EXPECT_LE(mesh.size(), 31U);
 }
 
 // A relaxation oscillation: the mesh of a problem follows it, with fewer intervals than a uniform one of its accuracy,
