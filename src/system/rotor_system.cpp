@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "blocks.hpp"
 #include "whirl/core/agree.hpp"
@@ -10,44 +9,8 @@
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::system {
-namespace {
 
 using core::check;
-
-// `m` of the rotor with the pedestals' diagonal appended behind it; `local` rows on this rank.
-core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
-                            const std::vector<std::pair<PetscInt, double>>& diagonal) {
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(m, &begin, &end));
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local, 1)), 1);
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    check(MatGetRow(m, i, &k, nullptr, nullptr));
-    count[static_cast<std::size_t>(i - begin)] = k;
-    check(MatRestoreRow(m, i, &k, nullptr, nullptr));
-  }
-  core::Matrix out;
-  check(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(m)), out.put()));
-  check(MatSetSizes(out.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetType(out.get(), MATAIJ));
-  check(MatSeqAIJSetPreallocation(out.get(), 0, count.data()));
-  check(MatMPIAIJSetPreallocation(out.get(), 0, count.data(), 0, count.data()));
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &k, &columns, &values));
-    check(MatSetValues(out.get(), 1, &i, k, columns, values, INSERT_VALUES));
-    check(MatRestoreRow(m, i, &k, &columns, &values));
-  }
-  if (end == n_rotor && local > end - begin)
-    for (const auto& [row, value] : diagonal) check(MatSetValue(out.get(), row, row, value, INSERT_VALUES));
-  check(MatAssemblyBegin(out.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(out.get(), MAT_FINAL_ASSEMBLY));
-  return out;
-}
-
-}  // namespace
 
 RotorSystem::RotorSystem(MPI_Comm comm, Train train, double speed)
     : comm_(comm), train_(std::move(train)), speed_(speed) {
@@ -60,119 +23,6 @@ RotorSystem::RotorSystem(MPI_Comm comm, Varying varying, double speed)
 }
 
 RotorSystem::~RotorSystem() = default;
-
-void RotorSystem::build() {
-  rotor_ = std::make_unique<rotor::Rotor>(comm_, train_.rotor);
-  const rotor::Matrices& m = rotor_->matrices();
-  n_rotor_ = rotor_->size();
-
-  // Pedestals come behind the rotor's coordinates.
-  bearings_.clear();
-  n_ = n_rotor_;
-  for (const Support& s : train_.supports) {
-    Bearing b;
-    for (int d = 0; d < 2; ++d) {
-      b.journal[static_cast<std::size_t>(d)] = rotor_->coordinate(s.node, d);
-      if (b.journal[static_cast<std::size_t>(d)] < 0)
-        throw core::InputError("a bearing's node is not a master node of the reduced rotor");
-      if (s.has_pedestal) b.pedestal[static_cast<std::size_t>(d)] = n_++;
-    }
-    bearings_.push_back(std::move(b));
-  }
-  core::agree(comm_, [&] {
-    for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      const Support& s = train_.supports[i];
-      if (film::has_states(s.film.kind))
-        bearings_[i].states = film::make_state_model(s.geometry, s.film, s.lubricant);
-      else
-        bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
-    }
-  });
-  n_own_ = 0;
-  for (Bearing& b : bearings_) {
-    b.first = n_own_;
-    if (b.states) b.count = static_cast<PetscInt>(b.states->states());
-    n_own_ += b.count;
-  }
-
-  PetscInt rotor_begin = 0, rotor_end = 0;
-  check(MatGetOwnershipRange(m.mass.get(), &rotor_begin, &rotor_end));
-  on_last_ = core::rank_of(comm_) == core::size_of(comm_) - 1;
-  begin_ = rotor_begin;
-  end_ = on_last_ ? n_ : rotor_end;
-  std::vector<std::pair<PetscInt, double>> pm, pc, pk, pg;
-  for (std::size_t i = 0; i < bearings_.size(); ++i)
-    for (std::size_t d = 0; d < 2; ++d)
-      if (bearings_[i].pedestal[d] >= 0) {
-        pm.emplace_back(bearings_[i].pedestal[d], train_.supports[i].mass[d]);
-        pc.emplace_back(bearings_[i].pedestal[d], train_.supports[i].damping[d]);
-        pk.emplace_back(bearings_[i].pedestal[d], train_.supports[i].stiffness[d]);
-      }
-  mass_ = with_pedestals(m.mass.get(), end_ - begin_, n_rotor_, pm);
-  damping_ = with_pedestals(m.damping.get(), end_ - begin_, n_rotor_, pc);
-  stiffness_ = with_pedestals(m.stiffness.get(), end_ - begin_, n_rotor_, pk);
-  gyroscopic_ = with_pedestals(m.gyroscopic.get(), end_ - begin_, n_rotor_, pg);
-
-  load_.assign(static_cast<std::size_t>(end_ - begin_), 0.0);
-  {
-    const core::ReadArray g(m.gravity.get());
-    for (PetscInt i = 0; i < g.size(); ++i) load_[static_cast<std::size_t>(i)] = train_.gravity * g[i];
-  }
-  if (train_.rotor.type == rotor::Options::Type::rigid && owns(rotor_->coordinate(1, 1)))
-    load_[static_cast<std::size_t>(rotor_->coordinate(1, 1) - begin_)] -= train_.rotor.load;
-  for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    const PetscInt row = bearings_[i].pedestal[1];
-    if (row >= 0 && owns(row))
-      load_[static_cast<std::size_t>(row - begin_)] -= train_.gravity * train_.supports[i].mass[1];
-  }
-
-  // U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
-  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_end - rotor_begin, PETSC_DETERMINE),
-                               s = core::duplicate(c.get());
-  const bool reduced = static_cast<bool>(m.basis);
-  if (reduced) {
-    check(MatCreateVecs(m.basis.get(), nullptr, full_c.put()));
-    full_s = core::duplicate(full_c.get());
-  }
-  Vec tc = reduced ? full_c.get() : c.get(), ts = reduced ? full_s.get() : s.get();
-  check(VecSet(tc, 0.0));
-  check(VecSet(ts, 0.0));
-  if (core::rank_of(comm_) == 0)
-    for (const UnbalanceMass& u : train_.unbalance) {
-      const PetscInt x = reduced ? 4 * (u.node - 1) : rotor_->coordinate(u.node, 0), y = x + 1;
-      check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
-      check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
-      check(VecSetValue(tc, y, u.amount * std::sin(u.phase), ADD_VALUES));
-      check(VecSetValue(ts, y, u.amount * std::cos(u.phase), ADD_VALUES));
-    }
-  for (Vec v : {tc, ts}) {
-    check(VecAssemblyBegin(v));
-    check(VecAssemblyEnd(v));
-  }
-  if (reduced) {
-    check(MatMultTranspose(m.basis.get(), tc, c.get()));
-    check(MatMultTranspose(m.basis.get(), ts, s.get()));
-  }
-  unbalance_c_ = core::gather(c.get());
-  unbalance_s_ = core::gather(s.get());
-  unbalance_c_.resize(static_cast<std::size_t>(n_), 0.0);
-  unbalance_s_.resize(static_cast<std::size_t>(n_), 0.0);
-
-  // Which entries of the state the films see: journal and pedestal positions and velocities.
-  std::vector<PetscInt> wanted;
-  for (const Bearing& b : bearings_)
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const PetscInt q : {b.journal[d], b.pedestal[d]})
-        for (PetscInt rate = 0; rate < 2; ++rate) wanted.push_back(2 * std::max<PetscInt>(q, 0) + rate);
-  core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
-  core::IndexSet from;
-  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
-                        from.put()));
-  inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), PETSC_DETERMINE);
-  check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
-  blocks_.reset();
-  j_at_rest_.reset();
-}
 
 void RotorSystem::set_train(Train train) {
   train_ = std::move(train);
@@ -347,94 +197,6 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   for (std::size_t b = 0; b < bearings_.size() && on_last_; ++b)
     for (PetscInt k = 0; k < bearings_[b].count; ++k)
       fa[2 * (end_ - begin_) + bearings_[b].first + k] = all.own[b].residual[static_cast<std::size_t>(k)];
-}
-
-// The parts of the Jacobian that are constant between builds, all in the pattern of make_jacobian(): so a Jacobian is a
-// sum of arrays plus the few entries of the films.
-void RotorSystem::make_constant_parts() {
-  const PetscInt rows = end_ - begin_;
-  const PetscInt local_rows = local_size();
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local_rows, 1)), 2);
-  std::vector<PetscInt> coupled(static_cast<std::size_t>(n_), 0);  // own states that act on a coordinate
-  Films pattern;
-  pattern.journal.resize(bearings_.size());
-  pattern.own.resize(bearings_.size());
-  for (std::size_t b = 0; b < bearings_.size(); ++b) {
-    const Bearing& bearing = bearings_[b];
-    if (!bearing.states) continue;
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const PetscInt q : {bearing.journal[d], bearing.pedestal[d]})
-        if (q >= 0) coupled[static_cast<std::size_t>(q)] += bearing.count;
-    if (!on_last_) continue;
-    const std::vector<double> zero(static_cast<std::size_t>(bearing.count), 0.0);
-    std::vector<double> states = zero;
-    bearing.states->unloaded(motion({}), states);
-    bearing.states->evaluate(motion({}), states, zero, film::Need::tangents, pattern.own[b]);
-    for (PetscInt k = 0; k < bearing.count; ++k)
-      count[static_cast<std::size_t>(2 * rows + bearing.first + k)] =
-          std::min(bearing.states->row_entries() + 8, size());
-  }
-  for (PetscInt i = 0; i < rows; ++i) {
-    PetscInt k = 0, total = coupled[static_cast<std::size_t>(begin_ + i)];
-    for (Mat m : {mass_.get(), damping_.get(), stiffness_.get(), gyroscopic_.get()}) {
-      check(MatGetRow(m, begin_ + i, &k, nullptr, nullptr));
-      total += 2 * k;
-      check(MatRestoreRow(m, begin_ + i, &k, nullptr, nullptr));
-    }
-    count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, size());
-  }
-  std::vector<PetscInt> local = count;
-  for (auto& k : local) k = std::min(k, local_rows);
-  std::vector<PetscInt> columns_to;
-  std::vector<PetscScalar> scaled;
-  // Every part sets every entry, if need be to zero.
-  const auto make = [&](double at_rest, double gyroscopic, double rates) {
-    core::Matrix j;
-    check(MatCreate(comm_, j.put()));
-    check(MatSetSizes(j.get(), local_rows, local_rows, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(j.get(), MATAIJ));
-    check(MatSeqAIJSetPreallocation(j.get(), 0, count.data()));
-    check(MatMPIAIJSetPreallocation(j.get(), 0, local.data(), 0, count.data()));
-    const auto add = [&](Mat m, PetscInt rate, double factor) {
-      for (PetscInt i = begin_; i < end_; ++i) {
-        PetscInt k = 0;
-        const PetscInt* columns = nullptr;
-        const PetscScalar* values = nullptr;
-        check(MatGetRow(m, i, &k, &columns, &values));
-        columns_to.assign(columns, columns + k);
-        scaled.assign(values, values + k);
-        for (PetscInt e = 0; e < k; ++e) {
-          columns_to[static_cast<std::size_t>(e)] = 2 * columns_to[static_cast<std::size_t>(e)] + rate;
-          scaled[static_cast<std::size_t>(e)] *= factor;
-        }
-        const PetscInt row = 2 * i;
-        check(MatSetValues(j.get(), 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
-        check(MatRestoreRow(m, i, &k, &columns, &values));
-      }
-    };
-    add(stiffness_.get(), 0, at_rest);
-    add(damping_.get(), 1, at_rest);
-    add(gyroscopic_.get(), 1, gyroscopic);
-    add(mass_.get(), 1, rates);
-    for (PetscInt i = begin_; i < end_; ++i) {
-      check(MatSetValue(j.get(), 2 * i + 1, 2 * i, rates, ADD_VALUES));
-      check(MatSetValue(j.get(), 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
-    }
-    add_films(j.get(), pattern, 0, 0);
-    check(MatAssemblyBegin(j.get(), MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(j.get(), MAT_FINAL_ASSEMBLY));
-    return j;
-  };
-  j_at_rest_ = make(1, 0, 0);
-  j_gyroscopic_ = make(0, 1, 0);
-  j_rates_ = make(0, 0, 1);
-}
-
-core::Matrix RotorSystem::make_jacobian() {
-  if (!j_at_rest_) make_constant_parts();
-  core::Matrix j;
-  check(MatDuplicate(j_at_rest_.get(), MAT_DO_NOT_COPY_VALUES, j.put()));
-  return j;
 }
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
