@@ -5,6 +5,7 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -356,6 +357,19 @@ MatrixXd CycleProblem::propagate(const VectorXd& v) const {
   }
   MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return whole;
+}
+
+std::vector<std::complex<double>> CycleProblem::multipliers() {
+  return spectral::eigenvalues(monodromy_);
+}
+
+// v of (M - mu I) v = 0 by inverse iteration, carried over the period.
+MatrixXd CycleProblem::critical_motion(double mu) {
+  const Eigen::PartialPivLU<MatrixXd> lu(monodromy_ - mu * (1 + 1e-10) * MatrixXd::Identity(n_, n_));
+  VectorXd v(n_);
+  for (Index k = 0; k < n_; ++k) v(k) = std::sin(1.0 + static_cast<double>(k));
+  for (int k = 0; k < 4; ++k) v = lu.solve(v).normalized();
+  return state_scale().asDiagonal() * propagate(v);
 }
 
 // The same matrix entry by entry, for MUMPS: the check on everything above.

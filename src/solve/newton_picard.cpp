@@ -1,6 +1,7 @@
 #include "whirl/solve/newton_picard.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,7 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
     : system_(system),
       options_(options),
       steps_(steps),
+      scheme_(make_scheme(1, Points::radau)),
       mesh_(std::move(mesh)),
       stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau))),
       local_(system.local_size()),
@@ -45,6 +47,7 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
       scale_(get(stepper_->state_scale())) {
   core::require(steps > 0, "shooting needs at least one step per interval");
   work_ = core::make_vector(comm(), system.local_size(), PETSC_DETERMINE);
+  whole_scale_ = whole(scale_);
   weights_ = make_unknown();
   const core::WriteArray w(weights_.get());
   for (Index i = 0; i < intervals(); ++i)
@@ -267,6 +270,22 @@ std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
   return values;
 }
 
+// In the basis the motion is the eigenvector of V^T M V; the intervals carry it on.
+MatrixXd NewtonPicardProblem::critical_motion(double mu) {
+  MatrixXd projected = basis_.transpose() * image_;
+  sum(projected);
+  const Eigen::EigenSolver<MatrixXd> modes(projected);
+  Index nearest = 0;
+  (modes.eigenvalues().array() - mu).abs().minCoeff(&nearest);
+  VectorXd state = basis_ * modes.eigenvectors().col(nearest).real().normalized();
+  MatrixXd motion(local_, intervals());
+  for (Index i = 0; i < intervals(); ++i) {
+    apply(i, state);
+    motion.col(i) = scale_.cwiseProduct(state);
+  }
+  return whole(motion);
+}
+
 void NewtonPicardProblem::multiply(Vec v, Vec y) {
   const VectorXd border = border_of(v);
   const core::ReadArray va(v);
@@ -324,19 +343,25 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   if (last_) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
 }
 
+MatrixXd NewtonPicardProblem::whole(const MatrixXd& columns) const {
+  MatrixXd out(system_.size(), columns.cols());
+  core::Scatter scatter;
+  core::Vector all;
+  check(VecScatterCreateToAll(work_.get(), scatter.put(), all.put()));
+  for (Index i = 0; i < columns.cols(); ++i) {
+    put(columns.col(i), work_.get());
+    check(VecScatterBegin(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
+    out.col(i) = get(all.get());
+  }
+  return out;
+}
+
 Cycle NewtonPicardProblem::gather(Vec u) const {
   const VectorXd border = border_of(u);
   const core::ReadArray ua(u);
-  Cycle cycle{mesh_, MatrixXd(system_.size(), intervals()), 0, border(borders_ - 1) * options_.parameter_scale};
-  core::Scatter scatter;
-  core::Vector whole;
-  check(VecScatterCreateToAll(work_.get(), scatter.put(), whole.put()));
-  for (Index i = 0; i < intervals(); ++i) {
-    put(Map<const VectorXd>(ua.data() + i * local_, local_).cwiseProduct(scale_), work_.get());
-    check(VecScatterBegin(scatter.get(), work_.get(), whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-    check(VecScatterEnd(scatter.get(), work_.get(), whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-    cycle.x.col(i) = get(whole.get());
-  }
+  Cycle cycle{mesh_, {}, 0, border(borders_ - 1) * options_.parameter_scale};
+  cycle.x = whole(scale_.asDiagonal() * Map<const MatrixXd>(ua.data(), local_, intervals()));
   if (options_.autonomous)
     cycle.period = border(0) * period_scale_;
   else
@@ -346,13 +371,13 @@ Cycle NewtonPicardProblem::gather(Vec u) const {
 }
 
 core::Vector NewtonPicardProblem::scatter(const Cycle& cycle) const {
-  core::require(cycle.x.cols() == intervals(), "the cycle has other points than the problem");
+  core::require(!options_.autonomous || period_scale_ > 0, "an autonomous cycle wants its phase reference first");
+  const Cycle here = cycle.on(scheme_, mesh_);
   core::Vector u = make_unknown();
   PetscInt begin = 0;
   check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
   const core::WriteArray ua(u.get());
-  Map<MatrixXd>(ua.data(), local_, intervals()) =
-      scale_.cwiseInverse().asDiagonal() * cycle.x.middleRows(begin, local_);
+  Map<MatrixXd>(ua.data(), local_, intervals()) = scale_.cwiseInverse().asDiagonal() * here.x.middleRows(begin, local_);
   if (last_) {
     if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
     ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;

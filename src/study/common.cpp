@@ -119,50 +119,6 @@ void put_groups(io::StudySummary& summary, const system::Train& train) {
   summary.set("nondimensional.sommerfeld_times_speed", groups->load / groups->bearings, "1");
 }
 
-void put_groups(io::Bifurcation& b, const system::Train& train, double speed) {
-  const auto groups = system::groups_of(train);
-  if (!groups) return;
-  b.more["nondimensional_speed"] = speed / groups->speed_scale;
-  b.more["nondimensional_load"] = groups->load;
-  b.more["nondimensional_unbalance"] = groups->unbalance;
-  b.more["sommerfeld"] = groups->sommerfeld(speed);
-}
-
-void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {
-  std::vector<std::string> type;
-  std::vector<double> parameter, uncertainty, angle;
-  for (const auto& b : all) {
-    type.emplace_back(io::name_of(b.type));
-    parameter.push_back(b.value);
-    uncertainty.push_back(b.uncertainty);
-    const auto at = b.more.find("angle_rad");
-    angle.push_back(at == b.more.end() ? 0.0 : at->second);
-  }
-  const std::string unit = all.empty() ? "1" : all.front().unit;
-  auto& g = group.child("bifurcations");
-  g.put("type", type, "kind of bifurcation");
-  g.put("parameter", parameter, unit, "where");
-  g.put("uncertainty", uncertainty, unit, "estimated error from film mesh, time mesh and location");
-  g.put("angle", angle, "rad", "angle of the critical multiplier");
-}
-
-io::BifurcationType type_of(solve::Event event) {
-  switch (event) {
-    case solve::Event::fold:
-      return io::BifurcationType::fold;
-    case solve::Event::hopf:
-      return io::BifurcationType::hopf;
-    case solve::Event::cyclic_fold:
-      return io::BifurcationType::cyclic_fold;
-    case solve::Event::flip:
-      return io::BifurcationType::flip;
-    case solve::Event::neimark_sacker:
-      return io::BifurcationType::neimark_sacker;
-    default:
-      return io::BifurcationType::branch_point;
-  }
-}
-
 std::string branch_status(const solve::BranchEnd& end, const std::string& unit) {
   if (end.completed) return "completed";
   return fmt::format("ended at {:.6g} {}: {}", end.parameter, unit, end.reason);

@@ -42,12 +42,6 @@ void put_bearings(io::Group& group, const system::Machine& machine);
 
 /// The nondimensional groups of a rigid rotor in equal bearings, as nondimensional.*; nothing for other machines.
 void put_groups(io::StudySummary& summary, const system::Train& train);
-/// The groups at a bifurcation; `train` and `speed` [rad/s] are those there.
-void put_groups(io::Bifurcation& bifurcation, const system::Train& train, double speed);
-
-/// A table of bifurcations: type, parameter, uncertainty, angle.
-void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);
-[[nodiscard]] io::BifurcationType type_of(solve::Event event);
 
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);

@@ -12,7 +12,7 @@ using core::check;
 
 // Near its birth the branch is a parabola p = p_0 + kappa h^2 over the amplitude h, up to h^4. Cycles at h, 2h and 4h
 // give differences of the parameter in the ratio 1 : 4, whatever p_0; only then is the sign of kappa believed.
-void CycleFollower::set_criticality(io::Bifurcation& b, solve::CycleProblem& problem, Vec u, Vec tangent,
+void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
                                     double sensitivity) const {
   b.criticality_by = "undetermined: no parabola at small amplitudes of the branch born here";
   if (sensitivity == 0) return;
@@ -22,12 +22,12 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::CycleProblem& pro
     double parameter[3] = {0, 0, 0};
     bool converged = true;
     for (int k = 0; k < 3 && converged; ++k) {
-      const double arclength = smallest * std::pow(2, k) * std::sqrt(problem.options().state_weight);
+      const double arclength = smallest * std::pow(2, k) * std::sqrt(state_weight());
       check(VecWAXPY(at.get(), arclength, tangent, u));
       double offset = 0;
       check(VecDot(row.get(), at.get(), &offset));
       converged = solve::newton(problem, at.get(), row.get(), offset, newton_).converged;
-      if (converged) parameter[k] = solve::last_entry(context_.comm, at.get());
+      if (converged) parameter[k] = solve::last_entry(problem.comm(), at.get());
     }
     if (!converged) continue;
     const double first = parameter[1] - parameter[0], second = parameter[2] - parameter[1];
@@ -40,15 +40,10 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::CycleProblem& pro
 
 // The equilibrium branch gives the error of the film mesh; here it is left open where the film has one.
 void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, const solve::Restart& leaving, double omega) {
-  io::Bifurcation b;
-  b.type = io::BifurcationType::hopf;
-  b.parameter = options_.parameter.path;
-  b.value = hopf.parameter;
-  b.unit = unit_;
+  io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
   b.period_s = 2 * std::numbers::pi / omega;
   b.more["whirl_frequency_rad_s"] = omega;
   if (!has_film_mesh(system_->train())) b.uncertainty = hopf.bracket;
-  put_groups(b, system_->train(), options_.parameter.path == "speed" ? hopf.parameter * scale_ : system_->speed());
   set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity);
   context_.results.summary().bifurcations.push_back(b);
 }

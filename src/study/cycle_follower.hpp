@@ -1,6 +1,7 @@
 #pragma once
 // One branch of cycles from its first guess to its tables.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,7 +9,7 @@
 
 #include "common.hpp"
 #include "cycle_record.hpp"
-#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/solve/periodic_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
 namespace whirl::study {
@@ -34,24 +35,31 @@ public:
 
 private:
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
-  [[nodiscard]] solve::CycleOptions cycle_options() const;
-  [[nodiscard]] std::unique_ptr<solve::CycleProblem> twice_the_period(const FlipSeed& seed) const;
-  [[nodiscard]] solve::Restart leave_flip(const solve::CycleProblem& twice, const FlipSeed& seed) const;
-  [[nodiscard]] core::Vector start(solve::CycleProblem& problem) const;
+  /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with half its time steps if
+  /// `doubled`.
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::RotorSystem& system, int turns,
+                                                                     std::vector<double> mesh, bool doubled) const;
+  /// A change of the root mean square state by half a clearance counts as one longest step.
+  [[nodiscard]] double state_weight() const { return std::pow(continuation_.max_step / 0.5, 2); }
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed) const;
+  [[nodiscard]] solve::Restart leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const;
+  [[nodiscard]] core::Vector start(const solve::PeriodicProblem& problem) const;
   [[nodiscard]] solve::Restart start_at_hopf();
   [[nodiscard]] solve::Restart start_at_flip();
-  [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle) const;
+  [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle);
   /// Reads off, on the branch through u along the unit `tangent`, whether a branch born at a bifurcation lives where
   /// the old one is unstable (supercritical) or where it is stable; `sensitivity` is the slope of the old one's
   /// distance from its border of stability over the scaled parameter.
-  void set_criticality(io::Bifurcation& b, solve::CycleProblem& problem, Vec u, Vec tangent, double sensitivity) const;
+  void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
+                       double sensitivity) const;
+  [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   void record_hopf(const solve::LocatedEvent& hopf, const solve::Restart& leaving, double omega);
   [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& cycle) const;
   /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
   [[nodiscard]] bool at_simple_cycle(const solve::Cycle& cycle) const;
   [[nodiscard]] bool returned(const solve::Cycle& cycle);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
-  [[nodiscard]] solve::Stability stability() const;
+  [[nodiscard]] solve::Stability stability();
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
@@ -68,7 +76,7 @@ private:
   solve::NewtonOptions newton_;
   solve::ContinuationOptions continuation_;
   std::unique_ptr<system::RotorSystem> system_;
-  std::unique_ptr<solve::CycleProblem> problem_;
+  std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   std::optional<solve::Cycle> last_;
   double last_saved_ = -1e9;

@@ -30,7 +30,7 @@ std::vector<double> two_laps(const std::vector<double>& mesh) {
 }  // namespace
 
 // The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
-core::Vector CycleFollower::start(solve::CycleProblem& problem) const {
+core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
   core::Vector x = system::static_guess(*system_);
   Walker walker(*system_);
   std::vector<double> whole;
@@ -56,7 +56,7 @@ core::Vector CycleFollower::start(solve::CycleProblem& problem) const {
 // along the critical mode x(s) = x_H + a Re(phi exp(2 pi i s)) with T = 2 pi/omega. A step along this tangent asks for
 // an amplitude and leaves speed and period free.
 solve::Restart CycleFollower::start_at_hopf() {
-  solve::EquilibriumProblem equilibria(*system_, scale_, std::pow(continuation_.max_step / 0.5, 2));
+  solve::EquilibriumProblem equilibria(*system_, scale_, state_weight());
   core::Vector u = equilibria.make_unknown(), at_hopf,
                x = core::make_vector(PETSC_COMM_SELF, system_->local_size(), PETSC_DETERMINE);
   if (system_->parameter_is_speed()) {
@@ -124,28 +124,18 @@ solve::Restart CycleFollower::start_at_hopf() {
   return restart;
 }
 
-// The vector v of (M + I) v = 0 by inverse iteration, carried over the lap.
-FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) const {
-  const Eigen::MatrixXd& m = problem_->monodromy();
-  const Eigen::Index n = m.rows();
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(m + (1 + 1e-10) * Eigen::MatrixXd::Identity(n, n));
-  Eigen::VectorXd v(n);
-  for (Eigen::Index k = 0; k < n; ++k) v(k) = std::sin(1.0 + static_cast<double>(k));
-  for (int k = 0; k < 4; ++k) v = lu.solve(v).normalized();
+FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) {
   FlipSeed seed{cycle, cycle};
-  seed.direction.x = problem_->state_scale().asDiagonal() * problem_->propagate(v);
+  seed.direction.x = problem_->critical_motion(-1);
   return seed;
 }
 
-std::unique_ptr<solve::CycleProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
-  solve::CycleOptions o = cycle_options();
-  o.turns *= 2;
-  o.base_intervals *= 2;
-  return std::make_unique<solve::CycleProblem>(context_.comm, *system_, o, two_laps(seed.cycle.mesh));
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
+  return make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), false);
 }
 
 // The branch leaves along +delta on the first lap and -delta on the second, at first without a change of the parameter.
-solve::Restart CycleFollower::leave_flip(const solve::CycleProblem& twice, const FlipSeed& seed) const {
+solve::Restart CycleFollower::leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const {
   const auto two = [](const solve::Cycle& one, double second) {
     solve::Cycle out{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period,
                      one.parameter};
@@ -164,8 +154,7 @@ solve::Restart CycleFollower::leave_flip(const solve::CycleProblem& twice, const
 
 solve::Restart CycleFollower::start_at_flip() {
   system_->set_parameter(seed_->cycle.parameter);
-  problem_ =
-      std::make_unique<solve::CycleProblem>(context_.comm, *system_, cycle_options(), two_laps(seed_->cycle.mesh));
+  problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), false);
   solve::Restart restart = leave_flip(*problem_, *seed_);
   restart.step = continuation_.initial_step;
   restart.point.index = -1;  // the flip itself belongs to the branch of the simple period

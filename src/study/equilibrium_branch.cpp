@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "bifurcation.hpp"
 #include "common.hpp"
 #include "groups.hpp"
 #include "whirl/core/error.hpp"
@@ -107,24 +107,10 @@ void EquilibriumBranch::run(Context& context) {
         point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
   };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
-    const Event kind = found.event == solve::Event::hopf   ? Event::hopf
-                       : found.event == solve::Event::fold ? Event::fold
-                                                           : Event::branch_point;
-    if (kind != Event::branch_point &&
-        std::find(options.detect.begin(), options.detect.end(), kind) == options.detect.end())
-      return;
-    io::Bifurcation b;
-    b.type = type_of(found.event);
-    b.parameter = options.parameter.path;
-    b.value = found.parameter;
-    b.unit = unit;
+    if (!wanted(found.event, options.detect)) return;
+    io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
+                                       context.machine, {}, *system);
     b.uncertainty = found.bracket;
-    const bool over_speed = options.parameter.path == "speed";
-    put_groups(b,
-               over_speed
-                   ? system->train()
-                   : system::train_of(with_parameter(context.machine, options.parameter.path, found.parameter * scale)),
-               over_speed ? found.parameter * scale : system->speed());
     const double omega = std::abs(found.critical.imag());
     if (found.event == solve::Event::hopf) {
       b.period_s = 2 * std::numbers::pi / omega;

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle.hpp"
-#include "whirl/solve/extended_problem.hpp"
 #include "whirl/solve/interval.hpp"
+#include "whirl/solve/periodic_problem.hpp"
 #include "whirl/solve/scaled_point.hpp"
 
 namespace whirl::solve {
@@ -35,7 +34,7 @@ struct CycleOptions {
 /// Gamma_i x_i + ..., multiplies these along the rank's run, gathers one small system from all ranks and solves it
 /// together with the border (parameter, period, added rows), so that folds are regular. Products of Gamma lose log10 of
 /// the largest multiplier in digits, which GMRES around it restores.
-class CycleProblem : public ExtendedProblem {
+class CycleProblem : public PeriodicProblem {
 public:
   /// `local` lives on a communicator of size 1 and outlives this.
   CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh);
@@ -51,17 +50,16 @@ public:
   void solve(Vec rhs, Vec x) override;
   bool adapt(core::Vector& u, core::Vector& tangent) override;
 
-  [[nodiscard]] const Scheme& scheme() const { return scheme_; }
-  [[nodiscard]] const std::vector<double>& mesh() const { return mesh_; }
+  [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
+  [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
   [[nodiscard]] const CycleOptions& options() const { return options_; }
-  [[nodiscard]] const Eigen::VectorXd& state_scale() const { return point_.state_scale(); }
-
-  /// Between the distributed unknown and the replicated cycle; an autonomous problem wants its phase reference first.
-  /// Collective.
-  [[nodiscard]] Cycle gather(Vec u) const;
-  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const;
-  /// Phase reference of an autonomous cycle: integral <x - ref, ref'> = 0 from now on.
-  void set_phase_reference(const Cycle& reference);
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return point_.state_scale(); }
+  [[nodiscard]] Cycle gather(Vec u) const override;
+  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
+  void set_phase_reference(const Cycle& reference) override;
+  /// All of them.
+  [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
+  [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
   [[nodiscard]] const Eigen::MatrixXd& monodromy() const { return monodromy_; }
 

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle.hpp"
-#include "whirl/solve/extended_problem.hpp"
+#include "whirl/solve/periodic_problem.hpp"
 #include "whirl/solve/tableau.hpp"
 
 namespace whirl::solve {
@@ -43,7 +42,7 @@ struct NewtonPicardOptions {
 /// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation and by
 /// multipliers(), with a size that follows the radius; in between one orthogonal subspace iteration V <- orth(M V)
 /// costs nothing, because M V is known. Source: Lust (1997); van de Vrande (2001), Sec. 3.2 and (3.18), with errata.
-class NewtonPicardProblem : public ExtendedProblem {
+class NewtonPicardProblem : public PeriodicProblem {
 public:
   /// `tableau` has sequential stages; `steps` per interval of `mesh`. The communicator is that of `system`.
   NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau, int steps,
@@ -59,15 +58,19 @@ public:
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
 
-  /// Between the distributed unknown and the replicated cycle in the layout of degree 1. Collective.
-  [[nodiscard]] Cycle gather(Vec u) const;
-  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const;
-  /// Phase reference of an autonomous cycle: sum h_i <x_i - ref_i, ref'_i> = 0 from now on.
-  void set_phase_reference(const Cycle& reference);
+  /// Degree 1: cycles are given by their states at the ends of the intervals.
+  [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
+  [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return whole_scale_; }
+  [[nodiscard]] Cycle gather(Vec u) const override;
+  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
+  /// sum h_i <x_i - ref_i, ref'_i> = 0 from now on.
+  void set_phase_reference(const Cycle& reference) override;
 
-  /// All multipliers above the radius, and at least one below, by falling modulus, at the last linearisation; renews
-  /// the subspace. Throws core::NotConverged.
-  [[nodiscard]] std::vector<std::complex<double>> multipliers();
+  /// All multipliers above the radius, and at least one below; renews the subspace.
+  [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
+  /// `mu` is above the radius.
+  [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Size of the subspace, and products of the monodromy matrix with a vector since the start.
   [[nodiscard]] Eigen::Index subspace() const { return basis_.cols(); }
   [[nodiscard]] long products() const { return products_; }
@@ -77,6 +80,8 @@ private:
   [[nodiscard]] double length(Eigen::Index i) const;
   [[nodiscard]] double angle(double s) const;
   [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
+  /// Columns [local x k] of every rank as [n x k] on all ranks.
+  [[nodiscard]] Eigen::MatrixXd whole(const Eigen::MatrixXd& columns) const;
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
   void march(Eigen::Index i, double period, Vec x, Eigen::MatrixXd* columns);
   void sum(Eigen::MatrixXd& values) const;
@@ -90,12 +95,13 @@ private:
   problem::System& system_;
   NewtonPicardOptions options_;
   int steps_;
+  Scheme scheme_;
   std::vector<double> mesh_;
   std::unique_ptr<SparseRungeKutta> stepper_;
   Eigen::Index local_, borders_;  // this rank's states; 1 or 2
   bool last_;
   double period_scale_ = 0, phase_offset_ = 0;
-  Eigen::VectorXd scale_;
+  Eigen::VectorXd scale_, whole_scale_;  // of this rank's states, of all
   core::Vector weights_, work_;
   Eigen::MatrixXd phase_row_;  // [local x N]
 

@@ -1,0 +1,95 @@
+#include "bifurcation.hpp"
+
+#include <algorithm>
+
+#include "whirl/deck/units.hpp"
+#include "whirl/system/groups.hpp"
+
+namespace whirl::study {
+namespace {
+
+void put_groups(io::Bifurcation& b, const system::Train& train, double speed) {
+  const auto groups = system::groups_of(train);
+  if (!groups) return;
+  b.more["nondimensional_speed"] = speed / groups->speed_scale;
+  b.more["nondimensional_load"] = groups->load;
+  b.more["nondimensional_unbalance"] = groups->unbalance;
+  b.more["sommerfeld"] = groups->sommerfeld(speed);
+}
+
+}  // namespace
+
+Event event_of(solve::Event e) {
+  switch (e) {
+    case solve::Event::fold:
+      return Event::fold;
+    case solve::Event::hopf:
+      return Event::hopf;
+    case solve::Event::cyclic_fold:
+      return Event::cyclic_fold;
+    case solve::Event::flip:
+      return Event::flip;
+    case solve::Event::neimark_sacker:
+      return Event::neimark_sacker;
+    default:
+      return Event::branch_point;
+  }
+}
+
+io::BifurcationType type_of(solve::Event event) {
+  switch (event) {
+    case solve::Event::fold:
+      return io::BifurcationType::fold;
+    case solve::Event::hopf:
+      return io::BifurcationType::hopf;
+    case solve::Event::cyclic_fold:
+      return io::BifurcationType::cyclic_fold;
+    case solve::Event::flip:
+      return io::BifurcationType::flip;
+    case solve::Event::neimark_sacker:
+      return io::BifurcationType::neimark_sacker;
+    default:
+      return io::BifurcationType::branch_point;
+  }
+}
+
+bool wanted(solve::Event event, const std::vector<Event>& detect) {
+  return event == solve::Event::branch_point ||
+         std::find(detect.begin(), detect.end(), event_of(event)) != detect.end();
+}
+
+io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std::string& path, const std::string& unit,
+                               const system::Machine& machine, const std::vector<std::string>& unbalance,
+                               const system::RotorSystem& system) {
+  io::Bifurcation b;
+  b.type = type;
+  b.parameter = path;
+  b.value = value;
+  b.unit = unit;
+  const double si = value * deck::number_to_si(1, unit);
+  if (path == "speed")
+    put_groups(b, system.train(), si);
+  else
+    put_groups(b, system::train_of(with_parameter(machine, path, si), unbalance), system.speed());
+  return b;
+}
+
+void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {
+  std::vector<std::string> type;
+  std::vector<double> parameter, uncertainty, angle;
+  for (const auto& b : all) {
+    type.emplace_back(io::name_of(b.type));
+    parameter.push_back(b.value);
+    uncertainty.push_back(b.uncertainty);
+    const auto at = b.more.find("angle_rad");
+    angle.push_back(at == b.more.end() ? 0.0 : at->second);
+  }
+  const std::string unit = all.empty() ? "1" : all.front().unit;
+  auto& g = group.child("bifurcations");
+  g.put("type", type, "kind of bifurcation");
+  g.put("parameter", parameter, unit, "where");
+  g.put("uncertainty", uncertainty, unit, "estimated error from film mesh, time mesh and location");
+  g.put("angle", angle, "rad", "angle of the critical multiplier");
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,30 @@
+#pragma once
+// Bifurcations as results show them.
+
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/solve/continuation.hpp"
+#include "whirl/study/parameter.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+[[nodiscard]] Event event_of(solve::Event event);
+[[nodiscard]] io::BifurcationType type_of(solve::Event event);
+/// Whether results shall hold such an event: those asked for, and branch points in any case.
+[[nodiscard]] bool wanted(solve::Event event, const std::vector<Event>& detect);
+
+/// What a bifurcation at `value` (in `unit`) of the option at `path` has by its place alone: that, and the
+/// nondimensional groups of the machine there. `system` is the one that is followed.
+[[nodiscard]] io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std::string& path,
+                                             const std::string& unit, const system::Machine& machine,
+                                             const std::vector<std::string>& unbalance,
+                                             const system::RotorSystem& system);
+
+/// A table of bifurcations: type, parameter, uncertainty, angle.
+void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);
+
+}  // namespace whirl::study

@@ -1,0 +1,69 @@
+// What a branch of cycles needs to go on after an interruption.
+
+#include <fmt/core.h>
+
+#include "cycle_follower.hpp"
+
+namespace whirl::study {
+
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds) {
+  group.set("count", static_cast<int>(seeds.size()));
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    auto& g = group.child(fmt::format("{}", k + 1));
+    write_cycle(g.child("cycle"), seeds[k].cycle);
+    write_cycle(g.child("direction"), seeds[k].direction);
+  }
+}
+
+std::vector<FlipSeed> read_seeds(const io::Group& group) {
+  std::vector<FlipSeed> seeds;
+  for (std::int64_t k = 1; k <= group.integer("count"); ++k) {
+    const auto& g = group.group(fmt::format("{}", k));
+    seeds.push_back({read_cycle(g.group("cycle")), read_cycle(g.group("direction"))});
+  }
+  return seeds;
+}
+
+void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step) {
+  // The next phase is measured against this cycle, in a resumed branch as in this one.
+  if (autonomous()) problem_->set_phase_reference(problem_->gather(u));
+  if (!options_.checkpoint) return;
+  // At least once a second of work, so that a kill costs no more than that; the decision is rank 0's, for all.
+  int due = context_.results.seconds() - last_saved_ >= 1;
+  MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
+  if (!due) return;
+  const solve::Cycle cycle = problem_->gather(u), direction = problem_->gather(tangent);
+  io::Group state;
+  record_.write(state.child("record"), true);
+  write_cycle(state.child("cycle"), cycle);
+  write_cycle(state.child("tangent"), direction);
+  write_point(state.child("point"), point);
+  state.set("next_step", next_step);
+  state.set("largest_difference", largest_difference_);
+  state.set("seconds", context_.results.seconds());
+  write_summary(state.child("summary"), context_.results.summary());
+  write_seeds(state.child("flips"), seeds_);
+  context_.results.save_checkpoint(state);
+  last_saved_ = context_.results.seconds();
+}
+
+std::optional<solve::Restart> CycleFollower::restore() {
+  if (!context_.resume || !context_.results.has_checkpoint()) return std::nullopt;
+  const io::Group state = context_.results.load_checkpoint();
+  record_.read(state.group("record"));
+  const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
+  problem_ = make_problem(*system_, options_.period, cycle.mesh, false);
+  if (autonomous()) problem_->set_phase_reference(cycle);
+  read_summary(state.group("summary"), context_.results.summary());
+  context_.results.add_earlier_seconds(state.real("seconds"));
+  solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
+                         read_point(state.group("point"))};
+  restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);
+  seeds_ = read_seeds(state.group("flips"));
+  last_ = cycle;
+  largest_difference_ = state.real("largest_difference");
+  if (seed_) (void)returned(cycle);
+  return restart;
+}
+
+}  // namespace whirl::study
