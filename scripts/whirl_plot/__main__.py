@@ -2,7 +2,7 @@
 import pathlib
 import sys
 
-from . import campbell, bifurcation, eccentricity, film, multipliers, orbits, response, shapes
+from . import bearing_map, bifurcation, campbell, eccentricity, film, multipliers, orbits, response, shapes
 from .data import open_results
 from .style import use_style
 
@@ -10,6 +10,7 @@ from .style import use_style
 PICTURES = {
     "static": [shapes.draw_sag, orbits.draw_positions, film.draw],
     "alignment": [shapes.draw_sag],
+    "bearing_map": [bearing_map.draw_impedance, bearing_map.draw_frequencies],
     "modes": [campbell.draw, shapes.draw_modes],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
@@ -38,7 +39,7 @@ def main(argv):
                 else:
                     for file in files:
                         print(file)
-        for file in [*bifurcation.draw_together(results), *eccentricity.draw(results)]:
+        for file in [*bifurcation.draw_together(results), *eccentricity.draw(results), *bearing_map.draw_together(results)]:
             print(file)
     return 1 if failed else 0
 

@@ -134,7 +134,5 @@ def draw_together(results):
         axis.set_ylabel(f"y, max and min [{unit}]")
         axis.set_xlabel(label)
         axis.margins(y=0.12)
-    whole = type("Whole", (), {"run_title": results.title, "name": "all branches", "status": "",
-                               "file": lambda self, what: results.directory / f"{what}.png"})()
-    return [save(figure, whole, "bifurcations", "vertical position of the journal relative to the bearing centre",
+    return [save(figure, results.whole("all branches"), "bifurcations", "vertical position of the journal relative to the bearing centre",
                  branch_legend([k for s in studies for k, _ in events_of(s)], handles))]

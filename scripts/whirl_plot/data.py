@@ -53,6 +53,17 @@ class Study:
         return self.directory / f"{name}.{what}.png"
 
 
+class Whole:
+    """What a picture of several studies is called and where it goes."""
+
+    def __init__(self, results, name):
+        self.run_title, self.name, self.status = results.title, name, ""
+        self.directory = results.directory
+
+    def file(self, what):
+        return self.directory / f"{what}.png"
+
+
 class Results:
     def __init__(self, file, directory):
         self.directory = pathlib.Path(directory)
@@ -60,6 +71,9 @@ class Results:
         groups = file["studies"] if "studies" in file else {}
         studies = [Study(groups[name], directory, self.title) for name in groups]
         self.studies = sorted(studies, key=lambda s: (self._order().get(s.name, len(groups)), s.name))
+
+    def whole(self, name):
+        return Whole(self, name)
 
     def _order(self):
         """Place of each study in the deck, from summary.json."""

@@ -61,8 +61,6 @@ def draw(results):
         axis.set_xlabel(r"$\Omega^* = \Omega/\Omega_0$")
         axis.set_ylabel(r"max $\varepsilon$")
         axis.set_ylim(0, 1.02)
-    whole = type("Whole", (), {"run_title": results.title, "name": "largest eccentricity", "status": "",
-                               "file": lambda self, what: results.directory / f"{what}.png"})()
     handles = [Line2D([], [], color=c, label=w) for w, c in kinds.items()]
-    return [save(figure, whole, "eccentricity", "largest eccentricity of the journal over one cycle, per clearance",
+    return [save(figure, results.whole("largest eccentricity"), "eccentricity", "largest eccentricity of the journal over one cycle, per clearance",
                  branch_legend([k for s in studies for k, _ in events_of(s)], handles))]

@@ -1,12 +1,14 @@
 #include "whirl/study/bearing_map.hpp"
 
-#include <algorithm>
+#include <fmt/core.h>
+
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "common.hpp"
+#include "one_bearing.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/system/groups.hpp"
@@ -15,94 +17,170 @@ namespace whirl::study {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
 
-// One bearing in nondimensional form: F* = (c/R)^2 F/(mu Omega L D), k* and b* alike (van de Vrande 2001, sec. 4.3).
-class Bearing {
-public:
-  Bearing(const system::Support& support, double speed)
-      : clearance_(support.geometry.clearance),
-        speed_(speed),
-        film_(film::make_model(support.geometry, support.film, support.lubricant)) {
-    const film::Geometry& g = support.geometry;
-    const double ratio = g.radius / g.clearance;
-    unit_ = support.lubricant.viscosity * g.length * 2 * g.radius * ratio * ratio;
-  }
-
-  struct Equilibrium {
-    double eccentricity = 0, attitude = nan, sommerfeld = nan;
-    double k[2][2] = {{nan, nan}, {nan, nan}}, b[2][2] = {{nan, nan}, {nan, nan}};
-    double speed_limit = nan, whirl_ratio = nan;
-  };
-  [[nodiscard]] std::optional<Equilibrium> carrying(double eccentricity, double attitude);
-
-  // W along and across a squeeze velocity in +x with the shaft at rest, F* = -|v_s*| W; NaN where the film is closed.
-  [[nodiscard]] std::array<double, 2> impedance(double along, double across) {
-    film::Motion m;
-    m.position = {along * clearance_, across * clearance_, 0, 0};
-    m.velocity = {clearance_ * speed_, 0, 0, 0};
-    try {
-      film_->evaluate(m, film::Need::force, response_);
-    } catch (const core::DomainError&) {
-      return {nan, nan};
-    }
-    return {-response_.force[0] / (unit_ * speed_), -response_.force[1] / (unit_ * speed_)};
-  }
-
-private:
-  double clearance_, speed_, unit_ = 0;
-  std::unique_ptr<film::Model> film_;
-  film::Response response_;
+/// A point of the locus with its coefficients at all frequencies.
+struct Point {
+  BearingEquilibrium at;
+  std::vector<BearingCoefficients> coefficients;
 };
 
-// The journal at this eccentricity whose film carries a load along -y; `attitude` is a guess. Turning the journal turns
-// the force of a full film by as much, so that one step is exact; other bores take secants.
-std::optional<Bearing::Equilibrium> Bearing::carrying(double eccentricity, double attitude) {
-  film::Motion m;
-  m.speed = speed_;
-  const auto miss = [&](double angle) {
-    m.position = {eccentricity * clearance_ * std::sin(angle), -eccentricity * clearance_ * std::cos(angle), 0, 0};
-    film_->evaluate(m, film::Need::tangents, response_);
-    return std::atan2(response_.force[0], response_.force[1]);
-  };
-  double before = attitude, d_before = 0, angle = attitude, d = 0;
-  bool found = false;
-  try {
-    d_before = miss(before);
-    angle = before + d_before;
-    for (int i = 0; i < 40 && !found; ++i) {
-      d = miss(angle);
-      found = std::abs(d) < 1e-13;
-      if (found || angle == before) break;
-      const double slope = (d - d_before) / (angle - before);
-      const double step = slope != 0 ? std::clamp(-d / slope, -0.3, 0.3) : d;
-      if (std::abs(step) < 1e-14) found = true;
-      before = angle;
-      d_before = d;
-      angle += step;
+/// A point at a load that was asked for.
+struct Loaded {
+  double sommerfeld = 0;
+  Point point;
+  BearingProfile profile;
+};
+
+// What one rank computes; all do it alike.
+class Mapper {
+public:
+  Mapper(const BearingMapOptions& options, const system::Support& support)
+      : options_(options), bearing_(support, options.speed.value) {}
+
+  // The locus ends where journal and bearing touch; some bores carry no vertical load at small eccentricities.
+  void follow() {
+    BearingEquilibrium last = bearing_.centred();
+    for (int i = 1; i <= options_.points; ++i) {
+      const auto e = bearing_.carrying(options_.max_eccentricity * i / options_.points, last);
+      if (!e && bearing_.has_states()) break;
+      if (!e) continue;
+      locus.push_back(complete(*e));
+      last = *e;
     }
-  } catch (const core::DomainError&) {
+  }
+
+  // The first place on the locus where `margin` changes its sign; the bearing is left there.
+  std::optional<Point> find(const std::function<double(const BearingEquilibrium&)>& margin) {
+    for (std::size_t i = 0; i + 1 < locus.size(); ++i) {
+      if (margin(locus[i].at) * margin(locus[i + 1].at) > 0) continue;
+      BearingEquilibrium low = locus[i].at, high = locus[i + 1].at;
+      for (int k = 0; k < 60; ++k) {
+        const auto middle = bearing_.carrying(0.5 * (low.eccentricity + high.eccentricity), low);
+        if (!middle) return std::nullopt;
+        (margin(*middle) * margin(low) > 0 ? low : high) = *middle;
+      }
+      return complete(low);
+    }
     return std::nullopt;
   }
-  if (!found && std::abs(d) > 1e-9) return std::nullopt;
-  Equilibrium e;
-  e.eccentricity = eccentricity;
-  e.attitude = std::atan2(m.position[0], -m.position[1]);
-  e.sommerfeld = response_.force[1] / (unit_ * speed_);
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) {
-      e.k[i][j] = -response_.d_position[i][j] * clearance_ / (unit_ * speed_);
-      e.b[i][j] = -response_.d_velocity[i][j] * clearance_ / unit_;
+
+  void load() {
+    for (const double s : options_.sommerfeld) {
+      const auto point = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
+      if (point) loaded.push_back({s, *point, bearing_.profile()});
     }
-  // Routh's border: whirl at (nu Omega) with effective stiffness k_e, m c Omega^2/load = k_e/(S nu^2).
-  const auto &k = e.k, &b = e.b;
-  const double k_e =
-      (k[0][0] * b[1][1] + k[1][1] * b[0][0] - k[0][1] * b[1][0] - k[1][0] * b[0][1]) / (b[0][0] + b[1][1]);
-  const double nu2 = ((k_e - k[0][0]) * (k_e - k[1][1]) - k[0][1] * k[1][0]) / (b[0][0] * b[1][1] - b[0][1] * b[1][0]);
-  if (nu2 > 0 && k_e > 0) {
-    e.whirl_ratio = std::sqrt(nu2);
-    e.speed_limit = std::sqrt(k_e / (nu2 * e.sommerfeld));
   }
-  return e;
+
+  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A film
+  // with own states is another one at every speed: its thresholds belong to branches of equilibria.
+  void find_threshold(const std::optional<system::Groups>& groups) {
+    if (!groups || bearing_.has_states()) return;
+    const auto found = find([&](const BearingEquilibrium& e) {
+      return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
+    });
+    if (found) threshold = found->at;
+  }
+
+  void squeeze() {
+    if (bearing_.has_states()) return;
+    for (int i = 0; i < options_.grid; ++i)
+      axis.push_back(options_.max_eccentricity * (2.0 * i / (options_.grid - 1) - 1));
+    for (const double a : axis)
+      for (const double b : axis) {
+        const bool inside = std::hypot(a, b) <= options_.max_eccentricity * (1 + 1e-12);
+        const auto w = inside ? bearing_.impedance(a, b) : std::array<double, 2>{nan, nan};
+        along.push_back(w[0]);
+        across.push_back(w[1]);
+      }
+  }
+
+  std::vector<Point> locus;
+  std::vector<Loaded> loaded;
+  std::optional<BearingEquilibrium> threshold;
+  std::vector<double> axis, along, across;
+
+private:
+  Point complete(const BearingEquilibrium& e) {
+    Point p{e, {}};
+    for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_.coefficients(ratio));
+    return p;
+  }
+
+  const BearingMapOptions& options_;
+  OneBearing bearing_;
+};
+
+// One column of the locus.
+template <class Value>
+std::vector<double> column(const std::vector<Point>& locus, const Value& value) {
+  std::vector<double> out;
+  for (const Point& p : locus) out.push_back(value(p));
+  return out;
+}
+
+void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vector<double>& frequencies) {
+  using P = Point;
+  auto& table = group.child("locus");
+  table.put("eccentricity", column(locus, [](const P& p) { return p.at.eccentricity; }), "1", "in clearances");
+  table.put("attitude", column(locus, [](const P& p) { return p.at.attitude; }), "rad", "from the load to the journal");
+  table.put("sommerfeld", column(locus, [](const P& p) { return p.at.sommerfeld; }), "1",
+            "S = (c/R)^2 load/(mu Omega L D)");
+  table.put("x", column(locus, [](const P& p) { return p.at.eccentricity * std::sin(p.at.attitude); }), "1",
+            "in clearances");
+  table.put("y", column(locus, [](const P& p) { return -p.at.eccentricity * std::cos(p.at.attitude); }), "1",
+            "in clearances");
+  table.put("speed_limit", column(locus, [](const P& p) { return p.at.speed_limit; }), "1",
+            "Omega* = Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: stable at every speed");
+  table.put("whirl_ratio", column(locus, [](const P& p) { return p.at.whirl_ratio; }), "1",
+            "whirl frequency there over Omega");
+  table.set("frequency_ratio", frequencies.front());
+  for (std::size_t i = 0; i < 4; ++i) {
+    table.put(fmt::format("k_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].k[i]; }), "1",
+              "stiffness c k/(load/S)");
+    table.put(fmt::format("b_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].b[i]; }), "1",
+              "damping c Omega b/(load/S)");
+  }
+  if (frequencies.size() < 2) return;
+  auto& over = group.child("frequencies");
+  over.put("ratio", frequencies, "1", "omega/Omega");
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::vector<double> k, b;
+    for (const Point& p : locus)
+      for (const BearingCoefficients& c : p.coefficients) {
+        k.push_back(c.k[i]);
+        b.push_back(c.b[i]);
+      }
+    const io::Shape shape{locus.size(), frequencies.size()};
+    over.put(fmt::format("k_{}", entries[i]), shape, k, "1", "stiffness [point of the locus][frequency]");
+    over.put(fmt::format("b_{}", entries[i]), shape, b, "1", "damping [point of the locus][frequency]");
+  }
+}
+
+void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<Loaded>& loaded) {
+  std::vector<double> sommerfeld, pressure, thickness;
+  for (const Loaded& l : loaded) {
+    const std::string head = fmt::format("sommerfeld.{:.6g}.", l.sommerfeld);
+    summary.set(head + "eccentricity", l.point.at.eccentricity, "1");
+    summary.set(head + "attitude", l.point.at.attitude, "rad");
+    summary.set(head + "speed_limit", l.point.at.speed_limit, "1");
+    summary.set(head + "whirl_ratio", l.point.at.whirl_ratio, "1");
+    for (std::size_t i = 0; i < 4; ++i) {
+      summary.set(fmt::format("{}k.{}", head, entries[i]), l.point.coefficients[0].k[i], "1");
+      summary.set(fmt::format("{}b.{}", head, entries[i]), l.point.coefficients[0].b[i], "1");
+    }
+    if (l.profile.pressure.empty()) continue;
+    sommerfeld.push_back(l.sommerfeld);
+    pressure.insert(pressure.end(), l.profile.pressure.begin(), l.profile.pressure.end());
+    thickness.insert(thickness.end(), l.profile.thickness.begin(), l.profile.thickness.end());
+  }
+  if (sommerfeld.empty()) return;
+  auto& table = group.child("profiles");
+  const io::Shape shape{sommerfeld.size(), loaded.back().profile.theta.size()};
+  table.put("sommerfeld", sommerfeld, "1", "load S");
+  table.put("theta", loaded.back().profile.theta, "rad", "angle from +x");
+  table.put("pressure", shape, pressure, "1", "(c/R)^2 p/(6 mu Omega) in the mid-plane [load][theta]");
+  table.put("thickness", shape, thickness, "1", "film thickness in clearances [load][theta]");
 }
 
 }  // namespace
@@ -116,83 +194,42 @@ void BearingMap::run(Context& context) {
   const auto groups = system::groups_of(train);
   put_groups(summary, train);
 
-  std::vector<Bearing::Equilibrium> locus;
-  std::vector<double> axis, along, across;
-  std::optional<Bearing::Equilibrium> threshold;
+  std::optional<Mapper> map;
   core::agree(context.comm, [&] {
-    Bearing bearing(train.supports[which], options.speed.value);
-    double attitude = 0.5 * std::numbers::pi;
-    for (int i = 1; i <= options.points; ++i) {
-      const auto e = bearing.carrying(options.max_eccentricity * i / options.points, attitude);
-      if (!e) continue;
-      attitude = e->attitude;
-      locus.push_back(*e);
-    }
-    // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity.
-    const auto margin = [&](const Bearing::Equilibrium& e) {
-      return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
-    };
-    for (std::size_t i = 0; groups && i + 1 < locus.size() && !threshold; ++i) {
-      if (margin(locus[i]) * margin(locus[i + 1]) > 0) continue;
-      Bearing::Equilibrium low = locus[i], high = locus[i + 1];
-      for (int k = 0; k < 60; ++k) {
-        const auto middle = bearing.carrying(0.5 * (low.eccentricity + high.eccentricity), low.attitude);
-        if (!middle) break;
-        (margin(*middle) * margin(low) > 0 ? low : high) = *middle;
-      }
-      threshold = low;
-    }
-    for (int i = 0; i < options.grid; ++i)
-      axis.push_back(options.max_eccentricity * (2.0 * i / (options.grid - 1) - 1));
-    for (const double a : axis)
-      for (const double b : axis) {
-        const bool inside = std::hypot(a, b) <= options.max_eccentricity * (1 + 1e-12);
-        const auto w = inside ? bearing.impedance(a, b) : std::array<double, 2>{nan, nan};
-        along.push_back(w[0]);
-        across.push_back(w[1]);
-      }
+    map.emplace(options, train.supports[which]);
+    map->follow();
+    map->find_threshold(groups);
+    map->load();
+    map->squeeze();
   });
-  if (locus.empty()) throw core::NotConverged("no eccentricity carries a vertical load");
+  if (map->locus.empty()) throw core::NotConverged("no eccentricity carries a vertical load");
 
-  const auto column = [&](const auto& value) {
-    std::vector<double> out;
-    for (const auto& e : locus) out.push_back(value(e));
-    return out;
-  };
-  using E = Bearing::Equilibrium;
-  auto& table = group.child("locus");
-  table.put("eccentricity", column([](const E& e) { return e.eccentricity; }), "1", "eccentricity in clearances");
-  table.put("attitude", column([](const E& e) { return e.attitude; }), "rad", "from the load to the journal");
-  table.put("sommerfeld", column([](const E& e) { return e.sommerfeld; }), "1", "S = (c/R)^2 load/(mu Omega L D)");
-  table.put("x", column([](const E& e) { return e.eccentricity * std::sin(e.attitude); }), "1", "in clearances");
-  table.put("y", column([](const E& e) { return -e.eccentricity * std::cos(e.attitude); }), "1", "in clearances");
-  const char* const direction[] = {"x", "y"};
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) {
-      const std::string pair = std::string("_") + direction[i] + direction[j];
-      table.put("k" + pair, column([i, j](const E& e) { return e.k[i][j]; }), "1", "stiffness c k/(load/S)");
-      table.put("b" + pair, column([i, j](const E& e) { return e.b[i][j]; }), "1", "damping c Omega b/(load/S)");
-    }
-  table.put("speed_limit", column([](const E& e) { return e.speed_limit; }), "1",
-            "Omega* = Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: stable at every speed");
-  table.put("whirl_ratio", column([](const E& e) { return e.whirl_ratio; }), "1", "whirl frequency there over Omega");
-  auto& map = group.child("impedance");
-  const std::size_t n = axis.size();
-  map.put("along", axis, "1", "eccentricity along the squeeze velocity, in clearances");
-  map.put("across", axis, "1", "eccentricity across it (turned counter-clockwise)");
-  map.put("W_along", {n, n}, along, "1", "impedance [along][across], resisting the squeeze");
-  map.put("W_across", {n, n}, across, "1", "impedance [along][across]");
   group.set("bearing", context.machine.bearings[which].name);
   group.set("speed", options.speed.value);
-  if (threshold) {
-    const double speed = groups->load / (groups->bearings * threshold->sommerfeld);
+  put_locus(group, map->locus, options.frequencies);
+  put_loaded(group, summary, map->loaded);
+  if (!map->axis.empty()) {
+    auto& table = group.child("impedance");
+    const io::Shape shape{map->axis.size(), map->axis.size()};
+    table.put("along", map->axis, "1", "eccentricity along the squeeze velocity, in clearances");
+    table.put("across", map->axis, "1", "eccentricity across it (turned counter-clockwise)");
+    table.put("W_along", shape, map->along, "1", "impedance [along][across], resisting the squeeze");
+    table.put("W_across", shape, map->across, "1", "impedance [along][across]");
+  }
+  if (map->threshold) {
+    const double speed = groups->load / (groups->bearings * map->threshold->sommerfeld);
     summary.set("threshold.nondimensional_speed", speed, "1");
     summary.set("threshold.speed", speed * groups->speed_scale, "rad/s");
-    summary.set("threshold.eccentricity", threshold->eccentricity, "1");
-    summary.set("threshold.whirl_ratio", threshold->whirl_ratio, "1");
+    summary.set("threshold.eccentricity", map->threshold->eccentricity, "1");
+    summary.set("threshold.whirl_ratio", map->threshold->whirl_ratio, "1");
   }
-  summary.points = static_cast<long>(locus.size());
-  results.finish("completed", true);
+  summary.points = static_cast<long>(map->locus.size());
+  // The last eccentricity carries the next load only if the film exists there.
+  const bool touches = map->locus.back().at.eccentricity < options.max_eccentricity * (1 - 1e-12);
+  results.finish(touches ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
+                                       map->locus.back().at.eccentricity)
+                         : "completed",
+                 true);
 }
 
 }  // namespace whirl::study

@@ -21,7 +21,10 @@ EXPECTED = {
     "balanced": ["equilibria", "locus"],
     "pair_G2.5": ["cycles-vertical", "cycles-horizontal", "orbits", "multipliers"],
     "pair_G6.3": ["cycles-vertical", "cycles-horizontal", "orbits", "multipliers"],
+    "hard": ["impedance"],
+    "soft": ["frequencies"],
 }
+TOGETHER = ["bifurcations", "map-locus", "map-stiffness", "map-damping", "map-stability", "map-pressure"]
 
 
 def run(script, directory):
@@ -63,7 +66,8 @@ with tempfile.TemporaryDirectory() as name:
     for study, pictures in EXPECTED.items():
         for picture in pictures:
             check_picture(whole / f"{study}.{picture}.png")
-    check_picture(whole / "bifurcations.png")
+    for picture in TOGETHER:
+        check_picture(whole / f"{picture}.png")
     check(len(done.stdout.split("\n")) - 1 == len(list(whole.glob("*.png"))), "plot does not name each picture once")
 
     done = run("report", whole)

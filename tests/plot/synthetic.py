@@ -130,6 +130,32 @@ def cycles(root, name, grade, fold):
     put(g.create_group("bearings"), name=NAMES, clearance=CLEARANCE, preload=[0, 0, 0.5, 0.5, 0])
 
 
+def bearing_map(root, name, soft):
+    """Short bearing in closed form, with made-up dependence on the frequency where it has a soft liner."""
+    g = study(root, name, "bearing_map", bearing=name, speed=160.0)
+    e = np.linspace(0.01, 0.9, 60)
+    q = 1 - e**2
+    load = e * np.sqrt(16 * e**2 + np.pi**2 * q) / (2 * q**2) / (1 + soft)
+    attitude = np.arctan(np.pi * np.sqrt(q) / (4 * e))
+    table = g.create_group("locus")
+    table.attrs["frequency_ratio"] = 1.0
+    limit = np.where(e < 0.75, 2.7 + e**4, np.nan)
+    put(table, eccentricity=e, attitude=attitude, sommerfeld=load, x=e * np.sin(attitude), y=-e * np.cos(attitude),
+        speed_limit=limit, whirl_ratio=limit / limit * 0.5)
+    entries = {f"{letter}_{entry}": (k + 1) * load - k for letter in "kb" for k, entry in enumerate(("xx", "xy", "yx", "yy"))}
+    put(table, **entries)
+    theta = np.linspace(0, 2 * np.pi, 91)
+    put(g.create_group("profiles"), sommerfeld=[2.5], theta=theta + 0.5 * np.pi, pressure=[np.sin(theta)], thickness=[1 + 0.5 * np.cos(theta)])
+    if soft:
+        ratio = np.array([1, 0.01, 0.1, 10, 100.0])
+        put(g.create_group("frequencies"), ratio=ratio, **{k: v[:, None] * (1 + ratio / (1 + ratio)) for k, v in entries.items()})
+        return
+    axis = np.linspace(-0.9, 0.9, 31)
+    a, b = np.meshgrid(axis, axis, indexing="ij")
+    w = np.where(a**2 + b**2 <= 0.81, 1 / (1 - np.minimum(a**2 + b**2, 0.99)), np.nan)
+    put(g.create_group("impedance"), along=axis, across=axis, W_along=w * (1 + a), W_across=w * b)
+
+
 def make(directory):
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
@@ -141,6 +167,8 @@ def make(directory):
         equilibria(root)
         cycles(root, "pair, G2.5", 1.0, 0)
         cycles(root, "pair, G6.3", 2.5, 1)
+        bearing_map(root, "hard", 0)
+        bearing_map(root, "soft", 0.5)
     studies = [
         {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
          "values": {"mass.total": {"value": 42165.66, "unit": "kg"}, "load.B3": {"value": None, "unit": "N"}},

@@ -1,4 +1,5 @@
 // bearing_map against van de Vrande (2001) sec. 4.3 and the thresholds of an independent computation.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,13 +18,14 @@ using namespace whirl;
 using std::numbers::pi;
 
 struct Map {
+  std::string status;
   std::map<std::string, double> values;
   io::Group group;
 };
 
-Map run(const std::vector<std::string>& overrides) {
-  const study::Deck deck =
-      study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/rigid_rotor/bearing_map.yaml", overrides);
+// The studies of a deck by name.
+std::map<std::string, Map> run_all(const std::string& name, const std::vector<std::string>& overrides) {
+  const study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/" + name, overrides);
   const std::filesystem::path directory = std::filesystem::temp_directory_path() / "whirl_bearing_map";
   const bool first = core::rank_of(MPI_COMM_WORLD) == 0;
   if (first) {
@@ -33,13 +35,21 @@ Map run(const std::vector<std::string>& overrides) {
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty());
   MPI_Barrier(MPI_COMM_WORLD);
-  Map m;
-  const io::Summary summary = io::Summary::read(directory / "summary.json");
-  for (const auto& [name, q] : summary.studies.at(0).values) m.values[name] = q.value;
-  m.group = io::read_hdf5(directory / "results.h5").group("studies").group("bearing_map");
+  std::map<std::string, Map> maps;
+  const io::Group root = io::read_hdf5(directory / "results.h5");
+  for (const io::StudySummary& s : io::Summary::read(directory / "summary.json").studies) {
+    Map& m = maps[s.name];
+    m.status = s.status;
+    for (const auto& [key, q] : s.values) m.values[key] = q.value;
+    m.group = root.group("studies").group(io::safe_name(s.name));
+  }
   MPI_Barrier(MPI_COMM_WORLD);
   if (first) std::filesystem::remove_all(directory);
-  return m;
+  return maps;
+}
+
+Map run(const std::vector<std::string>& overrides) {
+  return run_all("rigid_rotor/bearing_map.yaml", overrides).at("bearing_map");
 }
 
 }  // namespace
@@ -90,5 +100,122 @@ TEST(BearingMap, OtherFilms) {
     const double e2 = e[i] * e[i], q = 1 - e2, A = 5 - 2 * e2, B = 8 - 5 * e2;
     EXPECT_NEAR(S[i], 3 * e[i] * std::sqrt(4 * B * B * e2 + pi * pi * A * A * q) / (A * B * q), 1e-12 * S[i]);
     EXPECT_NEAR(gamma[i], std::atan(pi * A * std::sqrt(q) / (2 * B * e[i])), 1e-12);
+  }
+}
+
+// The compliant bearings of figures 4.10 to 4.15 against limits that do not use their own coefficients.
+namespace {
+
+const std::string short_deck = "compliant_rotor/figure_4_10.yaml", long_deck = "compliant_rotor/figure_4_13.yaml";
+
+// One study and one bearing of a deck, the middle one (B = 0.1), with another film and other options.
+Map one_map(const std::string& deck, const std::string& film, const std::string& options) {
+  return run_all(deck, {"bearings.B01.film={" + film + ", reference_speed: 160 rad/s}",
+                        "studies=[{bearing_map: {bearing: B01, " + options + "}}]"})
+      .at("bearing_map");
+}
+
+constexpr const char* entries[] = {"xx", "xy", "yx", "yy"};
+
+}  // namespace
+
+// omega -> 0: along the locus the force changes by (0, dS) = -(...) = k (dx, dy), whatever the film does in between.
+TEST(BearingMap, SlowStiffnessIsTheSlopeOfTheLocus) {
+  for (const bool inlet : {false, true}) {
+    const Map m = one_map(inlet ? long_deck : short_deck,
+                          inlet ? "type: compliant_long, compliance: 1, cells: [60, 4]"
+                                : "type: compliant_short, compliance: 1, cells: [60, 4]",
+                          "speed: 160 rad/s, max_eccentricity: 0.6, points: 120, frequencies: [0.001]");
+    EXPECT_EQ(m.status, "completed");
+    const auto& t = m.group.group("locus");
+    const auto &x = t.reals("x"), &y = t.reals("y"), &S = t.reals("sommerfeld");
+    const std::vector<double>* k[4];
+    for (std::size_t i = 0; i < 4; ++i) k[i] = &t.reals(std::string("k_") + entries[i]);
+    for (std::size_t i = 10; i + 1 < x.size(); i += 20) {
+      const double dx = x[i + 1] - x[i - 1], dy = y[i + 1] - y[i - 1], dS = S[i + 1] - S[i - 1];
+      // The film pushes up by S; more load moves the journal on until k (dx, dy) balances it.
+      const double along_x = (*k[0])[i] * dx + (*k[1])[i] * dy, along_y = (*k[2])[i] * dx + (*k[3])[i] * dy;
+      EXPECT_NEAR(along_x, 0, 2e-3 * dS) << inlet << " " << i;
+      EXPECT_NEAR(along_y, -dS, 2e-3 * dS) << inlet << " " << i;
+    }
+  }
+}
+
+// B -> 0: the closed forms of the rigid films, whatever the frequency.
+TEST(BearingMap, StiffLinersGiveTheRigidCoefficients) {
+  for (const bool inlet : {false, true}) {
+    const std::string range = "speed: 160 rad/s, max_eccentricity: 0.4, points: 8";
+    const Map soft = one_map(inlet ? long_deck : short_deck,
+                             inlet ? "type: compliant_long, compliance: 1e-4, cells: [400, 4]"
+                                   : "type: compliant_short, compliance: 1e-4, cells: [400, 4]",
+                             range + ", frequencies: [0.5, 2]"),
+              hard =
+                  run_all(inlet ? long_deck : short_deck, {"studies=[{bearing_map: {bearing: rigid, " + range + "}}]"})
+                      .at("bearing_map");
+    const auto &a = hard.group.group("locus"), &b = soft.group.group("locus"), &f = soft.group.group("frequencies");
+    ASSERT_EQ(b.reals("sommerfeld").size(), 8U);
+    for (std::size_t i = 0; i < 8; ++i) {
+      EXPECT_NEAR(b.reals("sommerfeld")[i], a.reals("sommerfeld")[i], 2e-3 * a.reals("sommerfeld")[i]);
+      EXPECT_NEAR(b.reals("attitude")[i], a.reals("attitude")[i], 2e-3);
+      for (const char letter : {'k', 'b'}) {
+        double size = 0;
+        for (const char* e : entries) size = std::max(size, std::abs(a.reals(std::string{letter, '_'} + e)[i]));
+        for (const char* e : entries) {
+          const std::string name = std::string{letter, '_'} + e;
+          EXPECT_NEAR(b.reals(name)[i], a.reals(name)[i], 5e-3 * size) << name << inlet << i;
+          EXPECT_NEAR(f.reals(name)[2 * i + 1], a.reals(name)[i], 5e-3 * size) << name << inlet << i;
+        }
+      }
+    }
+  }
+}
+
+// At the speed and the load of a Hopf point the border of stability is that speed. Mesh-free values of an independent
+// computation of the rotor with its film (see tests/system); F0* = 1 short, 2 long.
+TEST(BearingMap, BorderOfStabilityIsTheHopfPoint) {
+  for (const bool inlet : {false, true}) {
+    const double hopf = inlet ? 0.498391 : 2.732563, load = (inlet ? 2 : 1) / (2 * hopf), scale = inlet ? 320 : 160;
+    const std::string head = fmt::format("sommerfeld.{:.6g}.", load);
+    const Map m =
+        run_all(inlet ? long_deck : short_deck,
+                {fmt::format("bearings.B01.film={{type: compliant_{}, compliance: 0.1, reference_speed: {} "
+                             "rad/s, cells: [160, 4]}}",
+                             inlet ? "long" : "short", scale),
+                 fmt::format("studies=[{{bearing_map: {{bearing: B01, speed: {:.10g} rad/s, max_eccentricity: "
+                             "0.5, points: 10, sommerfeld: [{:.10g}]}}}}]",
+                             hopf * scale, load)})
+            .at("bearing_map");
+    EXPECT_NEAR(m.values.at(head + "speed_limit"), hopf, 3e-4 * hopf);
+    EXPECT_NEAR(m.values.at(head + "whirl_ratio"), 0.5, 0.05);
+    EXPECT_FALSE(m.values.contains("threshold.speed"));
+  }
+}
+
+// The decks as they stand: pressure at the asked load carries it, and softer liners of a short bearing have lower
+// peaks.
+TEST(BearingMap, DecksOfCompliantBearings) {
+  for (const auto& [deck, wanted] : {std::pair{short_deck, 2.5}, {long_deck, 5.0}}) {
+    double peak = 1e9;
+    for (const char* name : {"B = 0", "B = 0.01", "B = 0.1", "B = 1"}) {
+      const Map m = run_all(deck, {}).at(name);
+      const auto& profiles = m.group.group("profiles");
+      const auto &theta = profiles.reals("theta"), &p = profiles.reals("pressure");
+      ASSERT_EQ(theta.size(), p.size());
+      double vertical = 0, horizontal = 0, highest = 0;
+      for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+        const double step = theta[i + 1] - theta[i];
+        for (const std::size_t j : {i, i + 1}) {
+          // Of a short bearing the mean along the axis is two thirds of the middle.
+          const double mean = std::max(0.0, p[j]) * (deck == short_deck ? 2.0 / 3 : 1);
+          vertical -= 1.5 * step * mean * std::sin(theta[j]);
+          horizontal -= 1.5 * step * mean * std::cos(theta[j]);
+        }
+        highest = std::max(highest, p[i]);
+      }
+      EXPECT_NEAR(vertical, wanted, 5e-3 * wanted) << name;
+      EXPECT_NEAR(horizontal, 0, 5e-3 * wanted) << name;
+      if (deck == short_deck) EXPECT_LT(highest, peak) << name;
+      peak = highest;
+    }
   }
 }

@@ -1,0 +1,71 @@
+#pragma once
+// One bearing by itself in nondimensional form: F* = (c/R)^2 F/(mu Omega L D), lengths in clearances.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "whirl/film/state_model.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::study {
+
+/// Stiffness c k/(mu Omega L D (R/c)^2) and damping c Omega b/(same), entries xx, xy, yx, yy.
+struct BearingCoefficients {
+  std::array<double, 4> k, b;
+};
+
+/// A journal at rest in the bearing, its film carrying a load along -y. NaN: unknown.
+struct BearingEquilibrium {
+  double eccentricity = 0;     ///< in clearances
+  double attitude = 0;         ///< from the load to the journal [rad]
+  double sommerfeld = 0;       ///< S = (c/R)^2 load/(mu Omega L D)
+  double speed_limit = 0;      ///< Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: always stable
+  double whirl_ratio = 0;      ///< whirl frequency there over Omega
+  std::vector<double> states;  ///< own states of the film, if it has any
+};
+
+/// Pressure and thickness around the bearing in its mid-plane.
+struct BearingProfile {
+  std::vector<double> theta;      ///< from +x [rad]
+  std::vector<double> pressure;   ///< (c/R)^2 p/(6 mu Omega)
+  std::vector<double> thickness;  ///< in clearances
+};
+
+/// The film of one bearing at a shaft speed. Not collective; not thread-safe.
+class OneBearing {
+public:
+  /// @param speed shaft speed Omega [rad/s]
+  OneBearing(const system::Support& support, double speed);
+  [[nodiscard]] bool has_states() const { return stateful_ != nullptr; }
+  /// The journal at this eccentricity, sought from an equilibrium `near` it (attitude and states). Empty where the film
+  /// does not exist: journal and bearing touch.
+  [[nodiscard]] std::optional<BearingEquilibrium> carrying(double eccentricity, const BearingEquilibrium& near);
+  /// The centred journal, to start from.
+  [[nodiscard]] BearingEquilibrium centred() const;
+  /// Of the equilibrium found last, at the frequency ratio omega/Omega; it matters for films with own states only.
+  /// Source: van de Vrande (2001) secs. 4.3 and 4.4.
+  [[nodiscard]] BearingCoefficients coefficients(double ratio);
+  /// Of the equilibrium found last; empty arrays if the film knows no pressure.
+  [[nodiscard]] BearingProfile profile();
+  /// W along and across a squeeze velocity in +x with the shaft at rest, F* = -|v_s*| W, of a film without own states;
+  /// NaN where it is closed.
+  [[nodiscard]] std::array<double, 2> impedance(double along, double across);
+
+private:
+  std::array<double, 2> force();
+  void set_border(BearingEquilibrium& e);
+
+  double clearance_, speed_;
+  double load_ = 0;      // N, of F* = 1
+  double pressure_ = 0;  // Pa, of p* = 1
+  std::unique_ptr<film::Model> film_;
+  std::unique_ptr<film::StateModel> stateful_;
+  film::Motion motion_;
+  film::Response response_;
+  film::StateResponse state_response_;
+  std::vector<double> states_, rest_;
+};
+
+}  // namespace whirl::study
