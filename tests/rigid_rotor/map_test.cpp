@@ -148,7 +148,7 @@ TEST(BearingMap, StiffLinersGiveTheRigidCoefficients) {
     const Map soft = one_map(inlet ? long_deck : short_deck,
                              inlet ? "type: compliant_long, compliance: 1e-4, cells: [400, 4]"
                                    : "type: compliant_short, compliance: 1e-4, cells: [400, 4]",
-                             range + ", frequencies: [0.5, 2]"),
+                             range + ", frequencies: [0.5, 1]"),
               hard =
                   run_all(inlet ? long_deck : short_deck, {"studies=[{bearing_map: {bearing: rigid, " + range + "}}]"})
                       .at("bearing_map");
@@ -195,9 +195,10 @@ TEST(BearingMap, BorderOfStabilityIsTheHopfPoint) {
 // peaks.
 TEST(BearingMap, DecksOfCompliantBearings) {
   for (const auto& [deck, wanted] : {std::pair{short_deck, 2.5}, {long_deck, 5.0}}) {
+    const auto maps = run_all(deck, {});
     double peak = 1e9;
     for (const char* name : {"B = 0", "B = 0.01", "B = 0.1", "B = 1"}) {
-      const Map m = run_all(deck, {}).at(name);
+      const Map& m = maps.at(name);
       const auto& profiles = m.group.group("profiles");
       const auto &theta = profiles.reals("theta"), &p = profiles.reals("pressure");
       ASSERT_EQ(theta.size(), p.size());
@@ -214,7 +215,7 @@ TEST(BearingMap, DecksOfCompliantBearings) {
       }
       EXPECT_NEAR(vertical, wanted, 5e-3 * wanted) << name;
       EXPECT_NEAR(horizontal, 0, 5e-3 * wanted) << name;
-      if (deck == short_deck) EXPECT_LT(highest, peak) << name;
+      EXPECT_TRUE(deck != short_deck || highest < peak) << name;
       peak = highest;
     }
   }
