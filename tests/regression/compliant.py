@@ -42,7 +42,7 @@ CASES = {
                    {"a2": [("flip", 2.366, CYCLE), ("flip", 3.080, CYCLE)],
                     "a2 flip 1": [("cyclic_fold", 2.6097, CYCLE)]}),
     ("5_9", "0"): ([f"{HALF}={{type: long_inlet}}"], {"balanced": [("hopf", 0.403868, STATIC)]}),
-    ("5_9", "0.01"): ([f"{HALF}.compliance=0.01"], {"balanced": [("hopf", 0.41280, 2 * STATIC)]}),
+    ("5_9", "0.01"): ([f"{HALF}.compliance=0.01"], {"balanced": [("hopf", 0.41280, 5 * STATIC)]}),
     ("5_9", "0.1"): ([], {"balanced": [("hopf", 0.49409, 2 * STATIC)]}),
     ("5_9", "1"): ([f"{HALF}.compliance=1"], {"balanced": [("hopf", 1.09544, STATIC)]}),
     ("5_10", "0.01"): ([f"{HALF}.compliance=0.01"], {"a2": [("neimark_sacker", 0.4198, WIDE)]}),
