@@ -18,15 +18,18 @@ double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle
                             bool half_film) const {
   const auto other = half_film ? make_system(true) : nullptr;
   system::RotorSystem& system = other ? *other : *system_;
-  solve::Cycle cycle = given;
-  if (system.size() != system_->size()) {
-    cycle.x.resize(system.size(), given.x.cols());
-    for (Eigen::Index k = 0; k < given.x.cols(); ++k) {
-      const Eigen::VectorXd column = given.x.col(k);
+  const auto on_other_film = [&](solve::Cycle c) {
+    if (system.size() == system_->size()) return c;
+    const Eigen::MatrixXd x = c.x;
+    c.x.resize(system.size(), x.cols());
+    for (Eigen::Index k = 0; k < x.cols(); ++k) {
+      const Eigen::VectorXd column = x.col(k);
       const std::vector<double> here = system.resampled(*system_, column.data());
-      cycle.x.col(k) = Eigen::Map<const Eigen::VectorXd>(here.data(), system.size());
+      c.x.col(k) = Eigen::Map<const Eigen::VectorXd>(here.data(), system.size());
     }
-  }
+    return c;
+  };
+  const solve::Cycle cycle = on_other_film(given);
   const auto made = make_problem(system, options_.period, cycle.mesh, doubled_mesh);
   solve::PeriodicProblem& problem = *made;
   if (autonomous()) problem.set_phase_reference(cycle);
@@ -36,7 +39,7 @@ double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle
   if (fold) {
     // The direction of the branch at its fold has no part in the parameter. It is that of the branch found: the other
     // discretisation is not at a fold here, and its own direction would hold the parameter instead of the amplitude.
-    core::Vector at = problem_->scatter(cycle), along = core::duplicate(at.get()), own_row = core::duplicate(at.get()),
+    core::Vector at = problem_->scatter(given), along = core::duplicate(at.get()), own_row = core::duplicate(at.get()),
                  rhs = core::duplicate(at.get());
     check(VecCopy(at.get(), along.get()));
     solve::set_last_entry(problem_->comm(), along.get(), 0);
@@ -45,7 +48,11 @@ double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle
     check(VecSet(rhs.get(), 0.0));
     solve::set_last_entry(problem_->comm(), rhs.get(), 1);
     (void)solve::solve_linear(*problem_, rhs.get(), along.get(), "tangent_");
-    const core::Vector tangent = problem.scatter(problem_->gather(along.get()));
+    // Own states of a film are resampled with the journal's place, affinely: a direction is the difference of two.
+    solve::Cycle direction = problem_->gather(along.get()), moved = given;
+    moved.x += direction.x;
+    direction.x = on_other_film(std::move(moved)).x - cycle.x;
+    const core::Vector tangent = problem.scatter(direction);
     solve::set_last_entry(problem.comm(), tangent.get(), 0);
     solve::weighted_row(problem, tangent.get(), row.get());
     check(VecScale(row.get(), 1 / std::sqrt(solve::inner(problem, tangent.get(), tangent.get()))));

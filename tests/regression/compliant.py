@@ -59,6 +59,7 @@ def nearest(study, kind, speed):
 def case(h, figure, compliance):
     overrides, wanted = CASES[figure, compliance]
     run = h.run((h.source / "inputs/compliant_rotor" / f"figure_{figure}.yaml").resolve(), "run", overrides)
+    known = [reference for points in wanted.values() for _, reference, _ in points]
     for name, points in wanted.items():
         study = run[name]
         for kind, reference, tolerance in points:
@@ -66,9 +67,12 @@ def case(h, figure, compliance):
             h.close(f"{name}: {kind}, Omega*", b.get("nondimensional_speed"), reference, tolerance * reference)
         for b in study["bifurcations"]:
             here = b["nondimensional_speed"]
-            near = any(abs(here - reference) < WIDE * reference for _, reference, _ in points)
+            near = any(abs(here - reference) < WIDE * reference for reference in known)
             h.true(f"{name}: {b['type']} at {here:.5f} is one of these or beside one", near)
     whirl = run.get("whirl")
+    if (figure, compliance) == ("5_7", "0.1"):
+        error = nearest(whirl, "cyclic_fold", 2.7188)["uncertainty_film_mesh"]
+        h.true("the film mesh's part in the error of a fold is known", error is not None and 0 < error < 0.02 * 435, f"{error}")
     if whirl and compliance not in ("0", "0.01"):
         h.true("the whirl ends in contact", "touches the liner" in whirl["status"], whirl["status"])
     for name, study in run.items():
