@@ -2,7 +2,7 @@
 import pathlib
 import sys
 
-from . import bearing_map, bifurcation, campbell, eccentricity, film, multipliers, orbits, response, shapes
+from . import bearing_map, bifurcation, campbell, eccentricity, film, motion, multipliers, orbits, response, shapes
 from .data import open_results
 from .style import use_style
 
@@ -15,6 +15,7 @@ PICTURES = {
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, orbits.draw, multipliers.draw],
+    "motion": [motion.draw],
 }
 
 
