@@ -6,24 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "follower.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
-namespace {
 
 using core::check;
 
-// Ten significant digits: the last ones may differ between rank counts and must not decide anything.
 double rounded(double x) {
   if (x == 0 || !std::isfinite(x)) return x;
   const double unit = std::pow(10.0, std::floor(std::log10(std::abs(x))) - 9);
   return std::round(x / unit) * unit;
 }
-
-struct State {
-  core::Vector u, tangent;
-  BranchPoint point;
-};
 
 core::Vector copy(Vec v) {
   core::Vector c = core::duplicate(v);
@@ -31,40 +25,11 @@ core::Vector copy(Vec v) {
   return c;
 }
 
-// Arclength from a to b as the pseudo-arclength condition counts it: along the tangent at a.
 double arclength(const ExtendedProblem& problem, const State& a, Vec b) {
   core::Vector chord = copy(b);
   check(VecAXPY(chord.get(), -1, a.u.get()));
   return inner(problem, a.tangent.get(), chord.get());
 }
-
-class Follower {
-public:
-  Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
-      : problem_(problem), options_(options), callbacks_(callbacks), direction_(options.to >= options.from ? 1 : -1) {}
-
-  BranchEnd run(core::Vector u, std::optional<Restart> restart);
-
-private:
-  // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
-  void inspect(State& s, Vec along);
-  NewtonResult correct(Vec u, Vec row, double offset) { return newton(problem_, u, row, offset, options_.newton); }
-  NewtonResult correct_at(core::Vector& u, double parameter);
-  // The point at arclength ds from `from`.
-  bool advance(const State& from, double ds, State& to, NewtonResult& result);
-  void events(const State& a, const State& b);
-  using Test = std::function<double(const State&)>;
-  // The zero of a test function between two points; false if the location did not converge, then `at` is the nearest
-  // point found.
-  bool locate(const State& a, const State& b, const Test& test, LocatedEvent& found, State& at);
-  void crossings(const State& a, const State& b, int depth);
-
-  ExtendedProblem& problem_;
-  const ContinuationOptions& options_;
-  const BranchCallbacks& callbacks_;
-  int direction_;
-  double fold_ = 0, fold_span_ = 0;  // of the step whose events are sought: NaN without a located fold
-};
 
 NewtonResult Follower::correct_at(core::Vector& u, double parameter) {
   core::Vector row = core::duplicate(u.get());
@@ -88,6 +53,7 @@ void Follower::inspect(State& s, Vec along) {
   s.point.parameter = last_entry(problem_.comm(), s.u.get());
   s.point.slope = last_entry(problem_.comm(), s.tangent.get());
   s.point.stability = callbacks_.stability ? callbacks_.stability(s.u.get()) : Stability{};
+  if (callbacks_.monitors) s.point.monitors = callbacks_.monitors(s.u.get(), s.tangent.get());
 }
 
 bool Follower::advance(const State& from, double ds, State& to, NewtonResult& result) {
@@ -117,115 +83,46 @@ bool Follower::advance(const State& from, double ds, State& to, NewtonResult& re
   return true;
 }
 
-// False position (Illinois variant) of a test function along the arclength from the point a.
-bool Follower::locate(const State& a, const State& b, const Test& test, LocatedEvent& found, State& at) {
-  double s0 = 0, s1 = b.point.step, f0 = test(a), f1 = test(b);
-  const double dp = b.point.parameter - a.point.parameter;
-  found.sensitivity = dp != 0 ? (f1 - f0) / dp : 0;
-  found.bracket = std::abs(dp);
-  at.u = copy(b.u.get());
-  at.point = b.point;
-  double last = b.point.parameter, last_f = f1;
-  int side = 0;
-  for (int k = 0; k < 30; ++k) {
-    double s = (s0 * f1 - s1 * f0) / (f1 - f0);
-    if (k > 12) s = (s0 + s1) / 2;
-    s = rounded(std::clamp(s, std::min(s0, s1), std::max(s0, s1)));
-    State trial;
-    NewtonResult result;
-    if (!advance(a, s, trial, result)) return false;
-    const double f = test(trial);
-    at = std::move(trial);
-    found.parameter = at.point.parameter;
-    // False position may creep: what the secant through the last two points says is left counts as well.
-    const double moved = found.parameter - last;
-    found.bracket = std::max(std::abs(moved), f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0);
-    // The slope near the zero, from the last two points that lie far enough apart to show one.
-    if (std::abs(moved) > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / moved;
-    if (f == 0 || rounded(found.bracket) <= options_.location_tolerance) return true;
-    last = found.parameter;
-    last_f = f;
-    if (f * f1 < 0) {
-      s0 = s1, f0 = f1;
-      side = 0;
-    } else {
-      if (side == 1) f0 /= 2;
-      side = 1;
+// The solution carried over is corrected at right angles to the branch: near a fold there may be none at its parameter.
+// If the new branch has its slope or its unstable values on the other side there, an event lies within the change of
+// the discretisation: behind this point if it has not been passed yet, else ahead, where it has been reported already.
+bool Follower::settle(State& here, NewtonResult& result) {
+  core::Vector along = copy(here.tangent.get()), row = core::duplicate(here.u.get());
+  check(VecScale(along.get(), 1 / std::sqrt(inner(problem_, along.get(), along.get()))));
+  weighted_row(problem_, along.get(), row.get());
+  double offset = 0;
+  check(VecDot(row.get(), here.u.get(), &offset));
+  result = correct(here.u.get(), row.get(), offset);
+  if (!result.converged) return false;
+  const auto facts = [](const State& s) { return std::pair(s.point.stability.unstable(), s.point.slope > 0); };
+  const auto old = facts(here);
+  inspect(here, along.get());
+  if (!callbacks_.on_event || facts(here) == old) return true;
+  const double step = here.point.step;
+  for (double ds = rounded(step / 256); ds <= step; ds *= 4) {
+    State other;
+    NewtonResult tried;
+    if (advance(here, -ds, other, tried) && facts(other) == old) {
+      State end;
+      end.u = copy(here.u.get());
+      end.tangent = copy(here.tangent.get());
+      end.point = here.point;
+      end.point.step = arclength(problem_, other, here.u.get());
+      events(nullptr, nullptr, other, end);
+      return true;
     }
-    s1 = s, f1 = f;
-  }
-  return false;
-}
-
-// Values that crossed the border of stability between two points. One value or one complex pair is located directly;
-// more than that is first separated by halving the step.
-void Follower::crossings(const State& a, const State& b, int depth) {
-  const int from = a.point.stability.unstable(), to = b.point.stability.unstable();
-  if (from == to) return;
-  const auto k = static_cast<std::size_t>(std::min(from, to));
-  const auto split = [&] {
-    State middle;
-    NewtonResult result;
-    if (depth >= 6 || !advance(a, rounded(b.point.step / 2), middle, result)) return false;
-    crossings(a, middle, depth + 1);
-    State rest;
-    rest.u = copy(b.u.get());
-    rest.tangent = copy(b.tangent.get());
-    rest.point = b.point;
-    rest.point.step = arclength(problem_, middle, b.u.get());
-    crossings(middle, rest, depth + 1);
-    return true;
-  };
-  if (std::abs(to - from) > 2 && split()) return;
-
-  // A search for a few eigenvalues may return fewer at one point: those left out are no less stable than its last.
-  const Test test = [k](const State& s) {
-    const auto& d = s.point.stability.distance;
-    return d.empty() ? -1.0 : d[std::min(k, d.size() - 1)];
-  };
-  LocatedEvent found{};
-  State at;
-  found.located = locate(a, b, test, found, at);
-  const auto& values = at.point.stability.values;
-  const std::complex<double> value = values.empty() ? 0.0 : values[std::min(k, values.size() - 1)];
-  // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits the
-  // double value into a pair of the size of its square root.
-  const bool real = std::abs(value.imag()) <= (callbacks_.cycles && value.real() > 0 ? 5e-3 : 1e-7) * std::abs(value);
-  if (real && std::abs(to - from) == 2 && split()) return;
-  found.critical = value;
-  if (!real)
-    found.event = callbacks_.cycles ? Event::neimark_sacker : Event::hopf;
-  else if (callbacks_.cycles && value.real() < 0)
-    found.event = Event::flip;
-  else
-    found.event = Event::branch_point;
-  // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such. After a split the
-  // two may lie on different sides of the middle.
-  const double apart = std::abs(found.parameter - fold_);
-  if (found.event == Event::branch_point && (a.point.slope * b.point.slope < 0 || apart <= 0.01 * fold_span_)) return;
-  callbacks_.on_event(found, at.u.get());
-}
-
-void Follower::events(const State& a, const State& b) {
-  fold_ = std::numeric_limits<double>::quiet_NaN();
-  if (a.point.slope * b.point.slope < 0) {
-    LocatedEvent found{};
-    State at;
-    found.event = callbacks_.cycles ? Event::cyclic_fold : Event::fold;
-    found.located = locate(
-        a, b, [](const State& s) { return s.point.slope; }, found, at);
-    found.sensitivity = 0;
-    if (found.located) {
-      fold_ = found.parameter;
-      fold_span_ = std::max(std::abs(a.point.parameter - fold_), std::abs(b.point.parameter - fold_));
+    if (advance(here, ds, other, tried) && facts(other) == old) {
+      here = std::move(other);
+      here.point.step = step + ds;
+      return true;
     }
-    callbacks_.on_event(found, at.u.get());
   }
-  crossings(a, b, 0);
+  suspect(here, here, "unstable values or the direction of the branch changed with the mesh");
+  return true;
 }
 
 BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
-  State here;
+  State here, before, earlier;  // the last two without u: none on this mesh
   double ds = options_.initial_step;
   if (restart) {
     here.u = std::move(restart->u);
@@ -252,7 +149,8 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
   const auto beyond = [&](double p) { return direction_ * (p - options_.to) >= -margin; };
   while (here.point.index + 1 < options_.max_points) {
     if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
-    if (direction_ * rounded(here.point.parameter - options_.from) < -std::abs(options_.max_step))
+    if (options_.back ? direction_ * rounded(here.point.parameter - *options_.back) < 0
+                      : direction_ * rounded(here.point.parameter - options_.from) < -std::abs(options_.max_step))
       return ended("turned back beyond the start of its range", true);
     State next;
     NewtonResult result;
@@ -282,7 +180,11 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     // With stability facts missing at this point alone (a branch that starts at a bifurcation) there is nothing to
     // compare with.
     const bool comparable = !callbacks_.stability || !here.point.stability.values.empty();
-    if (callbacks_.on_event && comparable) events(here, next);
+    if (callbacks_.on_event && comparable)
+      events(earlier.u ? &earlier : nullptr, before.u ? &before : nullptr, here, next);
+    earlier = std::move(before);
+    before = std::move(here);
+    if (!comparable) earlier = {}, before = {};
     here = std::move(next);
     const int k = result.iterations;
     ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
@@ -290,12 +192,9 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
     if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 &&
         problem_.adapt(here.u, here.tangent)) {
-      // The carried-over solution is corrected at its parameter, so that the next step starts from the branch of the
-      // new mesh.
-      core::Vector along = copy(here.tangent.get());
-      const NewtonResult again = correct_at(here.u, here.point.parameter);
-      if (!again.converged) return ended(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
-      inspect(here, along.get());
+      earlier = {}, before = {};
+      NewtonResult again;
+      if (!settle(here, again)) return ended(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
     }
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
       return ended("stopped on request", false);
@@ -303,8 +202,6 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
   if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
   return ended("reached the largest number of points", false);
 }
-
-}  // namespace
 
 Stability make_stability(std::vector<std::complex<double>> values,
                          const std::function<double(std::complex<double>)>& distance) {

@@ -86,6 +86,23 @@ std::unique_ptr<Interval> ShootingProblem::linearise_interval(Index i, const dou
   return std::make_unique<MapInterval>(tangents.leftCols(n));
 }
 
+void ShootingProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
+                                          const VectorXd& y, Eigen::Ref<VectorXd> to_own, VectorXd& to_start,
+                                          VectorXd& to_border) {
+  MatrixXd columns;
+  const auto map = linearise_interval(i, own, start, period, columns);
+  to_own += y;
+  to_start += map->start_transposed(y);
+  to_border += columns.transpose() * y;
+}
+
+VectorXd ShootingProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
+                                           const double* d_own, const VectorXd& d_start) {
+  MatrixXd columns;
+  return linearise_interval(i, own, start, period, columns)
+      ->multiply(d_start, Map<const VectorXd>(d_own, start.size()));
+}
+
 VectorXd ShootingProblem::reference_rate(const Cycle& reference, Index g, Index) {
   system().set_parameter(reference.parameter);
   point().refresh();

@@ -18,6 +18,8 @@ struct ContinuationOptions {
   double from = 0, to = 1;
   double initial_step = 0.1, min_step = 1e-4, max_step = 0.5;
   int max_points = 1000;
+  /// Where a branch that turned back ends; beyond `from` by a step if absent.
+  std::optional<double> back;
   int adapt_every = 5;               ///< accepted points between adaptations of the discretisation; 0 never
   double location_tolerance = 1e-6;  ///< of a bifurcation, in scaled parameter
   NewtonOptions newton;
@@ -51,6 +53,7 @@ struct BranchPoint {
   double step = 0;       ///< arclength from the previous point
   int newton_iterations = 0;
   Stability stability;
+  std::vector<double> monitors;
 };
 
 struct LocatedEvent {
@@ -60,6 +63,31 @@ struct LocatedEvent {
   double sensitivity = 0;         ///< d(distance)/d(scaled parameter) along the branch; 0 for folds
   std::complex<double> critical;  ///< eigenvalue [1/s] or multiplier
   bool located = true;            ///< false: seen between two points, but the location did not converge
+  bool refined = false;           ///< by the minimally augmented system; `bracket` is then the Newton step left
+  double quadratic = 0;           ///< d^2 parameter/d arclength^2 of a refined fold: the branch lies above if positive
+};
+
+/// A zero of one of a branch's monitors.
+struct LocatedZero {
+  std::size_t monitor = 0;  ///< its place among them
+  double parameter = 0;     ///< scaled
+  double bracket = 0;       ///< scaled width left by the location
+  bool located = true;
+};
+
+/// A stretch of the branch on which events may lie that could not be resolved, in scaled parameters.
+struct Suspicion {
+  double from = 0, to = 0;
+  std::string reason;
+};
+
+/// What a callback makes of an event that is known roughly.
+struct Refined {
+  core::Vector u;
+  double parameter = 0;           ///< scaled
+  double error = 0;               ///< scaled
+  double quadratic = 0;           ///< of a fold
+  std::complex<double> critical;  ///< eigenvalue or multiplier
 };
 
 /// What a study hands over; all collective.
@@ -68,6 +96,15 @@ struct BranchCallbacks {
   std::function<Stability(Vec u)> stability;
   std::function<void(const BranchPoint&, Vec u)> on_point;
   std::function<void(const LocatedEvent&, Vec u)> on_event;
+  /// The event near u on the branch with the given tangent, to rounding; nothing if that fails. The problem may be left
+  /// linearised anywhere.
+  std::function<std::optional<Refined>(const LocatedEvent&, Vec u, Vec tangent)> refine;
+  /// Smooth functions of a point whose zeros are located as well, called after linearise(u) with the tangent there; as
+  /// many at every point.
+  std::function<std::vector<double>(Vec u, Vec tangent)> monitors;
+  std::function<void(const LocatedZero&, Vec u)> on_zero;
+  /// Where events may have been missed.
+  std::function<void(const Suspicion&)> on_suspicion;
   /// After each accepted point, with all that a restart needs; return false to stop.
   std::function<bool(const BranchPoint&, Vec u, Vec tangent, double next_step)> checkpoint;
   bool cycles = false;  ///< names the events of cycles instead of those of equilibria

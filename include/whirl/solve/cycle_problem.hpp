@@ -1,11 +1,13 @@
 #pragma once
 // Periodic solutions by orthogonal collocation, parallel over the intervals.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "whirl/problem/system.hpp"
+#include "whirl/solve/adjoint.hpp"
 #include "whirl/solve/interval.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/solve/scaled_point.hpp"
@@ -34,7 +36,7 @@ struct CycleOptions {
 /// Gamma_i x_i + ..., multiplies these along the rank's run, gathers one small system from all ranks and solves it
 /// together with the border (parameter, period, added rows), so that folds are regular. Products of Gamma lose log10 of
 /// the largest multiplier in digits, which GMRES around it restores.
-class CycleProblem : public PeriodicProblem {
+class CycleProblem : public PeriodicProblem, public Adjoint {
 public:
   /// `local` lives on a communicator of size 1 and outlives this.
   CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh);
@@ -67,6 +69,31 @@ public:
   /// scaled [n x N m]; its last column is monodromy() v. Collective.
   [[nodiscard]] Eigen::MatrixXd propagate(const Eigen::VectorXd& v) const;
 
+  // Adjoint equations and second derivatives along the cycle.
+
+  void solve_transposed(Vec rhs, Vec x) override;
+  void curvature(Vec u, Vec v, Vec w, Vec out) override;
+  /// A motion over this rank's intervals, scaled: the state before them [n] and those at their nodes [n x local nodes],
+  /// with changes of the border unknowns ([period,] parameter; scaled).
+  struct Path {
+    Eigen::VectorXd start;
+    Eigen::MatrixXd nodes;
+    Eigen::VectorXd border;
+  };
+  /// The linearised motion from the scaled start v [n], not closed to a period: its end is monodromy() v. Not
+  /// collective.
+  [[nodiscard]] Path forward(const Eigen::VectorXd& v) const;
+  /// The motion from rest under -y, y [mn x local intervals] at the collocation points, and its end after one period
+  /// [n], the same on every rank. Collective.
+  [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const;
+  /// Weights [mn x local intervals] of the equations with w . monodromy() v = -(sum weights . dR V) for changes dR of
+  /// the linearised equations along the motion V = forward(v). Not collective.
+  [[nodiscard]] Eigen::MatrixXd backward(const Eigen::VectorXd& w) const;
+  /// Gradients [layout of u] of sum_i weights_i . dR_i/dx(u) V, one for each `weights`: those of -w . monodromy() v.
+  [[nodiscard]] std::vector<core::Vector> gradients(Vec u, const Path& v, const std::vector<Eigen::MatrixXd>& weights);
+  /// dR/dx(u + step a) b at the collocation points [mn x local intervals]. Collective.
+  [[nodiscard]] Eigen::MatrixXd tangent(Vec u, double step, const Path& a, const Path& b);
+
 protected:
   /// What an interval's equations are; the scheme's collocation unless a derived problem says otherwise. `i` counts
   /// this rank's intervals, `own` are the scaled values at its nodes [n x m], `start` is the state before them. Not
@@ -77,6 +104,15 @@ protected:
   [[nodiscard]] virtual std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* own,
                                                                      const Eigen::VectorXd& start, double period,
                                                                      Eigen::MatrixXd& columns);
+  /// Transposed tangents of interval i at the given states: own [mn] += (dR/dX)^T y, before [n] += (dR/dx_start)^T y,
+  /// border [nb] += (dR/d(period, parameter))^T y.
+  virtual void interval_transposed(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
+                                   const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> to_own,
+                                   Eigen::VectorXd& to_start, Eigen::VectorXd& to_border);
+  /// dR/dX d_own + dR/dx_start d_start [mn] of interval i at the given states.
+  [[nodiscard]] virtual Eigen::VectorXd interval_tangent(Eigen::Index i, const double* own,
+                                                         const Eigen::VectorXd& start, double period,
+                                                         const double* d_own, const Eigen::VectorXd& d_start);
   /// x'(s) in SI at node l = 1..m of interval g of the whole mesh, for the phase condition.
   [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l);
 
@@ -96,6 +132,13 @@ private:
   void interpolate(Eigen::Index i, Eigen::Index j, const double* own, const Eigen::VectorXd& start, double period,
                    Eigen::VectorXd& value, Eigen::VectorXd& slope) const;
   void compose(const std::vector<Eigen::MatrixXd>& rows);
+  /// d/d(period, parameter) of the equations at one point [n x borders], from dF/dp and (dF/d(dx/dt)) x'.
+  [[nodiscard]] Eigen::MatrixXd border_columns(const Eigen::VectorXd& d_parameter, const Eigen::VectorXd& rate,
+                                               double period) const;
+  void displaced(Vec u, double step, const Path& along,
+                 const std::function<void(Eigen::Index, const double*, const Eigen::VectorXd&, double)>& work);
+  [[nodiscard]] Path path_of(Vec v) const;
+  [[nodiscard]] static double largest(const Path& path, MPI_Comm comm);
   void assemble(const std::vector<Eigen::MatrixXd>& rows);
 
   MPI_Comm comm_;

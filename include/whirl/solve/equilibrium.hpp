@@ -2,6 +2,7 @@
 // Equilibria F(0, x, 0; p) = 0 and their branches.
 
 #include "whirl/problem/system.hpp"
+#include "whirl/solve/adjoint.hpp"
 #include "whirl/solve/extended_problem.hpp"
 #include "whirl/solve/newton.hpp"
 
@@ -11,7 +12,7 @@ namespace whirl::solve {
 ///
 /// The bordered matrix [dF/dx dF/dp; row] is assembled and factorised as a whole (MUMPS), so that folds are regular.
 /// Cost: one sparse LU per Newton step. A system with 2-D films of many own states wants block elimination instead.
-class EquilibriumProblem : public ExtendedProblem {
+class EquilibriumProblem : public ExtendedProblem, public Adjoint {
 public:
   /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
   /// state in the arclength.
@@ -25,7 +26,14 @@ public:
   void linearise(Vec u, Vec row) override;
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
+  void solve_transposed(Vec rhs, Vec x) override;
+  void curvature(Vec u, Vec v, Vec w, Vec out) override;
+  /// The same along a motion: (x, dx/dt) moves by eps (v, rate), v with an entry for the parameter, `rate` [n] scaled
+  /// like the states (null: none).
+  void curvature(Vec u, Vec v, Vec rate, Vec w, Vec out);
 
+  [[nodiscard]] Vec state_scale() const { return state_scale_.get(); }
+  [[nodiscard]] Vec residual_scale() const { return residual_scale_.get(); }
   /// Between the scaled unknown and the state in SI. Collective.
   void to_state(Vec u, Vec x) const;
   void from_state(Vec x, double parameter, Vec u) const;

@@ -1,0 +1,32 @@
+#pragma once
+// Normal-form coefficients: on which side of a bifurcation the new motions live, and whether they are stable.
+
+#include <complex>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/cycle_problem.hpp"
+
+namespace whirl::solve {
+
+/// Re(exp(-i theta) c_1) of the map y -> exp(i theta) y (1 + ...) + c_1 y |y|^2 that the motion over one period of a
+/// forced cycle becomes at a Neimark-Sacker point: negative where the invariant circle is stable (supercritical).
+///
+/// Second and third derivatives of the map solve the variational equations of the collocation, with the derivatives of
+/// F by central differences of its exact tangents along the critical motion. `problem` is linearised at u, `multiplier`
+/// is the critical one; strong resonances (theta = pi, 2 pi/3, pi/2) have other normal forms. The critical vector has a
+/// root mean square of one in scaled states. Source: Kuznetsov (2004), 4.7 and (5.73). Cost: about 40 evaluations of
+/// the tangents along the cycle. Collective.
+[[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier);
+
+/// c of the map y -> -y + c y^3 at a flip of a forced cycle: positive where the cycle of twice the period is stable
+/// within the centre manifold (supercritical). Source: Kuznetsov (2004), (5.68). Else as above.
+[[nodiscard]] double flip_coefficient(CycleProblem& problem, Vec u);
+
+/// Re c_1 of y' = i omega y + c_1 y |y|^2 at a Hopf point x (SI) of F(0, x, dx/dt): omega times the first Lyapunov
+/// coefficient, negative where the cycles are stable (supercritical). F may depend on dx/dt and x together; derivatives
+/// by central differences of its exact tangents. The eigenvector has a root mean square of one in scaled states.
+/// Source: Kuznetsov (2004), (5.39), for implicit equations. `step` times the usual length of the differences shows
+/// whether F is smooth enough for the answer to mean anything. Throws core::NotConverged. Collective.
+[[nodiscard]] double hopf_coefficient(problem::System& system, Vec x, double omega, double step = 1);
+
+}  // namespace whirl::solve

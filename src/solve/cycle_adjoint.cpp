@@ -1,0 +1,262 @@
+// Adjoint equations and second derivatives of a periodic solution: what its bifurcation conditions are made of.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/solve/cycle_problem.hpp"
+
+namespace whirl::solve {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double difference_step(double largest) {
+  return std::cbrt(std::numeric_limits<double>::epsilon()) / std::max(largest, std::numeric_limits<double>::min());
+}
+
+double CycleProblem::largest(const Path& path, MPI_Comm comm) {
+  double value = 0;
+  for (const auto* part : {&path.start, &path.border})
+    if (part->size() > 0) value = std::max(value, part->cwiseAbs().maxCoeff());
+  if (path.nodes.size() > 0) value = std::max(value, path.nodes.cwiseAbs().maxCoeff());
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm);
+  return value;
+}
+
+CycleProblem::Path CycleProblem::path_of(Vec v) const {
+  const core::ReadArray a(v);
+  return {previous_end(a.data()), Map<const MatrixXd>(a.data(), n_, count_ * scheme_.degree), border_of(v)};
+}
+
+MatrixXd CycleProblem::border_columns(const VectorXd& d_parameter, const VectorXd& rate, double period) const {
+  MatrixXd columns(n_, borders_);
+  columns.rightCols(1) = d_parameter;
+  // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
+  if (!options_.autonomous && system_.parameter_is_speed()) columns.rightCols(1) += rate / system_.speed();
+  columns.rightCols(1) *= options_.parameter_scale;
+  if (options_.autonomous) columns.col(0) = -rate / period * period_scale_;
+  return columns;
+}
+
+void CycleProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
+                                       const VectorXd& y, Eigen::Ref<VectorXd> to_own, VectorXd& to_start,
+                                       VectorXd& to_border) {
+  const double length = interval_length(i) * period;
+  VectorXd value(n_), slope(n_), d_parameter;
+  MatrixXd jx, jxdot;
+  for (Index j = 0; j < scheme_.degree; ++j) {
+    interpolate(i, j, own, start, period, value, slope);
+    point_.linearise(angle_at(i, scheme_.c(j)), value, slope, jx, jxdot, &d_parameter);
+    const auto part = y.segment(j * n_, n_);
+    const VectorXd by_value = jx.transpose() * part, by_slope = jxdot.transpose() * part / length;
+    to_start += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
+    for (Index l = 1; l <= scheme_.degree; ++l)
+      to_own.segment((l - 1) * n_, n_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
+    to_border += border_columns(d_parameter, jxdot * slope, period).transpose() * part;
+  }
+}
+
+VectorXd CycleProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
+                                        const double* d_own, const VectorXd& d_start) {
+  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), out(scheme_.degree * n_);
+  MatrixXd jx, jxdot;
+  for (Index j = 0; j < scheme_.degree; ++j) {
+    interpolate(i, j, own, start, period, value, slope);
+    interpolate(i, j, d_own, d_start, period, d_value, d_slope);
+    point_.linearise(angle_at(i, scheme_.c(j)), value, slope, jx, jxdot, nullptr);
+    out.segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
+  }
+  return out;
+}
+
+// Calls work(interval, own, start, period) at u + step * along.
+void CycleProblem::displaced(Vec u, double step, const Path& along,
+                             const std::function<void(Index, const double*, const VectorXd&, double)>& work) {
+  const Path at = path_of(u);
+  const VectorXd border =
+      at.border + (along.border.size() > 0 ? VectorXd(step * along.border) : VectorXd::Zero(borders_));
+  const MatrixXd nodes = at.nodes + step * along.nodes;
+  const VectorXd before = at.start + step * along.start;
+  core::agree(comm_, [&] {
+    set_parameter(border);
+    const double period = period_of(border);
+    if (!(period > 0)) throw core::DomainError("the period is not positive");
+    point_.refresh();
+    for (Index i = 0; i < count_; ++i) {
+      const double* own = nodes.data() + i * scheme_.degree * n_;
+      work(i, own, i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_)), period);
+    }
+  });
+}
+
+std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const std::vector<MatrixXd>& weights) {
+  const Index m = scheme_.degree, block = m * n_;
+  const double h = difference_step(largest(v, comm_));
+  struct Sum {
+    VectorXd own, before, border;
+  };
+  std::vector<Sum> sums(weights.size(), {VectorXd::Zero(count_ * block), VectorXd::Zero(n_), VectorXd::Zero(borders_)});
+  for (const double sign : {1.0, -1.0})
+    displaced(u, sign * h, v, [&](Index i, const double* own, const VectorXd& start, double period) {
+      for (std::size_t k = 0; k < weights.size(); ++k) {
+        Sum& sum = sums[k];
+        VectorXd to_own = VectorXd::Zero(block), to_start = VectorXd::Zero(n_), to_border = VectorXd::Zero(borders_);
+        interval_transposed(i, own, start, period, weights[k].col(i), to_own, to_start, to_border);
+        const double factor = sign / (2 * h);
+        sum.own.segment(i * block, block) += factor * to_own;
+        if (i == 0)
+          sum.before += factor * to_start;
+        else
+          sum.own.segment(i * block - n_, n_) += factor * to_start;
+        sum.border += factor * to_border;
+      }
+    });
+  set_parameter(border_of(u));
+  point_.refresh();
+  const int next = (rank_ + 1) % size_, previous = (rank_ + size_ - 1) % size_;
+  std::vector<core::Vector> out;
+  for (Sum& sum : sums) {
+    VectorXd received(n_);
+    MPI_Sendrecv(sum.before.data(), static_cast<int>(n_), MPI_DOUBLE, previous, 0, received.data(),
+                 static_cast<int>(n_), MPI_DOUBLE, next, 0, comm_, MPI_STATUS_IGNORE);
+    sum.own.tail(n_) += received;
+    MPI_Allreduce(MPI_IN_PLACE, sum.border.data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
+    core::Vector g = make_unknown();
+    const core::WriteArray a(g.get());
+    Map<VectorXd>(a.data(), sum.own.size()) = sum.own;
+    if (rank_ == size_ - 1) Map<VectorXd>(a.data() + sum.own.size(), borders_) = sum.border;
+    out.push_back(std::move(g));
+  }
+  return out;
+}
+
+void CycleProblem::curvature(Vec u, Vec v, Vec w, Vec out) {
+  const core::ReadArray a(w);
+  const Index block = scheme_.degree * n_;
+  std::vector<MatrixXd> weights{Map<const MatrixXd>(a.data(), block, count_)};
+  core::check(VecCopy(gradients(u, path_of(v), weights).front().get(), out));
+}
+
+MatrixXd CycleProblem::tangent(Vec u, double step, const Path& a, const Path& b) {
+  const Index m = scheme_.degree;
+  MatrixXd y(m * n_, count_);
+  displaced(u, step, a, [&](Index i, const double* own, const VectorXd& start, double period) {
+    const double* d_own = b.nodes.data() + i * m * n_;
+    y.col(i) = interval_tangent(i, own, start, period, d_own,
+                                i == 0 ? b.start : VectorXd(Map<const VectorXd>(d_own - n_, n_)));
+  });
+  set_parameter(border_of(u));
+  point_.refresh();
+  return y;
+}
+
+CycleProblem::Path CycleProblem::forward(const VectorXd& v) const {
+  const Index m = scheme_.degree;
+  Path path{to_rank_[static_cast<std::size_t>(rank_)].leftCols(n_) * v, MatrixXd(n_, count_ * m), {}};
+  VectorXd state = path.start;
+  for (Index i = 0; i < count_; ++i) {
+    MatrixXd z = -intervals_[static_cast<std::size_t>(i)]->start(state);
+    intervals_[static_cast<std::size_t>(i)]->solve(z);
+    path.nodes.middleCols(i * m, m) = Map<const MatrixXd>(z.data(), n_, m);
+    state = z.col(0).tail(n_);
+  }
+  return path;
+}
+
+CycleProblem::Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
+  const Index m = scheme_.degree;
+  // First what each rank's run makes of y alone, then with the state that enters it.
+  Path path;
+  const auto run = [&](const VectorXd& start) {
+    path = {start, MatrixXd(n_, count_ * m), {}};
+    VectorXd state = start;
+    for (Index i = 0; i < count_; ++i) {
+      MatrixXd z = -y.col(i) - intervals_[static_cast<std::size_t>(i)]->start(state);
+      intervals_[static_cast<std::size_t>(i)]->solve(z);
+      path.nodes.middleCols(i * m, m) = Map<const MatrixXd>(z.data(), n_, m);
+      state = z.col(0).tail(n_);
+    }
+    return state;
+  };
+  VectorXd own = run(VectorXd::Zero(n_)), gathered(n_ * size_), entering = VectorXd::Zero(n_);
+  MPI_Allgather(own.data(), static_cast<int>(n_), MPI_DOUBLE, gathered.data(), static_cast<int>(n_), MPI_DOUBLE, comm_);
+  end = VectorXd::Zero(n_);
+  for (int p = 0; p < size_; ++p) {
+    if (p == rank_) entering = end;
+    end = (gathered.segment(static_cast<Index>(p) * n_, n_) +
+           rank_maps_[static_cast<std::size_t>(p)].topLeftCorner(n_, n_) * end)
+              .eval();
+  }
+  if (rank_ > 0) (void)run(entering);
+  return path;
+}
+
+MatrixXd CycleProblem::backward(const VectorXd& w) const {
+  const Index block = scheme_.degree * n_;
+  VectorXd lambda = w;
+  for (int p = size_ - 1; p > rank_; --p)
+    lambda = (rank_maps_[static_cast<std::size_t>(p)].topLeftCorner(n_, n_).transpose() * lambda).eval();
+  MatrixXd weights(block, count_);
+  for (Index i = count_ - 1; i >= 0; --i) {
+    MatrixXd z = MatrixXd::Zero(block, 1);
+    z.bottomRows(n_) = lambda;
+    intervals_[static_cast<std::size_t>(i)]->solve_transposed(z);
+    weights.col(i) = z;
+    lambda = -intervals_[static_cast<std::size_t>(i)]->start_transposed(z);
+  }
+  return weights;
+}
+
+// With z_i the adjoint of interval i, lambda_i that of its end state and sigma those of the added rows:
+//     A_i^T z_i = s_i + E^T lambda_i - rows_i^T sigma,    lambda_(i-1) = -A0_i^T z_i,    lambda_N = lambda_0
+// which closes by the transpose of the small system of the forward solve.
+void CycleProblem::solve_transposed(Vec rhs, Vec x) {
+  const Index block = scheme_.degree * n_, all = n_ + borders_;
+  const VectorXd r_border = border_of(rhs);
+  const core::ReadArray ra(rhs);
+  const core::WriteArray xa(x);
+  VectorXd part(all);  // of this rank: adjoint of the state before it, and what its columns see
+  const auto sweep = [&](VectorXd lambda, const VectorXd& sigma, bool keep) {
+    part.tail(borders_).setZero();
+    for (Index i = count_ - 1; i >= 0; --i) {
+      const auto k = static_cast<std::size_t>(i);
+      MatrixXd z = Map<const VectorXd>(ra.data() + i * block, block) - rows_[k].transpose() * sigma;
+      z.bottomRows(n_) += lambda;
+      intervals_[k]->solve_transposed(z);
+      if (keep) Map<VectorXd>(xa.data() + i * block, block) = z.col(0);
+      part.tail(borders_) += columns_[k].transpose() * z.col(0);
+      lambda = -intervals_[k]->start_transposed(z);
+    }
+    part.head(n_) = lambda;
+  };
+  sweep(VectorXd::Zero(n_), VectorXd::Zero(borders_), false);
+  VectorXd gathered(all * size_);
+  MPI_Allgather(part.data(), static_cast<int>(all), MPI_DOUBLE, gathered.data(), static_cast<int>(all), MPI_DOUBLE,
+                comm_);
+  VectorXd small(all), lambda = VectorXd::Zero(n_), seen = VectorXd::Zero(borders_);
+  for (int p = size_ - 1; p >= 0; --p) {
+    const auto& q = rank_maps_[static_cast<std::size_t>(p)];
+    const auto own = gathered.segment(static_cast<Index>(p) * all, all);
+    seen += own.tail(borders_) - q.topRightCorner(n_, borders_).transpose() * lambda;
+    lambda = (own.head(n_) + q.topLeftCorner(n_, n_).transpose() * lambda).eval();
+  }
+  small << lambda, r_border - seen;
+  small = small_.transpose().solve(small).eval();
+  const VectorXd sigma = small.tail(borders_);
+  lambda = small.head(n_);
+  for (int p = size_ - 1; p > rank_; --p) {
+    const auto& q = rank_maps_[static_cast<std::size_t>(p)];
+    lambda = (gathered.segment(static_cast<Index>(p) * all, n_) + q.topLeftCorner(n_, n_).transpose() * lambda -
+              q.bottomLeftCorner(borders_, n_).transpose() * sigma)
+                 .eval();
+  }
+  sweep(lambda, sigma, true);
+  if (rank_ == size_ - 1)
+    for (Index k = 0; k < borders_; ++k) xa[static_cast<PetscInt>(xa.size() - borders_ + k)] = sigma(k);
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,67 @@
+#pragma once
+// One branch on its way: steps here, events between two points beside it.
+
+#include <functional>
+
+#include "whirl/solve/continuation.hpp"
+
+namespace whirl::solve {
+
+/// A point with its unit tangent.
+struct State {
+  core::Vector u, tangent;
+  BranchPoint point;
+};
+
+/// Ten significant digits: the last ones may differ between rank counts and must not decide anything.
+[[nodiscard]] double rounded(double x);
+[[nodiscard]] core::Vector copy(Vec v);
+/// Arclength from a to b as the pseudo-arclength condition counts it: along the tangent at a.
+[[nodiscard]] double arclength(const ExtendedProblem& problem, const State& a, Vec b);
+
+class Follower {
+public:
+  Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
+      : problem_(problem), options_(options), callbacks_(callbacks), direction_(options.to >= options.from ? 1 : -1) {}
+
+  BranchEnd run(core::Vector u, std::optional<Restart> restart);
+
+private:
+  // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
+  void inspect(State& s, Vec along);
+  NewtonResult correct(Vec u, Vec row, double offset) { return newton(problem_, u, row, offset, options_.newton); }
+  NewtonResult correct_at(core::Vector& u, double parameter);
+  // The point at arclength ds from `from`.
+  bool advance(const State& from, double ds, State& to, NewtonResult& result);
+  // After a change of the discretisation: the point near `here` on the branch of the new one, and what that changed.
+  bool settle(State& here, NewtonResult& result);
+
+  // All that lies between two points. With the points before a (null: none on this mesh), also what the count of
+  // unstable values at a and b does not show.
+  void events(const State* first, const State* before, const State& a, const State& b);
+  using Test = std::function<double(const State&)>;
+  // The zero of a test function between two points, up to `tolerance` in the parameter; false if the location did not
+  // converge, then `at` is the nearest point found.
+  bool locate(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found, State& at);
+  // The same, refined by the callback where that can; `name` tells the event at a point near it.
+  void pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
+                LocatedEvent& found, State& at);
+  void folds(const State& a, const State& b, int depth);
+  void crossings(const State& a, const State& b, int depth);
+  void zeros(const State& a, const State& b);
+  void visits(const State& before, const State& a, const State& b, bool seen);
+  [[nodiscard]] bool kinks(const State& first, const State& a, const State& b, const State& last);
+  void around(const State& a, State& middle, const State& b);
+  bool split(const State& a, const State& b, State& middle, State& rest);
+  void suspect(const State& a, const State& b, std::string why);
+
+  ExtendedProblem& problem_;
+  const ContinuationOptions& options_;
+  const BranchCallbacks& callbacks_;
+  int direction_;
+  bool visited_ = false;  // the last step's crossings came from a closer look
+  // Folds of the step whose events are sought: parameter, and how far the step reaches from there.
+  std::vector<std::pair<double, double>> folds_;
+};
+
+}  // namespace whirl::solve

@@ -1,0 +1,205 @@
+// Events that leave the count of unstable values alone: found by looking closer, or reported as suspected. Curves of
+// bifurcations in two parameters.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "branch_support.hpp"
+#include "whirl/solve/augmented_problem.hpp"
+
+using namespace whirl;
+using Eigen::VectorXd;
+using solve::Event;
+using test::Column;
+
+namespace {
+
+constexpr double speed = 2;
+
+// y' = A(p) y in a frame that turns by half the shaft's angle: multipliers minus those of exp(A T).
+template <class F>
+struct HalfTurning {
+  F rates;  // of (a, b) at p
+  template <class T>
+  Column<T> operator()(double angle, const Column<T>& x, const Column<T>& xdot, T p) const {
+    const double c = std::cos(angle / 2), s = std::sin(angle / 2);
+    const T a = c * x(0) + s * x(1), b = c * x(1) - s * x(0);
+    const auto [da, db] = rates(a, b, p);
+    Column<T> f(2);
+    f << xdot(0) + 0.5 * speed * x(1) - (c * da - s * db), xdot(1) - 0.5 * speed * x(0) - (s * da + c * db);
+    return f;
+  }
+};
+template <class F>
+HalfTurning<F> half_turning(F rates) {
+  return {rates};
+}
+
+solve::CycleOptions degree_four() {
+  solve::CycleOptions o;
+  o.degree = 4;
+  return o;
+}
+
+struct Found : test::Recorded {
+  std::vector<solve::Suspicion> suspected;
+};
+
+template <class System>
+Found follow(System formula, double from, double to, double step) {
+  test::SmallSystem s(PETSC_COMM_SELF, 2, from, speed, formula);
+  solve::CycleProblem problem(MPI_COMM_WORLD, s, degree_four(), solve::uniform_mesh(12));
+  Found found;
+  auto callbacks = test::recording(problem, found);
+  callbacks.cycles = true;
+  callbacks.stability = [&](Vec) { return test::multipliers(problem); };
+  callbacks.refine = [&](const solve::LocatedEvent& e, Vec u, Vec t) {
+    return solve::refine(problem, e, u, t, test::sharp());
+  };
+  callbacks.on_suspicion = [&](const solve::Suspicion& x) { found.suspected.push_back(x); };
+  core::Vector u = problem.make_unknown();
+  found.end = solve::follow_branch(problem, std::move(u), test::range(from, to, step), callbacks);
+  return found;
+}
+
+std::vector<double> places(const test::Recorded& r, Event event) {
+  std::vector<double> out;
+  for (const auto& e : r.of(event)) out.push_back(e.parameter);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+// A multiplier is outside for 0 < p < 0.1 only, between two points.
+TEST(Detection, AValueThatComesAndGoes) {
+  const auto r = follow(half_turning([](auto a, auto b, auto p) {
+                          return std::pair(decltype(a)((0.0025 - (p - 0.05) * (p - 0.05)) * a), decltype(a)(-b));
+                        }),
+                        -1, 1, 0.3);
+  for (const auto& p : r.points) EXPECT_EQ(p.stability.unstable(), 0) << p.parameter;
+  const auto flips = places(r, Event::flip);
+  ASSERT_EQ(flips.size(), 2U);
+  EXPECT_NEAR(flips[0], 0, 1e-9);
+  EXPECT_NEAR(flips[1], 0.1, 1e-9);
+  EXPECT_TRUE(r.suspected.empty());
+}
+
+// It comes near and goes: nothing to report.
+TEST(Detection, AValueThatOnlyComesNear) {
+  const auto r = follow(half_turning([](auto a, auto b, auto p) {
+                          return std::pair(decltype(a)((-0.01 - (p - 0.05) * (p - 0.05)) * a), decltype(a)(-b));
+                        }),
+                        -1, 1, 0.3);
+  EXPECT_TRUE(r.events.empty());
+  EXPECT_TRUE(r.suspected.empty());
+}
+
+// One multiplier leaves at 0 and another returns at 0.03, within one step.
+TEST(Detection, OppositeCrossings) {
+  const auto r = follow(
+      half_turning([](auto a, auto b, auto p) { return std::pair(decltype(a)(p * a), decltype(a)((0.03 - p) * b)); }),
+      -1, 1, 0.3);
+  const auto flips = places(r, Event::flip);
+  ASSERT_EQ(flips.size(), 2U);
+  EXPECT_NEAR(flips[0], 0, 1e-9);
+  EXPECT_NEAR(flips[1], 0.03, 1e-9);
+  EXPECT_TRUE(r.suspected.empty());
+}
+
+// At exactly the same place they cannot be told apart.
+TEST(Detection, CrossingsThatCancelAreSuspected) {
+  const auto r = follow(
+      half_turning([](auto a, auto b, auto p) { return std::pair(decltype(a)(p * a), decltype(a)(-1.1 * p * b)); }), -1,
+      1, 0.3);
+  // Rounding decides whether a point between them sees one of them outside; silence would be wrong.
+  EXPECT_TRUE(!r.suspected.empty() || r.events.size() == 2) << r.events.size();
+  for (const auto& s : r.suspected) EXPECT_LT(s.from * s.to, 0);
+}
+
+namespace {
+
+// p = x^3 - 0.003 x: folds at x = -+sqrt(0.001) within one step.
+struct Kink {
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T p) const {
+    Column<T> f(1);
+    f << xdot(0) - (p - x(0) * x(0) * x(0) + 0.003 * x(0));
+    return f;
+  }
+};
+
+}  // namespace
+
+TEST(Detection, TwoFoldsInAStep) {
+  int hidden = 0;
+  for (const double from : {-0.2, -0.25, -0.3}) {
+    test::SmallSystem s(PETSC_COMM_WORLD, 1, from, 1, Kink{});
+    const auto r = test::follow(s, VectorXd::Constant(1, -0.6), test::range(from, 0.2, 0.3));
+    hidden += std::all_of(r.points.begin(), r.points.end(), [](const auto& p) { return p.slope > 0; });
+    const auto folds = places(r, Event::fold);
+    ASSERT_EQ(folds.size(), 2U) << from;
+    const double height = 2 * 0.001 * std::sqrt(0.001);
+    EXPECT_NEAR(folds[0], -height, 1e-9);
+    EXPECT_NEAR(folds[1], height, 1e-9);
+  }
+  EXPECT_GT(hidden, 0);
+}
+
+// Flips where det A = q - p^2 - p/2 = 0 for A = [p 1; p^2 - q, -1/2]; two of them over p meet at (-1/4, -1/16), and at
+// (1/2, 1/2) the trace vanishes too: resonance 1:2.
+TEST(Curve, FlipsInTwoParameters) {
+  double q = 0.14;
+  test::SmallSystem s(PETSC_COMM_SELF, 2, 0.2, speed, half_turning([&q](auto a, auto b, auto p) {
+                        return std::pair(decltype(a)(p * a + b), decltype(a)((p * p - q) * a - 0.5 * b));
+                      }));
+  solve::CycleProblem branch(MPI_COMM_WORLD, s, degree_four(), solve::uniform_mesh(12));
+  const core::Vector u = [&] {
+    core::Vector v = branch.make_unknown();
+    solve::set_last_entry(branch.comm(), v.get(), 0.2);
+    return v;
+  }();
+  const core::Vector along = solve::any_tangent(branch, u.get());
+  const auto condition = solve::make_flip(branch);
+  solve::AugmentedProblem problem(branch, *condition, along.get(),
+                                  solve::SecondParameter{[&q](double value) { q = value; }, 1});
+  core::Vector whole = problem.make_unknown();
+  problem.join(u.get(), condition->start(), 0.14, whole.get());
+  std::vector<std::pair<double, double>> points, meetings, resonances;
+  solve::BranchCallbacks callbacks;
+  callbacks.monitors = [&](Vec, Vec) {
+    std::vector<double> values;
+    for (const auto& t : problem.tests())
+      if (std::string(t.name) == "resonance_1_2") values.push_back(t.value);
+    return values;
+  };
+  callbacks.on_zero = [&](const solve::LocatedZero& z, Vec v) {
+    resonances.emplace_back(problem.first_parameter(v), z.parameter);
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& e, Vec v) {
+    EXPECT_EQ(e.event, Event::fold);
+    meetings.emplace_back(problem.first_parameter(v), e.parameter);
+  };
+  callbacks.on_point = [&](const solve::BranchPoint& p, Vec v) {
+    points.emplace_back(problem.first_parameter(v), p.parameter);
+    problem.update();
+  };
+  for (const double to : {0.9, -1.0}) {
+    auto options = test::range(0.14, to, 0.15);
+    options.back = to < 0 ? 0.9 : -1.0;
+    core::Vector start = core::duplicate(whole.get());
+    core::check(VecCopy(whole.get(), start.get()));
+    problem.prime(start.get());
+    const auto end = solve::follow_branch(problem, std::move(start), options, callbacks);
+    EXPECT_TRUE(end.completed) << end.reason;
+  }
+  EXPECT_GT(points.size(), 10U);
+  for (const auto& [p, second] : points) EXPECT_NEAR(second, p * p + p / 2, 1e-8);
+  ASSERT_EQ(meetings.size(), 1U);
+  EXPECT_NEAR(meetings[0].first, -0.25, 1e-4);  // the place of an extremum is known to the root of its value
+  EXPECT_NEAR(meetings[0].second, -0.0625, 1e-8);
+  ASSERT_EQ(resonances.size(), 1U);
+  EXPECT_NEAR(resonances[0].first, 0.5, 1e-7);
+  EXPECT_NEAR(resonances[0].second, 0.5, 1e-7);
+}
