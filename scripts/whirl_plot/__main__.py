@@ -2,7 +2,8 @@
 import pathlib
 import sys
 
-from . import bearing_map, bifurcation, campbell, eccentricity, film, motion, multipliers, orbits, response, shapes
+from . import (bearing_map, bifurcation, campbell, eccentricity, film, locus, motion, multipliers, orbits, response,
+               shapes)
 from .data import open_results
 from .style import use_style
 
@@ -40,7 +41,8 @@ def main(argv):
                 else:
                     for file in files:
                         print(file)
-        for file in [*bifurcation.draw_together(results), *eccentricity.draw(results), *bearing_map.draw_together(results)]:
+        for file in [*bifurcation.draw_together(results), *eccentricity.draw(results), *bearing_map.draw_together(results),
+                     *locus.draw_together(results)]:
             print(file)
     return 1 if failed else 0
 

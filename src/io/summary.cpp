@@ -71,6 +71,36 @@ Bifurcation bifurcation(const Json& j) {
   return b;
 }
 
+Json to_json(const CodimensionTwo& c) {
+  Json j = {{"type", c.type},
+            {"parameter", c.parameter},
+            {"value", number(c.value.value)},
+            {"unit", c.value.unit},
+            {"second_parameter", c.second_parameter},
+            {"second_value", number(c.second_value.value)},
+            {"second_unit", c.second_value.unit},
+            {"uncertainty", number(c.uncertainty)}};
+  for (const auto& [name, value] : c.more) j[name] = number(value);
+  return j;
+}
+
+CodimensionTwo codimension_two(Json j) {
+  const auto take = [&j](const char* key) {
+    const Json value = j.at(key);
+    j.erase(key);
+    return value;
+  };
+  CodimensionTwo c;
+  c.type = take("type");
+  c.parameter = take("parameter");
+  c.value = {number(take("value")), take("unit")};
+  c.second_parameter = take("second_parameter");
+  c.second_value = {number(take("second_value")), take("second_unit")};
+  c.uncertainty = number(take("uncertainty"));
+  for (const auto& [key, v] : j.items()) c.more[key] = number(v);
+  return c;
+}
+
 Json to_json(const StudySummary& s) {
   Json values = Json::object();
   for (const auto& [name, q] : s.values) values[name] = {{"value", number(q.value)}, {"unit", q.unit}};
@@ -82,14 +112,18 @@ Json to_json(const StudySummary& s) {
                      {"imag", number(m.imag)},
                      {"log_decrement", number(m.log_decrement)},
                      {"whirl", text_or_null(m.whirl)}});
-  return {{"name", s.name},
-          {"kind", s.kind},
-          {"status", s.status},
-          {"wall_seconds", number(s.wall_seconds)},
-          {"values", std::move(values)},
-          {"bifurcations", std::move(bifurcations)},
-          {"modes", std::move(modes)},
-          {"points", s.points}};
+  Json j = {{"name", s.name},
+            {"kind", s.kind},
+            {"status", s.status},
+            {"wall_seconds", number(s.wall_seconds)},
+            {"values", std::move(values)},
+            {"bifurcations", std::move(bifurcations)},
+            {"modes", std::move(modes)},
+            {"points", s.points}};
+  for (const CodimensionTwo& c : s.codimension_two) j["codimension_two"].push_back(to_json(c));
+  for (const Suspicion& x : s.suspected)
+    j["suspected"].push_back({{"from", number(x.from)}, {"to", number(x.to)}, {"unit", x.unit}, {"reason", x.reason}});
+  return j;
 }
 
 StudySummary study(const Json& j) {
@@ -100,6 +134,9 @@ StudySummary study(const Json& j) {
   s.wall_seconds = number(j.at("wall_seconds"));
   for (const auto& [name, q] : j.at("values").items()) s.set(name, number(q.at("value")), q.at("unit"));
   for (const Json& b : j.at("bifurcations")) s.bifurcations.push_back(bifurcation(b));
+  for (const Json& c : j.value("codimension_two", Json::array())) s.codimension_two.push_back(codimension_two(c));
+  for (const Json& x : j.value("suspected", Json::array()))
+    s.suspected.push_back({number(x.at("from")), number(x.at("to")), x.at("unit"), x.at("reason")});
   for (const Json& m : j.at("modes"))
     s.modes.push_back({number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
                        m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>()});

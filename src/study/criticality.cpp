@@ -5,6 +5,8 @@
 
 #include "cycle_follower.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/solve/normal_form.hpp"
 
 namespace whirl::study {
 
@@ -38,6 +40,23 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& 
   }
 }
 
+// What the equations at the point itself say, where no branch born there is at hand.
+void CycleFollower::set_normal_form(io::Bifurcation& b, const solve::LocatedEvent& found, Vec u) {
+  if (found.event == solve::Event::cyclic_fold && found.refined && found.quadratic != 0) {
+    b.criticality = found.quadratic > 0 ? "above" : "below";
+    b.criticality_by = "second derivative of the parameter along the branch: the side on which the cycles exist";
+  }
+  auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
+  if (found.event != solve::Event::neimark_sacker || !found.refined || !cycles || autonomous()) return;
+  core::Vector row = core::duplicate(u);
+  solve::parameter_row(*cycles, row.get());
+  cycles->linearise(u, row.get());
+  const double coefficient = solve::neimark_sacker_coefficient(*cycles, u, found.critical);
+  if (!std::isfinite(coefficient) || coefficient == 0) return;
+  b.criticality = coefficient < 0 ? "supercritical" : "subcritical";
+  b.criticality_by = "normal form of the map over one period (Kuznetsov 2004, 5.73)";
+}
+
 // The equilibrium branch gives the error of the film mesh; here it is left open where the film has one.
 void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, const solve::Restart& leaving, double omega) {
   io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
@@ -46,6 +65,8 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, const solve::Re
   if (!has_film_mesh(system_->train())) b.uncertainty = hopf.bracket;
   set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity);
   context_.results.summary().bifurcations.push_back(b);
+  // The equilibrium has no cycle for a locus to start from; its place in the list is kept.
+  if (keeps_located_) located_.push_back({solve::Event::branch_point, 0, {}});
 }
 
 }  // namespace whirl::study

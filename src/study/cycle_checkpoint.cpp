@@ -43,6 +43,7 @@ void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, do
   state.set("seconds", context_.results.seconds());
   write_summary(state.child("summary"), context_.results.summary());
   write_seeds(state.child("flips"), seeds_);
+  write_located(state.child("located"), located_);
   context_.results.save_checkpoint(state);
   last_saved_ = context_.results.seconds();
 }
@@ -60,6 +61,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
                          read_point(state.group("point"))};
   restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);
   seeds_ = read_seeds(state.group("flips"));
+  located_ = read_located(state.group("located"));
   last_ = cycle;
   largest_difference_ = state.real("largest_difference");
   if (seed_) (void)returned(cycle);

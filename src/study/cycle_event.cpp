@@ -6,6 +6,7 @@
 #include "bifurcation.hpp"
 #include "cycle_follower.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/solve/augmented_problem.hpp"
 
 namespace whirl::study {
 
@@ -60,6 +61,12 @@ double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle
   } else {
     solve::parameter_row(problem, row.get());
   }
+  // Where the fold is on the other discretisation; if that cannot be had, where the branch of the same amplitude is.
+  if (auto* cycles = dynamic_cast<solve::CycleProblem*>(&problem); fold && cycles) {
+    const auto there = solve::refine(*cycles, found, u.get(), solve::any_tangent(problem, u.get()).get(), newton_);
+    if (there && std::abs(there->parameter - found.parameter) < continuation_.max_step)
+      return std::abs(there->parameter - found.parameter);
+  }
   const auto result = solve::newton(problem, u.get(), row.get(), offset, newton_);
   if (!result.converged) return std::numeric_limits<double>::quiet_NaN();
   if (fold) return std::abs(solve::last_entry(problem.comm(), u.get()) - found.parameter);
@@ -107,6 +114,8 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
         return shift(found, cycle, doubled_mesh, half_film);
       } catch (const core::DomainError&) {
         return std::numeric_limits<double>::quiet_NaN();
+      } catch (const core::NotConverged&) {
+        return std::numeric_limits<double>::quiet_NaN();
       }
     };
     const double time = estimate(true, false);
@@ -120,7 +129,9 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.criticality_by = "not located: lies within the bracket";
     b.uncertainty = found.bracket;
   }
+  set_normal_form(b, found, u);
   context_.results.summary().bifurcations.push_back(b);
+  if (keeps_located_) located_.push_back({found.event, found.critical, cycle});
 }
 
 }  // namespace whirl::study

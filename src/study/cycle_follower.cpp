@@ -8,6 +8,8 @@
 
 #include "bifurcation.hpp"
 #include "whirl/deck/units.hpp"
+#include "whirl/solve/augmented_problem.hpp"
+#include "whirl/study/locus.hpp"
 
 namespace whirl::study {
 
@@ -21,8 +23,8 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       seed_(std::move(seed)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
-      record_(names_of_bearings(context.machine), clearances_of_bearings(context.machine), unit_,
-              options_.multipliers) {
+      record_(names_of_bearings(context.machine), clearances_of_bearings(context.machine), unit_, options_.multipliers),
+      keeps_located_(!seed_ && is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
   continuation_.from = (options_.start ? options_.start->value : range.from) / scale_;
@@ -117,6 +119,13 @@ void CycleFollower::run() {
   callbacks.stability = [this](Vec) { return stability(); };
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
+  if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
+    callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
+      return solve::refine(*cycles, e, v, t, newton_);
+    };
+  callbacks.on_suspicion = [this](const solve::Suspicion& s) {
+    context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
+  };
   callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
     save(p, v, t, step);
     returned_ = seed_ && returned(problem_->gather(v));
@@ -138,6 +147,7 @@ void CycleFollower::run() {
   group.set("period_turns", options_.period);
   results.summary().points = end.points;
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
+  if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
   if (contact_) results.summary().set("contact", end.parameter, unit_);
   results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);

@@ -9,6 +9,7 @@
 
 #include "common.hpp"
 #include "cycle_record.hpp"
+#include "located.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
@@ -52,6 +53,7 @@ private:
   /// distance from its border of stability over the scaled parameter.
   void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
                        double sensitivity) const;
+  void set_normal_form(io::Bifurcation& b, const solve::LocatedEvent& found, Vec u);
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   void record_hopf(const solve::LocatedEvent& hopf, const solve::Restart& leaving, double omega);
   [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& cycle) const;
@@ -81,6 +83,8 @@ private:
   std::optional<solve::Cycle> last_;
   double last_saved_ = -1e9;
   std::vector<FlipSeed> seeds_;
+  bool keeps_located_;              // a locus of the deck starts from one of them
+  std::vector<Located> located_;    // one for each bifurcation of the summary
   Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
   double largest_difference_ = 0;   // its largest norm so far
   bool returned_ = false, contact_ = false;

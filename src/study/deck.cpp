@@ -16,6 +16,7 @@ void describe(deck::Description<Deck>& d) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());
       s.validate(deck.machine, r.below(path));
+      s.validate_among({deck.studies.data(), i}, r.below(path));
       for (std::size_t j = 0; j < i; ++j)
         if (io::safe_name(deck.studies[j]->name()) == io::safe_name(s.name()))
           r.fail(path + ".name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1,

@@ -8,11 +8,15 @@
 #include "bifurcation.hpp"
 #include "common.hpp"
 #include "groups.hpp"
+#include "located.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
+#include "whirl/solve/augmented_problem.hpp"
 #include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/normal_form.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/study/locus.hpp"
 #include "whirl/system/start.hpp"
 
 namespace whirl::study {
@@ -37,6 +41,16 @@ std::unique_ptr<system::RotorSystem> make_system(const Context& context, const E
   varying.magnitude = std::max(std::abs(o.parameter.range.from), std::abs(o.parameter.range.to));
   return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, std::move(varying),
                                                o.speed->value);
+}
+
+// The differences behind the coefficient must not decide its sign: a film with kinks has no third derivative.
+void set_lyapunov(io::Bifurcation& b, system::RotorSystem& system, Vec x, double omega) {
+  b.criticality_by = "undetermined: the first Lyapunov coefficient depends on the step of its differences";
+  const double fine = solve::hopf_coefficient(system, x, omega, 1),
+               coarse = solve::hopf_coefficient(system, x, omega, 8);
+  if (!(std::abs(fine - coarse) < 0.2 * std::min(std::abs(fine), std::abs(coarse)))) return;
+  b.criticality = fine < 0 ? "supercritical" : "subcritical";
+  b.criticality_by = "first Lyapunov coefficient (Kuznetsov 2004, 5.39)";
 }
 
 }  // namespace
@@ -77,6 +91,7 @@ void EquilibriumBranch::run(Context& context) {
                    {"leading_imag", "rad/s", "its imaginary part"},
                    {"x", "m", "journal relative to the bearing centre", {names.size()}},
                    {"y", "m", "journal relative to the bearing centre", {names.size()}}});
+  std::vector<Located> located;  // one for each bifurcation of the summary
   auto& results = context.results;
   put_groups(results.summary(), system->train());
   solve::BranchCallbacks callbacks;
@@ -144,11 +159,37 @@ void EquilibriumBranch::run(Context& context) {
         b.uncertainty += b.more["uncertainty_film_mesh"];
       }
     }
+    if (found.event == solve::Event::fold && found.quadratic != 0) {
+      b.criticality = found.quadratic > 0 ? "above" : "below";
+      b.criticality_by = "second derivative of the parameter along the branch: the side on which the equilibria exist";
+    }
+    if (found.event == solve::Event::hopf && found.located) {
+      problem.to_state(v, x.get());
+      system->set_parameter(found.parameter * scale);
+      set_lyapunov(b, *system, x.get(), omega);
+    }
     results.summary().bifurcations.push_back(b);
+    if (is_followed(context, name())) {
+      problem.to_state(v, x.get());
+      const std::vector<double> whole = system->gather(x.get());
+      located.push_back({found.event,
+                         found.critical,
+                         {{0, 1},
+                          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+                          b.period_s,
+                          found.parameter * scale}});
+    }
+  };
+  callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {
+    return solve::refine(*system, problem, e, v, t, continuation.newton);
+  };
+  callbacks.on_suspicion = [&](const solve::Suspicion& s) {
+    results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
   const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
 
   auto& group = results.group();
+  if (is_followed(context, name())) write_located(group.child("located"), located);
   table.write(group.child("branch"));
   put_bearings(group, context.machine);
   put_bifurcations(group, results.summary().bifurcations);

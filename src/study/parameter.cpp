@@ -50,6 +50,11 @@ std::string parameter_unit(const system::Machine& machine, std::string_view path
   return access(copy, path).unit;
 }
 
+double value_of(const system::Machine& machine, std::string_view path) {
+  system::Machine copy = machine;
+  return *access(copy, path).value;
+}
+
 system::Machine with_parameter(const system::Machine& machine, std::string_view path, double value) {
   system::Machine copy = machine;
   const deck::Access a = access(copy, path);

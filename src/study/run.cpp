@@ -8,7 +8,7 @@ namespace whirl::study {
 
 std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
   Results results(comm, options.directory, deck.machine.title, options.version, options.say, options.resume);
-  Context context{comm, deck.machine, options.directory, results, options.resume};
+  Context context{comm, deck.machine, options.directory, results, options.resume, deck.studies};
   for (const auto& study : deck.studies) {
     const bool finished = options.resume && results.finished(study->name());
     if (finished && !study->resumes_itself()) continue;

@@ -89,6 +89,24 @@ TEST(Summary, ReadsBackWhatItWrote) {
   EXPECT_TRUE(std::isnan(back.studies[0].values[1].second.value));
 }
 
+TEST(Summary, PointsOfCodimensionTwoAndSuspicionsComeBack) {
+  Summary s = example();
+  EXPECT_FALSE(nlohmann::json::parse(s.to_json())["studies"][0].contains("suspected"));
+  s.studies[0].codimension_two.push_back({.type = "resonance_1_2",
+                                          .parameter = "speed",
+                                          .second_parameter = "unbalance.a.grade",
+                                          .value = {1384.6, "rad/s"},
+                                          .second_value = {6.8, "um"},
+                                          .uncertainty = 1e-6,
+                                          .more = {{"nondimensional_speed", 8.65}}});
+  s.studies[0].suspected.push_back({1, 2, "rpm", "a reason"});
+  const Summary back = Summary::from_json(s.to_json());
+  EXPECT_EQ(back.to_json(), s.to_json());
+  EXPECT_EQ(back.studies[0].codimension_two[0].second_value.value, 6.8);
+  EXPECT_EQ(back.studies[0].codimension_two[0].more.at("nondimensional_speed"), 8.65);
+  EXPECT_EQ(back.studies[0].suspected[0].reason, "a reason");
+}
+
 TEST(Summary, AStudyOfTheSameNameIsReplaced) {
   Summary s = example();
   StudySummary again;

@@ -12,16 +12,20 @@ import sys
 from harness import Harness, value
 
 FINE, FOLD, WALL = 1e-5, 1e-4, 5e-3
-# The reference states 13.797(1); here it moves between 13.7957 and 13.7971 with the time mesh.
-GIVEN = 2e-3
+# The reference states 13.797(1). There the journal passes within 2e-4 of the state without pure-squeeze velocity, where the
+# force of a cavitated film is a cone: collocation is of low order and the fold moves with the mesh (uniform meshes of 40 to
+# 640 intervals: 13.7984, 13.7957 to 13.7969, 13.7967, 13.7965 to 13.7967, 13.79665).
+GIVEN = 1e-3
 SUB, SUPER = "subcritical", "supercritical"
 
-# study: [(type, Omega*, tolerance, criticality), ...]; folds where the largest eccentricity exceeds 0.9 to WALL.
+# study: [(type, Omega*, tolerance, criticality), ...]; folds where the largest eccentricity exceeds 0.9 to WALL. The folds near
+# 2.71 of branches 'a1 flip 2' are not in the reference: they are this program's own, the same to 1e-5 on three time meshes.
 FIGURES = {
     "5_2": {"balanced": [("hopf", 2.73526314, FINE, None)],
             "whirl": [("hopf", 2.73526314, FINE, SUB), ("cyclic_fold", 2.61397, FOLD, None)],
             "a1": [("flip", 2.468901, FINE, SUB), ("flip", 3.412566, FINE, None)],
             "a1 flip 1": [("cyclic_fold", 2.461408, FOLD, None), ("cyclic_fold", 18.7947, WALL, None)],
+            "a1 flip 2": [("cyclic_fold", 2.713327, FOLD, None)],
             "a2": [("flip", 2.874299, FINE, None), ("flip", 5.760622, FINE, None)],
             "a2 flip 1": [("cyclic_fold", 19.7691, FOLD, None)],
             "a2 flip 2": [("cyclic_fold", 19.7691, FOLD, None)],
@@ -31,6 +35,7 @@ FIGURES = {
             "whirl": [("hopf", 2.75634869, FINE, SUB), ("cyclic_fold", 2.57874, FOLD, None)],
             "a1": [("flip", 2.473685, FINE, SUB), ("flip", 3.812777, FINE, None)],
             "a1 flip 1": [("cyclic_fold", 2.471469, FOLD, None), ("cyclic_fold", 23.1858, WALL, None)],
+            "a1 flip 2": [("cyclic_fold", 2.715091, FOLD, None)],
             "a2": [("flip", 8.882138, FINE, None), ("flip", 10.054424, FINE, None)],
             "a2 flip 1": [("cyclic_fold", 13.816380, FOLD, None)],
             "a2 flip 2": [("cyclic_fold", 13.816380, FOLD, None)],
@@ -40,7 +45,7 @@ FIGURES = {
                       ("cyclic_fold", 2.67728, FOLD, None)],
             "a1": [("flip", 2.485310, FINE, SUB), ("flip", 3.110053, FINE, None)],
             "a1 flip 1": [("cyclic_fold", 2.453899, FOLD, None), ("cyclic_fold", 15.6479, WALL, None)],
-            "a1 flip 2": [("cyclic_fold", 3.137197, FOLD, None)],
+            "a1 flip 2": [("cyclic_fold", 3.137197, FOLD, None), ("cyclic_fold", 2.710319, FOLD, None)],
             "a2": [("flip", 2.396433, FINE, None), ("flip", 3.959917, FINE, None)],
             "a2 flip 1": [("cyclic_fold", 13.797, GIVEN, None)],
             "a2 flip 2": [("cyclic_fold", 13.797, GIVEN, None)],
@@ -51,6 +56,7 @@ FIGURES = {
             "whirl": [("hopf", 1.97398006, FINE, SUPER)],
             "a1": [("flip", 1.836718, FINE, SUPER), ("flip", 2.202713, FINE, None)],
             "a1 flip 1": [("cyclic_fold", 16.3145, WALL, None)],
+            "a1 flip 2": [],
             "a2": [("flip", 1.758947, FINE, None), ("flip", 2.757556, FINE, None)],
             "a2 flip 1": [("cyclic_fold", 9.072871, FOLD, None)],
             "a2 flip 2": [("cyclic_fold", 9.072871, FOLD, None)],
@@ -58,8 +64,6 @@ FIGURES = {
             "a3 flip 1": [("cyclic_fold", 4.122480, FOLD, None)],
             "a3 flip 2": [("cyclic_fold", 4.122480, FOLD, None)]},
 }
-# Born beyond the reference's folds: on its way to contact this branch folds once more.
-MORE = {("5_2", "a1 flip 2"), ("5_4", "a1 flip 2"), ("5_5", "a1 flip 2"), ("5_6", "a1 flip 2")}
 
 
 def figure(h, which):
@@ -68,8 +72,8 @@ def figure(h, which):
         study = run[name]
         found = study["bifurcations"]
         h.true(f"{name}: reaches its end", study["status"] == "completed", study["status"])
-        if (which, name) not in MORE:
-            h.true(f"{name}: nothing else", len(found) == len(wanted), f"{[b['type'] for b in found]}")
+        h.true(f"{name}: nothing else", len(found) == len(wanted), f"{[b['type'] for b in found]}")
+        h.true(f"{name}: nothing suspected", not study.get("suspected"), study.get("suspected"))
         for kind, reference, within, criticality in wanted:
             b = min((b for b in found if b["type"] == kind),
                     key=lambda b: abs(b["nondimensional_speed"] - reference), default={})

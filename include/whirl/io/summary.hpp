@@ -34,6 +34,21 @@ struct Bifurcation {
   std::map<std::string, double> more = {};  ///< further numbers, e.g. "whirl_frequency_rad_s", "angle_rad"
 };
 
+/// A point of codimension two on a curve of bifurcations, in both parameters.
+struct CodimensionTwo {
+  std::string type = {};  ///< resonance_1_2, meeting, cusp, ...
+  std::string parameter = {}, second_parameter = {};
+  Quantity value = {}, second_value = {};
+  double uncertainty = no_value;            ///< what the location left in the second parameter, in its unit
+  std::map<std::string, double> more = {};  ///< as of bifurcations
+};
+
+/// A stretch of a branch on which events may lie that could not be resolved.
+struct Suspicion {
+  double from = no_value, to = no_value;
+  std::string unit = {}, reason = {};
+};
+
 /// One eigenvalue real + i imag (rad/s) at a speed (in the unit of the study's range).
 struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
@@ -47,6 +62,8 @@ struct StudySummary {
   double wall_seconds = 0;
   std::vector<std::pair<std::string, Quantity>> values = {};  ///< dotted names, in the order they were set
   std::vector<Bifurcation> bifurcations = {};
+  std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any
+  std::vector<Suspicion> suspected = {};             ///< likewise
   std::vector<ModeEntry> modes = {};
   long points = 0;
 

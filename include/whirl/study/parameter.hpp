@@ -33,6 +33,9 @@ struct Parameter {
 /// studies may not vary it.
 [[nodiscard]] std::string parameter_unit(const system::Machine& machine, std::string_view path);
 
+/// Its present value (SI); not of the speed. Throws likewise.
+[[nodiscard]] double value_of(const system::Machine& machine, std::string_view path);
+
 /// A copy of `machine` in which the option at `path` (not speed) has the value `value` (SI).
 [[nodiscard]] system::Machine with_parameter(const system::Machine& machine, std::string_view path, double value);
 

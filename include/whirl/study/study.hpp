@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,13 +16,16 @@ namespace whirl::study {
 
 class Results;
 
+class Study;
+
 /// What a study gets to work with.
 struct Context {
   MPI_Comm comm;
   const system::Machine& machine;
-  std::string directory;  ///< of the results; exists
-  Results& results;       ///< where the study puts what it found
-  bool resume = false;    ///< go on from the checkpoint of this study, if there is one
+  std::string directory;                            ///< of the results; exists
+  Results& results;                                 ///< where the study puts what it found
+  bool resume = false;                              ///< go on from the checkpoint of this study, if there is one
+  std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
 };
 
 /// One analysis of a deck.
@@ -37,6 +41,9 @@ public:
   [[nodiscard]] virtual std::string name() const = 0;
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
   virtual void validate(const system::Machine& machine, const deck::Report& report) const = 0;
+  /// The same for what does not fit the studies before it in the deck.
+  virtual void validate_among(std::span<const std::unique_ptr<Study>> /*before*/,
+                              const deck::Report& /*report*/) const {}
   /// True if run() itself looks which of its results a resumed run already has; else a finished study is not run again.
   [[nodiscard]] virtual bool resumes_itself() const { return false; }
   /// Collective.

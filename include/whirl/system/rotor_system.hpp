@@ -58,6 +58,10 @@ public:
   void scales(Vec state_scale, Vec residual_scale) override;
   [[nodiscard]] problem::Structure* structure() override;
 
+  /// Another train of the same shape (nodes, masters, film meshes): everything is rebuilt, the active parameter and the
+  /// speed stay. Collective.
+  void set_train(Train train);
+
   /// Switches the unbalance forces off (and on again): an equilibrium is that of the balanced machine. On at the start.
   void set_forcing(bool on) { forcing_ = on; }
 
@@ -117,7 +121,6 @@ private:
   class Blocks;
 
   void build();
-  void set_train(Train train);
   void make_constant_parts();
   /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates. Collective:
   /// assembles j.

@@ -1,0 +1,33 @@
+#pragma once
+// Bifurcations in two parameters: a curve of folds, Hopf points, flips or Neimark-Sacker points.
+
+#include <optional>
+
+#include "whirl/study/parameter.hpp"
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+struct LocusOptions {
+  std::string name;
+  std::string of;                          ///< an earlier cycle_branch or equilibrium_branch of the deck
+  int bifurcation = 1;                     ///< which of its bifurcations, 1-based, in the order of summary.json
+  Parameter second;                        ///< the second parameter; the branch's own is the first
+  std::optional<deck::Range> first_range;  ///< where the curve may go in the first one; the branch's range if absent
+  int max_points = 500;
+};
+void describe(deck::Description<LocusOptions>& d);
+
+class Locus final : public StudyWith<LocusOptions> {
+public:
+  static constexpr std::string_view key = "locus";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+/// Whether a locus of the deck starts at a bifurcation of the study `name`, which then keeps them.
+[[nodiscard]] bool is_followed(const Context& context, const std::string& name);
+
+}  // namespace whirl::study

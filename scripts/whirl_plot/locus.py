@@ -1,0 +1,59 @@
+"""Curves of bifurcations in two parameters, with their points of codimension two."""
+import numpy as np
+from matplotlib import pyplot as plt
+
+from .style import COLOURS, INK, save
+
+WORDS = {"meeting": "two meet", "meeting_over_second": "curve turns", "resonance_1_1": "1:1 resonance",
+         "resonance_1_2": "1:2 resonance", "resonance_1_3": "1:3 resonance", "resonance_1_4": "1:4 resonance",
+         "cusp": "cusp", "bogdanov_takens": "Bogdanov-Takens", "generalised_hopf": "generalised Hopf",
+         "generalised_flip": "generalised flip", "fold_flip": "fold and flip", "fold_hopf": "fold and Hopf",
+         "fold_neimark_sacker": "fold and Neimark-Sacker"}
+NAMES = {"flip": "flips", "cyclic_fold": "cyclic folds", "neimark_sacker": "Neimark-Sacker points", "hopf": "Hopf points",
+         "fold": "folds"}
+
+
+def last(path):
+    return path.rsplit(".", 1)[-1].replace("_", " ")
+
+
+def label(axis, points):
+    """Marks the points; those that lie together share a label."""
+    (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
+    groups = []
+    for kind, x, y in points:
+        axis.plot([x], [y], "o", color=INK, markersize=5, zorder=5)
+        word = WORDS.get(kind, kind.replace("_", " "))
+        near = [g for g in groups if abs(g[0] - x) < 0.03 * (right - left) and abs(g[1] - y) < 0.03 * (high - low)]
+        if not near:
+            groups.append((x, y, [word]))
+        elif word not in near[0][2]:
+            near[0][2].append(word)
+    for x, y, words in groups:
+        axis.annotate(",\n".join(words), (x, y), textcoords="offset points", xytext=(8, -5), va="top", fontsize=8, color=INK)
+
+
+def draw_together(results):
+    """All curves over the same pair of parameters in one picture."""
+    studies = [s for s in results.studies if s.kind == "locus" and s.has("locus/parameter")]
+    if not studies:
+        return []
+    pair = (studies[0].attribute("parameter"), last(studies[0].attribute("second", "")))
+    studies = [s for s in studies if (s.attribute("parameter"), last(s.attribute("second", ""))) == pair]
+    figure, axis = plt.subplots(figsize=(8, 5.5))
+    points = []
+    for k, study in enumerate(studies):
+        axis.plot(study.get("locus/parameter"), study.get("locus/second"), color=COLOURS[k % len(COLOURS)],
+                  label=NAMES.get(study.attribute("bifurcation"), "bifurcations"))
+        kinds = study.get("codimension_two/type")
+        if kinds is not None and len(kinds):
+            points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),
+                          np.atleast_1d(study.get("codimension_two/second")))
+    label(axis, points)
+    axis.set_xlabel(f"{last(studies[0].attribute('parameter'))} [{studies[0].attribute('parameter_unit')}]")
+    axis.set_ylabel(f"{last(studies[0].attribute('second'))} [{studies[0].attribute('second_unit')}]")
+    axis.margins(x=0.04, y=0.08)
+    whole = type("Whole", (), {"run_title": results.title, "name": "curves of bifurcations", "status": "",
+                               "file": lambda self, what: results.directory / f"{what}.png"})()
+    return [save(figure, whole, "loci", "where motions lose stability, over two parameters",
+                 [line for line in axis.get_lines() if not line.get_label().startswith("_")])]

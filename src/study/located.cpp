@@ -1,0 +1,31 @@
+#include "located.hpp"
+
+#include <fmt/core.h>
+
+#include "cycle_record.hpp"
+
+namespace whirl::study {
+
+void write_located(io::Group& group, const std::vector<Located>& all) {
+  group.set("count", static_cast<int>(all.size()));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    auto& g = group.child(fmt::format("{}", k + 1));
+    g.set("event", static_cast<int>(all[k].event));
+    g.set("real", all[k].critical.real());
+    g.set("imag", all[k].critical.imag());
+    write_cycle(g.child("cycle"), all[k].cycle);
+  }
+}
+
+std::vector<Located> read_located(const io::Group& group) {
+  std::vector<Located> all;
+  for (std::int64_t k = 1; k <= group.integer("count"); ++k) {
+    const auto& g = group.group(fmt::format("{}", k));
+    all.push_back({static_cast<solve::Event>(g.integer("event")),
+                   {g.real("real"), g.real("imag")},
+                   read_cycle(g.group("cycle"))});
+  }
+  return all;
+}
+
+}  // namespace whirl::study

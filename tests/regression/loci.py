@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Runs the deck of bifurcation curves of the rigid rotor and compares it with reference values.
+
+loci.py PROGRAM SOURCE [LAUNCHER WORDS...]
+
+The reference is that of the rigid rotor's diagrams: flips at a* = 0.1 and 0.2, the Neimark-Sacker point at a* = 0.3, all
+over Omega*; the 1:2 resonance near (8.6537, 0.27277) and the point near (10.28, 0.2900) where two flips meet.
+"""
+import sys
+
+import h5py
+import numpy as np
+from harness import Harness
+
+SPEED, CLEARANCE = 160.0, 25.0  # rad/s, um: one unit of Omega* and of a*
+
+
+def crossings(speed, unbalance, at):
+    """Speeds at which a curve passes an unbalance, by cubics through four points."""
+    out = []
+    for k in np.flatnonzero(np.diff(unbalance >= at)):
+        near = slice(max(k - 1, 0), min(k + 3, len(speed)))
+        a, s = unbalance[near] - at, speed[near]
+        out.append(sum(s[i] * np.prod([-a[j] / (a[i] - a[j]) for j in range(len(a)) if j != i]) for i in range(len(a))))
+    return sorted(out)
+
+
+def main():
+    h = Harness(sys.argv[1], sys.argv[2], sys.argv[3:])
+    run = h.run((h.source / "inputs/rigid_rotor/loci.yaml").resolve(), "loci")
+    flips, turns = run["flips"], run["Neimark-Sacker points"]
+    for study in (flips, turns):
+        h.true(f"{study['name']}: reaches its ends", study["status"] == "completed", study["status"])
+        h.true(f"{study['name']}: nothing suspected", not study.get("suspected"), study.get("suspected"))
+
+    def points(study, kind):
+        return [(c["nondimensional_speed"], c["nondimensional_unbalance"]) for c in study["codimension_two"]
+                if c["type"] == kind]
+
+    for study in (flips, turns):
+        found = points(study, "resonance_1_2")
+        h.true(f"{study['name']}: one 1:2 resonance", len(found) == 1, found)
+        for speed, unbalance in found[:1]:
+            h.close(f"{study['name']}: 1:2 resonance, Omega*", speed, 8.6537, 2e-4)
+            h.close(f"{study['name']}: 1:2 resonance, a*", unbalance, 0.27277, 2e-5)
+    found = points(flips, "meeting")
+    h.true("flips: one point where two meet", len(found) == 1, found)
+    for speed, unbalance in found[:1]:
+        h.close("flips meet, Omega*", speed, 10.28, 2e-2)
+        h.close("flips meet, a*", unbalance, 0.2900, 1e-4)
+    with h5py.File(h.work / "loci" / "results.h5") as f:
+        curve = f["studies/flips/locus"]
+        speed, unbalance = curve["parameter"][()] / SPEED, curve["second"][()] / CLEARANCE
+    # The curve is known at its points, and read between them by cubics; it passes a* = 0.2 on its steep side in one step.
+    for a, count, wanted in ((0.1, 2, (2.468901, 3.412566)), (0.2, 2, (None, 5.760622))):
+        got = crossings(speed, unbalance, a)
+        h.true(f"flips at a* = {a}", len(got) == count, got)
+        for x, y in zip(got, wanted):
+            if y:
+                h.close(f"flip at a* = {a}, Omega*", x, y, 1e-4)
+    # A curve ends at its limit, not near it.
+    h.run((h.source / "inputs/rigid_rotor/loci.yaml").resolve(), "short",
+          overrides=["studies.2.locus.range={from: 2 um, to: 5 um}"])
+    with h5py.File(h.work / "short" / "results.h5") as f:
+        curve = f["studies/flips/locus"]
+        h.close("the curve ends at a* =", curve["second"][-1] / CLEARANCE, 0.2, 1e-9)
+        h.close("flip at a* = 0.2, Omega*", curve["parameter"][-1] / SPEED, 2.874299, 1e-5)
+    h.finish()
+
+
+if __name__ == "__main__":
+    main()
