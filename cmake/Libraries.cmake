@@ -23,6 +23,7 @@ whirl_pkg(SLEPc SLEPc)
 whirl_pkg(HDF5 hdf5-openmpi)
 whirl_pkg(UDUNITS udunits)
 whirl_pkg(OpenBLAS openblas)
+whirl_pkg(FFTW fftw3)
 target_link_libraries(PETSc::PETSc INTERFACE MPI::MPI_CXX)
 # Open MPI's C++ bindings are gone from the standard and drag in a second library.
 target_compile_definitions(PETSc::PETSc INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)

@@ -1,7 +1,7 @@
 """Draws every picture that a results folder has data for."""
 import sys
 
-from . import bearing_map, bifurcation, campbell, eccentricity, film, multipliers, orbits, response, shapes
+from . import bearing_map, bifurcation, campbell, eccentricity, film, motion, multipliers, orbits, response, shapes
 from .data import open_results, results_directory
 from .style import use_style
 
@@ -14,6 +14,7 @@ PICTURES = {
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, orbits.draw, multipliers.draw],
+    "motion": [motion.draw],
 }
 
 

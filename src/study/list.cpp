@@ -3,6 +3,7 @@
 #include "whirl/study/cycle_branch.hpp"
 #include "whirl/study/equilibrium_branch.hpp"
 #include "whirl/study/modes.hpp"
+#include "whirl/study/motion.hpp"
 #include "whirl/study/static.hpp"
 #include "whirl/study/unbalance_response.hpp"
 
@@ -27,6 +28,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
+      kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
   };
   return all;
 }

@@ -23,6 +23,7 @@ EXPECTED = {
     "pair_G6.3": ["cycles-vertical", "cycles-horizontal", "orbits", "multipliers"],
     "hard": ["impedance"],
     "soft": ["frequencies"],
+    "period_two": ["motion"],
 }
 TOGETHER = ["bifurcations", "map-locus", "map-stiffness", "map-damping", "map-stability", "map-pressure"]
 

@@ -156,6 +156,20 @@ def bearing_map(root, name, soft):
     put(g.create_group("impedance"), along=axis, across=axis, W_along=w * (1 + a), W_across=w * b)
 
 
+def motion(root):
+    g = study(root, "period two", "motion", speed=960.0, motion="period-2", evidence="returns", samples=64)
+    t = np.arange(1, 20 * 64 + 1)[:, None] / 64
+    x = 5e-6 * np.cos(2 * np.pi * t) + 8e-6 * np.cos(np.pi * t) * np.ones(2)
+    y = 5e-6 * np.sin(2 * np.pi * t) - 7e-6 * np.sin(np.pi * t) * np.ones(2)
+    put(g.create_group("orbit"), x=x, y=y)
+    put(g.create_group("poincare"), x=x[63::64], y=y[63::64])
+    order = np.arange(641) / 20
+    peaks = 1e-12 + 5e-6 * (abs(order - 1) < 0.03) + 8e-6 * (abs(order - 0.5) < 0.03)
+    put(g.create_group("spectrum"), order=order, frequency=order * 153, x=peaks[:, None] * np.ones(2), y=peaks[:, None] * np.ones(2))
+    put(g.create_group("exponents"), value=[-3.0, -9.0], uncertainty=[0.1, 0.2], running=np.array([[-3 - 1 / k, -9 + 1 / k] for k in range(1, 21)]))
+    put(g.create_group("bearings"), name=["left", "right"], node=[1, 1], clearance=[25e-6, 25e-6], preload=[0, 0], offset=[0, 0], arc=[2 * np.pi] * 2)
+
+
 def make(directory):
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
@@ -169,6 +183,7 @@ def make(directory):
         cycles(root, "pair, G6.3", 2.5, 1)
         bearing_map(root, "hard", 0)
         bearing_map(root, "soft", 0.5)
+        motion(root)
     studies = [
         {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
          "values": {"mass.total": {"value": 42165.66, "unit": "kg"}, "load.B3": {"value": None, "unit": "N"}},

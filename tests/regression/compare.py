@@ -57,8 +57,9 @@ def same_results(one, other, within=1e-8):
         for key in a:
             scale = None
             # A difference of two parameters has the accuracy of the parameters.
-            if "uncertainty" in key:
-                scale = numpy.max(numpy.abs(a[key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value")]))
+            found = key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value") if "/" in key else key
+            if "uncertainty" in key and found in a:
+                scale = numpy.max(numpy.abs(a[found]))
             d = difference(key, a[key], b[key], scale)
             if d > worst:
                 worst, where = d, key

@@ -1,0 +1,47 @@
+#pragma once
+// A motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, and what kind of motion it is.
+
+#include <array>
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+/// Where a motion begins.
+struct MotionStart {
+  enum class From { equilibrium, cycle };
+  From from = From::equilibrium;
+  std::array<double, 2> offset{};  ///< of every journal in x and y, per clearance
+};
+[[nodiscard]] std::span<const deck::Name<MotionStart::From>> names(MotionStart::From);
+void describe(deck::Description<MotionStart>& d);
+
+struct MotionOptions {
+  enum class Window { none, hann };
+  std::string name;
+  std::vector<std::string> unbalance;  ///< names of the machine's unbalances, applied together; none: balanced
+  deck::Quantity speed;                ///< [rad/s]
+  MotionStart start;
+  int discard = 200;      ///< revolutions before anything is recorded
+  int revolutions = 400;  ///< recorded
+  int samples = 64;       ///< per revolution
+  double tolerance = 1e-8;
+  int exponents = 2;  ///< Lyapunov exponents, the largest
+  int max_period = 8;
+  double return_tolerance = 1e-4;
+  Window window = Window::hann;
+  int orbit = 20;  ///< revolutions whose orbit is stored, the last ones
+  bool checkpoint = true;
+};
+[[nodiscard]] std::span<const deck::Name<MotionOptions::Window>> names(MotionOptions::Window);
+void describe(deck::Description<MotionOptions>& d);
+
+class Motion final : public StudyWith<MotionOptions> {
+public:
+  static constexpr std::string_view key = "motion";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  void run(Context& context) override;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,65 @@
+#pragma once
+// Integration in time of F(angle(t), x, dx/dt; p) = 0 by PETSc TS.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "whirl/problem/drive.hpp"
+#include "whirl/problem/system.hpp"
+#include "whirl/transient/tangents.hpp"
+
+namespace whirl::transient {
+
+struct IntegratorOptions {
+  /// Estimated error of a step: root mean square of the scaled states, relative where they exceed one.
+  double tolerance = 1e-8;
+  double first_step = 0;           ///< [s]; 0: a thousandth of a revolution
+  std::string prefix = "motion_";  ///< of the PETSc options
+};
+
+/// The motion of one system from a state at t = 0.
+///
+/// The scheme is singly diagonally implicit, stiffly accurate and L-stable of order 4 with an estimate of order 3
+/// (Hairer and Wanner 1996, IV (6.16)), so that neither stiff films nor the shaft's high modes limit the step. One step
+/// knows nothing of those before it: state, time and step() restart a motion to the bit. On an accelerated shaft the
+/// system's parameter must be its speed. All members are collective on the system's communicator.
+class Integrator {
+public:
+  /// `x` [SI] at t = 0. `system` outlives this.
+  Integrator(problem::System& system, problem::Drive drive, Vec x, IntegratorOptions options = {});
+  ~Integrator();
+  Integrator(const Integrator&) = delete;
+  Integrator& operator=(const Integrator&) = delete;
+
+  /// Goes on to exactly `time` [s]. Throws core::DomainError if the motion leaves the validity of a film, with the time
+  /// and the film's text, core::NotConverged if steps fail for another reason.
+  void advance(double time);
+  /// Carries small deviations along from now on, by the exact derivative of each discrete step; null: none. They
+  /// outlive their use here.
+  void carry(Tangents* tangents);
+
+  [[nodiscard]] double time() const;
+  /// The length of step [s] that the error control has arrived at.
+  [[nodiscard]] double step() const;
+  /// Goes on from what scaled() holds, at `time` with `step`: where a checkpoint left off, or at constant speed one
+  /// revolution earlier.
+  void restart(double time, double step);
+  /// State in SI.
+  void state(Vec x) const;
+  /// State over its scales; stays valid and follows the motion.
+  [[nodiscard]] Vec scaled() const;
+  [[nodiscard]] const problem::Drive& drive() const;
+
+  /// What it took so far.
+  struct Work {
+    long steps = 0, rejected = 0, residuals = 0, jacobians = 0;
+  };
+  [[nodiscard]] Work work() const;
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace whirl::transient

@@ -1,0 +1,35 @@
+#pragma once
+// Amplitude spectra of sampled signals, by FFTW.
+
+#include <span>
+#include <vector>
+
+namespace whirl::transient {
+
+/// What multiplies the samples before the transform.
+enum class Window {
+  none,  ///< exact if the record holds whole periods of everything
+  hann   ///< leaks little where it does not
+};
+
+/// Amplitudes 0-peak over frequency; the first line is the magnitude of the mean.
+struct Spectrum {
+  double resolution = 0;          ///< between lines [1/unit of the sampling interval]
+  std::vector<double> amplitude;  ///< [n/2 + 1], in the unit of the signal
+  Window window = Window::none;
+};
+
+/// Spectrum of n equidistant samples: a tone a cos(2 pi f t) on a line of the spectrum has the amplitude a.
+[[nodiscard]] Spectrum amplitude_spectrum(std::span<const double> samples, double interval, Window window);
+
+/// A tone read off a spectrum.
+struct Tone {
+  double frequency = 0, amplitude = 0;
+};
+
+/// The `count` highest lines that tower above their neighbours, the highest first, each with the frequency and the
+/// amplitude of a single tone between two lines (exact for an isolated one). Source: Grandke (1983), IEEE Trans.
+/// Instrum. Meas. 32, 350.
+[[nodiscard]] std::vector<Tone> tones(const Spectrum& spectrum, int count);
+
+}  // namespace whirl::transient

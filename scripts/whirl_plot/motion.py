@@ -1,0 +1,84 @@
+"""A motion in time on one page: orbit in the clearance, Poincare points, spectrum, convergence of the Lyapunov exponents."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .orbits import draw_clearance, finish, square, turn_arrow
+from .style import COLOURS, GREY, INK, ROTATION, save
+
+
+def distinct(study, names):
+    """Bearings at different nodes: those at one node of a rigid rotor move alike."""
+    nodes = study.get("bearings/node")
+    if nodes is None:
+        return list(range(len(names)))
+    return [int(i) for i in np.sort(np.unique(np.atleast_1d(nodes), return_index=True)[1])]
+
+
+def draw_orbit(axis, study, b, x, y, px, py):
+    if not draw_clearance(axis, study, b, (x, y)):
+        square(axis, x, y)
+    turn_arrow(axis)
+    axis.plot(x, y, color=COLOURS[0], linewidth=0.7, alpha=0.9)
+    axis.plot(px, py, ".", color=COLOURS[1], markersize=4, zorder=4)
+    finish(axis)
+
+
+def draw_points(axis, px, py):
+    axis.plot(px, py, ".", color=COLOURS[1], markersize=3)
+    if max(np.ptp(px), np.ptp(py)) < 1e-6:  # um: one point
+        axis.set_xlim(px.mean() - 1, px.mean() + 1)
+        axis.set_ylim(py.mean() - 1, py.mean() + 1)
+    else:
+        square(axis, px, py)
+    finish(axis)
+
+
+def draw_spectrum(axis, order, x, y, top=6.0):
+    shown = order <= top
+    floor = max(1e-9, 1e-8 * max(x[shown].max(), y[shown].max()))
+    for values, colour, label in ((x, COLOURS[0], "x"), (y, COLOURS[2], "y")):
+        axis.semilogy(order[shown], np.maximum(values[shown], floor), color=colour, linewidth=0.8, label=label)
+    axis.set_xlim(0, top)
+    axis.set_xlabel("frequency / running speed")
+    axis.set_ylabel("amplitude, 0-peak [\u00b5m]")
+    axis.legend(loc="upper right")
+
+
+def draw_exponents(axis, running, speed, value, uncertainty):
+    turns = np.arange(1, len(running) + 1)
+    per_turn = 2 * np.pi / speed
+    for k in range(running.shape[1]):
+        axis.plot(turns, running[:, k] * per_turn, color=COLOURS[k % len(COLOURS)], linewidth=1.0,
+                  label=f"{value[k] * per_turn:.4g} \u00b1 {uncertainty[k] * per_turn:.1g}")
+    axis.axhline(0, color=GREY, linewidth=0.8)
+    axis.set_xlabel("revolutions")
+    axis.set_ylabel("Lyapunov exponents per revolution")
+    axis.legend(loc="best")
+
+
+def draw(study):
+    if not study.has("orbit/x", "poincare/x", "spectrum/x"):
+        return []
+    scale = 1e6
+    x, y, px, py = (study.get(p) * scale for p in ("orbit/x", "orbit/y", "poincare/x", "poincare/y"))
+    order, sx, sy = study.get("spectrum/order"), study.get("spectrum/x") * scale, study.get("spectrum/y") * scale
+    names = study.bearings(x.shape[1])
+    rows = distinct(study, names)
+    exponents = study.has("exponents/running")
+    columns = 4 if exponents else 3
+    figure, axes = plt.subplots(len(rows), columns, figsize=(3.5 * columns, 3.3 * len(rows) + 1.0), squeeze=False)
+    for row, b in zip(axes, rows):
+        draw_orbit(row[0], study, b, x[:, b], y[:, b], px[:, b], py[:, b])
+        row[0].set_title("orbit" if len(rows) == 1 else f"orbit, {names[b]}")
+        draw_points(row[1], px[:, b], py[:, b])
+        row[1].set_title("once per revolution")
+        draw_spectrum(row[2], order, sx[:, b], sy[:, b])
+        row[2].set_title("spectrum")
+        if exponents and b == rows[0]:
+            draw_exponents(row[3], study.get("exponents/running"), study.attribute("speed"),
+                           np.atleast_1d(study.get("exponents/value")), np.atleast_1d(study.get("exponents/uncertainty")))
+            row[3].set_title(study.attribute("motion", "").replace("_", " "), color=INK)
+        elif exponents:
+            row[3].set_visible(False)
+    turns = int(round(x.shape[0] / study.attribute("samples", 1)))
+    return [save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, orange: shaft angle 0; {ROTATION}")]

@@ -1,0 +1,57 @@
+#pragma once
+// What is kept of a motion, how it is judged, and how it goes into results and checkpoints.
+
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/study/motion.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/transient/classify.hpp"
+#include "whirl/transient/exponents.hpp"
+
+namespace whirl::study {
+
+/// Samples of the journals, states at the end of each revolution, growth of deviations. Replicated on all ranks.
+class MotionRecord {
+public:
+  MotionRecord(const MotionOptions& options, std::vector<std::string> bearings, std::vector<double> clearances);
+
+  /// A sample at a whole state [size of the system] in SI; `scaled` is the same over its scales.
+  void sample(const std::vector<system::JournalState>& journals, const std::vector<double>& scaled);
+  /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried.
+  void close(const std::vector<double>& growth, double duration);
+  [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
+
+  /// The verdict so far.
+  [[nodiscard]] transient::Verdict verdict() const;
+  /// Tables into `group`, numbers and verdict into the summary.
+  void write(io::Group& group, io::StudySummary& summary) const;
+
+  void save(io::Group& group) const;
+  void load(const io::Group& group);
+
+private:
+  [[nodiscard]] transient::Evidence evidence() const;
+  [[nodiscard]] std::vector<double> signal(std::size_t bearing, std::size_t direction) const;
+  void write_orbit(io::Group& group) const;
+  void write_points(io::Group& group) const;
+  void write_spectrum(io::Group& group, io::StudySummary& summary) const;
+  void write_exponents(io::Group& group, io::StudySummary& summary) const;
+
+  const MotionOptions& options_;
+  std::vector<std::string> bearings_;
+  std::vector<double> clearances_;
+  double period_;                            // of a revolution [s]
+  std::vector<double> samples_;              // [sample][bearing][x, y] in m
+  std::vector<double> ends_;                 // [revolution][bearing][x, y, vx, vy] in m and m/s
+  std::vector<double> last_;                 // the same of the last sample
+  std::vector<double> sum_;                  // of the scaled states of all samples
+  double squares_ = 0;                       // of their norms
+  std::vector<double> last_state_;           // the last scaled state
+  std::vector<std::vector<double>> points_;  // scaled states at the ends of revolutions
+  transient::Exponents exponents_;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,70 @@
+#include "motion_start.hpp"
+
+#include <numbers>
+#include <set>
+
+#include "common.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+
+// The synchronous cycle, from the equilibrium held for the whole turn; x becomes its state at angle zero.
+std::vector<std::complex<double>> to_cycle(system::RotorSystem& system, Vec x) {
+  if (core::size_of(system.comm()) > 1)
+    throw core::NotConverged("cycles are for systems that fit one rank; start from the equilibrium");
+  // Gauss points: multipliers of order eight.
+  solve::CycleOptions options;
+  options.degree = 4;
+  options.points = solve::Points::gauss;
+  solve::CycleProblem problem(system.comm(), system, options, solve::uniform_mesh(80));
+  const std::vector<double> whole = system.gather(x);
+  solve::Cycle guess{problem.mesh(), {}, 2 * std::numbers::pi / system.speed(), system.parameter()};
+  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system.size())
+                .replicate(1, guess.intervals() * problem.scheme().degree);
+  core::Vector u = problem.scatter(guess), row = core::duplicate(u.get());
+  solve::parameter_row(problem, row.get());
+  solve::NewtonOptions newton;
+  newton.max_iterations = 40;
+  const auto result = solve::newton(problem, u.get(), row.get(), system.parameter(), newton);
+  if (!result.converged) throw core::NotConverged("no synchronous cycle to start from: " + result.reason);
+  problem.linearise(u.get(), row.get());
+  const Eigen::VectorXd first = problem.gather(u.get()).at(problem.scheme(), 0);
+  const core::WriteArray out(x);
+  for (PetscInt i = 0; i < out.size(); ++i) out[i] = first(i);
+  return spectral::eigenvalues(problem.monodromy());
+}
+
+}  // namespace
+
+StartState start_state(system::RotorSystem& system, const MotionStart& start) {
+  StartState state;
+  Walker walker(system);
+  Vec equilibrium = walker.at(system.speed());
+  state.x = core::duplicate(equilibrium);
+  check(VecCopy(equilibrium, state.x.get()));
+  if (start.from == MotionStart::From::cycle) state.multipliers = to_cycle(system, state.x.get());
+  // Journals of one node share their coordinates.
+  std::set<PetscInt> moved;
+  for (int b = 0; b < system.n_bearings(); ++b)
+    for (int d = 0; d < 2; ++d) {
+      const PetscInt q = system.journal(b, d);
+      const auto k = static_cast<std::size_t>(d);
+      const double by = start.offset[k] * system.train().supports[static_cast<std::size_t>(b)].geometry.clearance;
+      if (by != 0 && moved.insert(q).second) {
+        PetscInt begin = 0, end = 0;
+        check(VecGetOwnershipRange(state.x.get(), &begin, &end));
+        if (2 * q >= begin && 2 * q < end) check(VecSetValue(state.x.get(), 2 * q, by, ADD_VALUES));
+      }
+    }
+  check(VecAssemblyBegin(state.x.get()));
+  check(VecAssemblyEnd(state.x.get()));
+  if (system.own_states() > 0 && !moved.empty()) system.relax_films(state.x.get());
+  return state;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,75 @@
+#include "whirl/transient/classify.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::transient {
+namespace {
+
+enum class Sign { negative, zero, positive };
+
+Sign sign_of(const Evidence& e, std::size_t k) {
+  if (e.exponents[k] > e.uncertainties[k]) return Sign::positive;
+  return e.exponents[k] < -e.uncertainties[k] ? Sign::negative : Sign::zero;
+}
+
+std::string largest(const Evidence& e) {
+  return fmt::format("largest exponent {:.4g} +- {:.2g} 1/s", e.exponents[0], e.uncertainties[0]);
+}
+
+Verdict forced(const Evidence& e, int period) {
+  const bool known = !e.exponents.empty();
+  const Sign first = known ? sign_of(e, 0) : Sign::negative;
+  if (period > 0) {
+    if (first == Sign::positive)
+      return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
+    return {Kind::periodic, period, fmt::format("period-{}", period),
+            fmt::format("returns within {:.1e} of its size{}", e.returns[static_cast<std::size_t>(period - 1)],
+                        known ? ", " + largest(e) : "")};
+  }
+  const std::string none = fmt::format("no return within {} revolutions", e.returns.size());
+  if (!known) return {Kind::unsettled, 0, "unsettled", none + ", no exponents"};
+  if (first == Sign::positive) return {Kind::chaotic, 0, "chaotic", none + ", " + largest(e)};
+  if (first == Sign::zero) return {Kind::quasi_periodic, 0, "quasi_periodic", none + ", " + largest(e)};
+  return {Kind::unsettled, 0, "unsettled", none + " although deviations die out: " + largest(e)};
+}
+
+Verdict autonomous(const Evidence& e) {
+  if (e.exponents.empty()) return {Kind::unsettled, 0, "unsettled", "no exponents"};
+  if (sign_of(e, 0) == Sign::positive) return {Kind::chaotic, 0, "chaotic", largest(e)};
+  int zeros = 0;
+  for (std::size_t k = 0; k < e.exponents.size(); ++k) zeros += sign_of(e, k) == Sign::zero;
+  const std::string count = fmt::format("{} zero exponent{}, {}", zeros, zeros == 1 ? "" : "s", largest(e));
+  if (zeros == 1) return {Kind::limit_cycle, 0, "limit_cycle", count};
+  if (zeros > 1) return {Kind::quasi_periodic, 0, "quasi_periodic", count};
+  return {Kind::unsettled, 0, "unsettled", "moves although all deviations die out: " + largest(e)};
+}
+
+}  // namespace
+
+std::vector<double> return_distances(const std::vector<std::vector<double>>& points, int longest, double size) {
+  std::vector<double> out;
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(longest) && k < points.size(); ++k) {
+    double sum = 0;
+    for (std::size_t i = 0; i + k < points.size(); ++i)
+      for (std::size_t j = 0; j < points[i].size(); ++j) sum += std::pow(points[i + k][j] - points[i][j], 2);
+    out.push_back(std::sqrt(sum / static_cast<double>(points.size() - k)) / size);
+  }
+  return out;
+}
+
+Verdict classify(const Evidence& e) {
+  if (e.size < e.rest) {
+    if (!e.exponents.empty() && sign_of(e, 0) == Sign::positive)
+      return {Kind::unsettled, 0, "unsettled", "at rest although deviations grow: " + largest(e)};
+    return {Kind::fixed_point, 0, "fixed_point",
+            fmt::format("moves by {:.1e}{}", e.size, e.exponents.empty() ? "" : ", " + largest(e))};
+  }
+  if (!e.forced) return autonomous(e);
+  const auto back = std::find_if(e.returns.begin(), e.returns.end(), [&](double d) { return d < e.return_tolerance; });
+  return forced(e, back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1);
+}
+
+}  // namespace whirl::transient

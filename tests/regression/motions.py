@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Motions of the rigid rotor: what kind they are, and their exponents against eigenvalues and Floquet multipliers.
+
+motions.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
+"""
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+
+from compare import same_results
+from harness import Harness, value
+
+TWO_PI = 2 * math.pi
+
+
+def deck(h, name, text):
+    path = h.work / f"{name}.yaml"
+    path.write_text(f"base: {h.source / 'inputs/rigid_rotor/figure_2_2.yaml'}\nstudies:\n{text}")
+    return path
+
+
+def kind(study):
+    """What the motion was found to be."""
+    return next(k.removeprefix("motion.") for k in study["values"] if k.startswith("motion."))
+
+
+def exponents(study, count=2):
+    return [value(study, f"lyapunov.{k + 1}") for k in range(count)]
+
+
+def combination(order, whirl):
+    """Distance of a tone from the nearest sum of multiples of the speed and the whirl."""
+    return min(abs(order - m - n * whirl) for m in range(-4, 5) for n in range(-4, 5))
+
+
+def figure(h):
+    """The first three panels of figure 2.2, shortened."""
+    run = h.run(h.source / "inputs/rigid_rotor/figure_2_2.yaml", "figure",
+                [f"studies.{k}.motion.{option}" for k, options in enumerate(
+                    (("discard=30", "revolutions=16"), ("discard=120", "revolutions=32"), ("discard=60", "revolutions=192")), 1)
+                 for option in (*options, "samples=16", "tolerance=1e-6", "exponents=2")])
+    for name, wanted in (("fixed point", "fixed_point"), ("period 2", "period-2"), ("quasi-periodic", "quasi_periodic")):
+        h.true(f"{name} is one", kind(run[name]) == wanted, kind(run[name]))
+    two, torus = run["period 2"], run["quasi-periodic"]
+    h.close("period 2: the loudest tone is at half the speed", value(two, "tone.left.x.1.order"), 0.5, 1e-6)
+    h.close("period 2: Poincare points return", value(two, "return.2"), 0, 1e-5)
+    h.true("period 2: and not after one revolution", value(two, "return.1") > 0.5)
+    h.close("quasi-periodic: one exponent per revolution is zero", value(torus, "lyapunov.1.per_revolution"), 0, 1e-2)
+    h.true("quasi-periodic: the other is not", value(torus, "lyapunov.2.per_revolution") < -0.1)
+    h.close("quasi-periodic: the loudest tone is at the speed", value(torus, "tone.left.x.1.order"), 1, 1e-5)
+    whirl = value(torus, "tone.left.x.2.order")
+    h.true("quasi-periodic: whirl near half the speed, but not there", 0.01 < abs(whirl - 0.5) < 0.02, f"{whirl:.6f}")
+    for k in (3, 4, 5):
+        order = value(torus, f"tone.left.x.{k}.order")
+        # A tenth of a line: neighbours are five lines away.
+        h.close(f"quasi-periodic: tone {k} at {order:.5f} is m + n whirl", combination(order, whirl), 0, 0.1 / 192)
+
+
+def chaos(h):
+    """The last panel, shortened."""
+    run = h.run(h.source / "inputs/rigid_rotor/figure_2_2_chaos.yaml", "chaos",
+                ["studies.1.motion.revolutions=160", "studies.1.motion.discard=32", "studies.1.motion.tolerance=1e-4",
+                 "studies.1.motion.samples=16", "studies.1.motion.exponents=3"])
+    s = run["chaotic"]
+    h.true("it is chaotic", kind(s) == "chaotic", kind(s))
+    h.true("the largest exponent is positive", value(s, "lyapunov.1") > value(s, "lyapunov.1.uncertainty"))
+    h.true("fractal dimension between one and two", 1 < value(s, "dimension.kaplan_yorke") < 2,
+           str(value(s, "dimension.kaplan_yorke")))
+
+
+def floquet(h):
+    """Exponents of stable motions are decay rates: of the equilibrium, of the synchronous cycle, of that of period 2."""
+    run = h.run(deck(h, "floquet", """
+  - equilibrium_branch: {name: at rest, range: {from: 80 rad/s, to: 100 rad/s}}
+  - motion: {name: rest, speed: 80 rad/s, start: {offset: [0.3, 0]}, discard: 40, revolutions: 16, samples: 16, exponents: 2}
+  - motion: {name: synchronous, unbalance: [a2], speed: 320 rad/s, start: {from: cycle}, discard: 120, revolutions: 16, exponents: 2, samples: 16}
+  - cycle_branch: {name: branch, unbalance: [a2], parameter: speed, range: {from: 320 rad/s, to: 970 rad/s}, at: [320 rad/s, 960 rad/s],
+      step: {initial: 4 rad/s, min: 0.0001 rad/s, max: 64 rad/s}, intervals: 40, degree: 4, points: gauss, mesh_tolerance: 1e-7,
+      adapt_every: 2, follow_flips: true, max_points: 60}
+  - motion: {name: double, unbalance: [a2], speed: 960 rad/s, discard: 120, revolutions: 32, exponents: 2, samples: 64, tolerance: 1e-7}
+"""), "floquet")
+    import h5py
+    with h5py.File(h.work / "floquet" / "results.h5") as f:
+        branch = f["studies/at rest/branch"]
+        h.close("first point of the branch [rad/s]", float(branch["parameter"][0]), 80, 1e-9)
+        rate = float(branch["leading_real"][0])
+    rest, one, two = run["rest"], run["synchronous"], run["double"]
+    h.true("at rest", kind(rest) == "fixed_point", kind(rest))
+    for k in (1, 2):
+        # A pair turns the directions: what is left of a turn counts over the whole record.
+        h.close(f"rest: exponent {k} is the eigenvalue's real part [1/s]", value(rest, f"lyapunov.{k}"), rate,
+                max(1e-4 * abs(rate), value(rest, f"lyapunov.{k}.uncertainty")))
+    h.close("rest: mean of the pair", sum(exponents(rest, 2)) / 2, rate, 1e-5 * abs(rate))
+
+    h.true("synchronous", kind(one) == "period-1", kind(one))
+    turn = TWO_PI / 320
+    moduli = [value(one, f"cycle.multiplier.{k}.modulus") for k in (1, 2)]
+    h.close("multiplier by the study's own cycle and along the branch", moduli[0],
+            value(run["branch"], "at.320.multiplier.modulus"), 1e-6)
+    # Two real multipliers, both negative, and two that are tiny.
+    for k in (0, 1):
+        rate = math.log(moduli[k]) / turn
+        h.close(f"synchronous: exponent {k + 1} is log|mu|/T [1/s]", exponents(one)[k], rate, 1e-5 * abs(rate))
+    turn = TWO_PI / 960
+
+    h.true("double", kind(two) == "period-2", kind(two))
+    born = run["branch flip 1"]
+    h.close("period 2 along the branch [s]", value(born, "at.960.period"), 2 * turn, 1e-9)
+    # The largest of 64 samples per turn misses a peak by up to (pi/64)^2/2 of its amplitude.
+    for axis in "xy":
+        h.close(f"double: peak to peak {axis} [m]", value(two, f"peak_to_peak.left.{axis}"),
+                value(born, f"at.960.peak_to_peak.left.{axis}"), 2e-3 * value(born, f"at.960.peak_to_peak.left.{axis}"))
+    rate = math.log(value(born, "at.960.multiplier.modulus")) / (2 * turn)
+    pairs = 1e-3 < value(born, "at.960.multiplier.angle") < math.pi - 1e-3
+    h.close("double: the largest exponent is log|mu|/2T [1/s]",
+            sum(exponents(two, 2)) / 2 if pairs else exponents(two)[0], rate, 1e-3 * abs(rate))
+
+
+SHORT = """
+  - motion: {name: short, unbalance: [a3], speed: 1920 rad/s, discard: 10, revolutions: 30, samples: 32, exponents: 2, tolerance: 1e-6}
+"""
+
+
+def ranks(h):
+    path = deck(h, "short", SHORT)
+    for n in (1, 2, 3):
+        h.run(path, f"short.{n}", launcher=[*h.launcher, "-n", str(n)])
+        if n > 1:
+            for what, difference, within in same_results(h.work / "short.1", h.work / f"short.{n}"):
+                h.close(f"{n} ranks: {what}", difference, 0, within)
+
+
+def resume(h):
+    """A chaotic motion forgets its start, but not for being killed: it goes on to the bit."""
+    path = h.source / "inputs/rigid_rotor/figure_2_2_chaos.yaml"
+    short = ["studies.1.motion.revolutions=40", "studies.1.motion.discard=10", "studies.1.motion.tolerance=1e-4"]
+    h.run(path, "whole", short)
+    out = h.work / "killed"
+    process = subprocess.Popen(h.command(path, out, short), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    limit = time.monotonic() + 200
+    while not list(out.glob("*.checkpoint.h5")) and process.poll() is None and time.monotonic() < limit:
+        time.sleep(0.01)
+    h.true("a checkpoint before the end", process.poll() is None)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    h.run(path, "killed", short, ["--resume"])
+    for what, difference, within in same_results(h.work / "whole", out, 1e-14):
+        h.close(f"resumed: {what}", difference, 0, within)
+
+
+if __name__ == "__main__":
+    harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    {"figure": figure, "chaos": chaos, "floquet": floquet, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
+    harness.finish()

@@ -1,0 +1,189 @@
+// Integration in time: order, error control, exact ends, deviations, films that end, run-up; on any number of ranks.
+
+#include <gtest/gtest.h>
+
+#include "solve/cycle_systems.hpp"
+#include "whirl/transient/integrator.hpp"
+
+using namespace whirl;
+using problem::Drive;
+using test::SmallSystem;
+using transient::Integrator;
+
+namespace {
+
+// Steps of one length, by PETSc's own switch and a tolerance that asks for nothing.
+Integrator fixed_steps(SmallSystem& s, const Drive& drive, const Eigen::VectorXd& x, double step) {
+  core::check(PetscOptionsSetValue(nullptr, "-fixed_ts_adapt_type", "none"));
+  core::check(PetscOptionsSetValue(nullptr, "-fixed_snes_rtol", "1e-11"));
+  core::check(PetscOptionsSetValue(nullptr, "-fixed_snes_atol", "1e-11"));
+  return Integrator(s, drive, s.vector(x).get(), {.tolerance = 1, .first_step = step, .prefix = "fixed_"});
+}
+
+Eigen::VectorXd state(SmallSystem& s, const Integrator& integrator) {
+  const core::Vector x = s.vector(Eigen::VectorXd::Zero(s.size()));
+  integrator.state(x.get());
+  return s.gather(x.get());
+}
+
+// x' = -50 (x - cos(angle)) beside the manufactured oscillator: stiff, and F is not solved for x'.
+struct StiffDuffing {
+  template <class T>
+  test::Column<T> operator()(double angle, const test::Column<T>& x, const test::Column<T>& xdot, T p) const {
+    const test::Column<T> smooth =
+        test::ManufacturedDuffing()(angle, test::Column<T>(x.head(2)), test::Column<T>(xdot.head(2)), p);
+    test::Column<T> f(3);
+    f << smooth(0), 2.0 * smooth(1) + 0.5 * smooth(0), xdot(2) + 50.0 * (x(2) - std::cos(angle)) + p * std::sin(angle);
+    return f;
+  }
+};
+
+Eigen::VectorXd stiff_exact(double angle, double p) {
+  const Eigen::Vector2d smooth = test::ManufacturedDuffing::exact(angle, p);
+  return Eigen::Vector3d(smooth(0), smooth(1), std::cos(angle));
+}
+
+constexpr double speed = 1.3;
+
+}  // namespace
+
+TEST(Drive, TimesOfAngles) {
+  for (const Drive& d : {Drive{100, 0, 0.3}, Drive{100, 20, 0}, Drive{100, -20, 1}})
+    for (const double t : {0.1, 1.0, 2.5}) EXPECT_NEAR(d.time_of(d.angle_at(t) - d.angle), t, 1e-14);
+}
+
+TEST(Integrator, HasOrderFour) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  std::vector<double> errors;
+  for (const int steps : {40, 80, 160}) {
+    SmallSystem s(MPI_COMM_WORLD, 2, speed, 0, test::ManufacturedDuffing());
+    const double end = 3;
+    Integrator integrator =
+        fixed_steps(s, {speed}, test::ManufacturedDuffing::exact(0, speed), end / steps * (1 + 1e-12));
+    integrator.advance(end);
+    EXPECT_EQ(integrator.work().steps, steps);
+    errors.push_back((state(s, integrator) - test::ManufacturedDuffing::exact(speed * end, speed)).norm());
+  }
+  EXPECT_GT(std::log2(errors[0] / errors[1]), 3.9);
+  EXPECT_GT(std::log2(errors[1] / errors[2]), 3.9);
+}
+
+TEST(Integrator, KeepsTheToleranceAndHitsTheEnd) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  long before = 0;
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    SmallSystem s(MPI_COMM_WORLD, 3, speed, 0, StiffDuffing());
+    Integrator integrator(s, {speed}, s.vector(stiff_exact(0, speed)).get(), {.tolerance = tolerance});
+    for (const double end : {0.37, 2.0, 7.123}) {
+      integrator.advance(end);
+      EXPECT_EQ(integrator.time(), end);
+      const double error = (state(s, integrator) - stiff_exact(speed * end, speed)).norm();
+      EXPECT_LT(error, 20 * tolerance);
+      EXPECT_GT(error, 0.0);
+    }
+    // The estimate is of order three: a hundredth of the tolerance costs 3.2 times the steps.
+    if (before > 0) {
+      EXPECT_GT(integrator.work().steps, 2 * before);
+      EXPECT_LT(integrator.work().steps, 4 * before);
+    }
+    before = integrator.work().steps;
+  }
+}
+
+TEST(Integrator, RestartsToTheBit) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  SmallSystem s(MPI_COMM_WORLD, 3, speed, 0, StiffDuffing());
+  const Eigen::VectorXd x = stiff_exact(0, speed) + Eigen::Vector3d(0.1, -0.2, 0.3);
+  Integrator whole(s, {speed}, s.vector(x).get()), first(s, {speed}, s.vector(x).get());
+  whole.advance(1);
+  first.advance(1);
+  Integrator second(s, {speed}, s.vector(Eigen::VectorXd::Zero(3)).get());
+  core::check(VecCopy(first.scaled(), second.scaled()));
+  second.restart(1, first.step());
+  whole.advance(2);
+  second.advance(2);
+  EXPECT_EQ((state(s, whole) - state(s, second)).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(whole.step(), second.step());
+}
+
+// The motion from a state moved by h v differs from h times the deviation by a term in h^2.
+TEST(Integrator, CarriesDeviationsExactly) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  SmallSystem s(MPI_COMM_WORLD, 3, speed, 0, StiffDuffing());
+  s.set_scales(Eigen::Vector3d(0.5, 2, 3), Eigen::Vector3d(4, 0.1, 7));
+  const Eigen::VectorXd scale = Eigen::Vector3d(0.5, 2, 3), x = stiff_exact(0, speed);
+  const double end = 1.7, step = 0.1 * (1 + 1e-12);
+  Integrator base = fixed_steps(s, {speed}, x, step);
+  transient::Tangents tangents(base.scaled(), 3);
+  std::vector<Eigen::VectorXd> starts;
+  for (int k = 0; k < 3; ++k) starts.push_back(s.gather(tangents.column(k)));
+  EXPECT_NEAR(starts[0].dot(starts[1]), 0, 1e-14);
+  EXPECT_NEAR(starts[2].norm(), 1, 1e-14);
+  base.carry(&tangents);
+  base.advance(end);
+  const Eigen::VectorXd there = state(s, base);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd deviation = s.gather(tangents.column(k)).cwiseProduct(scale);
+    std::vector<double> rest;
+    for (const double h : {2e-3, 1e-3}) {
+      Integrator moved = fixed_steps(s, {speed}, x + h * starts[static_cast<std::size_t>(k)].cwiseProduct(scale), step);
+      moved.advance(end);
+      const Eigen::VectorXd change = state(s, moved) - there;
+      EXPECT_GT(change.norm(), 1e-5);
+      rest.push_back((change - h * deviation).norm());
+    }
+    EXPECT_NEAR(rest[0] / rest[1], 4, 0.1);
+  }
+}
+
+TEST(Integrator, EndsWhereAFilmEnds) {
+  const auto film = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
+    if (std::real(x(0)) > 1) throw core::DomainError("the film is gone");
+    test::Column<T> f(2);
+    f << xdot(0) - x(1), xdot(1);
+    return f;
+  };
+  SmallSystem s(MPI_COMM_WORLD, 2, 1, 1, film);
+  Integrator integrator(s, {1}, s.vector(Eigen::Vector2d(0, 0.5)).get());
+  integrator.advance(1);
+  try {
+    integrator.advance(3);
+    ADD_FAILURE() << "went through the wall";
+  } catch (const core::DomainError& e) {
+    EXPECT_NE(std::string(e.what()).find("the film is gone"), std::string::npos) << e.what();
+  }
+  EXPECT_NEAR(integrator.time(), 2, 1e-6);
+  EXPECT_NEAR(state(s, integrator)(0), 1, 1e-6);
+}
+
+// A first step far too long leads Newton out of the domain; the motion itself never leaves it.
+TEST(Integrator, ShortensStepsThatLeaveTheDomain) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  const auto root = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
+    if (!(std::real(x(0)) > 0)) throw core::DomainError("negative");
+    test::Column<T> f(1);
+    f << xdot(0) + std::sqrt(x(0)) - 0.1;
+    return f;
+  };
+  SmallSystem s(MPI_COMM_WORLD, 1, 1, 1, root);
+  Integrator integrator(s, {1}, s.vector(Eigen::VectorXd::Constant(1, 4)).get(), {.first_step = 50});
+  integrator.advance(100);
+  EXPECT_GT(integrator.work().rejected, 0);
+  EXPECT_NEAR(state(s, integrator)(0), 0.01, 1e-7);
+}
+
+TEST(Integrator, SameOnAnyNumberOfRanks) {
+  const auto run = [](MPI_Comm comm) {
+    SmallSystem s(comm, 3, speed, 0, StiffDuffing());
+    Integrator integrator(s, {speed}, s.vector(stiff_exact(0, speed) + Eigen::Vector3d(0.1, 0.1, 0.1)).get(),
+                          {.tolerance = 1e-5});
+    transient::Tangents tangents(integrator.scaled(), 2);
+    integrator.carry(&tangents);
+    integrator.advance(0.3);
+    Eigen::VectorXd out(5);
+    const std::vector<double> growth = tangents.orthonormalise();
+    out << state(s, integrator), growth[0], growth[1];
+    return out;
+  };
+  EXPECT_LT((run(MPI_COMM_WORLD) - run(PETSC_COMM_SELF)).cwiseAbs().maxCoeff(), 1e-10);
+}

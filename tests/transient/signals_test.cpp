@@ -1,0 +1,119 @@
+// Spectra of signals whose tones are known, and verdicts on evidence that is.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "whirl/transient/classify.hpp"
+#include "whirl/transient/spectrum.hpp"
+
+using namespace whirl::transient;
+
+namespace {
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+template <class F>
+std::vector<double> sampled(int n, double interval, F f) {
+  std::vector<double> out;
+  for (int k = 0; k < n; ++k) out.push_back(f(k * interval));
+  return out;
+}
+
+}  // namespace
+
+TEST(Spectrum, TonesOnLinesHaveTheirAmplitudes) {
+  for (const int n : {200, 225})
+    for (const Window window : {Window::none, Window::hann}) {
+      const double interval = 0.01, line = 1 / (n * interval);
+      const auto s = amplitude_spectrum(sampled(n, interval,
+                                                [&](double t) {
+                                                  return -0.7 + 3 * std::cos(two_pi * 12 * line * t + 1) +
+                                                         0.02 * std::sin(two_pi * 40 * line * t);
+                                                }),
+                                        interval, window);
+      ASSERT_EQ(s.amplitude.size(), static_cast<std::size_t>(n / 2 + 1));
+      EXPECT_NEAR(s.resolution, line, 1e-15);
+      EXPECT_NEAR(s.amplitude[0], 0.7, 1e-14);
+      EXPECT_NEAR(s.amplitude[12], 3, 1e-13);
+      EXPECT_NEAR(s.amplitude[40], 0.02, 1e-13);
+      EXPECT_NEAR(s.amplitude[25], 0, 1e-13);
+      const auto found = tones(s, 2);
+      ASSERT_EQ(found.size(), 2U);
+      EXPECT_NEAR(found[0].frequency, 12 * line, window == Window::none ? 1e-12 : 1e-9);
+      EXPECT_NEAR(found[1].amplitude, 0.02, 1e-12);
+    }
+}
+
+TEST(Spectrum, AToneBetweenLinesIsReadOffExactly) {
+  for (const Window window : {Window::none, Window::hann})
+    for (const double offset : {-0.45, -0.2, 0.3, 0.5}) {
+      const int n = 4096;
+      const double f = 300 + offset;
+      const auto s = amplitude_spectrum(sampled(n, 1.0 / n, [&](double t) { return 2 * std::cos(two_pi * f * t); }),
+                                        1.0 / n, window);
+      const auto found = tones(s, 1);
+      ASSERT_EQ(found.size(), 1U);
+      // The mirror image at -f remains: 1/f without a window, 1/f^3 with.
+      EXPECT_NEAR(found[0].frequency, f, window == Window::none ? 3e-3 : 1e-6);
+      EXPECT_NEAR(found[0].amplitude, 2, window == Window::none ? 2e-2 : 1e-5);
+    }
+}
+
+TEST(Spectrum, TheHighestLineOfAnEvenRecordCountsOnce) {
+  const auto s =
+      amplitude_spectrum(sampled(64, 1, [](double t) { return std::cos(std::numbers::pi * t); }), 1, Window::none);
+  EXPECT_NEAR(s.amplitude[32], 1, 1e-14);
+}
+
+TEST(Returns, FindThePeriod) {
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < 30; ++i) points.push_back({std::cos(two_pi * i / 3), 5.0 + std::sin(two_pi * i / 3)});
+  const auto d = return_distances(points, 7, 0.5);
+  ASSERT_EQ(d.size(), 7U);
+  EXPECT_NEAR(d[0], std::sqrt(3.0) / 0.5, 1e-12);
+  EXPECT_NEAR(d[2], 0, 1e-14);
+  EXPECT_NEAR(d[5], 0, 1e-14);
+  EXPECT_TRUE(return_distances({{1}}, 3, 1).empty());
+}
+
+TEST(Verdicts, FollowFromTheEvidence) {
+  Evidence e;
+  e.size = 0.3;
+  e.returns = {0.5, 1e-7, 0.5, 1e-7};
+  e.exponents = {-2, -5};
+  e.uncertainties = {0.1, 0.1};
+  EXPECT_EQ(classify(e).name, "period-2");
+  EXPECT_EQ(classify(e).period, 2);
+  e.returns = {1e-6, 1e-7};
+  EXPECT_EQ(classify(e).name, "period-1");
+  e.exponents = {0.5, -5};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.returns = {0.5, 0.2};
+  EXPECT_EQ(classify(e).kind, Kind::chaotic);
+  e.exponents = {0.05, -5};
+  EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
+  e.exponents = {-0.5, -5};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.exponents = {};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.returns = {1e-6};
+  EXPECT_EQ(classify(e).name, "period-1");
+
+  e.forced = false;
+  e.exponents = {0.01, -3};
+  EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  e.exponents = {0.01, -0.01, -3};
+  e.uncertainties = {0.1, 0.1, 0.1};
+  EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
+  e.exponents = {1, 0, -3};
+  EXPECT_EQ(classify(e).kind, Kind::chaotic);
+  e.exponents = {-1, -2, -3};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.size = 1e-9;
+  EXPECT_EQ(classify(e).kind, Kind::fixed_point);
+  EXPECT_FALSE(classify(e).reason.empty());
+  e.exponents = {1, -2, -3};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+}
