@@ -41,14 +41,18 @@ double arclength(const ExtendedProblem& problem, const State& a, Vec b) {
 class Follower {
 public:
   Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
-      : problem_(problem), options_(options), callbacks_(callbacks), direction_(options.to >= options.from ? 1 : -1) {}
+      : problem_(problem),
+        options_(options),
+        callbacks_(callbacks),
+        newton_(problem, options.newton),
+        direction_(options.to >= options.from ? 1 : -1) {}
 
   BranchEnd run(core::Vector u, std::optional<Restart> restart);
 
 private:
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
-  NewtonResult correct(Vec u, Vec row, double offset) { return newton(problem_, u, row, offset, options_.newton); }
+  NewtonResult correct(Vec u, Vec row, double offset) { return newton_.solve(u, row, offset); }
   NewtonResult correct_at(core::Vector& u, double parameter);
   // The point at arclength ds from `from`.
   bool advance(const State& from, double ds, State& to, NewtonResult& result);
@@ -62,6 +66,7 @@ private:
   ExtendedProblem& problem_;
   const ContinuationOptions& options_;
   const BranchCallbacks& callbacks_;
+  Newton newton_;
   int direction_;
   double fold_ = 0, fold_span_ = 0;  // of the step whose events are sought: NaN without a located fold
 };
@@ -83,7 +88,7 @@ void Follower::inspect(State& s, Vec along) {
   check(VecSet(rhs.get(), 0.0));
   set_last_entry(problem_.comm(), rhs.get(), along ? 1.0 : static_cast<double>(direction_));
   s.tangent = core::duplicate(s.u.get());
-  solve_linear(problem_, rhs.get(), s.tangent.get(), "tangent_");
+  newton_.solve_linear(rhs.get(), s.tangent.get());
   check(VecScale(s.tangent.get(), 1 / std::sqrt(inner(problem_, s.tangent.get(), s.tangent.get()))));
   s.point.parameter = last_entry(problem_.comm(), s.u.get());
   s.point.slope = last_entry(problem_.comm(), s.tangent.get());

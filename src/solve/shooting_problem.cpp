@@ -19,7 +19,10 @@ public:
   MatrixXd start(const MatrixXd& x) const override { return -(g_ * x); }
   MatrixXd start_transposed(const MatrixXd& y) const override { return -(g_.transpose() * y); }
   VectorXd multiply(const VectorXd& x_start, const VectorXd& x) const override { return x - g_ * x_start; }
-  MatrixXd transition() const override { return g_; }
+  void carry(const MatrixXd& rows, MatrixXd& state, MatrixXd& added) const override {
+    state = (g_ * state).eval();
+    added.noalias() += rows * state;
+  }
   MatrixXd block(int, int l) const override {
     return l == 0 ? MatrixXd(-g_) : MatrixXd::Identity(g_.rows(), g_.rows());
   }

@@ -157,7 +157,8 @@ void RotorSystem::build() {
                         from.put()));
   inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), PETSC_DETERMINE);
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
-  blocks_.reset();
+  if (blocks_) blocks_->rebuild();
+  neighbours_ = {};
   j_at_rest_.reset();
 }
 

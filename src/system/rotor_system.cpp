@@ -29,6 +29,19 @@ void RotorSystem::set_train(Train train) {
   build();
 }
 
+// Everything that depends on the option is rebuilt on both sides of the parameter, once for all points at one value;
+// meshes and masters stay.
+RotorSystem::Neighbours& RotorSystem::neighbours() {
+  if (!neighbours_.plus) {
+    neighbours_.step = 1e-5 * varying_.magnitude;
+    const auto at = [&](double p) { return std::make_unique<RotorSystem>(comm_, varying_.train(p), speed_); };
+    neighbours_.minus = at(varying_.value - neighbours_.step);
+    neighbours_.plus = at(varying_.value + neighbours_.step);
+  }
+  for (RotorSystem* side : {neighbours_.minus.get(), neighbours_.plus.get()}) side->set_forcing(forcing_);
+  return neighbours_;
+}
+
 void RotorSystem::set_parameter(double p) {
   if (p == parameter()) return;
   if (!varying_.train) {
@@ -247,20 +260,11 @@ void RotorSystem::add_films(Mat j, const Films& all, double alpha, double sigma)
 
 void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   if (varying_.train) {
-    // Everything that depends on the option is rebuilt; meshes and masters stay.
-    const double p = varying_.value, step = 1e-5 * varying_.magnitude;
+    const Neighbours& at = neighbours();
     core::Vector minus = core::duplicate(f);
-    try {
-      set_parameter(p + step);
-      residual(angle, x, xdot, f);
-      set_parameter(p - step);
-      residual(angle, x, xdot, minus.get());
-    } catch (...) {
-      set_parameter(p);
-      throw;
-    }
-    set_parameter(p);
-    check(VecAXPBY(f, -1 / (2 * step), 1 / (2 * step), minus.get()));
+    at.plus->residual(angle, x, xdot, f);
+    at.minus->residual(angle, x, xdot, minus.get());
+    check(VecAXPBY(f, -1 / (2 * at.step), 1 / (2 * at.step), minus.get()));
     return;
   }
   const Films all = films_at(x, xdot, film::Need::tangents);
@@ -398,7 +402,7 @@ std::vector<double> RotorSystem::resampled(const RotorSystem& other, const doubl
 }
 
 problem::Structure* RotorSystem::structure() {
-  if (core::size_of(comm_) != 1 || varying_.train || n_own_ > 0) return nullptr;
+  if (core::size_of(comm_) != 1) return nullptr;
   if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
   return blocks_.get();
 }

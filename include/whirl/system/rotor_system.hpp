@@ -115,10 +115,17 @@ private:
     std::vector<film::StateResponse> own;
   };
   class Blocks;
+  /// The systems at p - step and p + step, for the difference quotient dF/dp.
+  struct Neighbours {
+    std::unique_ptr<RotorSystem> minus, plus;
+    double step = 0;
+  };
 
   void build();
   void set_train(Train train);
   void make_constant_parts();
+  /// Made when first wanted at this value of the parameter. Collective.
+  [[nodiscard]] Neighbours& neighbours();
   /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates. Collective:
   /// assembles j.
   void add_films(Mat j, const Films& films, double alpha, double sigma) const;
@@ -149,6 +156,7 @@ private:
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::unique_ptr<Blocks> blocks_;
+  Neighbours neighbours_;
 };
 
 }  // namespace whirl::system
