@@ -64,10 +64,10 @@ core::Matrix make_shell(Context& c, Vec like) {
 
 // The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
 // The flexible method keeps the preconditioned vectors, which saves another solve for the answer.
-void configure(KSP ksp, Context& c) {
+void configure(KSP ksp, Context& c, double relative, double absolute) {
   check(KSPSetType(ksp, KSPFGMRES));
   check(KSPSetPCSide(ksp, PC_RIGHT));
-  check(KSPSetTolerances(ksp, 1e-9, 1e-300, PETSC_DEFAULT, 20));
+  check(KSPSetTolerances(ksp, relative, absolute, PETSC_DEFAULT, 20));
   PC pc = nullptr;
   check(KSPGetPC(ksp, &pc));
   check(PCSetType(pc, PCSHELL));
@@ -121,7 +121,8 @@ NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, con
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   KSP ksp = nullptr;
   check(SNESGetKSP(snes.get(), &ksp));
-  configure(ksp, c);
+  // Digits below Newton's own tolerance are of no use.
+  configure(ksp, c, problem.linear_tolerance(), 0.1 * options.tolerance * root_n);
   check(SNESSetFromOptions(snes.get()));
   c.gate.rethrow(SNESSolve(snes.get(), nullptr, u));
 
@@ -153,7 +154,7 @@ int solve_linear(ExtendedProblem& problem, Vec rhs, Vec x, const std::string& pr
   core::LinearSolver ksp;
   check(KSPCreate(problem.comm(), ksp.put()));
   check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
-  configure(ksp.get(), c);
+  configure(ksp.get(), c, 1e-9, 1e-300);
   check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
   check(KSPSetFromOptions(ksp.get()));
   c.gate.rethrow(KSPSolve(ksp.get(), rhs, x));
