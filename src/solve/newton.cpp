@@ -64,10 +64,10 @@ core::Matrix make_shell(Context& c, Vec like) {
 
 // The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
 // The flexible method keeps the preconditioned vectors, which saves another solve for the answer.
-void configure(KSP ksp, Context& c) {
+void configure(KSP ksp, Context& c, double relative, double absolute) {
   check(KSPSetType(ksp, KSPFGMRES));
   check(KSPSetPCSide(ksp, PC_RIGHT));
-  check(KSPSetTolerances(ksp, 1e-9, 1e-300, PETSC_DEFAULT, 20));
+  check(KSPSetTolerances(ksp, relative, absolute, PETSC_DEFAULT, 20));
   PC pc = nullptr;
   check(KSPGetPC(ksp, &pc));
   check(PCSetType(pc, PCSHELL));
@@ -133,14 +133,15 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));
-  configure(inner, context);
+  // Digits below Newton's own tolerance are of no use.
+  configure(inner, context, context.problem.linear_tolerance(), 0.1 * options.tolerance * root_n);
   check(SNESSetFromOptions(snes.get()));
 }
 
 void Newton::Objects::make_linear(const std::string& prefix) {
   check(KSPCreate(context.problem.comm(), ksp.put()));
   check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
-  configure(ksp.get(), context);
+  configure(ksp.get(), context, 1e-9, 1e-300);
   check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
   check(KSPSetFromOptions(ksp.get()));
 }

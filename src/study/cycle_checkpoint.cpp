@@ -62,7 +62,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   seeds_ = read_seeds(state.group("flips"));
   last_ = cycle;
   largest_difference_ = state.real("largest_difference");
-  if (seed_) (void)returned(cycle);
+  if (seed_) (void)returned(problem_->orbit(restart.u.get()));
   return restart;
 }
 
