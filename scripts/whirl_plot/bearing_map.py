@@ -97,9 +97,8 @@ def draw_entries(whole, studies, letter, words, what, largest):
         axis.axhline(0, color=INK, linewidth=0.7)
         load_axis(axis, largest)
         axis.set_ylabel(f"${letter}^*_{{{entry}}}$")
-    ratio = [s.group["locus"].attrs.get("frequency_ratio", 1.0) for s in studies]
-    note = SCALE if all(r == ratio[0] for r in ratio) else SCALE + "; frequencies differ"
-    note += rf"; films with own states at $\omega/\Omega$ = {ratio[0]:g}"
+    ratio = sorted({float(s.group["locus"].attrs["frequency_ratio"]) for s in studies if not s.has("impedance/along")})
+    note = SCALE + (rf"; liners at $\omega/\Omega$ = {', '.join(f'{r:g}' for r in ratio)}" if ratio else "")
     return save(figure, whole, f"map-{words}", note, legend_of(studies))
 
 

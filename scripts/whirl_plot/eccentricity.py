@@ -43,7 +43,7 @@ def draw(results):
         # The equilibria of a rotor with unbalance are those of the balanced one.
         balanced = s.kind == "equilibrium_branch" or not s.attribute("unbalance", "")
         panels.setdefault(0.0 if balanced else known[s.name][1], []).append(s)
-    figure, axes, _ = grid_of(len(panels), width=4.6, columns=2)
+    figure, axes, _ = grid_of(len(panels), width=4.6, height=2.7 if len(panels) > 1 else 3.8, columns=2)
     kinds = {}
     for axis, (unbalance, members) in zip(axes, sorted(panels.items())):
         for s in members:
@@ -60,7 +60,8 @@ def draw(results):
         axis.set_title(f"a* = {unbalance:.3g}" if unbalance else "balanced")
         axis.set_xlabel(r"$\Omega^* = \Omega/\Omega_0$")
         axis.set_ylabel(r"max $\varepsilon$")
-        axis.set_ylim(0, 1.02)
+        # Only a compliant wall lets the journal go further than the clearance.
+        axis.set_ylim(0, max(1.02, 1.04 * max(np.nanmax(eccentricity(s)) for s in members)))
     handles = [Line2D([], [], color=c, label=w) for w, c in kinds.items()]
     return [save(figure, results.whole("largest eccentricity"), "eccentricity", "largest eccentricity of the journal over one cycle, per clearance",
                  branch_legend([k for s in studies for k, _ in events_of(s)], handles))]

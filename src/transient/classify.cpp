@@ -15,29 +15,33 @@ Sign sign_of(const Evidence& e, std::size_t k) {
   return e.exponents[k] < -e.uncertainties[k] ? Sign::negative : Sign::zero;
 }
 
+// Too few revolutions leave an exponent without an uncertainty, and it says nothing then.
+bool known(const Evidence& e) {
+  return !e.exponents.empty() && std::isfinite(e.uncertainties[0]);
+}
+
 std::string largest(const Evidence& e) {
   return fmt::format("largest exponent {:.4g} +- {:.2g} 1/s", e.exponents[0], e.uncertainties[0]);
 }
 
 Verdict forced(const Evidence& e, int period) {
-  const bool known = !e.exponents.empty();
-  const Sign first = known ? sign_of(e, 0) : Sign::negative;
+  const Sign first = known(e) ? sign_of(e, 0) : Sign::negative;
   if (period > 0) {
     if (first == Sign::positive)
       return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
     return {Kind::periodic, period, fmt::format("period-{}", period),
             fmt::format("returns within {:.1e} of its size{}", e.returns[static_cast<std::size_t>(period - 1)],
-                        known ? ", " + largest(e) : "")};
+                        known(e) ? ", " + largest(e) : "")};
   }
   const std::string none = fmt::format("no return within {} revolutions", e.returns.size());
-  if (!known) return {Kind::unsettled, 0, "unsettled", none + ", no exponents"};
+  if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + ", no exponents of known uncertainty"};
   if (first == Sign::positive) return {Kind::chaotic, 0, "chaotic", none + ", " + largest(e)};
   if (first == Sign::zero) return {Kind::quasi_periodic, 0, "quasi_periodic", none + ", " + largest(e)};
   return {Kind::unsettled, 0, "unsettled", none + " although deviations die out: " + largest(e)};
 }
 
 Verdict autonomous(const Evidence& e) {
-  if (e.exponents.empty()) return {Kind::unsettled, 0, "unsettled", "no exponents"};
+  if (!known(e)) return {Kind::unsettled, 0, "unsettled", "no exponents of known uncertainty"};
   if (sign_of(e, 0) == Sign::positive) return {Kind::chaotic, 0, "chaotic", largest(e)};
   int zeros = 0;
   for (std::size_t k = 0; k < e.exponents.size(); ++k) zeros += sign_of(e, k) == Sign::zero;

@@ -96,6 +96,9 @@ TEST(Verdicts, FollowFromTheEvidence) {
   EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
   e.exponents = {-0.5, -5};
   EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.uncertainties[0] = INFINITY;  // too few revolutions to tell
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.uncertainties[0] = 0.1;
   e.exponents = {};
   EXPECT_EQ(classify(e).kind, Kind::unsettled);
   e.returns = {1e-6};
