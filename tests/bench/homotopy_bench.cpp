@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <memory>
 
 #include "bench/timing.hpp"
 #include "whirl/core/session.hpp"
@@ -52,10 +54,48 @@ system::Train train() {
   return t;
 }
 
+// Structure of the machine without unbalance, with the force a* Omega^2 u(angle) added to its load.
+class ForcedStructure : public problem::Structure {
+public:
+  ForcedStructure(problem::Structure& rest, const std::function<void(double, double, double*)>& add, const double& a)
+      : rest_(rest), add_(add), a_(a) {}
+  [[nodiscard]] Index size() const override { return rest_.size(); }
+  [[nodiscard]] Index n_forces() const override { return rest_.n_forces(); }
+  [[nodiscard]] Index n_inputs() const override { return rest_.n_inputs(); }
+  [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return rest_.own(); }
+  [[nodiscard]] const MatrixXd& l1() override { return rest_.l1(); }
+  [[nodiscard]] const MatrixXd& l0() override { return rest_.l0(); }
+  [[nodiscard]] const MatrixXd& b() const override { return rest_.b(); }
+  [[nodiscard]] const MatrixXd& c() const override { return rest_.c(); }
+  void load(double angle, VectorXd& load) override {
+    rest_.load(angle, load);
+    add_(angle, a_, load.data());
+  }
+  void films(const VectorXd& inputs, const double* own, const double* rates, bool tangents,
+             problem::Films& films) override {
+    rest_.films(inputs, own, rates, tangents, films);
+  }
+  void parameter_derivative(double angle, const VectorXd& x, const VectorXd&, const problem::Films&,
+                            VectorXd& out) override {
+    out.setZero(x.size());
+    add_(angle, -1, out.data());
+  }
+
+private:
+  problem::Structure& rest_;
+  std::function<void(double, double, double*)> add_;  // += a Omega^2 u(angle)
+  const double& a_;
+};
+
 // The machine with the unbalance a* as parameter: F(angle, x, xdot) - a* Omega^2 u(angle).
 class Homotopy : public problem::System {
 public:
-  Homotopy() : rotor_(PETSC_COMM_SELF, train(), shaft_speed) { rotor_.set_forcing(false); }
+  Homotopy()
+      : rotor_(PETSC_COMM_SELF, train(), shaft_speed),
+        structure_(
+            *rotor_.structure(), [this](double angle, double a, double* f) { force(angle, a, f); }, a_) {
+    rotor_.set_forcing(false);
+  }
   [[nodiscard]] MPI_Comm comm() const override { return PETSC_COMM_SELF; }
   [[nodiscard]] PetscInt size() const override { return rotor_.size(); }
   [[nodiscard]] PetscInt local_size() const override { return rotor_.size(); }
@@ -65,7 +105,8 @@ public:
   [[nodiscard]] bool parameter_is_speed() const override { return false; }
   void residual(double angle, Vec x, Vec xdot, Vec f) override {
     rotor_.residual(angle, x, xdot, f);
-    force(angle, a_, f);
+    const core::WriteArray fa(f);
+    force(angle, -a_, fa.data());
   }
   [[nodiscard]] core::Matrix make_jacobian() override { return rotor_.make_jacobian(); }
   void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) override {
@@ -73,8 +114,10 @@ public:
   }
   void parameter_derivative(double angle, Vec, Vec, Vec f) override {
     check(VecSet(f, 0));
-    force(angle, 1, f);
+    const core::WriteArray fa(f);
+    force(angle, -1, fa.data());
   }
+  [[nodiscard]] problem::Structure* structure() override { return &structure_; }
   void scales(Vec state, Vec residual) override { rotor_.scales(state, residual); }
   [[nodiscard]] VectorXd equilibrium() {
     core::Vector x = system::static_guess(rotor_);
@@ -86,15 +129,16 @@ public:
   }
 
 private:
-  void force(double angle, double a, Vec f) const {
-    const core::WriteArray fa(f);
+  // f += a Omega^2 u(angle)
+  void force(double angle, double a, double* f) const {
     const double square = a * rotor_.speed() * rotor_.speed();
     for (std::size_t i = 0; i < rotor_.unbalance_cosine().size(); ++i)
-      fa[static_cast<PetscInt>(2 * i)] -=
+      f[2 * i] +=
           square * (rotor_.unbalance_cosine()[i] * std::cos(angle) + rotor_.unbalance_sine()[i] * std::sin(angle));
   }
   system::RotorSystem rotor_;
   double a_ = 0;
+  ForcedStructure structure_;
 };
 
 // Single shooting as Sec. 3.1 of the document describes it: phi_T(x_0) - x_0 = 0, the columns of the monodromy matrix
