@@ -5,6 +5,7 @@
 #include "whirl/core/gate.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/solve/composition.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
 
 // The small system of a cycle by GMRES: a product with M is one sweep of a state over all intervals, from rank to rank.
 // It is preconditioned by the answer for M ~ (M V) V^T with V a basis of the dominant invariant subspace, found with
@@ -58,7 +59,7 @@ private:
   MatrixXd basis_, image_, basis_added_;  // V, M V [n x p], K V [nb x p]
   MatrixXd ends_, ends_added_;            // Theta [n x nb], D + corner [nb x nb]
   Eigen::PartialPivLU<MatrixXd> small_;
-  std::vector<std::complex<double>> values_;  // multipliers of the basis
+  bool found_ = false;  // the last search for multipliers left its basis
   core::Matrix shell_;
   core::Vector right_, answer_;
   core::LinearSolver solver_;
@@ -240,18 +241,25 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
   options.tolerance = 1e-9;
   options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
   options.most = 24;
-  DominantSubspace found = dominant_subspace(
-      [this](Vec v) {
-        MatrixXd state = MatrixXd::Zero(run_->n, 1), added;
-        {
-          const core::ReadArray a(v);
-          if (last()) state = Map<const VectorXd>(a.data(), run_->n);
-        }
-        turn(state, added, false);
-        const core::WriteArray a(v);
-        if (last()) Map<VectorXd>(a.data(), run_->n) = state.col(0);
-      },
-      first.get(), options);
+  const auto times_m = [this](Vec v) {
+    MatrixXd state = MatrixXd::Zero(run_->n, 1), added;
+    {
+      const core::ReadArray a(v);
+      if (last()) state = Map<const VectorXd>(a.data(), run_->n);
+    }
+    turn(state, added, false);
+    const core::WriteArray a(v);
+    if (last()) Map<VectorXd>(a.data(), run_->n) = state.col(0);
+  };
+  DominantSubspace found;
+  try {
+    found = dominant_subspace(times_m, first.get(), options);
+  } catch (const core::NotConverged&) {
+    // Many multipliers of nearly the same modulus (soft liners at high speed): all of them then, by the dense matrix.
+    found_ = false;
+    return spectral::eigenvalues(monodromy());
+  }
+  found_ = true;
   basis_ = std::move(found.basis);
   prepare();
   return found.values;
@@ -260,14 +268,15 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
 // The Ritz vector of V^T M V, which the invariant subspace makes an eigenvector.
 VectorXd SweepComposition::critical_start(double mu) {
   (void)multipliers();
+  const MatrixXd whole = found_ ? MatrixXd() : monodromy();
   VectorXd v = VectorXd::Zero(run_->n);
   if (last()) {
-    const Index p = basis_.cols();
-    const MatrixXd projected = basis_.transpose() * image_;
+    const MatrixXd projected = found_ ? MatrixXd(basis_.transpose() * image_) : whole;
+    const Index p = projected.rows();
     const Eigen::PartialPivLU<MatrixXd> lu(projected - mu * (1 + 1e-10) * MatrixXd::Identity(p, p));
     VectorXd z = VectorXd::Ones(p);
     for (int k = 0; k < 4; ++k) z = lu.solve(z).normalized();
-    v = basis_ * z;
+    v = found_ ? VectorXd(basis_ * z) : z;
   }
   MPI_Bcast(v.data(), static_cast<int>(v.size()), MPI_DOUBLE, size_ - 1, run_->comm);
   return v;

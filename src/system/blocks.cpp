@@ -100,6 +100,8 @@ namespace {
 // Derivatives of a film with own states, which stands at `at` among all of them, into the blocks.
 void take(const film::StateResponse& response, const problem::OwnStates& at, Eigen::Index coordinates,
           problem::OwnTangents& out, Eigen::VectorXd& d_speed) {
+  core::require(response.d_states.size() == at.states.size() && response.d_rates.size() == at.rates.size(),
+                "a film tells its derivatives at the same places in every call");
   out.states.resize(response.d_states.size());
   out.rates.resize(response.d_rates.size());
   for (std::size_t e = 0; e < out.states.size(); ++e) out.states[e] = response.d_states[e].value;

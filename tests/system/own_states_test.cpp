@@ -47,7 +47,7 @@ system::Train train(std::vector<system::Support> supports) {
   return t;
 }
 
-// A short film beside a short rigid one and a long film on a pedestal.
+// A short film beside a short rigid one, a long film on a pedestal and one with a mesh of lines.
 system::Train mixed(bool as_source) {
   system::Support rigid = support(Kind::short_bearing, false, 0.1, 8),
                   on_pedestal = support(Kind::compliant_long, as_source, 0.3, 14);
@@ -56,7 +56,8 @@ system::Train mixed(bool as_source) {
   on_pedestal.mass = {0.1, 0.1};
   on_pedestal.stiffness = {1e6, 2e6};
   on_pedestal.damping = {50, 60};
-  return train({support(Kind::compliant_short, as_source, 0.1, 12), rigid, on_pedestal});
+  system::Support lines = support(Kind::compliant_finite, false, 0.2, 10);
+  return train({support(Kind::compliant_short, as_source, 0.1, 12), rigid, on_pedestal, lines});
 }
 
 double apart(const MatrixXd& a, const MatrixXd& b) {
@@ -83,10 +84,11 @@ TEST(OwnStates, CondensedIntervalsAreTheDenseMatrix) {
     system::RotorSystem s(PETSC_COMM_SELF, mixed(as_source), speed);
     problem::Structure* structure = s.structure();
     ASSERT_NE(structure, nullptr);
-    ASSERT_EQ(structure->own().size(), 2U);
+    ASSERT_EQ(structure->own().size(), 3U);
     solve::ScaledPoint point(s, structure), plain(s, nullptr);
     const Eigen::Index n = s.size(), core = structure->size();
-    EXPECT_EQ(core + 12 + 13, n);
+    EXPECT_EQ(core + s.own_states(), n);
+    EXPECT_GT(s.own_states(), 12 + 13 + 10);
     for (const auto points : {solve::Points::radau, solve::Points::gauss})
       for (const int m : {1, 2, 3, 4, 5}) {
         const solve::Scheme scheme = solve::make_scheme(m, points);
