@@ -1,10 +1,8 @@
 """Draws every picture that a results folder has data for."""
-import pathlib
 import sys
 
-from . import (bearing_map, bifurcation, campbell, eccentricity, film, locus, motion, multipliers, orbits, response,
-               shapes)
-from .data import open_results
+from . import bearing_map, bifurcation, campbell, eccentricity, film, locus, motion, multipliers, orbits, response, shapes
+from .data import open_results, results_directory
 from .style import use_style
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -21,13 +19,9 @@ PICTURES = {
 
 
 def main(argv):
-    if len(argv) != 1 or argv[0] in ("-h", "--help"):
-        print("usage: scripts/plot DIR", file=sys.stderr)
-        return 0 if argv and argv[0] in ("-h", "--help") else 2
-    directory = pathlib.Path(argv[0])
-    if not (directory / "results.h5").is_file():
-        print(f"plot: there is no {directory / 'results.h5'}", file=sys.stderr)
-        return 2
+    directory = results_directory("plot", argv)
+    if isinstance(directory, int):
+        return directory
     use_style()
     failed = 0
     with open_results(directory) as results:

@@ -3,6 +3,7 @@ import contextlib
 import json
 import pathlib
 import re
+import sys
 
 import h5py
 import numpy as np
@@ -89,3 +90,15 @@ def open_results(directory):
     # A results file is replaced as a whole, never written in place, so it needs no lock.
     with h5py.File(pathlib.Path(directory) / "results.h5", "r") as file:
         yield Results(file, directory)
+
+
+def results_directory(command, argv):
+    """The results folder that a command `scripts/COMMAND DIR` was given, or the exit code if it was not given one."""
+    if len(argv) != 1 or argv[0] in ("-h", "--help"):
+        print(f"usage: scripts/{command} DIR", file=sys.stderr)
+        return 0 if argv and argv[0] in ("-h", "--help") else 2
+    directory = pathlib.Path(argv[0])
+    if not (directory / "results.h5").is_file():
+        print(f"{command}: there is no {directory / 'results.h5'}", file=sys.stderr)
+        return 2
+    return directory

@@ -2,11 +2,10 @@
 import base64
 import html
 import json
-import pathlib
 import re
 import sys
 
-from .data import open_results
+from .data import open_results, results_directory
 
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:1120px;margin:2em auto;padding:0 1em}
@@ -85,13 +84,9 @@ def studies_of(directory):
 
 
 def main(argv):
-    if len(argv) != 1 or argv[0] in ("-h", "--help"):
-        print("usage: scripts/report DIR", file=sys.stderr)
-        return 0 if argv and argv[0] in ("-h", "--help") else 2
-    directory = pathlib.Path(argv[0])
-    if not (directory / "results.h5").is_file():
-        print(f"report: there is no {directory / 'results.h5'}", file=sys.stderr)
-        return 2
+    directory = results_directory("report", argv)
+    if isinstance(directory, int):
+        return directory
     summary, studies, general = studies_of(directory)
     title = html.escape(summary["title"])
     links = "".join(f"<a href='#{anchor(s['name'])}'>{html.escape(s['name'])}</a>" for s, _ in studies)

@@ -298,6 +298,7 @@ core::Vector any_tangent(ExtendedProblem& branch, Vec u) {
 }
 
 std::unique_ptr<Condition> condition_of(CycleProblem& problem, Event event, std::complex<double> critical) {
+  if (!problem.has_adjoint()) return nullptr;
   switch (event) {
     case Event::cyclic_fold:
       return make_cyclic_fold(problem);

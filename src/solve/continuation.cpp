@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "follower.hpp"
 #include "whirl/core/error.hpp"
@@ -48,12 +49,30 @@ void Follower::inspect(State& s, Vec along) {
   check(VecSet(rhs.get(), 0.0));
   set_last_entry(problem_.comm(), rhs.get(), along ? 1.0 : static_cast<double>(direction_));
   s.tangent = core::duplicate(s.u.get());
-  solve_linear(problem_, rhs.get(), s.tangent.get(), "tangent_");
+  newton_.solve_linear(rhs.get(), s.tangent.get());
   check(VecScale(s.tangent.get(), 1 / std::sqrt(inner(problem_, s.tangent.get(), s.tangent.get()))));
   s.point.parameter = last_entry(problem_.comm(), s.u.get());
   s.point.slope = last_entry(problem_.comm(), s.tangent.get());
   s.point.stability = callbacks_.stability ? callbacks_.stability(s.u.get()) : Stability{};
   if (callbacks_.monitors) s.point.monitors = callbacks_.monitors(s.u.get(), s.tangent.get());
+}
+
+// The angles between the predictor and the chord, in all unknowns and in those without the parameter. Steps below the
+// minimum occur when an event is located; there rounding decides the direction of the chord.
+bool Follower::on_course(const State& from, const State& to) const {
+  if (std::abs(to.point.step) < options_.min_step) return true;
+  core::Vector chord = copy(to.u.get());
+  check(VecAXPY(chord.get(), -1, from.u.get()));
+  const double weight = last_entry(problem_.comm(), problem_.weights()), dp = last_entry(problem_.comm(), chord.get()),
+               tp = from.point.slope;
+  const auto within = [&](double product, double a, double b, double limit) {
+    return a <= 0 || b <= 0 || rounded(product / std::sqrt(a * b)) >= rounded(std::cos(limit));
+  };
+  const double forward = to.point.step >= 0 ? 1 : -1;
+  const double product = forward * inner(problem_, from.tangent.get(), chord.get()),
+               length = inner(problem_, chord.get(), chord.get());
+  return within(product, 1, length, options_.beta_1) &&
+         within(product - forward * weight * tp * dp, 1 - weight * tp * tp, length - weight * dp * dp, options_.beta_2);
 }
 
 bool Follower::advance(const State& from, double ds, State& to, NewtonResult& result) {
@@ -74,13 +93,11 @@ bool Follower::advance(const State& from, double ds, State& to, NewtonResult& re
     result.reason = error.what();
     return false;
   }
-  // A tangent turned by more than 60 degrees: another branch, or a step too long for this one.
-  const double cosine = inner(problem_, from.tangent.get(), to.tangent.get());
-  if (!(rounded(cosine) >= 0.5)) {
-    result.reason = "the branch turns too sharply";
-    return false;
-  }
-  return true;
+  const double turned = inner(problem_, from.tangent.get(), to.tangent.get());
+  if (rounded(turned) >= rounded(std::cos(std::min(2 * options_.beta_1, std::numbers::pi))) && on_course(from, to))
+    return true;
+  result.reason = "the branch turns too sharply";
+  return false;
 }
 
 // The solution carried over is corrected at right angles to the branch: near a fold there may be none at its parameter.

@@ -63,11 +63,47 @@ std::vector<double> uniform_mesh(int intervals) {
   return mesh;
 }
 
-std::vector<double> doubled(const std::vector<double>& mesh) {
+std::vector<double> refined(const std::vector<double>& mesh, int parts) {
   std::vector<double> out{mesh.front()};
-  for (std::size_t i = 0; i + 1 < mesh.size(); ++i) {
-    out.push_back((mesh[i] + mesh[i + 1]) / 2);
-    out.push_back(mesh[i + 1]);
+  for (std::size_t i = 0; i + 1 < mesh.size(); ++i)
+    for (int k = 1; k <= parts; ++k)
+      out.push_back(k == parts ? mesh[i + 1] : mesh[i] + (mesh[i + 1] - mesh[i]) * k / parts);
+  return out;
+}
+
+std::vector<double> doubled(const std::vector<double>& mesh) {
+  return refined(mesh, 2);
+}
+
+const Scheme& quintic() {
+  static const Scheme scheme = make_scheme(5, Points::gauss);
+  return scheme;
+}
+
+Cycle through(const Cycle& points) {
+  const Scheme& scheme = quintic();
+  const Index m = scheme.degree, count = points.intervals(), used = std::min<Index>(6, count);
+  // Point k stands at s_(k+1) of its lap.
+  const auto time = [&](Index k) {
+    const Index lap = k >= 0 ? k / count : -((count - 1 - k) / count), own = k - lap * count;
+    return static_cast<double>(lap) + points.mesh[static_cast<std::size_t>(own) + 1];
+  };
+  Cycle out{points.mesh, Eigen::MatrixXd(points.x.rows(), count * m), points.period, points.parameter};
+  for (Index i = 0; i < count; ++i) {
+    const double begin = points.mesh[static_cast<std::size_t>(i)], h = length(points.mesh, i);
+    const Index first = i - used / 2;
+    for (Index l = 1; l < m; ++l) {
+      const double s = begin + h * scheme.node(l);
+      Eigen::VectorXd value = Eigen::VectorXd::Zero(points.x.rows());
+      for (Index a = first; a < first + used; ++a) {
+        double weight = 1;
+        for (Index b = first; b < first + used; ++b)
+          if (b != a) weight *= (s - time(b)) / (time(a) - time(b));
+        value += weight * points.x.col((a % count + count) % count);
+      }
+      out.x.col(i * m + l - 1) = value;
+    }
+    out.x.col(i * m + m - 1) = points.x.col(i);
   }
   return out;
 }

@@ -32,16 +32,6 @@ CycleProblem::Path CycleProblem::path_of(Vec v) const {
   return {previous_end(a.data()), Map<const MatrixXd>(a.data(), n_, count_ * scheme_.degree), border_of(v)};
 }
 
-MatrixXd CycleProblem::border_columns(const VectorXd& d_parameter, const VectorXd& rate, double period) const {
-  MatrixXd columns(n_, borders_);
-  columns.rightCols(1) = d_parameter;
-  // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
-  if (!options_.autonomous && system_.parameter_is_speed()) columns.rightCols(1) += rate / system_.speed();
-  columns.rightCols(1) *= options_.parameter_scale;
-  if (options_.autonomous) columns.col(0) = -rate / period * period_scale_;
-  return columns;
-}
-
 void CycleProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
                                        const VectorXd& y, Eigen::Ref<VectorXd> to_own, VectorXd& to_start,
                                        VectorXd& to_border) {
@@ -156,11 +146,11 @@ MatrixXd CycleProblem::tangent(Vec u, double step, const Path& a, const Path& b)
 
 CycleProblem::Path CycleProblem::forward(const VectorXd& v) const {
   const Index m = scheme_.degree;
-  Path path{to_rank_[static_cast<std::size_t>(rank_)].leftCols(n_) * v, MatrixXd(n_, count_ * m), {}};
+  Path path{composition_->entering(v), MatrixXd(n_, count_ * m), {}};
   VectorXd state = path.start;
   for (Index i = 0; i < count_; ++i) {
-    MatrixXd z = -intervals_[static_cast<std::size_t>(i)]->start(state);
-    intervals_[static_cast<std::size_t>(i)]->solve(z);
+    MatrixXd z = -run_.intervals[static_cast<std::size_t>(i)]->start(state);
+    run_.intervals[static_cast<std::size_t>(i)]->solve(z);
     path.nodes.middleCols(i * m, m) = Map<const MatrixXd>(z.data(), n_, m);
     state = z.col(0).tail(n_);
   }
@@ -169,94 +159,55 @@ CycleProblem::Path CycleProblem::forward(const VectorXd& v) const {
 
 CycleProblem::Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
   const Index m = scheme_.degree;
-  // First what each rank's run makes of y alone, then with the state that enters it.
   Path path;
   const auto run = [&](const VectorXd& start) {
     path = {start, MatrixXd(n_, count_ * m), {}};
     VectorXd state = start;
     for (Index i = 0; i < count_; ++i) {
-      MatrixXd z = -y.col(i) - intervals_[static_cast<std::size_t>(i)]->start(state);
-      intervals_[static_cast<std::size_t>(i)]->solve(z);
+      MatrixXd z = -y.col(i) - run_.intervals[static_cast<std::size_t>(i)]->start(state);
+      run_.intervals[static_cast<std::size_t>(i)]->solve(z);
       path.nodes.middleCols(i * m, m) = Map<const MatrixXd>(z.data(), n_, m);
       state = z.col(0).tail(n_);
     }
     return state;
   };
-  VectorXd own = run(VectorXd::Zero(n_)), gathered(n_ * size_), entering = VectorXd::Zero(n_);
-  MPI_Allgather(own.data(), static_cast<int>(n_), MPI_DOUBLE, gathered.data(), static_cast<int>(n_), MPI_DOUBLE, comm_);
-  end = VectorXd::Zero(n_);
-  for (int p = 0; p < size_; ++p) {
-    if (p == rank_) entering = end;
-    end = (gathered.segment(static_cast<Index>(p) * n_, n_) +
-           rank_maps_[static_cast<std::size_t>(p)].topLeftCorner(n_, n_) * end)
-              .eval();
-  }
-  if (rank_ > 0) (void)run(entering);
+  // Ranks follow one another: what leaves one enters the next.
+  VectorXd entering = VectorXd::Zero(n_);
+  const int n = static_cast<int>(n_);
+  if (rank_ > 0) MPI_Recv(entering.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_, MPI_STATUS_IGNORE);
+  end = run(entering);
+  if (rank_ < size_ - 1) MPI_Send(end.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_);
+  MPI_Bcast(end.data(), n, MPI_DOUBLE, size_ - 1, comm_);
   return path;
 }
 
 MatrixXd CycleProblem::backward(const VectorXd& w) const {
   const Index block = scheme_.degree * n_;
   VectorXd lambda = w;
-  for (int p = size_ - 1; p > rank_; --p)
-    lambda = (rank_maps_[static_cast<std::size_t>(p)].topLeftCorner(n_, n_).transpose() * lambda).eval();
+  const int n = static_cast<int>(n_);
+  if (rank_ < size_ - 1) MPI_Recv(lambda.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_, MPI_STATUS_IGNORE);
   MatrixXd weights(block, count_);
   for (Index i = count_ - 1; i >= 0; --i) {
     MatrixXd z = MatrixXd::Zero(block, 1);
     z.bottomRows(n_) = lambda;
-    intervals_[static_cast<std::size_t>(i)]->solve_transposed(z);
+    run_.intervals[static_cast<std::size_t>(i)]->solve_transposed(z);
     weights.col(i) = z;
-    lambda = -intervals_[static_cast<std::size_t>(i)]->start_transposed(z);
+    lambda = -run_.intervals[static_cast<std::size_t>(i)]->start_transposed(z);
   }
+  if (rank_ > 0) MPI_Send(lambda.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_);
   return weights;
 }
 
-// With z_i the adjoint of interval i, lambda_i that of its end state and sigma those of the added rows:
-//     A_i^T z_i = s_i + E^T lambda_i - rows_i^T sigma,    lambda_(i-1) = -A0_i^T z_i,    lambda_N = lambda_0
-// which closes by the transpose of the small system of the forward solve.
+bool CycleProblem::has_adjoint() const {
+  return composition_->has_transpose();
+}
+
 void CycleProblem::solve_transposed(Vec rhs, Vec x) {
-  const Index block = scheme_.degree * n_, all = n_ + borders_;
-  const VectorXd r_border = border_of(rhs);
+  VectorXd border = border_of(rhs);
   const core::ReadArray ra(rhs);
   const core::WriteArray xa(x);
-  VectorXd part(all);  // of this rank: adjoint of the state before it, and what its columns see
-  const auto sweep = [&](VectorXd lambda, const VectorXd& sigma, bool keep) {
-    part.tail(borders_).setZero();
-    for (Index i = count_ - 1; i >= 0; --i) {
-      const auto k = static_cast<std::size_t>(i);
-      MatrixXd z = Map<const VectorXd>(ra.data() + i * block, block) - rows_[k].transpose() * sigma;
-      z.bottomRows(n_) += lambda;
-      intervals_[k]->solve_transposed(z);
-      if (keep) Map<VectorXd>(xa.data() + i * block, block) = z.col(0);
-      part.tail(borders_) += columns_[k].transpose() * z.col(0);
-      lambda = -intervals_[k]->start_transposed(z);
-    }
-    part.head(n_) = lambda;
-  };
-  sweep(VectorXd::Zero(n_), VectorXd::Zero(borders_), false);
-  VectorXd gathered(all * size_);
-  MPI_Allgather(part.data(), static_cast<int>(all), MPI_DOUBLE, gathered.data(), static_cast<int>(all), MPI_DOUBLE,
-                comm_);
-  VectorXd small(all), lambda = VectorXd::Zero(n_), seen = VectorXd::Zero(borders_);
-  for (int p = size_ - 1; p >= 0; --p) {
-    const auto& q = rank_maps_[static_cast<std::size_t>(p)];
-    const auto own = gathered.segment(static_cast<Index>(p) * all, all);
-    seen += own.tail(borders_) - q.topRightCorner(n_, borders_).transpose() * lambda;
-    lambda = (own.head(n_) + q.topLeftCorner(n_, n_).transpose() * lambda).eval();
-  }
-  small << lambda, r_border - seen;
-  small = small_.transpose().solve(small).eval();
-  const VectorXd sigma = small.tail(borders_);
-  lambda = small.head(n_);
-  for (int p = size_ - 1; p > rank_; --p) {
-    const auto& q = rank_maps_[static_cast<std::size_t>(p)];
-    lambda = (gathered.segment(static_cast<Index>(p) * all, n_) + q.topLeftCorner(n_, n_).transpose() * lambda -
-              q.bottomLeftCorner(borders_, n_).transpose() * sigma)
-                 .eval();
-  }
-  sweep(lambda, sigma, true);
-  if (rank_ == size_ - 1)
-    for (Index k = 0; k < borders_; ++k) xa[static_cast<PetscInt>(xa.size() - borders_ + k)] = sigma(k);
+  composition_->solve_transposed(ra.data(), border, xa.data());
+  if (rank_ == size_ - 1) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
 }
 
 }  // namespace whirl::solve

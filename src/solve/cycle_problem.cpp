@@ -5,7 +5,7 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/solve/composition.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -18,11 +18,22 @@ using Eigen::VectorXd;
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
+// Sweeps pay where intervals cost O(n) to pass. Per point of a branch the dense way carries n states and finds all
+// eigenvalues of M (some 25 n^3 operations, and 10 m^2 n for each of n states in each interval, three to four
+// times), sweeps carry some 150 states; they meet near n = 100.
+constexpr Index dense_below = 100;
+
 double length(const std::vector<double>& mesh, Index i) {
   return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)];
 }
 
 }  // namespace
+
+CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, const problem::Structure* structure) {
+  if (!structure || options.assembled) return Way::dense;
+  if (!structure->own().empty()) return Way::own_states;
+  return 2 * structure->n_forces() < structure->size() ? Way::low_rank : Way::dense;
+}
 
 CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh)
     : comm_(time),
@@ -34,7 +45,15 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
       options_(options),
       scheme_(make_scheme(options.degree, options.points)),
       n_(local.size()),
-      borders_(options.autonomous ? 2 : 1) {
+      borders_(options.autonomous ? 2 : 1),
+      way_(way_of(options, structure_)) {
+  run_.comm = time;
+  run_.n = n_;
+  run_.borders = borders_;
+  using Joining = CycleOptions::Joining;
+  const bool sweeps = options.joining == Joining::sweeps ||
+                      (options.joining == Joining::cheapest && way_ == Way::own_states && n_ > dense_below);
+  composition_ = sweeps ? make_sweep_composition() : make_dense_composition();
   layout(std::move(mesh));
 }
 
@@ -46,7 +65,9 @@ void CycleProblem::layout(std::vector<double> mesh) {
   if (total < size_) throw core::InputError("fewer collocation intervals than ranks");
   first_ = total * rank_ / size_;
   count_ = total * (rank_ + 1) / size_ - first_;
-  intervals_.clear();
+  kept_.resize(static_cast<std::size_t>(structure_ ? count_ * scheme_.degree : 0));
+  kept_valid_ = false;
+  run_.intervals.clear();
   weights_ = make_unknown();
   core::WriteArray w(weights_.get());
   const Index m = scheme_.degree;
@@ -96,6 +117,7 @@ void CycleProblem::residual(Vec u, Vec r) {
   const VectorXd before = previous_end(ua.data());
   core::WriteArray ra(r);
   const Index m = scheme_.degree;
+  kept_valid_ = false;
   core::agree(comm_, [&] {
     set_parameter(border);
     const double period = period_of(border);
@@ -107,6 +129,12 @@ void CycleProblem::residual(Vec u, Vec r) {
       interval_residual(i, own, Map<const VectorXd>(start, n_), period, ra.data() + i * m * n_);
     }
   });
+  if (structure_) {
+    kept_u_ = Map<const VectorXd>(ua.data(), ua.size());
+    kept_before_ = before;
+    kept_border_ = border;
+    kept_valid_ = true;
+  }
   if (options_.autonomous) {
     double phase = 0;
     if (count_ > 0) phase = (Map<const MatrixXd>(ua.data(), n_, count_ * m).array() * phase_row_.array()).sum();
@@ -138,47 +166,59 @@ void CycleProblem::interpolate(Index i, Index j, const double* own, const Vector
 }
 
 void CycleProblem::interval_residual(Index i, const double* own, const VectorXd& start, double period, double* out) {
-  VectorXd value(n_), slope(n_);
-  for (Index j = 0; j < scheme_.degree; ++j) {
-    interpolate(i, j, own, start, period, value, slope);
-    point_.residual(angle_at(i, scheme_.c(j)), value, slope, Map<VectorXd>(out + j * n_, n_));
+  const Index m = scheme_.degree;
+  for (Index j = 0; j < m; ++j) {
+    interpolate(i, j, own, start, period, value_, slope_);
+    Map<VectorXd> row(out + j * n_, n_);
+    if (structure_)
+      point_.residual(angle_at(i, scheme_.c(j)), value_, slope_, row, kept_[static_cast<std::size_t>(i * m + j)]);
+    else
+      point_.residual(angle_at(i, scheme_.c(j)), value_, slope_, row);
   }
+}
+
+MatrixXd CycleProblem::border_columns(const VectorXd& d_parameter, const VectorXd& rate, double period) const {
+  MatrixXd columns(n_, borders_);
+  columns.rightCols(1) = d_parameter;
+  // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
+  if (!options_.autonomous && system_.parameter_is_speed()) columns.rightCols(1) += rate / system_.speed();
+  columns.rightCols(1) *= options_.parameter_scale;
+  if (options_.autonomous) columns.col(0) = -rate / period * period_scale_;
+  return columns;
 }
 
 std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double* own, const VectorXd& start,
                                                            double period, MatrixXd& columns) {
   const Index m = scheme_.degree;
-  const double h = length(mesh_, first_ + i);
+  const double h = interval_length(i);
   columns.resize(m * n_, borders_);
-  std::vector<MatrixXd> tangents(static_cast<std::size_t>(m)), jx, jxdot;
-  if (!structure_) {
-    jx.resize(static_cast<std::size_t>(m));
-    jxdot.resize(static_cast<std::size_t>(m));
-  }
-  VectorXd value(n_), slope(n_), load(n_), d_load(n_), forces, d_forces, rate(n_);
+  std::vector<MatrixXd> jx(static_cast<std::size_t>(m)), jxdot(jx);
+  std::vector<const PointState*> points;
+  VectorXd d_parameter(n_), rate(n_);
   for (Index j = 0; j < m; ++j) {
     const auto jj = static_cast<std::size_t>(j);
-    interpolate(i, j, own, start, period, value, slope);
     const double angle = angle_at(i, scheme_.c(j));
-    VectorXd d_parameter;
+    interpolate(i, j, own, start, period, value_, slope_);
     if (structure_) {
-      structure_->load(angle, load, &d_load);
-      structure_->forces(point_.c() * value, forces, &tangents[jj], &d_forces);
-      d_parameter = dl0_ * value - d_load.cwiseQuotient(point_.residual_scale()) - point_.b() * d_forces;
-      rate.noalias() = point_.l1() * slope;
+      PointState& at = kept_[static_cast<std::size_t>(i * m + j)];
+      if (!kept_valid_) point_.residual(angle, value_, slope_, rate, at);
+      point_.parameter_derivative(angle, at, d_parameter);
+      point_.times_rates(at, slope_, rate);
+      points.push_back(&at);
+      if (way_ == Way::dense) point_.matrices(at, jx[jj], jxdot[jj]);
     } else {
-      point_.linearise(angle, value, slope, jx[jj], jxdot[jj], &d_parameter);
-      rate.noalias() = jxdot[jj] * slope;
+      point_.linearise(angle, value_, slope_, jx[jj], jxdot[jj], &d_parameter);
+      rate.noalias() = jxdot[jj] * slope_;
     }
-    // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
-    if (!options_.autonomous && system_.parameter_is_speed()) d_parameter += rate / system_.speed();
-    columns.block(j * n_, borders_ - 1, n_, 1) = d_parameter * options_.parameter_scale;
-    if (options_.autonomous) columns.block(j * n_, 0, n_, 1) = -rate / period * period_scale_;
+    columns.middleRows(j * n_, n_) = border_columns(d_parameter, rate, period);
   }
-  if (!structure_) return make_dense_interval(scheme_, h * period, std::move(jx), std::move(jxdot));
+  if (way_ == Way::dense) return make_dense_interval(scheme_, h * period, std::move(jx), std::move(jxdot));
   const double rounded = std::round(h * 1e12) / 1e12;
   auto& part = parts_[rounded];
-  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, point_.l1(), l0_, point_.b(), point_.c());
+  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, point_.l1(), point_.l0(), point_.b(), point_.c());
+  if (way_ == Way::own_states) return make_own_interval(part, structure_->own(), point_, points);
+  std::vector<MatrixXd> tangents;
+  for (const PointState* at : points) tangents.push_back(at->films.d_inputs);
   return make_low_rank_interval(part, std::move(tangents));
 }
 
@@ -186,244 +226,94 @@ void CycleProblem::linearise(Vec u, Vec row) {
   const VectorXd border = border_of(u);
   const core::ReadArray ua(u), wa(row);
   const VectorXd before = previous_end(ua.data());
-  const Index m = scheme_.degree;
+  const Index m = scheme_.degree, size = m * n_;
   const auto count = static_cast<std::size_t>(count_);
-  intervals_.clear();
-  intervals_.resize(count);
+  kept_valid_ = kept_valid_ && same_as_kept(ua, before, border);
+  run_.intervals.clear();
+  run_.intervals.resize(count);
   parts_.clear();
-  columns_.resize(count);
+  run_.columns.resize(count);
   core::agree(comm_, [&] {
     set_parameter(border);
     const double period = period_of(border);
     if (!(period > 0)) throw core::DomainError("the period is not positive");
     point_.refresh();
-    if (structure_) {
-      l0_ = point_.scaled(structure_->l0());
-      dl0_ = point_.scaled(structure_->dl0());
-    }
     for (Index i = 0; i < count_; ++i) {
-      const double* own = ua.data() + i * m * n_;
+      const double* own = ua.data() + i * size;
       const VectorXd start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
-      intervals_[static_cast<std::size_t>(i)] =
-          linearise_interval(i, own, start, period, columns_[static_cast<std::size_t>(i)]);
+      run_.intervals[static_cast<std::size_t>(i)] =
+          linearise_interval(i, own, start, period, run_.columns[static_cast<std::size_t>(i)]);
     }
   });
+  kept_valid_ = false;
 
-  rows_.assign(count, MatrixXd::Zero(borders_, m * n_));
+  run_.rows.resize(count);
   for (Index i = 0; i < count_; ++i) {
-    auto& rows = rows_[static_cast<std::size_t>(i)];
-    rows.row(borders_ - 1) = Map<const VectorXd>(wa.data() + i * m * n_, m * n_).transpose();
-    if (options_.autonomous) rows.row(0) = Map<const VectorXd>(phase_row_.data() + i * m * n_, m * n_).transpose();
+    auto& rows = run_.rows[static_cast<std::size_t>(i)];
+    rows.resize(borders_, size);
+    rows.row(borders_ - 1) = Map<const VectorXd>(wa.data() + i * size, size).transpose();
+    if (options_.autonomous) rows.row(0) = Map<const VectorXd>(phase_row_.data() + i * size, size).transpose();
   }
-  corner_ = MatrixXd::Zero(borders_, borders_);
-  corner_.row(borders_ - 1) = border_of(row).transpose();
-  compose(rows_);
-  if (options_.assembled) assemble(rows_);
+  run_.corner = MatrixXd::Zero(borders_, borders_);
+  run_.corner.row(borders_ - 1) = border_of(row).transpose();
+  composition_->compose(run_);
+  if (options_.assembled) assembled_ = AssembledCycle(run_, first_, static_cast<Index>(mesh_.size()) - 1);
 }
 
-// Runs the condensed recurrence over this rank's intervals, gathers the ranks' maps and factorises the small system
-//     [ I - Phi   -Theta     ] [ x_0 ]   [ t       ]      x_(end) = Phi x_0 + Theta d + t after one turn
-//     [ K         D + corner ] [ d   ] = [ r_c - s ]      added rows = K x_0 + D d + s
-void CycleProblem::compose(const std::vector<MatrixXd>& rows) {
-  const Index all = n_ + borders_;
-  MatrixXd map = MatrixXd::Zero(all, all), state = MatrixXd::Identity(n_, all);
-  eliminated_.resize(intervals_.size());
-  for (std::size_t i = 0; i < intervals_.size(); ++i) {
-    const Interval& interval = *intervals_[i];
-    MatrixXd adjoint = rows[i].transpose();
-    interval.solve_transposed(adjoint);
-    map.bottomRows(borders_).noalias() -= interval.start_transposed(adjoint).transpose() * state;
-    map.bottomRightCorner(borders_, borders_).noalias() -= adjoint.transpose() * columns_[i];
-    eliminated_[i] = columns_[i];
-    interval.solve(eliminated_[i]);
-    if (i == 0)
-      state.leftCols(n_) = interval.transition();  // of the identity
-    else
-      state = (interval.transition() * state).eval();
-    state.rightCols(borders_) -= eliminated_[i].bottomRows(n_);
-  }
-  map.topRows(n_) = state;
-
-  rank_maps_.assign(static_cast<std::size_t>(size_), MatrixXd(all, all));
-  std::vector<double> gathered(static_cast<std::size_t>(all * all * size_));
-  MPI_Allgather(map.data(), static_cast<int>(all * all), MPI_DOUBLE, gathered.data(), static_cast<int>(all * all),
-                MPI_DOUBLE, comm_);
-  MatrixXd entering = MatrixXd::Identity(n_, all), added = MatrixXd::Zero(borders_, all);
-  to_rank_.clear();
-  for (int p = 0; p < size_; ++p) {
-    auto& q = rank_maps_[static_cast<std::size_t>(p)];
-    q = Map<const MatrixXd>(gathered.data() + static_cast<Index>(p) * all * all, all, all);
-    to_rank_.push_back(entering);
-    if (p == 0) {  // entering is the identity
-      added = q.bottomRows(borders_);
-      entering = q.topRows(n_);
-      continue;
-    }
-    added += q.bottomLeftCorner(borders_, n_) * entering;
-    added.rightCols(borders_) += q.bottomRightCorner(borders_, borders_);
-    MatrixXd next = q.topLeftCorner(n_, n_) * entering;
-    next.rightCols(borders_) += q.topRightCorner(n_, borders_);
-    entering = std::move(next);
-  }
-  monodromy_ = entering.leftCols(n_);
-  MatrixXd small(all, all);
-  small.topRows(n_) = MatrixXd::Identity(n_, all) - entering;
-  small.bottomRows(borders_) = added;
-  small.bottomRightCorner(borders_, borders_) += corner_;
-  small_.compute(small);
+bool CycleProblem::same_as_kept(const core::ReadArray& u, const VectorXd& before, const VectorXd& border) const {
+  return kept_u_.size() == u.size() && before == kept_before_ && border == kept_border_ &&
+         kept_u_ == Map<const VectorXd>(u.data(), u.size());
 }
 
 void CycleProblem::multiply(Vec v, Vec y) {
   const VectorXd border = border_of(v);
   const core::ReadArray va(v);
   const VectorXd before = previous_end(va.data());
-  const Index m = scheme_.degree;
+  const Index size = scheme_.degree * n_;
   core::WriteArray ya(y);
-  VectorXd added = VectorXd::Zero(borders_);
+  VectorXd added = VectorXd::Zero(borders_), x, start = before;
   for (Index i = 0; i < count_; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double* own = va.data() + i * m * n_;
-    const VectorXd x = Map<const VectorXd>(own, m * n_),
-                   start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
-    Map<VectorXd>(ya.data() + i * m * n_, m * n_) = intervals_[k]->multiply(start, x) + columns_[k] * border;
-    added += rows_[k] * x;
+    x = Map<const VectorXd>(va.data() + i * size, size);
+    Map<VectorXd> out(ya.data() + i * size, size);
+    out = run_.intervals[k]->multiply(start, x);
+    out.noalias() += run_.columns[k] * border;
+    added.noalias() += run_.rows[k] * x;
+    start = x.tail(n_);
   }
   MPI_Allreduce(MPI_IN_PLACE, added.data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
-  added += corner_ * border;
-  if (rank_ == size_ - 1)
-    for (Index k = 0; k < borders_; ++k) ya[static_cast<PetscInt>(ya.size() - borders_ + k)] = added(k);
+  added.noalias() += run_.corner * border;
+  if (rank_ == size_ - 1) Map<VectorXd>(ya.data() + ya.size() - borders_, borders_) = added;
 }
 
 void CycleProblem::solve(Vec rhs, Vec x) {
-  if (options_.assembled) {
-    check(KSPSolve(assembled_solver_.get(), rhs, x));
-    return;
-  }
-  const Index m = scheme_.degree, all = n_ + borders_;
-  const VectorXd r_border = border_of(rhs);
+  if (options_.assembled) return assembled_.solve(rhs, x);
+  VectorXd border = border_of(rhs);
   const core::ReadArray ra(rhs);
   core::WriteArray xa(x);
+  composition_->solve(ra.data(), border, xa.data());
+  if (rank_ == size_ - 1) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
+}
 
-  // Forward: response of this rank's run to the right-hand side alone.
-  VectorXd own = VectorXd::Zero(all), t = VectorXd::Zero(n_);
-  MatrixXd z;
-  for (Index i = 0; i < count_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    z = Map<const VectorXd>(ra.data() + i * m * n_, m * n_) - intervals_[k]->start(t);
-    intervals_[k]->solve(z);
-    own.tail(borders_) += rows_[k] * z.col(0);
-    t = z.col(0).tail(n_);
-  }
-  own.head(n_) = t;
-  VectorXd gathered(all * size_);
-  MPI_Allgather(own.data(), static_cast<int>(all), MPI_DOUBLE, gathered.data(), static_cast<int>(all), MPI_DOUBLE,
-                comm_);
-  VectorXd through = VectorXd::Zero(n_), entering = VectorXd::Zero(n_), added = VectorXd::Zero(borders_);
-  for (int p = 0; p < size_; ++p) {
-    const auto& q = rank_maps_[static_cast<std::size_t>(p)];
-    const auto part = gathered.segment(static_cast<Index>(p) * all, all);
-    if (p == rank_) entering = through;
-    added += part.tail(borders_) + q.bottomLeftCorner(borders_, n_) * through;
-    through = (part.head(n_) + q.topLeftCorner(n_, n_) * through).eval();
-  }
-  VectorXd small(all);
-  small << through, r_border - added;
-  small = small_.solve(small).eval();
-  VectorXd state = to_rank_[static_cast<std::size_t>(rank_)] * small + entering;
-  const VectorXd border = small.tail(borders_);
+std::vector<std::complex<double>> CycleProblem::multipliers() {
+  return composition_->multipliers();
+}
 
-  // Back: with the state entering this rank and the border known, each interval follows from its left neighbour.
-  for (Index i = 0; i < count_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    z = Map<const VectorXd>(ra.data() + i * m * n_, m * n_) - intervals_[k]->start(state) - columns_[k] * border;
-    intervals_[k]->solve(z);
-    Map<VectorXd>(xa.data() + i * m * n_, m * n_) = z.col(0);
-    state = z.col(0).tail(n_);
-  }
-  if (rank_ == size_ - 1)
-    for (Index k = 0; k < borders_; ++k) xa[static_cast<PetscInt>(xa.size() - borders_ + k)] = border(k);
+MatrixXd CycleProblem::monodromy() const {
+  return composition_->monodromy();
+}
+
+MatrixXd CycleProblem::critical_motion(double mu) {
+  return state_scale().asDiagonal() * propagate(composition_->critical_start(mu));
 }
 
 MatrixXd CycleProblem::propagate(const VectorXd& v) const {
   const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
   MatrixXd whole = MatrixXd::Zero(n_, total * m);
-  VectorXd state = to_rank_[static_cast<std::size_t>(rank_)].leftCols(n_) * v;
-  for (Index i = 0; i < count_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    MatrixXd z = -intervals_[k]->start(state);
-    intervals_[k]->solve(z);
-    whole.middleCols((first_ + i) * m, m) = Map<const MatrixXd>(z.data(), n_, m);
-    state = z.col(0).tail(n_);
-  }
+  VectorXd added = VectorXd::Zero(borders_);
+  (void)run_.drive(nullptr, composition_->entering(v), nullptr, whole.col(first_ * m).data(), added);
   MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return whole;
-}
-
-std::vector<std::complex<double>> CycleProblem::multipliers() {
-  return spectral::eigenvalues(monodromy_);
-}
-
-// v of (M - mu I) v = 0 by inverse iteration, carried over the period.
-MatrixXd CycleProblem::critical_motion(double mu) {
-  const Eigen::PartialPivLU<MatrixXd> lu(monodromy_ - mu * (1 + 1e-10) * MatrixXd::Identity(n_, n_));
-  VectorXd v(n_);
-  for (Index k = 0; k < n_; ++k) v(k) = std::sin(1.0 + static_cast<double>(k));
-  for (int k = 0; k < 4; ++k) v = lu.solve(v).normalized();
-  return state_scale().asDiagonal() * propagate(v);
-}
-
-// The same matrix entry by entry, for MUMPS: the check on everything above.
-void CycleProblem::assemble(const std::vector<MatrixXd>& rows) {
-  const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
-  const Index local = count_ * m * n_ + (rank_ == size_ - 1 ? borders_ : 0), unknowns = total * m * n_;
-  check(MatCreate(comm_, assembled_.put()));
-  check(MatSetSizes(assembled_.get(), static_cast<PetscInt>(local), static_cast<PetscInt>(local), PETSC_DETERMINE,
-                    PETSC_DETERMINE));
-  check(MatSetType(assembled_.get(), MATAIJ));
-  std::vector<PetscInt> diagonal(static_cast<std::size_t>(local),
-                                 static_cast<PetscInt>(std::min(local, (m + 1) * n_ + borders_)));
-  std::vector<PetscInt> off(static_cast<std::size_t>(local), static_cast<PetscInt>(n_ + borders_));
-  if (rank_ == size_ - 1)
-    for (Index k = 0; k < borders_; ++k) {
-      diagonal[static_cast<std::size_t>(local - borders_ + k)] = static_cast<PetscInt>(local);
-      off[static_cast<std::size_t>(local - borders_ + k)] = static_cast<PetscInt>(unknowns + borders_ - local);
-    }
-  check(MatSeqAIJSetPreallocation(assembled_.get(), 0, diagonal.data()));
-  check(MatMPIAIJSetPreallocation(assembled_.get(), 0, diagonal.data(), 0, off.data()));
-  const auto add = [&](Index row, Index column, const MatrixXd& block) {
-    for (Index a = 0; a < block.rows(); ++a)
-      for (Index b = 0; b < block.cols(); ++b)
-        if (block(a, b) != 0)
-          check(MatSetValue(assembled_.get(), static_cast<PetscInt>(row + a), static_cast<PetscInt>(column + b),
-                            block(a, b), ADD_VALUES));
-  };
-  for (Index i = 0; i < count_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const Index base = (first_ + i) * m * n_, before = first_ + i == 0 ? unknowns - n_ : base - n_;
-    for (int j = 0; j < m; ++j) {
-      add(base + j * n_, before, intervals_[k]->block(j, 0));
-      for (int l = 1; l <= m; ++l) add(base + j * n_, base + (l - 1) * n_, intervals_[k]->block(j, l));
-    }
-    add(base, unknowns, columns_[k]);
-    add(unknowns, base, rows[k]);
-  }
-  if (rank_ == size_ - 1) {
-    add(unknowns, unknowns, corner_);
-    for (Index k = 0; k < borders_; ++k)
-      check(MatSetValue(assembled_.get(), static_cast<PetscInt>(unknowns + k), static_cast<PetscInt>(unknowns + k), 0.0,
-                        ADD_VALUES));
-  }
-  check(MatAssemblyBegin(assembled_.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(assembled_.get(), MAT_FINAL_ASSEMBLY));
-  check(KSPCreate(comm_, assembled_solver_.put()));
-  check(KSPSetOptionsPrefix(assembled_solver_.get(), "assembled_"));
-  check(KSPSetOperators(assembled_solver_.get(), assembled_.get(), assembled_.get()));
-  check(KSPSetType(assembled_solver_.get(), KSPPREONLY));
-  PC pc = nullptr;
-  check(KSPGetPC(assembled_solver_.get(), &pc));
-  check(PCSetType(pc, PCLU));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  check(KSPSetFromOptions(assembled_solver_.get()));
 }
 
 Cycle CycleProblem::gather(Vec u) const {

@@ -44,7 +44,8 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
   check(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(shell_multiply)));
 
   DominantSubspace out;
-  for (PetscInt wanted = std::min<PetscInt>(n, options.guess);; wanted = std::min<PetscInt>(n, 2 * wanted)) {
+  const auto most = std::min<PetscInt>(n, options.most);
+  for (PetscInt wanted = std::min<PetscInt>(most, options.guess);; wanted = std::min<PetscInt>(most, 2 * wanted)) {
     EigenSolver eps;
     check(EPSCreate(comm, eps.put()));
     check(EPSSetOptionsPrefix(eps.get(), "monodromy_"));
@@ -71,7 +72,7 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
       out.values.emplace_back(re, im);
       if (std::abs(out.values.back()) > options.radius) ++large;
     }
-    if (large == converged && wanted < n) continue;
+    if (large == converged && wanted < most) continue;
     std::vector<core::Vector> vectors;
     std::vector<Vec> raw;
     for (PetscInt i = 0; i < converged; ++i) {

@@ -20,6 +20,7 @@ struct DominantSubspace {
 struct SubspaceOptions {
   double radius = 0.3;
   double tolerance = 1e-9;  ///< relative residual of an eigenpair
+  int most = 1 << 20;       ///< of them, although more may be above the radius
   int guess = 4;            ///< eigenvalues asked for first; more are found until one is below the radius
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "whirl/core/direct_solver.hpp"
+
 namespace whirl::solve {
 
 using core::check;
@@ -108,16 +110,7 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   }
   check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
-  if (!solver_) {
-    check(KSPCreate(comm(), solver_.put()));
-    check(KSPSetOptionsPrefix(solver_.get(), "equilibrium_"));
-    check(KSPSetType(solver_.get(), KSPPREONLY));
-    PC pc = nullptr;
-    check(KSPGetPC(solver_.get(), &pc));
-    check(PCSetType(pc, PCLU));
-    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    check(KSPSetFromOptions(solver_.get()));
-  }
+  if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
   check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
   check(KSPSetUp(solver_.get()));
 }

@@ -22,15 +22,20 @@ struct State {
 class Follower {
 public:
   Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
-      : problem_(problem), options_(options), callbacks_(callbacks), direction_(options.to >= options.from ? 1 : -1) {}
+      : problem_(problem),
+        options_(options),
+        callbacks_(callbacks),
+        newton_(problem, options.newton),
+        direction_(options.to >= options.from ? 1 : -1) {}
 
   BranchEnd run(core::Vector u, std::optional<Restart> restart);
 
 private:
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
-  NewtonResult correct(Vec u, Vec row, double offset) { return newton(problem_, u, row, offset, options_.newton); }
+  NewtonResult correct(Vec u, Vec row, double offset) { return newton_.solve(u, row, offset); }
   NewtonResult correct_at(core::Vector& u, double parameter);
+  [[nodiscard]] bool on_course(const State& from, const State& to) const;
   // The point at arclength ds from `from`.
   bool advance(const State& from, double ds, State& to, NewtonResult& result);
   // After a change of the discretisation: the point near `here` on the branch of the new one, and what that changed.
@@ -58,6 +63,7 @@ private:
   ExtendedProblem& problem_;
   const ContinuationOptions& options_;
   const BranchCallbacks& callbacks_;
+  Newton newton_;
   int direction_;
   bool visited_ = false;  // the last step's crossings came from a closer look
   // Folds of the step whose events are sought: parameter, and how far the step reaches from there.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "eliminated_response.hpp"
+#include "whirl/core/direct_solver.hpp"
 
 namespace whirl::solve {
 
@@ -93,17 +94,7 @@ void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& ri
   }
   check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));
-  if (fresh) {
-    check(KSPCreate(system_.comm(), solver_.put()));
-    check(KSPSetOptionsPrefix(solver_.get(), "response_"));
-    check(KSPSetType(solver_.get(), KSPPREONLY));
-    PC pc = nullptr;
-    check(KSPGetPC(solver_.get(), &pc));
-    check(PCSetType(pc, PCLU));
-    // PETSc's own LU does not pivot, and rows like q' = v have no diagonal.
-    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    check(KSPSetFromOptions(solver_.get()));
-  }
+  if (fresh) solver_ = core::make_direct_solver(system_.comm(), "response_");
   check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
   check(KSPSolve(solver_.get(), rhs_.get(), answer_.get()));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;

@@ -1,6 +1,6 @@
-#include "whirl/solve/interval.hpp"
-
 #include <Eigen/LU>
+
+#include "whirl/solve/interval.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -9,143 +9,52 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-class DenseInterval : public Interval {
+class DenseInterval final : public Interval {
 public:
-  DenseInterval(const Scheme& scheme, double length, std::vector<MatrixXd> jx, std::vector<MatrixXd> jxdot)
-      : scheme_(scheme), length_(length), jx_(std::move(jx)), jxdot_(std::move(jxdot)) {
-    const Index n = jx_[0].rows(), m = scheme.degree;
-    MatrixXd a(m * n, m * n);
+  DenseInterval(const Scheme& scheme, double length, const std::vector<MatrixXd>& jx,
+                const std::vector<MatrixXd>& jxdot) {
+    const Index n = jx[0].rows(), m = scheme.degree;
+    a_.resize(m * n, m * n);
     a0_.resize(m * n, n);
-    for (int j = 0; j < m; ++j) {
-      a0_.middleRows(j * n, n) = block(j, 0);
-      for (int l = 1; l <= m; ++l) a.block(j * n, (l - 1) * n, n, n) = block(j, l);
-    }
-    lu_.compute(a);
+    for (Index j = 0; j < m; ++j)
+      for (Index l = 0; l <= m; ++l) {
+        const auto k = static_cast<std::size_t>(j);
+        Eigen::Block<MatrixXd> out = l == 0 ? a0_.block(j * n, 0, n, n) : a_.block(j * n, (l - 1) * n, n, n);
+        out = scheme.value(j, l) * jx[k] + (scheme.slope(j, l) / length) * jxdot[k];
+      }
+    lu_.compute(a_);
   }
   void solve(MatrixXd& y) const override { y = lu_.solve(y).eval(); }
   void solve_transposed(MatrixXd& y) const override { y = lu_.transpose().solve(y).eval(); }
   MatrixXd start(const MatrixXd& x) const override { return a0_ * x; }
   MatrixXd start_transposed(const MatrixXd& y) const override { return a0_.transpose() * y; }
   VectorXd multiply(const VectorXd& x_start, const VectorXd& x) const override {
-    const Index n = jx_[0].rows(), m = scheme_.degree;
-    VectorXd y(m * n);
-    for (Index j = 0; j < m; ++j) {
-      VectorXd value = scheme_.value(j, 0) * x_start, slope = scheme_.slope(j, 0) * x_start;
-      for (Index l = 1; l <= m; ++l) {
-        value += scheme_.value(j, l) * x.segment((l - 1) * n, n);
-        slope += scheme_.slope(j, l) * x.segment((l - 1) * n, n);
-      }
-      const auto k = static_cast<std::size_t>(j);
-      y.segment(j * n, n) = jx_[k] * value + jxdot_[k] * (slope / length_);
-    }
+    VectorXd y = a_ * x;
+    y.noalias() += a0_ * x_start;
     return y;
   }
-  MatrixXd transition() const override {
-    const Index n = jx_[0].rows();
-    return -lu_.solve(a0_).bottomRows(n);
-  }
   MatrixXd block(int j, int l) const override {
-    const auto k = static_cast<std::size_t>(j);
-    return scheme_.value(j, l) * jx_[k] + (scheme_.slope(j, l) / length_) * jxdot_[k];
+    const Index n = a0_.cols();
+    return l == 0 ? MatrixXd(a0_.middleRows(j * n, n)) : MatrixXd(a_.block(j * n, (l - 1) * n, n, n));
   }
 
 private:
-  const Scheme& scheme_;
-  double length_;
-  std::vector<MatrixXd> jx_, jxdot_;
-  MatrixXd a0_;
+  MatrixXd a_, a0_;
   Eigen::PartialPivLU<MatrixXd> lu_;
-};
-
-class LowRankInterval : public Interval {
-public:
-  LowRankInterval(std::shared_ptr<const LinearPart> part, std::vector<MatrixXd> tangents)
-      : part_(std::move(part)), s_(std::move(tangents)) {
-    const Index m = part_->scheme.degree;
-    k_.compute(MatrixXd::Identity(m * part_->r, m * part_->r) - times_s(part_->vy));
-  }
-  void solve(MatrixXd& y) const override {
-    part_->solve(y);
-    y.noalias() += part_->y * k_.solve(times_s(part_->inputs(y)));
-  }
-  void solve_transposed(MatrixXd& y) const override {
-    // A^-T y = W0^-T (y + V^T S^T K^-T Y^T y)
-    const MatrixXd t = k_.transpose().solve(part_->y.transpose() * y);
-    y += part_->inputs_transposed(times_s_transposed(t));
-    part_->solve_transposed(y);
-  }
-  MatrixXd start(const MatrixXd& x) const override {
-    MatrixXd y = part_->w00 * x;
-    const MatrixXd inputs = part_->c * x;
-    for (int j = 0; j < part_->scheme.degree; ++j)
-      y.middleRows(j * part_->n, part_->n).noalias() -=
-          part_->b * (s_[static_cast<std::size_t>(j)] * inputs) * part_->scheme.value(j, 0);
-    return y;
-  }
-  MatrixXd start_transposed(const MatrixXd& y) const override {
-    MatrixXd x = part_->w00.transpose() * y;
-    for (int j = 0; j < part_->scheme.degree; ++j)
-      x.noalias() -= part_->c.transpose() *
-                     (s_[static_cast<std::size_t>(j)].transpose() *
-                      (part_->b.transpose() * y.middleRows(j * part_->n, part_->n))) *
-                     part_->scheme.value(j, 0);
-    return x;
-  }
-  VectorXd multiply(const VectorXd& x_start, const VectorXd& x) const override {
-    const auto& p = *part_;
-    VectorXd y(p.scheme.degree * p.n);
-    for (Index j = 0; j < p.scheme.degree; ++j) {
-      VectorXd value = p.scheme.value(j, 0) * x_start, slope = p.scheme.slope(j, 0) * x_start;
-      for (Index l = 1; l <= p.scheme.degree; ++l) {
-        value += p.scheme.value(j, l) * x.segment((l - 1) * p.n, p.n);
-        slope += p.scheme.slope(j, l) * x.segment((l - 1) * p.n, p.n);
-      }
-      y.segment(j * p.n, p.n) =
-          p.l0 * value + p.l1 * (slope / p.length) - p.b * (s_[static_cast<std::size_t>(j)] * (p.c * value));
-    }
-    return y;
-  }
-  MatrixXd transition() const override {
-    return part_->end_free + part_->end_y * k_.solve(times_s(part_->inputs_free));
-  }
-  MatrixXd block(int j, int l) const override {
-    const auto& p = *part_;
-    return p.scheme.value(j, l) * (p.l0 - p.b * s_[static_cast<std::size_t>(j)] * p.c) +
-           (p.scheme.slope(j, l) / p.length) * p.l1;
-  }
-
-private:
-  // S v for v [mw x k], block by block.
-  MatrixXd times_s(const MatrixXd& v) const {
-    const Index r = part_->r, w = part_->w;
-    MatrixXd out(part_->scheme.degree * r, v.cols());
-    for (Index j = 0; j < part_->scheme.degree; ++j)
-      out.middleRows(j * r, r).noalias() = s_[static_cast<std::size_t>(j)] * v.middleRows(j * w, w);
-    return out;
-  }
-  MatrixXd times_s_transposed(const MatrixXd& v) const {
-    const Index r = part_->r, w = part_->w;
-    MatrixXd out(part_->scheme.degree * w, v.cols());
-    for (Index j = 0; j < part_->scheme.degree; ++j)
-      out.middleRows(j * w, w).noalias() = s_[static_cast<std::size_t>(j)].transpose() * v.middleRows(j * r, r);
-    return out;
-  }
-
-  std::shared_ptr<const LinearPart> part_;
-  std::vector<MatrixXd> s_;
-  Eigen::PartialPivLU<MatrixXd> k_;
 };
 
 }  // namespace
 
-std::unique_ptr<Interval> make_dense_interval(const Scheme& scheme, double length, std::vector<MatrixXd> jx,
-                                              std::vector<MatrixXd> jxdot) {
-  return std::make_unique<DenseInterval>(scheme, length, std::move(jx), std::move(jxdot));
+void Interval::carry(const MatrixXd& rows, MatrixXd& state, MatrixXd& added) const {
+  MatrixXd x = -start(state);
+  solve(x);
+  added.noalias() += rows * x;
+  state = x.bottomRows(state.rows());
 }
 
-std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part,
-                                                 std::vector<MatrixXd> tangents) {
-  return std::make_unique<LowRankInterval>(std::move(part), std::move(tangents));
+std::unique_ptr<Interval> make_dense_interval(const Scheme& scheme, double length, std::vector<MatrixXd> jx,
+                                              std::vector<MatrixXd> jxdot) {
+  return std::make_unique<DenseInterval>(scheme, length, jx, jxdot);
 }
 
 }  // namespace whirl::solve

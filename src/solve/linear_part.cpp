@@ -58,13 +58,11 @@ LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const 
     w00.middleRows(j * n, n) = scheme.value(j, 0) * l0 + (scheme.slope(j, 0) / length) * l1;
     y.block(j * n, j * r, n, r) = b;
   }
-  MatrixXd free = w00;
+  free = -w00;
   solve(free);
   solve(y);
   vy = inputs(y);
-  end_free = -free.bottomRows(n);
-  end_y = y.bottomRows(n);
-  inputs_free = -inputs(free);
+  inputs_free = inputs(free);
   for (Index j = 0; j < m; ++j) inputs_free.middleRows(j * w, w) += scheme.value(j, 0) * c;
 }
 

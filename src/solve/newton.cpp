@@ -64,10 +64,10 @@ core::Matrix make_shell(Context& c, Vec like) {
 
 // The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
 // The flexible method keeps the preconditioned vectors, which saves another solve for the answer.
-void configure(KSP ksp, Context& c) {
+void configure(KSP ksp, Context& c, double relative, double absolute) {
   check(KSPSetType(ksp, KSPFGMRES));
   check(KSPSetPCSide(ksp, PC_RIGHT));
-  check(KSPSetTolerances(ksp, 1e-9, 1e-300, PETSC_DEFAULT, 20));
+  check(KSPSetTolerances(ksp, relative, absolute, PETSC_DEFAULT, 20));
   PC pc = nullptr;
   check(KSPGetPC(ksp, &pc));
   check(PCSetType(pc, PCSHELL));
@@ -100,18 +100,30 @@ const char* text_of(SNESConvergedReason reason) {
 
 }  // namespace
 
-NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, const NewtonOptions& options) {
-  Context c{problem, row, offset, core::Gate(problem.comm())};
-  core::Vector r = core::duplicate(u);
-  core::Matrix shell = make_shell(c, u);
+struct Newton::Objects {
+  Objects(ExtendedProblem& problem, Vec like) : context{problem, nullptr, 0, core::Gate(problem.comm())} {
+    check(VecGetLocalSize(like, &local));
+    check(VecGetSize(like, &global));
+    shell = make_shell(context, like);
+  }
+  void make_nonlinear(const NewtonOptions& options, Vec like);
+  void make_linear(const std::string& prefix);
+
+  Context context;
+  PetscInt local = 0, global = 0;
+  core::Matrix shell;
+  core::Vector residual;
   core::NonlinearSolver snes;
-  check(SNESCreate(problem.comm(), snes.put()));
+  core::LinearSolver ksp;
+};
+
+void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
+  residual = core::duplicate(like);
+  check(SNESCreate(context.problem.comm(), snes.put()));
   check(SNESSetOptionsPrefix(snes.get(), options.prefix.c_str()));
-  check(SNESSetFunction(snes.get(), r.get(), form_residual, &c));
-  check(SNESSetJacobian(snes.get(), shell.get(), shell.get(), form_jacobian, &c));
-  PetscInt n = 0;
-  check(VecGetSize(u, &n));
-  const double root_n = std::sqrt(static_cast<double>(n));
+  check(SNESSetFunction(snes.get(), residual.get(), form_residual, &context));
+  check(SNESSetJacobian(snes.get(), shell.get(), shell.get(), form_jacobian, &context));
+  const double root_n = std::sqrt(static_cast<double>(global));
   check(SNESSetTolerances(snes.get(), options.tolerance * root_n, 1e-30, options.step_tolerance, options.max_iterations,
                           1000));
   check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
@@ -119,51 +131,93 @@ NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, con
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
-  KSP ksp = nullptr;
-  check(SNESGetKSP(snes.get(), &ksp));
-  configure(ksp, c);
+  KSP inner = nullptr;
+  check(SNESGetKSP(snes.get(), &inner));
+  // Digits below Newton's own tolerance are of no use.
+  configure(inner, context, context.problem.linear_tolerance(), 0.1 * options.tolerance * root_n);
   check(SNESSetFromOptions(snes.get()));
-  c.gate.rethrow(SNESSolve(snes.get(), nullptr, u));
+}
+
+void Newton::Objects::make_linear(const std::string& prefix) {
+  check(KSPCreate(context.problem.comm(), ksp.put()));
+  check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
+  configure(ksp.get(), context, 1e-9, 1e-300);
+  check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
+  check(KSPSetFromOptions(ksp.get()));
+}
+
+Newton::Newton(ExtendedProblem& problem, NewtonOptions options) : problem_(problem), options_(std::move(options)) {}
+Newton::~Newton() = default;
+
+Newton::Objects& Newton::objects(Vec like) {
+  if (objects_) {
+    // Every rank looks at the same two numbers: the last one's unknowns change with any other layout.
+    PetscInt local = 0, global = 0;
+    check(VecGetLocalSize(like, &local));
+    check(VecGetSize(like, &global));
+    int same = local == objects_->local && global == objects_->global;
+    MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, problem_.comm());
+    if (!same) objects_.reset();
+  }
+  if (!objects_) objects_ = std::make_unique<Objects>(problem_, like);
+  return *objects_;
+}
+
+NewtonResult Newton::solve(Vec u, Vec row, double offset) {
+  Objects& o = objects(u);
+  if (!o.snes) o.make_nonlinear(options_, u);
+  o.context.row = row;
+  o.context.offset = offset;
+  o.context.gate = core::Gate(problem_.comm());
+  SNES snes = o.snes.get();
+  o.context.gate.rethrow(SNESSolve(snes, nullptr, u));
 
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0, linear = 0;
   double norm = 0;
-  check(SNESGetConvergedReason(snes.get(), &reason));
-  check(SNESGetIterationNumber(snes.get(), &iterations));
-  check(SNESGetLinearSolveIterations(snes.get(), &linear));
-  check(SNESGetFunctionNorm(snes.get(), &norm));
-  NewtonResult result{reason > 0, static_cast<int>(iterations), static_cast<int>(linear), norm / root_n,
-                      text_of(reason)};
+  check(SNESGetConvergedReason(snes, &reason));
+  check(SNESGetIterationNumber(snes, &iterations));
+  check(SNESGetLinearSolveIterations(snes, &linear));
+  check(SNESGetFunctionNorm(snes, &norm));
+  NewtonResult result{reason > 0, static_cast<int>(iterations), static_cast<int>(linear),
+                      norm / std::sqrt(static_cast<double>(o.global)), text_of(reason)};
   // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls
   // there has arrived.
-  if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options.tolerance)
+  if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options_.tolerance)
     result.converged = true;
   // Steps that the line search has cut to nothing are no convergence either.
-  if (reason == SNES_CONVERGED_SNORM_RELATIVE && !(result.residual < 1e4 * options.tolerance)) {
+  if (reason == SNES_CONVERGED_SNORM_RELATIVE && !(result.residual < 1e4 * options_.tolerance)) {
     result.converged = false;
     result.reason = "the steps became too small";
   }
-  if (!result.converged && !c.gate.domain_text().empty()) result.reason += ": " + c.gate.domain_text();
+  if (!result.converged && !o.context.gate.domain_text().empty()) result.reason += ": " + o.context.gate.domain_text();
+  // A solver that has failed keeps flags of the failure.
+  if (reason <= 0) objects_.reset();
   return result;
 }
 
-int solve_linear(ExtendedProblem& problem, Vec rhs, Vec x, const std::string& prefix) {
-  Context c{problem, nullptr, 0, core::Gate(problem.comm())};
-  core::Matrix shell = make_shell(c, x);
-  core::LinearSolver ksp;
-  check(KSPCreate(problem.comm(), ksp.put()));
-  check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
-  configure(ksp.get(), c);
-  check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
-  check(KSPSetFromOptions(ksp.get()));
-  c.gate.rethrow(KSPSolve(ksp.get(), rhs, x));
+int Newton::solve_linear(Vec rhs, Vec x) {
+  Objects& o = objects(x);
+  if (!o.ksp) o.make_linear(options_.linear_prefix);
+  o.context.gate = core::Gate(problem_.comm());
+  o.context.gate.rethrow(KSPSolve(o.ksp.get(), rhs, x));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(ksp.get(), &reason));
+  check(KSPGetConvergedReason(o.ksp.get(), &reason));
   if (reason == KSP_DIVERGED_NANORINF || reason == KSP_DIVERGED_PC_FAILED)
     throw core::NotConverged("the linearised equations are singular");
   PetscInt iterations = 0;
-  check(KSPGetIterationNumber(ksp.get(), &iterations));
+  check(KSPGetIterationNumber(o.ksp.get(), &iterations));
   return static_cast<int>(iterations);
+}
+
+NewtonResult newton(ExtendedProblem& problem, Vec u, Vec row, double offset, const NewtonOptions& options) {
+  return Newton(problem, options).solve(u, row, offset);
+}
+
+int solve_linear(ExtendedProblem& problem, Vec rhs, Vec x, const std::string& prefix) {
+  NewtonOptions options;
+  options.linear_prefix = prefix;
+  return Newton(problem, options).solve_linear(rhs, x);
 }
 
 }  // namespace whirl::solve

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "solve/dominant_subspace.hpp"
+#include "solve/local_part.hpp"
 #include "solve/sparse_step.hpp"
 #include "whirl/core/agree.hpp"
 
@@ -21,16 +22,6 @@ namespace {
 
 constexpr int stale_after = 12;
 
-void put(const VectorXd& values, Vec v) {
-  const core::WriteArray a(v);
-  Map<VectorXd>(a.data(), values.size()) = values;
-}
-
-VectorXd get(Vec v) {
-  const core::ReadArray a(v);
-  return Map<const VectorXd>(a.data(), a.size());
-}
-
 }  // namespace
 
 NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau,
@@ -40,7 +31,7 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
       steps_(steps),
       scheme_(make_scheme(1, Points::radau)),
       mesh_(std::move(mesh)),
-      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau))),
+      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates)),
       local_(system.local_size()),
       borders_(options.autonomous ? 2 : 1),
       last_(core::rank_of(system.comm()) == core::size_of(system.comm()) - 1),
@@ -81,6 +72,7 @@ VectorXd NewtonPicardProblem::border_of(Vec u) const {
 // Sets the parameter and returns the period.
 double NewtonPicardProblem::begin_point(const VectorXd& border) {
   system_.set_parameter(border(borders_ - 1) * options_.parameter_scale);
+  stepper_->refresh();
   const double period =
       options_.autonomous ? border(0) * period_scale_ : 2 * std::numbers::pi * options_.turns / system_.speed();
   core::agree(comm(), [&] {
@@ -107,15 +99,11 @@ void NewtonPicardProblem::march(Index i, double period, Vec x, MatrixXd* columns
   for (int k = 0; k < steps_; ++k) {
     StepProduct& step = link[static_cast<std::size_t>(k)];
     stepper_->step(angle(begin + k * h), angle(h), h * period, x, &step);
-    for (Index b = 0; b < borders_; ++b) {
-      put(columns->col(b), work_.get());
-      if (k > 0) step.apply(work_.get());
-      columns->col(b) = get(work_.get());
-    }
-    VectorXd d_parameter = get(step.d_parameter());
-    if (by_speed) d_parameter -= h * period / system_.speed() * get(step.d_length());
+    if (k > 0) step.apply(*columns);
+    VectorXd d_parameter = step.d_parameter();
+    if (by_speed) d_parameter -= h * period / system_.speed() * step.d_length();
     columns->col(borders_ - 1) -= d_parameter * options_.parameter_scale;
-    if (options_.autonomous) columns->col(0) -= h * period_scale_ * get(step.d_length());
+    if (options_.autonomous) columns->col(0) -= h * period_scale_ * step.d_length();
   }
 }
 
@@ -136,27 +124,21 @@ void NewtonPicardProblem::residual(Vec u, Vec r) {
   if (last_) ra[ra.size() - 2] = phase(0, 0) - phase_offset_;
 }
 
-void NewtonPicardProblem::apply(Index i, VectorXd& v) const {
-  put(v, work_.get());
-  for (const StepProduct& step : links_[static_cast<std::size_t>(i)]) step.apply(work_.get());
-  v = get(work_.get());
+void NewtonPicardProblem::apply(Index i, MatrixXd& v) const {
+  for (const StepProduct& step : links_[static_cast<std::size_t>(i)]) step.apply(v);
 }
 
-// M v column by column, and what the motions add to the rows [nb x columns].
+// M v, and what the motions add to the rows [nb x columns].
 MatrixXd NewtonPicardProblem::monodromy_times(const MatrixXd& v, MatrixXd& added) const {
-  MatrixXd out(local_, v.cols());
+  MatrixXd state = v;
   added = MatrixXd::Zero(borders_, v.cols());
-  for (Index c = 0; c < v.cols(); ++c) {
-    VectorXd state = v.col(c);
-    for (Index i = 0; i < intervals(); ++i) {
-      apply(i, state);
-      added.col(c) += rows_[static_cast<std::size_t>(i)] * state;
-    }
-    out.col(c) = state;
+  for (Index i = 0; i < intervals(); ++i) {
+    apply(i, state);
+    added += rows_[static_cast<std::size_t>(i)] * state;
   }
   sum(added);
   products_ += v.cols();
-  return out;
+  return state;
 }
 
 MatrixXd NewtonPicardProblem::complement(const MatrixXd& v) const {
@@ -195,11 +177,7 @@ void NewtonPicardProblem::linearise(Vec u, Vec row) {
   ends_added_ = MatrixXd::Zero(borders_, borders_);
   for (Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    for (Index b = 0; b < borders_ && i > 0; ++b) {
-      VectorXd column = ends_.col(b);
-      apply(i, column);
-      ends_.col(b) = column;
-    }
+    if (i > 0) apply(i, ends_);
     ends_ -= columns_[k];
     ends_added_ += rows_[k] * ends_;
   }
@@ -255,8 +233,9 @@ std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
   options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
   DominantSubspace found = dominant_subspace(
       [this](Vec v) {
-        for (const auto& link : links_)
-          for (const StepProduct& step : link) step.apply(v);
+        MatrixXd state = get(v);
+        for (Index i = 0; i < intervals(); ++i) apply(i, state);
+        put(state, v);
         ++products_;
       },
       first.get(), options);
@@ -277,7 +256,7 @@ MatrixXd NewtonPicardProblem::critical_motion(double mu) {
   const Eigen::EigenSolver<MatrixXd> modes(projected);
   Index nearest = 0;
   (modes.eigenvalues().array() - mu).abs().minCoeff(&nearest);
-  VectorXd state = basis_ * modes.eigenvectors().col(nearest).real().normalized();
+  MatrixXd state = basis_ * modes.eigenvectors().col(nearest).real().normalized();
   MatrixXd motion(local_, intervals());
   for (Index i = 0; i < intervals(); ++i) {
     apply(i, state);
@@ -295,7 +274,7 @@ void NewtonPicardProblem::multiply(Vec v, Vec y) {
   MatrixXd added = MatrixXd::Zero(borders_, 1);
   for (Index i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    VectorXd state = x.col(i == 0 ? count - 1 : i - 1);
+    MatrixXd state = x.col(i == 0 ? count - 1 : i - 1);
     apply(i, state);
     Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + columns_[k] * border;
     added += rows_[k] * x.col(i);
@@ -314,7 +293,7 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   const Map<const MatrixXd> r(ra.data(), local_, count);
   // The motion that the right-hand side alone drives.
   MatrixXd added = MatrixXd::Zero(borders_, 1);
-  VectorXd state = VectorXd::Zero(local_);
+  MatrixXd state = MatrixXd::Zero(local_, 1);
   for (Index i = 0; i < count; ++i) {
     if (i > 0) apply(i, state);
     state += r.col(i);
@@ -341,73 +320,6 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   ++products_;
   ++solves_;
   if (last_) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
-}
-
-MatrixXd NewtonPicardProblem::whole(const MatrixXd& columns) const {
-  MatrixXd out(system_.size(), columns.cols());
-  core::Scatter scatter;
-  core::Vector all;
-  check(VecScatterCreateToAll(work_.get(), scatter.put(), all.put()));
-  for (Index i = 0; i < columns.cols(); ++i) {
-    put(columns.col(i), work_.get());
-    check(VecScatterBegin(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
-    check(VecScatterEnd(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
-    out.col(i) = get(all.get());
-  }
-  return out;
-}
-
-Cycle NewtonPicardProblem::gather(Vec u) const {
-  const VectorXd border = border_of(u);
-  const core::ReadArray ua(u);
-  Cycle cycle{mesh_, {}, 0, border(borders_ - 1) * options_.parameter_scale};
-  cycle.x = whole(scale_.asDiagonal() * Map<const MatrixXd>(ua.data(), local_, intervals()));
-  if (options_.autonomous)
-    cycle.period = border(0) * period_scale_;
-  else
-    cycle.period =
-        2 * std::numbers::pi * options_.turns / (system_.parameter_is_speed() ? cycle.parameter : system_.speed());
-  return cycle;
-}
-
-core::Vector NewtonPicardProblem::scatter(const Cycle& cycle) const {
-  core::require(!options_.autonomous || period_scale_ > 0, "an autonomous cycle wants its phase reference first");
-  const Cycle here = cycle.on(scheme_, mesh_);
-  core::Vector u = make_unknown();
-  PetscInt begin = 0;
-  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
-  const core::WriteArray ua(u.get());
-  Map<MatrixXd>(ua.data(), local_, intervals()) = scale_.cwiseInverse().asDiagonal() * here.x.middleRows(begin, local_);
-  if (last_) {
-    if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
-    ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
-  }
-  return u;
-}
-
-void NewtonPicardProblem::set_phase_reference(const Cycle& reference) {
-  core::require(options_.autonomous, "only an autonomous cycle has a phase condition");
-  if (period_scale_ == 0) period_scale_ = reference.period;
-  system_.set_parameter(reference.parameter);
-  const core::Vector u = scatter(reference);
-  const core::ReadArray ua(u.get());
-  const Map<const MatrixXd> x(ua.data(), local_, intervals());
-  core::Vector state = core::duplicate(work_.get()), slope = core::duplicate(work_.get());
-  phase_row_.resize(local_, intervals());
-  MatrixXd values = MatrixXd::Zero(2, 1);
-  for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(i), state.get());
-    stepper_->rate(0, state.get(), slope.get());
-    const VectorXd rate = get(slope.get());
-    phase_row_.col(i) = length(i) * rate;
-    values(0) += length(i) * rate.squaredNorm();
-    values(1) += length(i) * rate.dot(x.col(i));
-  }
-  sum(values);
-  const double norm = std::sqrt(values(0));
-  core::require(norm > 0, "the phase reference does not move");
-  phase_row_ /= norm;
-  phase_offset_ = values(1) / norm;
 }
 
 }  // namespace whirl::solve

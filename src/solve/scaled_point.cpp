@@ -41,25 +41,24 @@ ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure)
   f_ = core::duplicate(x_.get());
   system.scales(x_.get(), f_.get());
   state_scale_ = to_eigen(x_.get());
-  load_.resize(size());
   residual_scale_ = to_eigen(f_.get());
   if (structure_) {
-    l1_ = scaled(structure_->l1());
-    b_ = residual_scale_.cwiseInverse().asDiagonal() * structure_->b();
-    c_ = structure_->c() * state_scale_.asDiagonal();
+    const Index n = structure_->size();
+    b_ = residual_scale_.head(n).cwiseInverse().asDiagonal() * structure_->b();
+    c_ = structure_->c() * state_scale_.head(n).asDiagonal();
+    refresh();
   } else {
     matrix_ = system.make_jacobian();
   }
 }
 
-MatrixXd ScaledPoint::scaled(const MatrixXd& block) const {
-  return residual_scale_.cwiseInverse().asDiagonal() * block * state_scale_.asDiagonal();
-}
-
 void ScaledPoint::refresh() {
   if (!structure_) return;
-  l0_ = scaled(structure_->l0());
-  dl0_ = scaled(structure_->dl0());
+  const Index n = structure_->size();
+  const auto rows = residual_scale_.head(n).cwiseInverse().asDiagonal();
+  const auto columns = state_scale_.head(n).asDiagonal();
+  l0_ = rows * structure_->l0() * columns;
+  l1_ = rows * structure_->l1() * columns;
 }
 
 void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
@@ -68,39 +67,99 @@ void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
   Map<VectorXd>(da.data(), size()) = xdot.cwiseProduct(state_scale_);
 }
 
+void ScaledPoint::structured(double angle, const VectorXd& x, const VectorXd& xdot, bool tangents,
+                             Eigen::Ref<VectorXd> out, PointState& at) {
+  const Index n = structure_->size(), k = own_states();
+  at.value = x.cwiseProduct(state_scale_);
+  at.rate = xdot.cwiseProduct(state_scale_);
+  inputs_.noalias() = c_ * x.head(n);
+  structure_->films(inputs_, at.value.data() + n, at.rate.data() + n, tangents, at.films);
+  structure_->load(angle, load_);
+  auto core = out.head(n);
+  core.noalias() = l0_ * x.head(n);
+  core.noalias() += l1_ * xdot.head(n);
+  core -= load_.cwiseQuotient(residual_scale_.head(n));
+  core.noalias() -= b_ * at.films.forces;
+  if (k > 0) out.tail(k) = at.films.residual.cwiseQuotient(residual_scale_.tail(k));
+}
+
+void ScaledPoint::residual(double angle, const VectorXd& x, const VectorXd& xdot, Eigen::Ref<VectorXd> out,
+                           PointState& keep) {
+  structured(angle, x, xdot, true, out, keep);
+}
+
 void ScaledPoint::residual(double angle, const VectorXd& x, const VectorXd& xdot, Eigen::Ref<VectorXd> out) {
-  if (structure_) {
-    structure_->load(angle, load_, nullptr);
-    structure_->forces(c_ * x, forces_, nullptr, nullptr);
-    out.noalias() = l0_ * x;
-    out.noalias() += l1_ * xdot;
-    out -= load_.cwiseQuotient(residual_scale_);
-    out.noalias() -= b_ * forces_;
-    return;
-  }
+  if (structure_) return structured(angle, x, xdot, false, out, point_);
   put(x, xdot);
   system_.residual(angle, x_.get(), xdot_.get(), f_.get());
   out = to_eigen(f_.get()).cwiseQuotient(residual_scale_);
 }
 
+void ScaledPoint::parameter_derivative(double angle, const PointState& at, Eigen::Ref<VectorXd> out) {
+  structure_->parameter_derivative(angle, at.value, at.rate, at.films, d_parameter_);
+  out = d_parameter_.cwiseQuotient(residual_scale_);
+}
+
+void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Ref<VectorXd> out) const {
+  const Index n = structure_->size();
+  out.head(n).noalias() = l1_ * v.head(n);
+  out.tail(own_states()).setZero();
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const std::vector<double>& values = at.films.own[i].rates;
+    for (std::size_t e = 0; e < values.size(); ++e) {
+      const Index row = n + film.first + film.rates[e].row, column = n + film.first + film.rates[e].column;
+      out(row) += values[e] * v(column) * state_scale_(column) / residual_scale_(row);
+    }
+  }
+}
+
+void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) const {
+  const Index n = structure_->size();
+  jx.setZero(size(), size());
+  jxdot.setZero(size(), size());
+  jx.topLeftCorner(n, n) = l0_;
+  jx.topLeftCorner(n, n).noalias() -= b_ * (at.films.d_inputs * c_);
+  jxdot.topLeftCorner(n, n) = l1_;
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const problem::OwnTangents& t = at.films.own[i];
+    const Index first = n + film.first;
+    const auto rows = residual_scale_.segment(first, film.count).cwiseInverse().asDiagonal();
+    jx.block(first, 0, film.count, n).noalias() =
+        rows * (t.inputs.transpose() * c_.middleRows(film.first_input, film.inputs));
+    jx.block(0, first, n, film.count).noalias() =
+        -b_.middleCols(film.first_force, film.forces) * t.forces * state_scale_.segment(first, film.count).asDiagonal();
+    const auto add = [&](const std::vector<problem::Place>& places, const std::vector<double>& values, MatrixXd& out) {
+      for (std::size_t e = 0; e < places.size(); ++e) {
+        const Index row = first + places[e].row, column = first + places[e].column;
+        out(row, column) += values[e] * state_scale_(column) / residual_scale_(row);
+      }
+    };
+    add(film.states, t.states, jx);
+    add(film.rates, t.rates, jxdot);
+  }
+}
+
 void ScaledPoint::linearise(double angle, const VectorXd& x, const VectorXd& xdot, MatrixXd& jx, MatrixXd& jxdot,
                             VectorXd* d_parameter) {
   if (structure_) {
-    VectorXd d_load(size()), d_forces;
-    MatrixXd tangent;
-    structure_->load(angle, load_, &d_load);
-    structure_->forces(c_ * x, forces_, &tangent, &d_forces);
-    jx = l0_;
-    jx.noalias() -= b_ * (tangent * c_);
-    jxdot = l1_;
-    if (d_parameter) *d_parameter = dl0_ * x - d_load.cwiseQuotient(residual_scale_) - b_ * d_forces;
+    VectorXd f(size());
+    structured(angle, x, xdot, true, f, point_);
+    matrices(point_, jx, jxdot);
+    if (!d_parameter) return;
+    d_parameter->resize(size());
+    parameter_derivative(angle, point_, *d_parameter);
     return;
   }
   put(x, xdot);
+  const auto scaled = [&]() -> MatrixXd {
+    return residual_scale_.cwiseInverse().asDiagonal() * to_dense(matrix_.get(), size()) * state_scale_.asDiagonal();
+  };
   system_.jacobian(angle, x_.get(), xdot_.get(), 1, 0, matrix_.get());
-  jx = scaled(to_dense(matrix_.get(), size()));
+  jx = scaled();
   system_.jacobian(angle, x_.get(), xdot_.get(), 0, 1, matrix_.get());
-  jxdot = scaled(to_dense(matrix_.get(), size()));
+  jxdot = scaled();
   if (!d_parameter) return;
   system_.parameter_derivative(angle, x_.get(), xdot_.get(), f_.get());
   *d_parameter = to_eigen(f_.get()).cwiseQuotient(residual_scale_);

@@ -1,5 +1,6 @@
 #include "whirl/solve/shooting_problem.hpp"
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -19,7 +20,10 @@ public:
   MatrixXd start(const MatrixXd& x) const override { return -(g_ * x); }
   MatrixXd start_transposed(const MatrixXd& y) const override { return -(g_.transpose() * y); }
   VectorXd multiply(const VectorXd& x_start, const VectorXd& x) const override { return x - g_ * x_start; }
-  MatrixXd transition() const override { return g_; }
+  void carry(const MatrixXd& rows, MatrixXd& state, MatrixXd& added) const override {
+    state = (g_ * state).eval();
+    added.noalias() += rows * state;
+  }
   MatrixXd block(int, int l) const override {
     return l == 0 ? MatrixXd(-g_) : MatrixXd::Identity(g_.rows(), g_.rows());
   }
@@ -46,13 +50,14 @@ ShootingProblem::ShootingProblem(MPI_Comm time, problem::System& local, const Cy
 }
 
 // Tangents [d/dx_start | d/dH | d/dp] over all steps of the interval, H the length of one of them.
-void ShootingProblem::march(Index i, double period, VectorXd& x, MatrixXd* tangents) {
+void ShootingProblem::march(Index i, double period, VectorXd& x, MatrixXd* tangents, MatrixXd* states) {
   const double length = interval_length(i) * period / steps_;
   MatrixXd one;
   for (int k = 0; k < steps_; ++k) {
     const double begin = angle_at(i, static_cast<double>(k) / steps_),
                  end = angle_at(i, static_cast<double>(k + 1) / steps_);
     stepper_.step(begin, end - begin, length, x, tangents ? &one : nullptr);
+    if (states) states->col(k) = x;
     if (!tangents) continue;
     if (k == 0) {
       *tangents = one;
@@ -101,6 +106,28 @@ VectorXd ShootingProblem::interval_tangent(Index i, const double* own, const Vec
   MatrixXd columns;
   return linearise_interval(i, own, start, period, columns)
       ->multiply(d_start, Map<const VectorXd>(d_own, start.size()));
+}
+
+Cycle ShootingProblem::orbit(Vec u) {
+  const Cycle ends = gather(u);
+  Cycle points{refined(ends.mesh, steps_), {}, ends.period, ends.parameter};
+  const Index n = ends.x.rows();
+  points.x = MatrixXd::Zero(n, points.intervals());
+  const Index total = ends.intervals(), size = core::size_of(comm()), rank = core::rank_of(comm());
+  const Index first = total * rank / size, count = total * (rank + 1) / size - first;
+  core::agree(comm(), [&] {
+    system().set_parameter(ends.parameter);
+    point().refresh();
+    MatrixXd states(n, steps_);
+    for (Index i = 0; i < count; ++i) {
+      const Index g = first + i;
+      VectorXd x = ends.x.col(g == 0 ? total - 1 : g - 1).cwiseQuotient(state_scale());
+      march(i, ends.period, x, nullptr, &states);
+      points.x.middleCols(g * steps_, steps_) = state_scale().asDiagonal() * states;
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, points.x.data(), static_cast<int>(points.x.size()), MPI_DOUBLE, MPI_SUM, comm());
+  return through(points);
 }
 
 VectorXd ShootingProblem::reference_rate(const Cycle& reference, Index g, Index) {

@@ -1,46 +1,48 @@
 #pragma once
 // Runge-Kutta steps of a system distributed in space, and the products of their derivatives with vectors.
 
+#include <Eigen/Core>
 #include <memory>
 #include <vector>
 
+#include "solve/stage_solver.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/tableau.hpp"
 
 namespace whirl::solve {
 
 /// The derivative of one step at the point where it was taken: products only, no matrix of size n x n is formed.
+/// Vectors are this rank's scaled rows; products are collective.
 class StepProduct {
 public:
-  /// v := G v, G = d phi/dx_0.
-  void apply(Vec v) const;
-  /// d phi/dH at fixed angles and d phi/dp.
-  [[nodiscard]] Vec d_length() const { return d_length_.get(); }
-  [[nodiscard]] Vec d_parameter() const { return d_parameter_.get(); }
+  /// v := G v for each column of v [local x k], G = d phi/dx_0.
+  void apply(Eigen::MatrixXd& v) const;
+  /// d phi/dH at fixed angles and d phi/dp [local].
+  [[nodiscard]] const Eigen::VectorXd& d_length() const { return d_length_; }
+  [[nodiscard]] const Eigen::VectorXd& d_parameter() const { return d_parameter_; }
 
 private:
   friend class SparseRungeKutta;
-  struct Stage {
-    core::Matrix jx;                             // dF/dx
-    std::shared_ptr<const core::Matrix> matrix;  // dF/d(dx/dt) + H a(j,j) dF/dx
-    std::shared_ptr<const core::LinearSolver> solver;
-  };
-  /// k_j for dF/dx (v + w_j + H sum_(l<j) a k_l) + (...) k_j + g_j = 0 at all stages, then out += H sum b k; `lift` and
-  /// `load` may be empty.
-  void stages(Vec v, const std::vector<core::Vector>& lift, const std::vector<core::Vector>& load, Vec out) const;
+  using Columns = std::vector<Eigen::VectorXd>;
+  /// H sum b k of the k_j with dF/dx (v + w_j + H sum_(l<j) a k_l) + (...) k_j + g_j = 0 at all stages; `lift` and
+  /// `load` (w and g) may be empty.
+  [[nodiscard]] Eigen::MatrixXd change(const Eigen::MatrixXd& v, const Columns& lift, const Columns& load) const;
   const Tableau* tableau_ = nullptr;
   double length_ = 0;
-  std::vector<Stage> stages_;
-  core::Vector d_length_, d_parameter_;
+  std::vector<StageProduct> stages_;
+  Eigen::VectorXd d_length_, d_parameter_;
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
-/// system.comm(): exact LU (on each rank, for small systems), GMRES with
-/// block Jacobi for large ones on several ranks (PETSc prefix "stage_").
+/// system.comm(), or one pass over dF/dx where
+/// dF/d(dx/dt) of an explicit stage is inverted entry by entry.
 class SparseRungeKutta {
 public:
-  SparseRungeKutta(problem::System& system, Tableau tableau);
+  /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter.
+  SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates);
 
+  /// To be called after each change of the system's parameter.
+  void refresh() { rates_.reset(); }
   /// Carries x over one step; fills `product` if not null. Collective; throws core::DomainError on all ranks.
   void step(double angle, double d_angle, double length, Vec x, StepProduct* product);
   /// xdot of F(angle, x, xdot) = 0.
@@ -50,16 +52,20 @@ public:
 
 private:
   void residual(double angle, Vec x, Vec k, Vec f);
-  [[nodiscard]] core::Matrix jacobian(double angle, Vec x, Vec k, double alpha, double sigma);
-  void factorise(core::Matrix matrix);
-  void solve_stage(double angle, double own, Vec base, Vec k);
+  /// m = alpha dF/dx + sigma dF/d(dx/dt), scaled; m is made if it is null.
+  void jacobian(double angle, Vec x, Vec k, double alpha, double sigma, core::Matrix& m);
+  [[nodiscard]] StageProduct product_at(double angle, Vec x, Vec k, std::shared_ptr<const StageSolver> solver);
+  /// dF/d(dx/dt) + own dF/dx, factorised.
+  [[nodiscard]] std::shared_ptr<const StageSolver> solver_at(double angle, Vec x, Vec k, double own);
+  [[nodiscard]] std::shared_ptr<const StageSolver> solve_stage(double angle, double own, Vec base, Vec k);
   [[noreturn]] void fail() const;
   problem::System& system_;
   Tableau tableau_;
-  core::Vector state_scale_, residual_inverse_, x_, k_, value_, base_, f_, d_;
+  bool constant_rates_;
+  core::Vector state_scale_, residual_inverse_, x_, k_, value_, base_, f_, d_, lift_;
   std::vector<core::Vector> slopes_;
-  std::shared_ptr<const core::Matrix> matrix_;  // the last one factorised: constant mass matrices are so once
-  std::shared_ptr<const core::LinearSolver> solver_;
+  core::Matrix scratch_;
+  std::shared_ptr<const StageSolver> rates_;  // of explicit stages with constant rates
 };
 
 }  // namespace whirl::solve

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
 
@@ -107,15 +108,10 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     check(EPSSetWhichEigenpairs(eps.get(), EPS_TARGET_MAGNITUDE));
     ST st = nullptr;
     KSP ksp = nullptr;
-    PC pc = nullptr;
     check(EPSGetST(eps.get(), &st));
     check(STSetType(st, STSINVERT));
     check(STGetKSP(st, &ksp));
-    check(KSPSetType(ksp, KSPPREONLY));
-    check(KSPGetPC(ksp, &pc));
-    check(PCSetType(pc, PCLU));
-    // PETSc's own LU does not pivot, and rows like q' = v have no diagonal.
-    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    core::make_direct(ksp);
     // The same start vector on any number of ranks.
     core::Vector start;
     check(MatCreateVecs(a.get(), start.put(), nullptr));

@@ -6,6 +6,41 @@
 
 namespace whirl::study {
 
+int steps_of(const CycleBranchOptions& o) {
+  using enum CycleBranchOptions::Method;
+  if (o.method == finite_difference) return 1;
+  if (o.steps) return *o.steps;
+  constexpr int per_period = 120;
+  return o.method == shooting ? per_period : (per_period + o.intervals - 1) / o.intervals;
+}
+
+std::span<const deck::Name<CycleBranchOptions::Method>> names(CycleBranchOptions::Method) {
+  using enum CycleBranchOptions::Method;
+  static constexpr deck::Name<CycleBranchOptions::Method> table[] = {
+      {collocation, "collocation", "orthogonal collocation on an adaptive mesh; intervals are shared by the ranks"},
+      {shooting, "shooting", "single shooting: the state at the start is the unknown; every rank does the same"},
+      {multiple_shooting, "multiple_shooting", "states at the ends of intervals; intervals are shared by the ranks"},
+      {finite_difference, "finite_difference", "one step of the scheme in each interval, shared by the ranks"},
+      {newton_picard, "newton_picard",
+       "Newton-Picard Gauss-Seidel: Newton for the multipliers above a radius, Picard iterations for the rest; never "
+       "forms the monodromy matrix; the states are shared by the ranks. One interval: shooting-based; an explicit "
+       "scheme with one step in each interval: finite-difference-based"}};
+  return table;
+}
+
+std::span<const deck::Name<CycleBranchOptions::Stepping>> names(CycleBranchOptions::Stepping) {
+  using enum CycleBranchOptions::Stepping;
+  static constexpr deck::Name<CycleBranchOptions::Stepping> table[] = {
+      {sdirk_2, "sdirk_2", "singly diagonally implicit, 2 stages, order 2, L-stable (Alexander 1977)"},
+      {sdirk_4, "sdirk_4", "singly diagonally implicit, 5 stages, order 4, L-stable (Hairer and Wanner 1996)"},
+      {radau_iia_2, "radau_iia_2", "fully implicit, 2 stages, order 3, L-stable; not for newton_picard"},
+      {radau_iia_3, "radau_iia_3", "fully implicit, 3 stages, order 5, L-stable; not for newton_picard"},
+      {improved_euler, "improved_euler", "explicit, order 2; stable for short steps only"},
+      {third_order, "third_order", "explicit, order 3; stable for short steps only"},
+      {classical, "classical", "explicit Runge-Kutta scheme of order 4; stable for short steps only"}};
+  return table;
+}
+
 std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points) {
   using enum CycleBranchOptions::Points;
   static constexpr deck::Name<CycleBranchOptions::Points> table[] = {
@@ -30,14 +65,29 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.embed(&O::parameter);
   d.add("start", &O::start, "*", deck::any, "value of the parameter to start at; that of range.from if not given");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, where the parameter is another one");
-  d.add("intervals", &O::intervals, deck::at_least(4), "intervals of the time mesh");
-  d.add("degree", &O::degree, deck::in(1, 7), "degree of the polynomials in time");
-  d.add("points", &O::points, "collocation points");
+  using enum O::Method;
+  d.add("method", &O::method, "solver of the periodic solutions", "van de Vrande (2001), ch. 3");
+  d.add("intervals", &O::intervals, deck::positive, "intervals of the time mesh")
+      .only(&O::method, {collocation, multiple_shooting, finite_difference, newton_picard});
+  d.add("scheme", &O::scheme, "scheme of integration")
+      .only(&O::method, {shooting, multiple_shooting, finite_difference, newton_picard});
+  d.add("steps", &O::steps, deck::positive,
+        "steps of the scheme in each interval, in the whole period for shooting; as many as make 120 a period if not "
+        "given")
+      .only(&O::method, {shooting, multiple_shooting, newton_picard});
+  d.add("radius", &O::radius, deck::between(0, 1),
+        "multipliers above this are found and left to Newton's method; the rest shrinks by it in a Picard iteration")
+      .only(&O::method, {newton_picard});
+  d.add("degree", &O::degree, deck::in(1, 7), "degree of the polynomials in time").only(&O::method, {collocation});
+  d.add("points", &O::points, "collocation points").only(&O::method, {collocation});
   d.add("adapt_mesh", &O::adapt_mesh,
-        "split and merge intervals of the time mesh as the cycle changes along the branch");
-  d.add("adapt_every", &O::adapt_every, deck::positive, "points of the branch between adaptations of the time mesh");
+        "split and merge intervals of the time mesh as the cycle changes along the branch")
+      .only(&O::method, {collocation});
+  d.add("adapt_every", &O::adapt_every, deck::positive, "points of the branch between adaptations of the time mesh")
+      .only(&O::method, {collocation});
   d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive,
-        "estimated error per interval above which it is split, relative to the orbit");
+        "estimated error per interval above which it is split, relative to the orbit")
+      .only(&O::method, {collocation});
   d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),
         "root mean square of the scaled residual at which Newton's method stops");
   d.add("at", &O::at, "*", deck::any,
@@ -57,6 +107,12 @@ void describe(deck::Description<CycleBranchOptions>& d) {
     for (std::size_t i = 0; i < o.detect.size(); ++i)
       if (o.detect[i] == Event::fold || o.detect[i] == Event::hopf)
         r.fail(fmt::format("detect.{}", i + 1), "cycles have cyclic_fold, flip, neimark_sacker and branch_point");
+    const bool by_steps = o.method != collocation && o.method != finite_difference;
+    if (!by_steps && o.intervals < 4) r.fail("intervals", "a cycle needs at least 4 intervals");
+    if (by_steps && (o.method == shooting ? 1 : o.intervals) * steps_of(o) < 4)
+      r.fail("steps", "a cycle needs at least 4 steps");
+    if (o.method == newton_picard && (o.scheme == O::Stepping::radau_iia_2 || o.scheme == O::Stepping::radau_iia_3))
+      r.fail("scheme", "newton_picard solves one stage after the other: sdirk_2, sdirk_4 or an explicit scheme");
   });
 }
 

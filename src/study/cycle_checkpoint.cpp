@@ -64,7 +64,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   located_ = read_located(state.group("located"));
   last_ = cycle;
   largest_difference_ = state.real("largest_difference");
-  if (seed_) (void)returned(cycle);
+  if (seed_) (void)returned(problem_->orbit(restart.u.get()));
   return restart;
 }
 

@@ -89,7 +89,7 @@ io::Bifurcation CycleFollower::bifurcation_here(io::BifurcationType type, double
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
-  if (found.event == solve::Event::cyclic_fold && at_simple_cycle(cycle)) return;
+  if (found.event == solve::Event::cyclic_fold && at_simple_cycle(problem_->orbit(u))) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
   if (found.event == solve::Event::flip && found.located) {

@@ -32,8 +32,11 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.initial_step = options_.parameter.step ? options_.parameter.step->initial.value / scale_ : width / 200;
   continuation_.min_step = options_.parameter.step ? options_.parameter.step->min.value / scale_ : width / 1e6;
   continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
+  continuation_.beta_1 = options_.parameter.beta_1;
+  continuation_.beta_2 = options_.parameter.beta_2;
   continuation_.max_points = options_.max_points;
-  continuation_.adapt_every = options_.adapt_mesh ? options_.adapt_every : 0;
+  const bool adapt = options_.method == CycleBranchOptions::Method::collocation && options_.adapt_mesh;
+  continuation_.adapt_every = adapt ? options_.adapt_every : 0;
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;
@@ -47,14 +50,14 @@ std::unique_ptr<system::RotorSystem> CycleFollower::make_system(bool half_film) 
     return half_film ? with_half_film_mesh(std::move(t)) : t;
   };
   if (options_.parameter.path == "speed")
-    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(context_.machine), value);
+    return std::make_unique<system::RotorSystem>(space(), train_at(context_.machine), value);
   system::Varying varying;
   varying.train = [this, train_at](double p) {
     return train_at(with_parameter(context_.machine, options_.parameter.path, p));
   };
   varying.value = value;
   varying.magnitude = std::max(std::abs(options_.parameter.range.from), std::abs(options_.parameter.range.to));
-  return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), options_.speed->value);
+  return std::make_unique<system::RotorSystem>(space(), std::move(varying), options_.speed->value);
 }
 
 solve::Stability CycleFollower::stability() {
@@ -68,7 +71,7 @@ solve::Stability CycleFollower::stability() {
 
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
-  record_.append(point, cycle, problem_->scheme(), *system_, scale_);
+  record_.append(point, problem_->orbit(u), problem_->orbit_scheme(), *system_, scale_);
   report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
@@ -96,7 +99,7 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
     const auto result = solve::newton(*problem_, u.get(), row.get(), p / scale_, newton_);
     if (!result.converged) continue;
     problem_->linearise(u.get(), row.get());
-    record_.report(key, problem_->gather(u.get()), problem_->scheme(), *system_, stability(),
+    record_.report(key, problem_->orbit(u.get()), problem_->orbit_scheme(), *system_, stability(),
                    context_.results.summary());
   }
 }
@@ -128,7 +131,7 @@ void CycleFollower::run() {
   };
   callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
     save(p, v, t, step);
-    returned_ = seed_ && returned(problem_->gather(v));
+    returned_ = seed_ && returned(problem_->orbit(v));
     contact_ = options_.max_eccentricity && record_.eccentricity() >= *options_.max_eccentricity;
     return !returned_ && !contact_;
   };

@@ -36,8 +36,10 @@ public:
 
 private:
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
-  /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with half its time steps if
-  /// `doubled`.
+  /// Who shares a system: its states are distributed by solvers that are parallel in space.
+  [[nodiscard]] MPI_Comm space() const;
+  /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with time steps
+  /// half as long if `doubled`.
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::RotorSystem& system, int turns,
                                                                      std::vector<double> mesh, bool doubled) const;
   /// A change of the root mean square state by half a clearance counts as one longest step.
@@ -56,10 +58,10 @@ private:
   void set_normal_form(io::Bifurcation& b, const solve::LocatedEvent& found, Vec u);
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   void record_hopf(const solve::LocatedEvent& hopf, const solve::Restart& leaving, double omega);
-  [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& cycle) const;
+  [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& orbit) const;
   /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
-  [[nodiscard]] bool at_simple_cycle(const solve::Cycle& cycle) const;
-  [[nodiscard]] bool returned(const solve::Cycle& cycle);
+  [[nodiscard]] bool at_simple_cycle(const solve::Cycle& orbit) const;
+  [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   [[nodiscard]] solve::Stability stability();
   void on_point(const solve::BranchPoint& point, Vec u);

@@ -1,12 +1,67 @@
 // Which solver of periodic solutions follows the branch.
 
+#include <cstdlib>
+
 #include "cycle_follower.hpp"
-#include "whirl/solve/cycle_problem.hpp"
+#include "whirl/solve/newton_picard.hpp"
+#include "whirl/solve/shooting_problem.hpp"
 
 namespace whirl::study {
+namespace {
+
+using Method = CycleBranchOptions::Method;
+
+solve::Tableau tableau_of(CycleBranchOptions::Stepping scheme) {
+  using enum CycleBranchOptions::Stepping;
+  switch (scheme) {
+    case sdirk_2:
+      return solve::sdirk(2);
+    case sdirk_4:
+      return solve::sdirk(4);
+    case radau_iia_2:
+      return solve::radau_iia(2);
+    case radau_iia_3:
+      return solve::radau_iia(3);
+    case improved_euler:
+      return solve::heun();
+    case third_order:
+      return solve::third_order();
+    case classical:
+      return solve::classical();
+  }
+  std::abort();
+}
+
+}  // namespace
+
+MPI_Comm CycleFollower::space() const {
+  return options_.method == Method::newton_picard ? context_.comm : PETSC_COMM_SELF;
+}
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::RotorSystem& system, int turns,
                                                                     std::vector<double> mesh, bool doubled) const {
+  const int laps = turns / options_.period;
+  int steps = steps_of(options_);
+  if (options_.method == Method::shooting) {
+    mesh = {0, 1};
+    steps *= laps;
+  }
+  // Where an interval is one step, as in a finite-difference method, it is the mesh that makes steps shorter.
+  if (doubled && (options_.method == Method::collocation || steps == 1))
+    mesh = solve::doubled(mesh);
+  else if (doubled)
+    steps *= 2;
+
+  if (options_.method == Method::newton_picard) {
+    solve::NewtonPicardOptions o;
+    o.turns = turns;
+    o.autonomous = autonomous();
+    o.parameter_scale = scale_;
+    o.state_weight = state_weight();
+    o.radius = options_.radius;
+    o.constant_rates = true;  // masses, and own states of films as ds/dt with the factor one
+    return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
+  }
   solve::CycleOptions o;
   o.degree = options_.degree;
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
@@ -14,10 +69,13 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Roto
   o.autonomous = autonomous();
   o.parameter_scale = scale_;
   o.state_weight = state_weight();
-  o.base_intervals = options_.intervals * turns / options_.period;
+  o.base_intervals = options_.intervals * laps;
   o.mesh_tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
-  if (doubled) mesh = solve::doubled(mesh);
-  return std::make_unique<solve::CycleProblem>(context_.comm, system, o, std::move(mesh));
+  if (options_.method == Method::collocation)
+    return std::make_unique<solve::CycleProblem>(context_.comm, system, o, std::move(mesh));
+  // Single shooting has nothing to share: every rank computes the same.
+  const MPI_Comm time = options_.method == Method::shooting ? PETSC_COMM_SELF : context_.comm;
+  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh));
 }
 
 }  // namespace whirl::study

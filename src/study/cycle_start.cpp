@@ -58,7 +58,7 @@ core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
 solve::Restart CycleFollower::start_at_hopf() {
   solve::EquilibriumProblem equilibria(*system_, scale_, state_weight());
   core::Vector u = equilibria.make_unknown(), at_hopf,
-               x = core::make_vector(PETSC_COMM_SELF, system_->local_size(), PETSC_DETERMINE);
+               x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
   if (system_->parameter_is_speed()) {
     Walker walker(*system_);
     check(VecCopy(walker.at(system_->parameter()), x.get()));
@@ -98,6 +98,10 @@ solve::Restart CycleFollower::start_at_hopf() {
   const auto n = static_cast<Eigen::Index>(rest.size());
   Eigen::VectorXcd phi(n);
   for (Eigen::Index k = 0; k < n; ++k) phi(k) = critical->shape[static_cast<std::size_t>(k)];
+  // The phase in which the motion is largest at s = 0: there it stands at right angles to its rate, so that even one
+  // point of the cycle fixes the phase and is not moved by it.
+  const std::complex<double> square = phi.cwiseQuotient(problem_->state_scale()).array().square().sum();
+  phi *= std::exp(std::complex<double>(0, -0.5 * std::arg(square)));
   solve::Cycle still{problem_->mesh(), {}, two_pi / critical->lambda.imag(), parameter}, mode = still;
   const auto& scheme = problem_->scheme();
   still.x = Eigen::Map<const Eigen::VectorXd>(rest.data(), n).replicate(1, still.intervals() * scheme.degree);
@@ -108,7 +112,10 @@ solve::Restart CycleFollower::start_at_hopf() {
       const double s = begin + (still.mesh[static_cast<std::size_t>(i) + 1] - begin) * scheme.node(l);
       mode.x.col(i * scheme.degree + l - 1) = (phi * std::exp(std::complex<double>(0, two_pi * s))).real();
     }
-  problem_->set_phase_reference(mode);
+  // Small, so that the equation's own rate about the equilibrium is that of the mode.
+  solve::Cycle reference = still;
+  reference.x += 1e-4 * mode.x;
+  problem_->set_phase_reference(reference);
   solve::Restart restart;
   restart.u = problem_->scatter(still);
   mode.period = mode.parameter = 0;
@@ -164,29 +171,29 @@ solve::Restart CycleFollower::start_at_flip() {
 }
 
 // First lap minus second one at equidistant times, scaled.
-Eigen::MatrixXd CycleFollower::lap_difference(const solve::Cycle& cycle) const {
+Eigen::MatrixXd CycleFollower::lap_difference(const solve::Cycle& orbit) const {
   constexpr int samples = 24;
-  Eigen::MatrixXd difference(cycle.x.rows(), samples);
+  Eigen::MatrixXd difference(orbit.x.rows(), samples);
   for (int k = 0; k < samples; ++k) {
     const double s = 0.5 * k / samples;
-    difference.col(k) = (cycle.at(problem_->scheme(), s) - cycle.at(problem_->scheme(), s + 0.5))
+    difference.col(k) = (orbit.at(problem_->orbit_scheme(), s) - orbit.at(problem_->orbit_scheme(), s + 0.5))
                             .cwiseQuotient(problem_->state_scale());
   }
   return difference;
 }
 
 // Where the branch runs into the simple cycle its parameter turns as at a fold, which it is not.
-bool CycleFollower::at_simple_cycle(const solve::Cycle& cycle) const {
+bool CycleFollower::at_simple_cycle(const solve::Cycle& orbit) const {
   if (!seed_ || lap_difference_.size() == 0) return false;
-  const Eigen::MatrixXd difference = lap_difference(cycle);
+  const Eigen::MatrixXd difference = lap_difference(orbit);
   return (difference.array() * lap_difference_.array()).sum() < 0 || difference.norm() < 0.02 * largest_difference_;
 }
 
 // A branch of twice the period may run back into the one it came from. Beyond that point it either repeats itself with
 // the laps exchanged, when the difference of the laps changes its sign, or the step has landed on the simple cycle run
 // twice, when there is no difference.
-bool CycleFollower::returned(const solve::Cycle& cycle) {
-  Eigen::MatrixXd difference = lap_difference(cycle);
+bool CycleFollower::returned(const solve::Cycle& orbit) {
+  Eigen::MatrixXd difference = lap_difference(orbit);
   const bool turned = lap_difference_.size() > 0 && (difference.array() * lap_difference_.array()).sum() < 0;
   largest_difference_ = std::max(largest_difference_, difference.norm());
   const bool vanished = difference.norm() < 1e-3 * largest_difference_;

@@ -66,6 +66,8 @@ void EquilibriumBranch::run(Context& context) {
   continuation.initial_step = step ? step->initial.value / scale : width / 100;
   continuation.min_step = step ? step->min.value / scale : width / 1e6;
   continuation.max_step = step ? step->max.value / scale : width / 25;
+  continuation.beta_1 = options.parameter.beta_1;
+  continuation.beta_2 = options.parameter.beta_2;
   continuation.max_points = options.max_points;
   continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
   continuation.newton.max_iterations = 20;

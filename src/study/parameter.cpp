@@ -42,6 +42,15 @@ void describe(deck::Description<Parameter>& d) {
         "values to cover, from the first towards the second; results carry its unit")
       .required();
   d.add("step", &Parameter::step, "lengths of steps, in the unit of the range");
+  d.add(
+      "beta_1", &Parameter::beta_1, "rad", deck::Check{.min = 0, .max = std::numbers::pi, .min_open = true},
+      "angle between the predictor and the line from point to point above which a step is halved; the tangent may turn "
+      "by twice as much",
+      "van de Vrande (2001), Sec. 3.3");
+  d.add("beta_2", &Parameter::beta_2, "rad", deck::Check{.min = 0, .max = std::numbers::pi, .min_open = true},
+        "the same angle without the direction of the parameter; 180 deg: any, because the states alone turn round "
+        "wherever an amplitude has a maximum",
+        "van de Vrande (2001), Sec. 3.3");
 }
 
 std::string parameter_unit(const system::Machine& machine, std::string_view path) {

@@ -1,6 +1,7 @@
 #include "blocks.hpp"
 
 #include <cmath>
+#include <span>
 
 #include "whirl/core/error.hpp"
 
@@ -26,7 +27,13 @@ void scatter(Mat m, PetscInt rate, Eigen::MatrixXd& out) {
 }  // namespace
 
 RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
-  const Eigen::Index n = system.size(), bearings = system.n_bearings();
+  rebuild();
+  find_own_states();
+}
+
+void RotorSystem::Blocks::rebuild() {
+  const RotorSystem& system = system_;
+  const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
   l1_ = l0_at_rest_ = gyroscopic_ = Eigen::MatrixXd::Zero(n, n);
   scatter(system.mass_.get(), 1, l1_);
   scatter(system.stiffness_.get(), 0, l0_at_rest_);
@@ -49,6 +56,25 @@ RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
       c_(4 * i + d, 2 * p) = -1;
       c_(4 * i + 2 + d, 2 * p + 1) = -1;
     }
+  l0_speed_ = -1;
+}
+
+// The places are those of any evaluation, for one at the centre of the bearing.
+void RotorSystem::Blocks::find_own_states() {
+  responses_.resize(system_.bearings_.size());
+  for (std::size_t i = 0; i < system_.bearings_.size(); ++i) {
+    const Bearing& bearing = system_.bearings_[i];
+    if (!bearing.states) continue;
+    const std::vector<double> rates(static_cast<std::size_t>(bearing.count), 0.0);
+    std::vector<double> states = rates;
+    bearing.states->unloaded({}, states);
+    bearing.states->evaluate({}, states, rates, film::Need::tangents, responses_[i]);
+    const auto k = static_cast<Eigen::Index>(i);
+    problem::OwnStates own{bearing.first, bearing.count, 4 * k, 4, 2 * k, 2, {}, {}};
+    for (const film::Entry& e : responses_[i].d_states) own.states.push_back({e.row, e.column});
+    for (const film::Entry& e : responses_[i].d_rates) own.rates.push_back({e.row, e.column});
+    own_.push_back(std::move(own));
+  }
 }
 
 const Eigen::MatrixXd& RotorSystem::Blocks::l0() {
@@ -59,54 +85,132 @@ const Eigen::MatrixXd& RotorSystem::Blocks::l0() {
   return l0_;
 }
 
-const Eigen::MatrixXd& RotorSystem::Blocks::dl0() {
-  core::require(system_.parameter_is_speed(), "structured derivatives are those in the speed");
-  return gyroscopic_;
-}
-
-void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load, Eigen::VectorXd* d_load) {
-  const double omega = system_.forcing_ ? system_.speed_ : 0.0, c = std::cos(angle), s = std::sin(angle);
+void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load) {
+  const double omega = system_.forcing_ ? system_.speed_ : 0.0, c = omega * omega * std::cos(angle),
+               s = omega * omega * std::sin(angle);
   load.setZero(size());
-  if (d_load) d_load->setZero(size());
   for (Eigen::Index i = 0; i < size() / 2; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double u = c * system_.unbalance_c_[k] + s * system_.unbalance_s_[k];
-    load(2 * i) = system_.load_[k] + omega * omega * u;
-    if (d_load) (*d_load)(2 * i) = 2 * omega * u;
+    load(2 * i) = system_.load_[k] + c * system_.unbalance_c_[k] + s * system_.unbalance_s_[k];
   }
 }
 
-void RotorSystem::Blocks::forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs,
-                                 Eigen::VectorXd* d_parameter) {
+namespace {
+
+// Derivatives of a film with own states, which stands at `at` among all of them, into the blocks.
+void take(const film::StateResponse& response, const problem::OwnStates& at, Eigen::Index coordinates,
+          problem::OwnTangents& out, Eigen::VectorXd& d_speed) {
+  core::require(response.d_states.size() == at.states.size() && response.d_rates.size() == at.rates.size(),
+                "a film tells its derivatives at the same places in every call");
+  out.states.resize(response.d_states.size());
+  out.rates.resize(response.d_rates.size());
+  for (std::size_t e = 0; e < out.states.size(); ++e) out.states[e] = response.d_states[e].value;
+  for (std::size_t e = 0; e < out.rates.size(); ++e) out.rates[e] = response.d_rates[e].value;
+  out.inputs.resize(at.inputs, at.count);
+  out.forces.resize(at.forces, at.count);
+  for (Eigen::Index k = 0; k < at.count; ++k) {
+    const auto state = static_cast<std::size_t>(k);
+    for (std::size_t d = 0; d < 2; ++d) {
+      const auto e = static_cast<Eigen::Index>(d);
+      out.inputs(e, k) = response.d_position[state][d];
+      out.inputs(2 + e, k) = response.d_velocity[state][d];
+      out.forces(e, k) = response.force_d_states[state][d];
+    }
+    d_speed(coordinates + at.first + k) = response.d_speed[state];
+  }
+}
+
+}  // namespace
+
+void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own, const double* rates, bool tangents,
+                                problem::Films& films) {
   const int bearings = system_.n_bearings();
-  f.resize(2 * bearings);
-  if (d_inputs) d_inputs->setZero(2 * bearings, 4 * bearings);
-  if (d_parameter) d_parameter->resize(2 * bearings);
-  const bool tangents = d_inputs || d_parameter;
+  const Eigen::Index r = 2 * bearings;
+  films.forces.resize(r);
+  films.residual.resize(system_.n_own_);
+  if (tangents) {
+    films.d_inputs.setZero(r, 4 * bearings);
+    films.d_speed.resize(r + system_.n_own_);
+    films.own.resize(own_.size());
+  }
   film::Motion motion;
-  film::Response response;
+  film::Response condensed;
   motion.speed = system_.speed_;
+  const film::Need need = tangents ? film::Need::tangents : film::Need::force;
+  std::size_t next = 0;  // among the films with own states
   for (int i = 0; i < bearings; ++i) {
+    const auto k = static_cast<std::size_t>(i);
     for (int d = 0; d < 2; ++d) {
       motion.position[static_cast<std::size_t>(d)] = inputs(4 * i + d);
       motion.velocity[static_cast<std::size_t>(d)] = inputs(4 * i + 2 + d);
     }
-    motion.position[1] -= system_.train_.supports[static_cast<std::size_t>(i)].elevation;
+    motion.position[1] -= system_.train_.supports[k].elevation;
+    const Bearing& bearing = system_.bearings_[k];
     try {
-      system_.bearings_[static_cast<std::size_t>(i)].film->evaluate(
-          motion, tangents ? film::Need::tangents : film::Need::force, response);
+      if (bearing.states) {
+        const auto count = static_cast<std::size_t>(bearing.count);
+        bearing.states->evaluate(motion, {own + bearing.first, count}, {rates + bearing.first, count}, need,
+                                 responses_[k]);
+      } else {
+        bearing.film->evaluate(motion, need, condensed);
+      }
     } catch (const core::DomainError& e) {
       throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
     }
+    const film::Response& response = bearing.states ? responses_[k].journal : condensed;
+    for (int d = 0; d < 2; ++d) films.forces(2 * i + d) = response.force[static_cast<std::size_t>(d)];
+    if (bearing.states)
+      films.residual.segment(bearing.first, bearing.count) =
+          Eigen::Map<const Eigen::VectorXd>(responses_[k].residual.data(), bearing.count);
+    if (!tangents) continue;
     for (int d = 0; d < 2; ++d) {
-      const auto k = static_cast<std::size_t>(d);
-      f(2 * i + d) = response.force[k];
-      for (int e = 0; e < 2 && d_inputs; ++e) {
-        (*d_inputs)(2 * i + d, 4 * i + e) = response.d_position[k][static_cast<std::size_t>(e)];
-        (*d_inputs)(2 * i + d, 4 * i + 2 + e) = response.d_velocity[k][static_cast<std::size_t>(e)];
+      const auto row = static_cast<std::size_t>(d);
+      for (int e = 0; e < 2; ++e) {
+        films.d_inputs(2 * i + d, 4 * i + e) = response.d_position[row][static_cast<std::size_t>(e)];
+        films.d_inputs(2 * i + d, 4 * i + 2 + e) = response.d_velocity[row][static_cast<std::size_t>(e)];
       }
-      if (d_parameter) (*d_parameter)(2 * i + d) = response.d_speed[k];
+      films.d_speed(2 * i + d) = response.d_speed[row];
     }
+    if (!bearing.states) continue;
+    take(responses_[k], own_[next], r, films.own[next], films.d_speed);
+    ++next;
+  }
+}
+
+void RotorSystem::Blocks::residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
+                                   Eigen::VectorXd& out) {
+  const Eigen::Index n = size(), k = system_.n_own_;
+  films(c_ * x.head(n), x.data() + n, xdot.data() + n, false, films_);
+  load(angle, load_);
+  out.resize(n + k);
+  out.head(n).noalias() = l1_ * xdot.head(n);
+  out.head(n).noalias() += l0() * x.head(n);
+  out.head(n).noalias() -= b_ * films_.forces;
+  out.head(n) -= load_;
+  out.tail(k) = films_.residual;
+}
+
+void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
+                                               const problem::Films& films, Eigen::VectorXd& out) {
+  const Eigen::Index n = size(), k = system_.n_own_;
+  if (!system_.parameter_is_speed()) {
+    const Neighbours& at = system_.neighbours();
+    (void)at.plus->structure();
+    (void)at.minus->structure();
+    at.plus->blocks_->residual(angle, x, xdot, out);
+    at.minus->blocks_->residual(angle, x, xdot, minus_);
+    out = (out - minus_) / (2 * at.step);
+    return;
+  }
+  out.resize(n + k);
+  out.head(n).noalias() = gyroscopic_ * x.head(n);
+  out.head(n).noalias() -= b_ * films.d_speed.head(b_.cols());
+  out.tail(k) = films.d_speed.tail(k);
+  if (!system_.forcing_) return;
+  const double c = 2 * system_.speed_ * std::cos(angle), s = 2 * system_.speed_ * std::sin(angle);
+  for (Eigen::Index i = 0; i < n / 2; ++i) {
+    const auto j = static_cast<std::size_t>(i);
+    out(2 * i) -= c * system_.unbalance_c_[j] + s * system_.unbalance_s_[j];
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "whirl/film/state_model.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -13,23 +14,36 @@ namespace whirl::system {
 class RotorSystem::Blocks : public problem::Structure {
 public:
   explicit Blocks(RotorSystem& system);
+  /// To be called after each build of the system: all blocks are made anew, references to them stay valid.
+  void rebuild();
 
   [[nodiscard]] Eigen::Index size() const override { return l1_.rows(); }
   [[nodiscard]] Eigen::Index n_forces() const override { return b_.cols(); }
   [[nodiscard]] Eigen::Index n_inputs() const override { return c_.rows(); }
-  [[nodiscard]] const Eigen::MatrixXd& l1() const override { return l1_; }
+  [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return own_; }
+  [[nodiscard]] const Eigen::MatrixXd& l1() override { return l1_; }
   [[nodiscard]] const Eigen::MatrixXd& l0() override;
-  [[nodiscard]] const Eigen::MatrixXd& dl0() override;
   [[nodiscard]] const Eigen::MatrixXd& b() const override { return b_; }
   [[nodiscard]] const Eigen::MatrixXd& c() const override { return c_; }
-  void load(double angle, Eigen::VectorXd& load, Eigen::VectorXd* d_load) override;
-  void forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs,
-              Eigen::VectorXd* d_parameter) override;
+  void load(double angle, Eigen::VectorXd& load) override;
+  void films(const Eigen::VectorXd& inputs, const double* own, const double* rates, bool tangents,
+             problem::Films& films) override;
+  void parameter_derivative(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
+                            const problem::Films& films, Eigen::VectorXd& out) override;
 
 private:
+  void find_own_states();
+  /// (F, G) at a whole state.
+  void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::VectorXd& out);
+
   RotorSystem& system_;
   Eigen::MatrixXd l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
   double l0_speed_ = -1;
+  std::vector<problem::OwnStates> own_;
+  // Work space.
+  std::vector<film::StateResponse> responses_;
+  problem::Films films_;
+  Eigen::VectorXd load_, minus_;
 };
 
 }  // namespace whirl::system

@@ -2,6 +2,8 @@
 
 #include <petscksp.h>
 
+#include "whirl/core/direct_solver.hpp"
+
 namespace whirl::system {
 
 using core::check;
@@ -23,16 +25,8 @@ core::Vector static_guess(RotorSystem& system) {
   core::Matrix j = springs.make_jacobian();
   springs.residual(0, x.get(), rest.get(), f.get());
   springs.jacobian(0, x.get(), rest.get(), 1, 0, j.get());
-  core::LinearSolver ksp;
-  check(KSPCreate(system.comm(), ksp.put()));
-  check(KSPSetOptionsPrefix(ksp.get(), "start_"));
+  const core::LinearSolver ksp = core::make_direct_solver(system.comm(), "start_");
   check(KSPSetOperators(ksp.get(), j.get(), j.get()));
-  check(KSPSetType(ksp.get(), KSPPREONLY));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp.get(), &pc));
-  check(PCSetType(pc, PCLU));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  check(KSPSetFromOptions(ksp.get()));
   check(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
   check(KSPSolve(ksp.get(), f.get(), x.get()));
   check(VecScale(x.get(), -1));

@@ -11,7 +11,6 @@
 #include "whirl/core/session.hpp"
 #include "whirl/solve/cycle_problem.hpp"
 #include "whirl/solve/equilibrium.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 
@@ -57,13 +56,12 @@ void parts(system::RotorSystem& s, solve::CycleProblem& p, Vec u, int runs) {
   const Eigen::MatrixXd inputs = s.structure()->c() * cycle.x;
   const int size = core::size_of(MPI_COMM_WORLD);
   const Eigen::Index points = inputs.cols() / size;
-  Eigen::VectorXd f, d_parameter;
-  Eigen::MatrixXd d_inputs;
+  problem::Films films;
   row("films, forces only (own share of 120 points)", bench::least(MPI_COMM_WORLD, runs, [&] {
-        for (Eigen::Index k = 0; k < points; ++k) s.structure()->forces(inputs.col(k), f, nullptr, nullptr);
+        for (Eigen::Index k = 0; k < points; ++k) s.structure()->films(inputs.col(k), nullptr, nullptr, false, films);
       }));
   row("films with tangents", bench::least(MPI_COMM_WORLD, runs, [&] {
-        for (Eigen::Index k = 0; k < points; ++k) s.structure()->forces(inputs.col(k), f, &d_inputs, &d_parameter);
+        for (Eigen::Index k = 0; k < points; ++k) s.structure()->films(inputs.col(k), nullptr, nullptr, true, films);
       }));
   const Eigen::MatrixXd l1 = s.structure()->l1(), l0 = s.structure()->l0(), b = s.structure()->b(),
                         c = s.structure()->c();
@@ -74,13 +72,13 @@ void parts(system::RotorSystem& s, solve::CycleProblem& p, Vec u, int runs) {
   core::check(VecCopy(u, v.get()));
   row("preconditioner, one application", bench::least(MPI_COMM_WORLD, runs, [&] { p.solve(v.get(), y.get()); }));
   row("product with the matrix", bench::least(MPI_COMM_WORLD, runs, [&] { p.multiply(v.get(), y.get()); }));
+  const Eigen::MatrixXd monodromy = p.monodromy();
   Eigen::MatrixXd product = Eigen::MatrixXd::Identity(s.size(), s.size());
   row("one product 104 x 104 x 104", bench::least(MPI_COMM_WORLD, runs, [&] {
-        const Eigen::MatrixXd next = p.monodromy() * product;
+        const Eigen::MatrixXd next = monodromy * product;
         product(0, 0) = next(0, 0) != 0 ? 1 : 2;
       }));
-  row("multipliers (per point of a branch)",
-      bench::least(MPI_COMM_WORLD, runs, [&] { (void)spectral::eigenvalues(p.monodromy()); }));
+  row("multipliers (per point of a branch)", bench::least(MPI_COMM_WORLD, runs, [&] { (void)p.multipliers(); }));
 }
 
 int run(int runs, bool alone) {

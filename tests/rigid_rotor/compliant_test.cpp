@@ -4,11 +4,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "whirl/core/petsc.hpp"
-#include "whirl/io/summary.hpp"
-#include "whirl/study/deck.hpp"
+#include "rigid_rotor/run_deck.hpp"
 
 namespace {
 
@@ -39,17 +35,7 @@ TEST_P(CompliantLocated, AgreesWithTheReference) {
        fmt::format("{}range={{from: {:.17g} rad/s, to: {:.17g} rad/s}}", branch, c.from * c.scale, c.to * c.scale),
        fmt::format("{}intervals={}", branch, c.intervals)});
   deck.studies.erase(deck.studies.begin());
-  const std::filesystem::path directory = std::filesystem::temp_directory_path() / ("whirl_compliant_" + c.name);
-  if (core::rank_of(MPI_COMM_WORLD) == 0) {
-    std::filesystem::remove_all(directory);
-    std::filesystem::create_directories(directory);
-  }
-  MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty());
-  MPI_Barrier(MPI_COMM_WORLD);
-  const io::StudySummary s = io::Summary::read(directory / "summary.json").studies.at(0);
-  MPI_Barrier(MPI_COMM_WORLD);
-  if (core::rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(directory);
+  const io::StudySummary s = test::run_deck(deck, "compliant_" + c.name).at(0);
   EXPECT_EQ(s.status, "completed");
   ASSERT_EQ(s.bifurcations.size(), c.points.size());
   for (std::size_t k = 0; k < c.points.size(); ++k) {

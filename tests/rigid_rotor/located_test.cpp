@@ -4,11 +4,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "whirl/core/petsc.hpp"
-#include "whirl/io/summary.hpp"
-#include "whirl/study/deck.hpp"
+#include "rigid_rotor/run_deck.hpp"
 
 namespace {
 
@@ -47,26 +43,14 @@ io::StudySummary run(const Case& c) {
   study::Deck deck =
       study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/rigid_rotor/short_f1.yaml", overrides);
   deck.studies.erase(deck.studies.begin() + (c.unbalance > 0 ? 0 : 1));
-  const std::filesystem::path directory = std::filesystem::temp_directory_path() / ("whirl_located_" + c.name);
-  if (core::rank_of(MPI_COMM_WORLD) == 0) {
-    std::filesystem::remove_all(directory);
-    std::filesystem::create_directories(directory);
-  }
-  MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty());
-  MPI_Barrier(MPI_COMM_WORLD);
-  io::StudySummary s = io::Summary::read(directory / "summary.json").studies.at(0);
-  MPI_Barrier(MPI_COMM_WORLD);
-  if (core::rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(directory);
-  return s;
+  return test::run_deck(deck, "located_" + c.name).at(0);
 }
 
 TEST_P(Located, AgreesWithTheReference) {
   const Case& c = GetParam();
   const io::StudySummary s = run(c);
   EXPECT_EQ(s.status, "completed");
-  std::map<std::string, double> values;
-  for (const auto& [name, q] : s.values) values[name] = q.value;
+  auto values = test::values_of(s);
   EXPECT_NEAR(values["nondimensional.load"], c.load, 1e-12);
   EXPECT_NEAR(values["nondimensional.unbalance"], c.unbalance, 1e-12);
   EXPECT_NEAR(values["nondimensional.speed_scale"], 160 * c.load, 1e-9);

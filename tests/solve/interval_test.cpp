@@ -70,7 +70,14 @@ void compare(int pairs, int eliminated) {
         EXPECT_LE(apart(interval->start(x), a0 * x), 1e-13);
         EXPECT_LE(apart(interval->start_transposed(y), a0.transpose() * y), 1e-13);
         EXPECT_LE(apart(interval->multiply(start, states), a * states + a0 * start), 1e-13);
-        EXPECT_LE(apart(interval->transition(), gamma), 1e-11);
+        const MatrixXd rows = MatrixXd::Random(2, m * n);
+        for (const int columns : {1, n, n + 2}) {
+          MatrixXd state = MatrixXd::Random(n, columns), added = MatrixXd::Random(2, columns);
+          const MatrixXd end = gamma * state, sum = added - rows * (inverse * (a0 * state));
+          interval->carry(rows, state, added);
+          EXPECT_LE(apart(state, end), 1e-11);
+          EXPECT_LE(apart(added, sum), 1e-11);
+        }
       }
     }
 }

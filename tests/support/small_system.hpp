@@ -143,28 +143,29 @@ private:
     [[nodiscard]] Eigen::Index size() const override { return blocks_.l1.rows(); }
     [[nodiscard]] Eigen::Index n_forces() const override { return blocks_.b.cols(); }
     [[nodiscard]] Eigen::Index n_inputs() const override { return blocks_.c.rows(); }
-    [[nodiscard]] const Eigen::MatrixXd& l1() const override { return blocks_.l1; }
+    [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return none_; }
+    [[nodiscard]] const Eigen::MatrixXd& l1() override { return blocks_.l1; }
     [[nodiscard]] const Eigen::MatrixXd& l0() override { return now_ = blocks_.l0 + system_.parameter() * blocks_.l0p; }
-    [[nodiscard]] const Eigen::MatrixXd& dl0() override { return blocks_.l0p; }
     [[nodiscard]] const Eigen::MatrixXd& b() const override { return blocks_.b; }
     [[nodiscard]] const Eigen::MatrixXd& c() const override { return blocks_.c; }
-    void load(double angle, Eigen::VectorXd& load, Eigen::VectorXd* d_load) override {
-      const Eigen::VectorXcd value = load_(angle, Complex(system_.parameter(), step));
-      load = value.real();
-      if (d_load) *d_load = value.imag() / step;
-    }
-    void forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs,
-                Eigen::VectorXd* d_parameter) override {
+    void load(double angle, Eigen::VectorXd& load) override { load = load_(angle, system_.parameter()).real(); }
+    void films(const Eigen::VectorXd& inputs, const double*, const double*, bool tangents,
+               problem::Films& out) override {
       const Eigen::VectorXcd value = forces_(inputs.cast<Complex>(), Complex(system_.parameter(), step));
-      f = value.real();
-      if (d_parameter) *d_parameter = value.imag() / step;
-      if (!d_inputs) return;
-      d_inputs->resize(f.size(), inputs.size());
+      out.forces = value.real();
+      if (!tangents) return;
+      out.d_inputs.resize(value.size(), inputs.size());
       for (Eigen::Index k = 0; k < inputs.size(); ++k) {
         Eigen::VectorXcd w = inputs.cast<Complex>();
         w(k) += Complex(0, step);
-        d_inputs->col(k) = forces_(w, system_.parameter()).imag() / step;
+        out.d_inputs.col(k) = forces_(w, system_.parameter()).imag() / step;
       }
+    }
+    void parameter_derivative(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd&, const problem::Films&,
+                              Eigen::VectorXd& out) override {
+      const Complex p(system_.parameter(), step);
+      out = blocks_.l0p * x - load_(angle, p).imag() / step -
+            blocks_.b * (forces_((blocks_.c * x).cast<Complex>(), p).imag() / step);
     }
     std::function<Eigen::VectorXcd(double, Complex)> load_;
     std::function<Eigen::VectorXcd(Eigen::VectorXcd, Complex)> forces_;
@@ -174,6 +175,7 @@ private:
     const StructuredSystem& system_;
     Blocks blocks_;
     Eigen::MatrixXd now_;
+    std::vector<problem::OwnStates> none_;
   };
   Told structure_;
 };

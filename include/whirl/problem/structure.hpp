@@ -1,16 +1,51 @@
 #pragma once
-// What a system may tell beyond F and J: it is linear except for a thin coupling.
+// What a system may tell beyond F and J: it is linear except for thin couplings, and its films' own states see only
+// their neighbours.
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace whirl::problem {
 
-/// F(angle, x, xdot; p) = L1 xdot + L0(p) x - g - u(angle; p) - B f(C x; p), with r = columns of B and w = rows of C
-/// much smaller than n.
+/// Where a derivative has an entry.
+struct Place {
+  int row, column;
+};
+
+/// One film with own states s: k of all own states, which see some of the inputs and make some of the forces.
+struct OwnStates {
+  Eigen::Index first = 0, count = 0;         ///< among the own states of the system
+  Eigen::Index first_input = 0, inputs = 0;  ///< among the inputs
+  Eigen::Index first_force = 0, forces = 0;  ///< among the forces
+  std::vector<Place> states, rates;          ///< entries of dg/ds and dg/ds', rows and columns counted from `first`
+};
+
+/// Derivatives of one film with own states at one point.
+struct OwnTangents {
+  std::vector<double> states, rates;  ///< dg/ds, dg/ds' at the places told
+  Eigen::MatrixXd inputs;             ///< dg/dw [inputs x count]
+  Eigen::MatrixXd forces;             ///< df/ds [forces x count]
+};
+
+/// The nonlinear part at one point.
+struct Films {
+  Eigen::VectorXd forces;    ///< f [r]
+  Eigen::VectorXd residual;  ///< g [k]
+  // Only with tangents:
+  Eigen::MatrixXd d_inputs;  ///< df/dw [r x w] at constant s
+  Eigen::VectorXd d_speed;   ///< df/dOmega [r], then dg/dOmega [k]
+  std::vector<OwnTangents> own;
+};
+
+/// With the state (x, s), x [n] coordinates and rates, s [k] own states of films:
 ///
-/// L1, L0 [n x n] are constant along a cycle, g [n] is the constant load, u [n] the forcing, f [r] the nonlinear forces
+///     F = L1 xdot + L0(p) x - l(angle; p) - B f(C x, s; p)     [n]
+///     G = g(C x, s, sdot; p)                                   [k]
+///
+/// L1, L0 [n x n] are constant along a cycle, l [n] is the constant load and the forcing, f [r] the nonlinear forces
 /// (journal forces of the films) that depend on the thin inputs C x [w] (positions and velocities of the journals in
-/// their bearings) only. All on one rank, SI.
+/// their bearings) and on own states only, r, w << n. All on one rank, SI. References stay valid for the life of the
+/// system; the blocks behind them follow its parameter.
 class Structure {
 public:
   virtual ~Structure() = default;
@@ -19,19 +54,25 @@ public:
   [[nodiscard]] virtual Eigen::Index size() const = 0;
   [[nodiscard]] virtual Eigen::Index n_forces() const = 0;
   [[nodiscard]] virtual Eigen::Index n_inputs() const = 0;
+  /// Films with own states, in their order; k is the sum of their counts.
+  [[nodiscard]] virtual const std::vector<OwnStates>& own() const = 0;
 
-  [[nodiscard]] virtual const Eigen::MatrixXd& l1() const = 0;
-  /// L0 at the present parameter, and dL0/dp.
+  [[nodiscard]] virtual const Eigen::MatrixXd& l1() = 0;
+  /// L0 at the present parameter.
   [[nodiscard]] virtual const Eigen::MatrixXd& l0() = 0;
-  [[nodiscard]] virtual const Eigen::MatrixXd& dl0() = 0;
   [[nodiscard]] virtual const Eigen::MatrixXd& b() const = 0;
   [[nodiscard]] virtual const Eigen::MatrixXd& c() const = 0;
 
-  /// g + u(angle) and its derivative in p (d_load may be null).
-  virtual void load(double angle, Eigen::VectorXd& load, Eigen::VectorXd* d_load) = 0;
-  /// f(w; p) and, if not null, df/dw [r x w] and df/dp [r]. Throws core::DomainError outside the validity of a film.
-  virtual void forces(const Eigen::VectorXd& inputs, Eigen::VectorXd& f, Eigen::MatrixXd* d_inputs,
-                      Eigen::VectorXd* d_parameter) = 0;
+  /// l(angle) [n].
+  virtual void load(double angle, Eigen::VectorXd& load) = 0;
+  /// f and g, and with `tangents` their derivatives. `own` and `rates` [k] are null if there are none. Throws
+  /// core::DomainError outside the validity of a film.
+  virtual void films(const Eigen::VectorXd& inputs, const double* own, const double* rates, bool tangents,
+                     Films& films) = 0;
+  /// out [n + k] = d(F, G)/dp at (x, s) with rates (xdot, sdot) [n + k]; `films` holds what films() gave there, with
+  /// tangents.
+  virtual void parameter_derivative(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
+                                    const Films& films, Eigen::VectorXd& out) = 0;
 };
 
 }  // namespace whirl::problem

@@ -27,8 +27,16 @@ struct Cycle {
 };
 
 [[nodiscard]] std::vector<double> uniform_mesh(int intervals);
+/// Every interval split in `parts` equal ones.
+[[nodiscard]] std::vector<double> refined(const std::vector<double>& mesh, int parts);
 /// Every interval split in two.
 [[nodiscard]] std::vector<double> doubled(const std::vector<double>& mesh);
+
+/// The scheme of through(): degree 5 on equidistant nodes.
+[[nodiscard]] const Scheme& quintic();
+/// The cycle given by its states at the points of a mesh (degree 1) as one of quintic(): in each interval the
+/// polynomial through the six nearest points (all, if there are fewer), which errs by O(h^6).
+[[nodiscard]] Cycle through(const Cycle& points);
 
 /// Estimated local error of each interval, as a fraction of the largest scaled deviation from the mean (at least 1e-6,
 /// so that rounding in a resting state is no error): |h^(m+1) x^(m+1)|/(2^(m+1) (m+1)!) by the jump of the m-th

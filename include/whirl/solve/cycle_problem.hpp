@@ -1,6 +1,7 @@
 #pragma once
 // Periodic solutions by orthogonal collocation, parallel over the intervals.
 
+#include <complex>
 #include <functional>
 #include <map>
 #include <memory>
@@ -8,6 +9,8 @@
 
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/adjoint.hpp"
+#include "whirl/solve/assembled_cycle.hpp"
+#include "whirl/solve/composition.hpp"
 #include "whirl/solve/interval.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/solve/scaled_point.hpp"
@@ -21,7 +24,10 @@ struct CycleOptions {
   bool autonomous = false;     ///< no forcing: the period is an unknown and a phase condition is added
   double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
-  bool use_structure = true;   ///< condense by low-rank updates where the system tells its structure
+  bool use_structure = true;   ///< condense with what the system tells of its structure
+  /// How intervals are joined: by one dense matrix of all states, by sweeps of single states over all intervals, or by
+  /// whichever is thought to cost less.
+  enum class Joining { cheapest, dense, sweeps } joining = Joining::cheapest;
   bool assembled =
       false;  ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
   double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
@@ -59,11 +65,12 @@ public:
   [[nodiscard]] Cycle gather(Vec u) const override;
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
   void set_phase_reference(const Cycle& reference) override;
-  /// All of them.
+  /// All of them, or where sweeps join the intervals those above 0.2 and one below, at most 24.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
-  [[nodiscard]] const Eigen::MatrixXd& monodromy() const { return monodromy_; }
+  /// Large with own states of films, where nothing else forms it. Collective.
+  [[nodiscard]] Eigen::MatrixXd monodromy() const;
 
   /// Solution of the linearised equations over one period from the scaled start v [n], at the nodes like Cycle::x but
   /// scaled [n x N m]; its last column is monodromy() v. Collective.
@@ -71,6 +78,8 @@ public:
 
   // Adjoint equations and second derivatives along the cycle.
 
+  /// False where sweeps join the intervals: solve_transposed() and curvature() are then not to be called.
+  [[nodiscard]] bool has_adjoint() const;
   void solve_transposed(Vec rhs, Vec x) override;
   void curvature(Vec u, Vec v, Vec w, Vec out) override;
   /// A motion over this rank's intervals, scaled: the state before them [n] and those at their nodes [n x local nodes],
@@ -131,15 +140,20 @@ private:
   void set_parameter(const Eigen::VectorXd& border);
   void interpolate(Eigen::Index i, Eigen::Index j, const double* own, const Eigen::VectorXd& start, double period,
                    Eigen::VectorXd& value, Eigen::VectorXd& slope) const;
-  void compose(const std::vector<Eigen::MatrixXd>& rows);
   /// d/d(period, parameter) of the equations at one point [n x borders], from dF/dp and (dF/d(dx/dt)) x'.
   [[nodiscard]] Eigen::MatrixXd border_columns(const Eigen::VectorXd& d_parameter, const Eigen::VectorXd& rate,
                                                double period) const;
+  [[nodiscard]] bool same_as_kept(const core::ReadArray& u, const Eigen::VectorXd& before,
+                                  const Eigen::VectorXd& border) const;
+
   void displaced(Vec u, double step, const Path& along,
                  const std::function<void(Eigen::Index, const double*, const Eigen::VectorXd&, double)>& work);
   [[nodiscard]] Path path_of(Vec v) const;
   [[nodiscard]] static double largest(const Path& path, MPI_Comm comm);
-  void assemble(const std::vector<Eigen::MatrixXd>& rows);
+
+  /// How an interval is condensed.
+  enum class Way { dense, low_rank, own_states };
+  [[nodiscard]] static Way way_of(const CycleOptions& options, const problem::Structure* structure);
 
   MPI_Comm comm_;
   int rank_, size_;
@@ -149,6 +163,7 @@ private:
   CycleOptions options_;
   Scheme scheme_;
   Eigen::Index n_, borders_;
+  Way way_;
   double period_scale_ = 0;
 
   std::vector<double> mesh_;
@@ -157,19 +172,17 @@ private:
   Eigen::MatrixXd phase_row_;  // [n x local nodes], autonomous only
   double phase_offset_ = 0;
 
-  // The linearisation: scaled structure blocks, intervals, border columns, and the composed small system.
-  Eigen::MatrixXd l0_, dl0_;
+  // What residual() kept of its points, which spares linearise() at the same u their evaluation.
+  std::vector<PointState> kept_;
+  Eigen::VectorXd kept_u_, kept_before_, kept_border_;
+  bool kept_valid_ = false;
+  Eigen::VectorXd value_, slope_;  // work space
+
+  // The linearisation: linear parts by length, intervals, border columns and added rows, and how they are joined.
   std::map<double, std::shared_ptr<const LinearPart>> parts_;
-  std::vector<std::unique_ptr<Interval>> intervals_;
-  std::vector<Eigen::MatrixXd> columns_, eliminated_;  // dR/d(border) [mn x nb] and A^-1 of it
-  std::vector<Eigen::MatrixXd> rows_;                  // added rows per interval [nb x mn]
-  Eigen::MatrixXd corner_;                             // added rows on the border unknowns [nb x nb]
-  std::vector<Eigen::MatrixXd> to_rank_;               // state entering each rank per (x_0, border) [n x (n + nb)]
-  std::vector<Eigen::MatrixXd> rank_maps_;             // gathered [(n + nb) x (n + nb)] of each rank
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
-  Eigen::MatrixXd monodromy_;
-  core::Matrix assembled_;
-  core::LinearSolver assembled_solver_;
+  Run run_;
+  std::unique_ptr<Composition> composition_;
+  AssembledCycle assembled_;
 };
 
 }  // namespace whirl::solve

@@ -38,6 +38,9 @@ public:
   /// x = matrix^-1 rhs up to rounding; used as a preconditioner, so that lost digits come back by iteration.
   virtual void solve(Vec rhs, Vec x) = 0;
 
+  /// Relative residual to which Newton's linear systems are to be solved.
+  [[nodiscard]] virtual double linear_tolerance() const { return 1e-9; }
+
   /// Adapts the discretisation to the solution u and carries u and the tangent over; true if anything changed (all
   /// layouts then differ).
   virtual bool adapt(core::Vector& /*u*/, core::Vector& /*tangent*/) { return false; }

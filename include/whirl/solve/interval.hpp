@@ -5,7 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "whirl/problem/structure.hpp"
 #include "whirl/solve/linear_part.hpp"
+#include "whirl/solve/scaled_point.hpp"
 #include "whirl/solve/scheme.hpp"
 
 namespace whirl::solve {
@@ -26,10 +28,11 @@ public:
   [[nodiscard]] virtual Eigen::MatrixXd start_transposed(const Eigen::MatrixXd& y) const = 0;
   /// A X + A0 x [mn].
   [[nodiscard]] virtual Eigen::VectorXd multiply(const Eigen::VectorXd& x_start, const Eigen::VectorXd& x) const = 0;
-  /// Gamma = -E A^-1 A0 [n x n]: the interval's end state per start state, E the last block row.
-  [[nodiscard]] virtual Eigen::MatrixXd transition() const = 0;
   /// A(j, l) for l = 1..m and A0(j) for l = 0, to assemble the whole matrix.
   [[nodiscard]] virtual Eigen::MatrixXd block(int j, int l) const = 0;
+  /// Carries states over the interval: with X = -A^-1 A0 state [mn x k], state := X_m [n x k] and added += rows X
+  /// [nb x k]. `rows` [nb x mn] stay the same between two linearisations.
+  virtual void carry(const Eigen::MatrixXd& rows, Eigen::MatrixXd& state, Eigen::MatrixXd& added) const;
 };
 
 /// Dense interval from dF/dx and dF/d(dx/dt) [n x n] at each point; one LU of size mn.
@@ -40,5 +43,12 @@ public:
 /// Interval by low-rank update of its linear part; `tangents` holds df/dw [r x w] at each point.
 [[nodiscard]] std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part,
                                                                std::vector<Eigen::MatrixXd> tangents);
+
+/// Interval of a system with films that have own states behind those of `part`, from what is known at its points; O(n)
+/// to factorise, to solve and to carry.
+[[nodiscard]] std::unique_ptr<Interval> make_own_interval(std::shared_ptr<const LinearPart> part,
+                                                          const std::vector<problem::OwnStates>& films,
+                                                          const ScaledPoint& scales,
+                                                          const std::vector<const PointState*>& points);
 
 }  // namespace whirl::solve

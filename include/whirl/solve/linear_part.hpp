@@ -20,17 +20,17 @@ namespace whirl::solve {
 /// eliminated exactly.
 class LinearPart {
 public:
-  /// Keeps references to the scheme and the matrices L1, L0 [n x n], B [n x r], C [w x n].
+  /// Keeps a reference to the scheme and copies of the matrices L1, L0 [n x n], B [n x r], C [w x n].
   LinearPart(const Scheme& scheme, double length, const Eigen::MatrixXd& l1, const Eigen::MatrixXd& l0,
              const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
 
   const Scheme& scheme;
-  const Eigen::MatrixXd &l1, &l0, &b, &c;
+  const Eigen::MatrixXd l1, l0, b, c;
   double length;
   Eigen::Index n, r, w;
-  Eigen::MatrixXd w00, y, vy;       ///< W00 [mn x n], Y [mn x mr], V Y [mw x mr]
-  Eigen::MatrixXd end_free, end_y;  ///< -E W0^-1 W00 [n x n], E Y [n x mr]
-  Eigen::MatrixXd inputs_free;      ///< V0 - V W0^-1 W00 [mw x n]
+  Eigen::MatrixXd w00, y, vy;   ///< W00 [mn x n], Y [mn x mr], V Y [mw x mr]
+  Eigen::MatrixXd free;         ///< -W0^-1 W00 [mn x n]
+  Eigen::MatrixXd inputs_free;  ///< V0 - V W0^-1 W00 [mw x n]
 
   /// x := W0^-1 x and x := W0^-T x, column by column [mn x k].
   void solve(Eigen::MatrixXd& x) const;

@@ -24,6 +24,7 @@ struct NewtonPicardOptions {
   double radius = 0.3;         ///< multipliers above it are solved by Newton, the rest by Picard iterations
   int picard = 3;              ///< Picard iterations on the rest per linear solve
   double multiplier_tolerance = 1e-9;
+  bool constant_rates = false;  ///< dF/d(dx/dt) depends on nothing but the parameter: explicit stages keep it
 };
 
 /// Equations x_(i+1) = phi_i(x_i; T, p) of ShootingProblem, with M known only by its products: the cost grows with the
@@ -55,6 +56,8 @@ public:
   [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
   void residual(Vec u, Vec r) override;
   void linearise(Vec u, Vec row) override;
+  /// Each of their digits costs products, and Newton's method needs few of them.
+  [[nodiscard]] double linear_tolerance() const override { return 1e-5; }
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
 
@@ -64,6 +67,8 @@ public:
   [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return whole_scale_; }
   [[nodiscard]] Cycle gather(Vec u) const override;
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
+  [[nodiscard]] Cycle orbit(Vec u) override;
+  [[nodiscard]] const Scheme& orbit_scheme() const override { return quintic(); }
   /// sum h_i <x_i - ref_i, ref'_i> = 0 from now on.
   void set_phase_reference(const Cycle& reference) override;
 
@@ -85,7 +90,8 @@ private:
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
   void march(Eigen::Index i, double period, Vec x, Eigen::MatrixXd* columns);
   void sum(Eigen::MatrixXd& values) const;
-  void apply(Eigen::Index i, Eigen::VectorXd& v) const;
+  /// Each column of v [local x k] over interval i.
+  void apply(Eigen::Index i, Eigen::MatrixXd& v) const;
   Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
   [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
   [[nodiscard]] Eigen::MatrixXd picard(const Eigen::MatrixXd& right) const;

@@ -26,6 +26,10 @@ public:
   /// scatter() interpolates a cycle on another mesh of the same scheme.
   [[nodiscard]] virtual Cycle gather(Vec u) const = 0;
   [[nodiscard]] virtual core::Vector scatter(const Cycle& cycle) const = 0;
+  /// The motion of u dense enough to be read off between the nodes, a cycle of orbit_scheme(); the same as gather()
+  /// unless the problem takes several steps from node to node.
+  [[nodiscard]] virtual Cycle orbit(Vec u) { return gather(u); }
+  [[nodiscard]] virtual const Scheme& orbit_scheme() const { return scheme(); }
   /// Phase reference of an autonomous cycle: integral <x - ref, ref'> ds = 0 from now on.
   virtual void set_phase_reference(const Cycle& reference) = 0;
 

@@ -7,6 +7,12 @@
 
 namespace whirl::solve {
 
+/// What is kept of one point between the residual and its linearisation, by systems that tell their structure.
+struct PointState {
+  Eigen::VectorXd value, rate;  ///< (x, s) and its rates in SI [n]
+  problem::Films films;         ///< with tangents, in SI
+};
+
 /// F/residual_scale as a function of x/state_scale and (dx/dt)/state_scale; by the system's structure where it has one,
 /// which spares its sparse matrices. Nothing here communicates.
 class ScaledPoint {
@@ -15,32 +21,46 @@ public:
   ScaledPoint(problem::System& system, problem::Structure* structure);
 
   [[nodiscard]] Eigen::Index size() const { return state_scale_.size(); }
+  /// Own states of films as the structure tells them; they stand behind all others.
+  [[nodiscard]] Eigen::Index own_states() const { return structure_ ? size() - structure_->size() : 0; }
   [[nodiscard]] const Eigen::VectorXd& state_scale() const { return state_scale_; }
   [[nodiscard]] const Eigen::VectorXd& residual_scale() const { return residual_scale_; }
-  /// Scaled L1, B and C of the structure.
+  /// Scaled blocks of the structure at the last refresh().
   [[nodiscard]] const Eigen::MatrixXd& l1() const { return l1_; }
+  [[nodiscard]] const Eigen::MatrixXd& l0() const { return l0_; }
   [[nodiscard]] const Eigen::MatrixXd& b() const { return b_; }
   [[nodiscard]] const Eigen::MatrixXd& c() const { return c_; }
-  /// A block of dF/dx or dF/d(dx/dt), scaled.
-  [[nodiscard]] Eigen::MatrixXd scaled(const Eigen::MatrixXd& block) const;
 
   /// To be called after each change of the system's parameter.
   void refresh();
   /// out = F(angle, x, xdot) [n]. Throws core::DomainError.
   void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::Ref<Eigen::VectorXd> out);
+  /// The same with the films' tangents, which stay in `keep`; with structure only.
+  void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::Ref<Eigen::VectorXd> out,
+                PointState& keep);
+  /// dF/dp [n] per SI unit of the parameter at such a point.
+  void parameter_derivative(double angle, const PointState& at, Eigen::Ref<Eigen::VectorXd> out);
+  /// out = dF/d(dx/dt) v [n] there, v in scaled states.
+  void times_rates(const PointState& at, const Eigen::VectorXd& v, Eigen::Ref<Eigen::VectorXd> out) const;
   /// dF/dx and dF/d(dx/dt) [n x n] and, if not null, dF/dp [n] per SI unit of the parameter.
   void linearise(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::MatrixXd& jx,
                  Eigen::MatrixXd& jxdot, Eigen::VectorXd* d_parameter);
+  /// The two matrices at a point that was kept.
+  void matrices(const PointState& at, Eigen::MatrixXd& jx, Eigen::MatrixXd& jxdot) const;
   /// The xdot of F(angle, x, xdot) = 0, F being linear in it with a regular dF/d(dx/dt).
   [[nodiscard]] Eigen::VectorXd rate(double angle, const Eigen::VectorXd& x);
 
 private:
   void put(const Eigen::VectorXd& x, const Eigen::VectorXd& xdot);
+  void structured(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, bool tangents,
+                  Eigen::Ref<Eigen::VectorXd> out, PointState& at);
+
   problem::System& system_;
   problem::Structure* structure_;
   Eigen::VectorXd state_scale_, residual_scale_;
-  Eigen::VectorXd load_, forces_;  // work space
-  Eigen::MatrixXd l1_, b_, c_, l0_, dl0_;
+  Eigen::VectorXd load_, inputs_, d_parameter_;  // work space
+  PointState point_;
+  Eigen::MatrixXd l1_, b_, c_, l0_;
   core::Vector x_, xdot_, f_;
   core::Matrix matrix_;
 };

@@ -25,6 +25,9 @@ public:
   /// Steps per interval.
   [[nodiscard]] int steps() const { return steps_; }
 
+  [[nodiscard]] Cycle orbit(Vec u) override;
+  [[nodiscard]] const Scheme& orbit_scheme() const override { return quintic(); }
+
 protected:
   void interval_residual(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
                          double* out) override;
@@ -41,7 +44,9 @@ protected:
   [[nodiscard]] Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l) override;
 
 private:
-  void march(Eigen::Index i, double period, Eigen::VectorXd& x, Eigen::MatrixXd* tangents);
+  /// Carries x over interval i; `states`, if not null, gets those after each step [n x steps].
+  void march(Eigen::Index i, double period, Eigen::VectorXd& x, Eigen::MatrixXd* tangents,
+             Eigen::MatrixXd* states = nullptr);
   RungeKutta stepper_;
   int steps_;
 };

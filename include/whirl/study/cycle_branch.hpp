@@ -1,5 +1,5 @@
 #pragma once
-// Limit cycles, forced or self-excited, over a parameter by orthogonal collocation, with multipliers and bifurcations.
+// Limit cycles, forced or self-excited, over a parameter, with multipliers and bifurcations.
 
 #include <optional>
 
@@ -9,6 +9,9 @@
 namespace whirl::study {
 
 struct CycleBranchOptions {
+  enum class Method { collocation, shooting, multiple_shooting, finite_difference, newton_picard };
+  /// One-step schemes of all methods but collocation.
+  enum class Stepping { sdirk_2, sdirk_4, radau_iia_2, radau_iia_3, improved_euler, third_order, classical };
   enum class Points { radau, gauss };
   /// Where the branch begins: forced cycles about the equilibrium, or self-excited ones at the first Hopf point of the
   /// range.
@@ -19,9 +22,13 @@ struct CycleBranchOptions {
   Parameter parameter;
   std::optional<deck::Quantity> start;  ///< value of the parameter to start at; that of range.from if absent
   std::optional<deck::Quantity> speed;  ///< [rad/s], where the parameter is not the speed
-  int intervals = 60;                   ///< of the time mesh
-  int degree = 2;                       ///< of the polynomials
-  Points points = Points::radau;        ///< of collocation
+  Method method = Method::collocation;
+  Stepping scheme = Stepping::sdirk_4;
+  int intervals = 60;             ///< of the time mesh, whose states are unknowns; single shooting has one
+  std::optional<int> steps;       ///< of the scheme in each interval (or in the period); see steps_of()
+  double radius = 0.3;            ///< of solve::NewtonPicardOptions
+  int degree = 2;                 ///< of the polynomials
+  Points points = Points::radau;  ///< of collocation
   bool adapt_mesh = true;
   int adapt_every = 5;             ///< points between adaptations
   double mesh_tolerance = 1e-3;    ///< estimated error per interval, relative to the size of the orbit
@@ -36,6 +43,10 @@ struct CycleBranchOptions {
   int orbits = 20;            ///< cycles whose time history is stored, spread over the branch
   bool checkpoint = true;
 };
+/// Steps in each interval (in the whole period for single shooting): those asked for, or as many as make 120 a period.
+[[nodiscard]] int steps_of(const CycleBranchOptions& options);
+[[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Method>> names(CycleBranchOptions::Method);
+[[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Stepping>> names(CycleBranchOptions::Stepping);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Origin>> names(CycleBranchOptions::Origin);
 void describe(deck::Description<CycleBranchOptions>& d);

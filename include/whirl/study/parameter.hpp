@@ -1,6 +1,7 @@
 #pragma once
 // The parameter that a branch follows.
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,8 +26,9 @@ struct Step {
 /// `speed`, or the path of a continuable option, and the interval to cover.
 struct Parameter {
   std::string path = "speed";
-  deck::Range range;         ///< SI; direction is from -> to
-  std::optional<Step> step;  ///< the study's own choice if absent
+  deck::Range range;                                                ///< SI; direction is from -> to
+  std::optional<Step> step;                                         ///< the study's own choice if absent
+  double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;  ///< [rad], of solve::ContinuationOptions
 };
 
 /// Coherent SI unit of the parameter; "rad/s" for speed. Throws core::InputError if there is no such option or if

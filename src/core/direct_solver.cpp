@@ -1,0 +1,22 @@
+#include "whirl/core/direct_solver.hpp"
+
+namespace whirl::core {
+
+void make_direct(KSP ksp) {
+  PC pc = nullptr;
+  check(KSPSetType(ksp, KSPPREONLY));
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCLU));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+LinearSolver make_direct_solver(MPI_Comm comm, const char* prefix) {
+  LinearSolver ksp;
+  check(KSPCreate(comm, ksp.put()));
+  check(KSPSetOptionsPrefix(ksp.get(), prefix));
+  make_direct(ksp.get());
+  check(KSPSetFromOptions(ksp.get()));
+  return ksp;
+}
+
+}  // namespace whirl::core

@@ -1,0 +1,523 @@
+#include "solve/own_block.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace whirl::solve {
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Kernels on m x m blocks, column by column in memory, with m known to the compiler as M, or M = 0. Outputs do not
+// overlap inputs.
+
+// y += sign a x for x, y [m x columns].
+template <int M>
+void accumulate(Index degree, const double* __restrict a, const double* __restrict x, Index columns,
+                double* __restrict y, double sign) {
+  if constexpr (M > 0) {
+    for (Index c = 0; c < columns; ++c) {
+      double sum[M];
+      for (Index l = 0; l < M; ++l) sum[l] = y[c * M + l];
+      for (Index q = 0; q < M; ++q) {
+        const double v = sign * x[c * M + q];
+        for (Index l = 0; l < M; ++l) sum[l] += a[q * M + l] * v;
+      }
+      for (Index l = 0; l < M; ++l) y[c * M + l] = sum[l];
+    }
+  } else {
+    const Index m = degree;
+    for (Index c = 0; c < columns; ++c)
+      for (Index q = 0; q < m; ++q)
+        for (Index l = 0; l < m; ++l) y[c * m + l] += a[q * m + l] * sign * x[c * m + q];
+  }
+}
+template <int M>
+void subtract(Index degree, const double* a, const double* x, Index columns, double* y) {
+  accumulate<M>(degree, a, x, columns, y, -1);
+}
+template <int M>
+void multiply_by(Index degree, const double* a, const double* x, Index columns, double* y) {
+  std::fill(y, y + degree * columns, 0.0);
+  accumulate<M>(degree, a, x, columns, y, 1);
+}
+
+// y += a x for a [m x count], x [count] and one column y [m].
+template <int M>
+void accumulate_column(Index degree, const double* __restrict a, const double* __restrict x, Index count,
+                       double* __restrict y) {
+  if constexpr (M > 0) {
+    double even[M], odd[M];
+    for (Index l = 0; l < M; ++l) even[l] = y[l], odd[l] = 0;
+    Index e = 0;
+    for (; e + 1 < count; e += 2)  // two sums at once hide the latency of each
+      for (Index l = 0; l < M; ++l) {
+        even[l] += a[e * M + l] * x[e];
+        odd[l] += a[(e + 1) * M + l] * x[e + 1];
+      }
+    for (; e < count; ++e)
+      for (Index l = 0; l < M; ++l) even[l] += a[e * M + l] * x[e];
+    for (Index l = 0; l < M; ++l) y[l] = even[l] + odd[l];
+  } else {
+    for (Index e = 0; e < count; ++e)
+      for (Index l = 0; l < degree; ++l) y[l] += a[e * degree + l] * x[e];
+  }
+}
+
+// y -= a^T x, one column.
+template <int M>
+void subtract_transposed(Index degree, const double* a, const double* x, double* y) {
+  const Index m = M > 0 ? M : degree;
+  for (Index q = 0; q < m; ++q)
+    for (Index l = 0; l < m; ++l) y[q] -= a[q * m + l] * x[l];
+}
+
+// out = a^-1 by Gauss-Jordan elimination with row exchanges; `a` is used up.
+template <int M>
+void invert(Index degree, double* a, double* out) {
+  const Index m = M > 0 ? M : degree;
+  std::fill(out, out + m * m, 0.0);
+  for (Index k = 0; k < m; ++k) out[k * m + k] = 1;
+  for (Index k = 0; k < m; ++k) {
+    Index pivot = k;
+    for (Index l = k + 1; l < m; ++l)
+      if (std::abs(a[k * m + l]) > std::abs(a[k * m + pivot])) pivot = l;
+    const double scale = 1 / a[k * m + pivot];
+    for (Index c = 0; c < m; ++c) {
+      std::swap(a[c * m + k], a[c * m + pivot]);
+      std::swap(out[c * m + k], out[c * m + pivot]);
+      a[c * m + k] *= scale;
+      out[c * m + k] *= scale;
+    }
+    for (Index l = 0; l < m; ++l) {
+      if (l == k) continue;
+      const double v = a[k * m + l];
+      for (Index c = 0; c < m; ++c) {
+        a[c * m + l] -= v * a[c * m + k];
+        out[c * m + l] -= v * out[c * m + k];
+      }
+    }
+  }
+}
+
+template <int M>
+class Blocks final : public OwnBlock {
+public:
+  Blocks(const Scheme& scheme, const problem::OwnStates& film)
+      : OwnBlock(OwnShape(film)), scheme_(scheme), degree_(scheme.degree), forces_(film.forces), inputs_(film.inputs) {
+    value_ = scheme.value.rightCols(degree_);
+    const auto entries = static_cast<std::size_t>(shape_.count * shape_.width() * degree_);
+    by_state_.resize(entries);
+    by_rate_.resize(entries);
+    at_start_.resize(entries);
+    force_.resize(static_cast<std::size_t>(shape_.count * degree_ * forces_));
+    input_.resize(static_cast<std::size_t>(shape_.count * degree_ * inputs_));
+    factor_.resize(static_cast<std::size_t>(shape_.interior() * shape_.width() * degree_ * degree_));
+  }
+  void factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                 Index first, double length) override;
+  void eliminate(Index columns, double* y, MatrixXd& force) const override;
+  void substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const override;
+  void start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const override;
+  void add_inputs(double factor, const double* eta, double* y) const override;
+  void multiply(const double* start, const double* s, double* rows, VectorXd& force) const override;
+  void solve_transposed(double* y) const override;
+  void inputs_transposed(const double* y, double* eta) const override;
+  void forces_transposed(const double* force, double* y) const override;
+  void start_transposed(const double* y, const double* force, double* s) const override;
+  [[nodiscard]] MatrixXd inputs_of(Index state) const override {
+    MatrixXd out(m(), static_cast<Index>(active_.size()));
+    for (Index c = 0; c < out.cols(); ++c)
+      for (Index j = 0; j < m(); ++j) out(j, c) = input(state, active_[static_cast<std::size_t>(c)])[j];
+    return out;
+  }
+  [[nodiscard]] MatrixXd forces_of(Index state) const override {
+    return Map<const MatrixXd>(force_of(state), m(), forces_);
+  }
+  [[nodiscard]] double entry(Index row, Index slot, int j, int l) const override {
+    const Index at = (row * shape_.width() + slot) * m() + j;
+    if (l == 0) return -at_start_[static_cast<std::size_t>(at)];
+    return value_(j, l - 1) * by_state_[static_cast<std::size_t>(at)] +
+           slope_(j, l - 1) * by_rate_[static_cast<std::size_t>(at)];
+  }
+
+private:
+  [[nodiscard]] Index m() const { return M > 0 ? M : degree_; }
+  [[nodiscard]] const double* band(const std::vector<double>& of, Index row, Index slot) const {
+    return of.data() + (row * shape_.width() + slot) * m();
+  }
+  [[nodiscard]] const double* input(Index state, Index c) const { return input_.data() + (state * inputs_ + c) * m(); }
+  [[nodiscard]] const double* force_of(Index state) const { return force_.data() + state * forces_ * m(); }
+  // The blocks of L left of the diagonal, the inverse of the diagonal one, those of the unit U right of it.
+  [[nodiscard]] double* factor(Index row, Index slot) {
+    return factor_.data() + (row * shape_.width() + slot) * m() * m();
+  }
+  [[nodiscard]] const double* factor(Index row, Index slot) const {
+    return factor_.data() + (row * shape_.width() + slot) * m() * m();
+  }
+  // Z of one state [m x (m active + m separators)].
+  [[nodiscard]] double* z(Index row) { return z_.data() + row * m() * border_; }
+  [[nodiscard]] const double* z(Index row) const { return z_.data() + row * m() * border_; }
+  // out = T(row, column at slot) [m x m].
+  void block(Index row, Index slot, double* out) const {
+    const double *s = band(by_state_, row, slot), *r = band(by_rate_, row, slot);
+    for (Index l = 0; l < m(); ++l)
+      for (Index j = 0; j < m(); ++j) out[l * m() + j] = value_(j, l) * s[j] + slope_(j, l) * r[j];
+  }
+  void read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales, Index first);
+  void factorise_band();
+  void find_border();
+  // force += F value v for v [m x columns] of one state.
+  void add_force(Index state, const double* v, Index columns, double* force) const {
+    for (Index c = 0; c < columns; ++c)
+      for (Index j = 0; j < m(); ++j) {
+        double at_point = 0;
+        for (Index l = 0; l < m(); ++l) at_point += value_(j, l) * v[c * m() + l];
+        for (Index d = 0; d < forces_; ++d)
+          force[(c * m() + j) * forces_ + d] += force_of(state)[d * m() + j] * at_point;
+      }
+  }
+
+  const Scheme& scheme_;
+  Index degree_, forces_, inputs_, border_ = 0;
+  double length_ = 0;
+  MatrixXd value_, slope_;                             // V and D/H
+  std::vector<double> by_state_, by_rate_, at_start_;  // dg/ds, dg/ds' and minus A0 by row, slot, point
+  std::vector<double> force_, input_;                  // df/ds by state, force, point; dg/dw by state, input, point
+  std::vector<double> factor_, z_;
+};
+
+template <int M>
+void Blocks<M>::read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                     Index first) {
+  const Index width = shape_.width();
+  std::fill(by_state_.begin(), by_state_.end(), 0.0);
+  std::fill(by_rate_.begin(), by_rate_.end(), 0.0);
+  const double *column = scales.state_scale().data() + first, *row = scales.residual_scale().data() + first;
+  std::vector<bool> seen(static_cast<std::size_t>(inputs_), false);
+  for (Index j = 0; j < m(); ++j) {
+    const problem::OwnTangents& t = points[static_cast<std::size_t>(j)]->films.own[index];
+    const auto put = [&](const std::vector<std::size_t>& places, const std::vector<double>& values,
+                         std::vector<double>& to) {
+      for (std::size_t e = 0; e < places.size(); ++e)
+        to[places[e] * static_cast<std::size_t>(m()) + static_cast<std::size_t>(j)] += values[e];
+    };
+    put(shape_.states, t.states, by_state_);
+    put(shape_.rates, t.rates, by_rate_);
+    for (Index a = 0; a < shape_.count; ++a) {
+      for (Index f = 0; f < forces_; ++f)
+        force_[static_cast<std::size_t>((a * forces_ + f) * m() + j)] = t.forces(f, a) * column[a];
+      for (Index c = 0; c < inputs_; ++c) {
+        const double value = t.inputs(c, a) / row[a];
+        input_[static_cast<std::size_t>((a * inputs_ + c) * m() + j)] = value;
+        if (value != 0) seen[static_cast<std::size_t>(c)] = true;
+      }
+    }
+  }
+  for (Index a = 0; a < shape_.count; ++a)
+    for (Index slot = 0; slot < width; ++slot) {
+      const double scale = column[shape_.column(a, slot)] / row[a];
+      for (Index j = 0; j < m(); ++j) {
+        const auto at = static_cast<std::size_t>((a * width + slot) * m() + j);
+        by_state_[at] *= scale;
+        by_rate_[at] *= scale;
+        at_start_[at] = -scheme_.value(j, 0) * by_state_[at] - scheme_.slope(j, 0) / length_ * by_rate_[at];
+      }
+    }
+  active_.clear();
+  for (Index c = 0; c < inputs_; ++c)
+    if (seen[static_cast<std::size_t>(c)]) active_.push_back(c);
+}
+
+// Crout's order: L carries the diagonal, U has a unit one.
+template <int M>
+void Blocks<M>::factorise_band() {
+  const Index n = shape_.interior(), below = shape_.below, above = shape_.above;
+  std::vector<double> work(static_cast<std::size_t>(m() * m()));
+  for (Index a = 0; a < n; ++a)
+    for (Index c = std::max<Index>(0, a - below); c <= std::min(n - 1, a + above); ++c) {
+      const Index end = std::min(a, c);
+      double* l = c < a ? factor(a, c - a + below) : work.data();
+      block(a, c - a + below, l);
+      for (Index e = std::max({Index(0), a - below, c - above}); e < end; ++e)
+        subtract<M>(m(), factor(a, e - a + below), factor(e, c - e + below), m(), l);
+      if (c == a) invert<M>(m(), l, factor(a, below));
+      if (c > a) multiply_by<M>(m(), factor(a, below), l, m(), factor(a, c - a + below));
+    }
+}
+
+// Z, and with it what is left for the separators and the forces.
+template <int M>
+void Blocks<M>::find_border() {
+  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, width = shape_.width();
+  const auto active = static_cast<Index>(active_.size());
+  border_ = m() * (active + shape_.separators);
+  z_.assign(static_cast<std::size_t>(n * m() * border_), 0.0);
+  std::vector<double> row(static_cast<std::size_t>(m() * border_)), square(static_cast<std::size_t>(m() * m()));
+  const auto put_inputs = [&](Index a, double* out, Index stride) {
+    for (Index c = 0; c < active; ++c)
+      for (Index j = 0; j < m(); ++j)
+        out[(c * m() + j) * stride + j] = input(a, active_[static_cast<std::size_t>(c)])[j];
+  };
+  for (Index a = 0; a < n; ++a) {
+    std::fill(row.begin(), row.end(), 0.0);
+    put_inputs(a, row.data(), m());
+    for (Index slot = 0; slot < width; ++slot) {
+      const Index to = shape_.column(a, slot);
+      if (to < n) continue;
+      block(a, slot, square.data());
+      double* out = row.data() + m() * m() * (active + to - n);
+      for (Index e = 0; e < m() * m(); ++e) out[e] += square[static_cast<std::size_t>(e)];
+    }
+    for (Index c = std::max<Index>(0, a - below); c < a; ++c)
+      subtract<M>(m(), factor(a, c - a + below), z(c), border_, row.data());
+    multiply_by<M>(m(), factor(a, below), row.data(), border_, z(a));
+  }
+  for (Index a = n - 1; a >= 0; --a)
+    for (Index c = a + 1; c <= std::min(n - 1, a + above); ++c)
+      subtract<M>(m(), factor(a, c - a + below), z(c), border_, z(a));
+
+  const Index s = m() * shape_.separators;
+  MatrixXd both = MatrixXd::Zero(s, border_), force = MatrixXd::Zero(m() * forces_, border_);
+  for (Index a = 0; a < n; ++a) add_force(a, z(a), border_, force.data());
+  force *= -1;
+  const MatrixXd one = MatrixXd::Identity(m(), m());
+  for (Index a = n; a < shape_.count; ++a) {
+    const Index at = m() * (a - n);
+    add_force(a, one.data(), m(), force.col(m() * active + at).data());
+    put_inputs(a, both.data() + at, s);
+    for (Index slot = 0; slot < width; ++slot) {
+      const Index to = shape_.column(a, slot);
+      block(a, slot, square.data());
+      const Map<const MatrixXd> t(square.data(), m(), m());
+      if (to >= n)
+        both.block(at, m() * (active + to - n), m(), m()) += t;
+      else
+        both.middleRows(at, m()) -= t.lazyProduct(Map<const MatrixXd>(z(to), m(), border_));
+    }
+  }
+  q = both.leftCols(m() * active);
+  sigma = both.rightCols(s);
+  f_eta = force.leftCols(m() * active);
+  f_own = force.rightCols(s);
+}
+
+template <int M>
+void Blocks<M>::factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                          Index first, double length) {
+  length_ = length;
+  slope_ = scheme_.slope.rightCols(m()) / length;
+  read(points, index, scales, first);
+  factorise_band();
+  find_border();
+}
+
+template <int M>
+void Blocks<M>::eliminate(Index columns, double* y, MatrixXd& force) const {
+  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m() * columns;
+  std::vector<double> row(static_cast<std::size_t>(size)), square(static_cast<std::size_t>(m() * m()));
+  for (Index a = 0; a < n; ++a) {
+    std::copy(y + a * size, y + (a + 1) * size, row.begin());
+    for (Index c = std::max<Index>(0, a - below); c < a; ++c)
+      subtract<M>(m(), factor(a, c - a + below), y + c * size, columns, row.data());
+    multiply_by<M>(m(), factor(a, below), row.data(), columns, y + a * size);
+  }
+  force.setZero(m() * forces_, columns);
+  for (Index a = n - 1; a >= 0; --a) {
+    for (Index c = a + 1; c <= std::min(n - 1, a + above); ++c)
+      subtract<M>(m(), factor(a, c - a + below), y + c * size, columns, y + a * size);
+    add_force(a, y + a * size, columns, force.data());
+  }
+  for (Index a = n; a < shape_.count; ++a)
+    for (Index slot = 0; slot < shape_.width(); ++slot) {
+      const Index to = shape_.column(a, slot);
+      if (to >= n) continue;
+      block(a, slot, square.data());
+      subtract<M>(m(), square.data(), y + to * size, columns, y + a * size);
+    }
+}
+
+template <int M>
+void Blocks<M>::substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const {
+  const Index n = shape_.interior(), size = m() * columns;
+  MatrixXd border(border_, columns);
+  border.topRows(eta.rows()) = -eta;
+  border.bottomRows(separators.rows()) = -separators;
+  for (Index a = 0; a < n; ++a)
+    for (Index c = 0; c < columns; ++c)
+      accumulate_column<M>(m(), z(a), border.col(c).data(), border_, y + a * size + c * m());
+  for (Index a = n; a < shape_.count; ++a)
+    for (Index c = 0; c < columns; ++c)
+      for (Index l = 0; l < m(); ++l) y[a * size + c * m() + l] = separators(m() * (a - n) + l, c);
+}
+
+template <int M>
+void Blocks<M>::start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const {
+  const Index size = m() * columns, width = shape_.width();
+  force.setZero(m() * forces_, columns);
+  const bool forces_at_start = scheme_.value.col(0).cwiseAbs().maxCoeff() > 0;
+  std::vector<double> seen(static_cast<std::size_t>(width));
+  for (Index a = 0; a < shape_.count; ++a)
+    for (Index c = 0; c < columns; ++c) {
+      double* out = y + a * size + c * m();
+      std::fill(out, out + m(), 0.0);
+      for (Index slot = 0; slot < width; ++slot)
+        seen[static_cast<std::size_t>(slot)] = s[c * stride + shape_.column(a, slot)];
+      accumulate_column<M>(m(), band(at_start_, a, 0), seen.data(), width, out);
+    }
+  if (!forces_at_start) return;
+  for (Index c = 0; c < columns; ++c) {
+    double* sum = force.col(c).data();
+    for (Index a = 0; a < shape_.count; ++a)
+      for (Index d = 0; d < forces_; ++d)
+        for (Index j = 0; j < m(); ++j) sum[j * forces_ + d] += force_of(a)[d * m() + j] * s[c * stride + a];
+    for (Index j = 0; j < m(); ++j)
+      for (Index d = 0; d < forces_; ++d) sum[j * forces_ + d] *= scheme_.value(j, 0);
+  }
+}
+
+template <int M>
+void Blocks<M>::add_inputs(double factor, const double* eta, double* y) const {
+  for (Index a = 0; a < shape_.count; ++a)
+    for (std::size_t c = 0; c < active_.size(); ++c) {
+      const double *g = input(a, active_[c]), *at = eta + static_cast<Index>(c) * m();
+      for (Index j = 0; j < m(); ++j) y[a * m() + j] += factor * g[j] * at[j];
+    }
+}
+
+template <int M>
+void Blocks<M>::multiply(const double* start, const double* s, double* rows, VectorXd& force) const {
+  force.setZero(m() * forces_);
+  std::vector<double> values(static_cast<std::size_t>(shape_.count * m())), slopes = values;
+  for (Index a = 0; a < shape_.count; ++a)
+    for (Index j = 0; j < m(); ++j) {
+      double value = scheme_.value(j, 0) * start[a], slope = scheme_.slope(j, 0) * start[a] / length_;
+      for (Index l = 0; l < m(); ++l) {
+        value += value_(j, l) * s[a * m() + l];
+        slope += slope_(j, l) * s[a * m() + l];
+      }
+      values[static_cast<std::size_t>(a * m() + j)] = value;
+      slopes[static_cast<std::size_t>(a * m() + j)] = slope;
+      for (Index d = 0; d < forces_; ++d) force(j * forces_ + d) += force_of(a)[d * m() + j] * value;
+    }
+  for (Index a = 0; a < shape_.count; ++a)
+    for (Index j = 0; j < m(); ++j) {
+      double sum = 0;
+      for (Index slot = 0; slot < shape_.width(); ++slot) {
+        const auto to = static_cast<std::size_t>(shape_.column(a, slot) * m() + j);
+        sum += band(by_state_, a, slot)[j] * values[to] + band(by_rate_, a, slot)[j] * slopes[to];
+      }
+      rows[a * m() + j] = sum;
+    }
+}
+
+// s_S by the transposed Sigma, then T_II^T = U^T L^T.
+template <int M>
+void Blocks<M>::solve_transposed(double* y) const {
+  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m(),
+              separators = m() * shape_.separators, inputs = border_ - separators;
+  VectorXd right = Map<const VectorXd>(y + n * size, separators);
+  for (Index e = 0; e < separators; ++e)
+    for (Index a = 0; a < n; ++a)
+      for (Index l = 0; l < size; ++l) right(e) -= z(a)[(inputs + e) * size + l] * y[a * size + l];
+  MatrixXd copy = sigma, inverse(separators, separators);
+  invert<0>(separators, copy.data(), inverse.data());
+  Map<VectorXd>(y + n * size, separators) = inverse.transpose() * right;
+  std::vector<double> square(static_cast<std::size_t>(size * size));
+  for (Index a = n; a < shape_.count; ++a)
+    for (Index slot = 0; slot < shape_.width(); ++slot) {
+      const Index to = shape_.column(a, slot);
+      if (to >= n) continue;
+      block(a, slot, square.data());
+      subtract_transposed<M>(size, square.data(), y + a * size, y + to * size);
+    }
+  for (Index a = 0; a < n; ++a)
+    for (Index c = std::max<Index>(0, a - above); c < a; ++c)
+      subtract_transposed<M>(size, factor(c, a - c + below), y + c * size, y + a * size);
+  std::vector<double> row(static_cast<std::size_t>(size));
+  for (Index a = n - 1; a >= 0; --a) {
+    for (Index c = a + 1; c <= std::min(n - 1, a + below); ++c)
+      subtract_transposed<M>(size, factor(c, a - c + below), y + c * size, y + a * size);
+    std::fill(row.begin(), row.end(), 0.0);
+    subtract_transposed<M>(size, factor(a, below), y + a * size, row.data());
+    for (Index l = 0; l < size; ++l) y[a * size + l] = -row[static_cast<std::size_t>(l)];
+  }
+}
+
+template <int M>
+void Blocks<M>::inputs_transposed(const double* y, double* eta) const {
+  for (std::size_t c = 0; c < active_.size(); ++c)
+    for (Index j = 0; j < m(); ++j) {
+      double sum = 0;
+      for (Index a = 0; a < shape_.count; ++a) sum += input(a, active_[c])[j] * y[a * m() + j];
+      eta[static_cast<Index>(c) * m() + j] = sum;
+    }
+}
+
+template <int M>
+void Blocks<M>::forces_transposed(const double* force, double* y) const {
+  for (Index a = 0; a < shape_.count; ++a)
+    for (Index d = 0; d < forces_; ++d)
+      for (Index j = 0; j < m(); ++j) {
+        const double v = force_of(a)[d * m() + j] * force[j * forces_ + d];
+        for (Index l = 0; l < m(); ++l) y[a * m() + l] += value_(j, l) * v;
+      }
+}
+
+template <int M>
+void Blocks<M>::start_transposed(const double* y, const double* force, double* s) const {
+  for (Index a = 0; a < shape_.count; ++a)
+    for (Index j = 0; j < m(); ++j) {
+      for (Index slot = 0; slot < shape_.width(); ++slot)
+        s[shape_.column(a, slot)] -= band(at_start_, a, slot)[j] * y[a * m() + j];
+      for (Index d = 0; d < forces_; ++d)
+        s[a] -= scheme_.value(j, 0) * force_of(a)[d * m() + j] * force[j * forces_ + d];
+    }
+}
+
+}  // namespace
+
+OwnShape::OwnShape(const problem::OwnStates& film) : count(film.count) {
+  const auto around = [&](Index d) { return d > count / 2 ? d - count : d < -(count / 2) ? d + count : d; };
+  Index plain = 0, closed = 0;
+  for (const auto* places : {&film.states, &film.rates})
+    for (const problem::Place& p : *places) {
+      plain = std::max<Index>(plain, std::abs(p.column - p.row));
+      closed = std::max<Index>(closed, std::abs(around(p.column - p.row)));
+    }
+  const bool periodic = closed < plain;
+  const auto distance = [&](const problem::Place& p) {
+    return periodic ? around(p.column - p.row) : static_cast<Index>(p.column - p.row);
+  };
+  for (const auto* places : {&film.states, &film.rates})
+    for (const problem::Place& p : *places) {
+      below = std::max(below, -distance(p));
+      above = std::max(above, distance(p));
+    }
+  if (periodic) separators = std::max(below, above);
+  for (Index row = 0; row < count; ++row)
+    for (Index slot = 0; slot < width(); ++slot) columns.push_back((row + slot - below + count) % count);
+  const auto slots = [&](const std::vector<problem::Place>& places, std::vector<std::size_t>& out) {
+    for (const problem::Place& p : places)
+      out.push_back(static_cast<std::size_t>(p.row * width() + distance(p) + below));
+  };
+  slots(film.states, states);
+  slots(film.rates, rates);
+}
+
+std::unique_ptr<OwnBlock> make_own_block(const Scheme& scheme, const problem::OwnStates& film) {
+  switch (scheme.degree) {
+    case 3:
+      return std::make_unique<Blocks<3>>(scheme, film);
+    case 4:
+      return std::make_unique<Blocks<4>>(scheme, film);
+    default:
+      return std::make_unique<Blocks<0>>(scheme, film);
+  }
+}
+
+}  // namespace whirl::solve
