@@ -159,6 +159,9 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
   condition_ = solve::condition_of(*cycles_, seed_.event, seed_.critical);
+  if (!condition_)
+    throw core::InputError(
+        "a curve of bifurcations of cycles is not followed with so many film states: take a coarser film mesh");
 }
 
 void LocusFollower::make_equilibria(const EquilibriumBranchOptions& o) {
