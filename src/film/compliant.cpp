@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "film/compliant.hpp"
 #include "film/kinds.hpp"
 #include "whirl/core/error.hpp"
 
@@ -12,15 +13,6 @@ namespace whirl::film {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-// Flexibility U/p of the liner [m/Pa].
-double flexibility(const Geometry& g, const Options& o, const Lubricant& lubricant) {
-  if (o.liner)
-    return o.liner->thickness * (1.0 + o.liner->poisson) * (1.0 - 2.0 * o.liner->poisson) /
-           (o.liner->modulus * (1.0 - o.liner->poisson));
-  return *o.compliance * g.clearance * g.clearance * g.clearance /
-         (6.0 * lubricant.viscosity * o.reference_speed * g.radius * g.radius);
-}
 
 // Nodes k = 0 .. N - 1 at theta = 90 deg + k d. With thickness h, eccentricity e in clearances and P = p (c/R)^2/(6 mu)
 // in 1/s the liner gives P = (h - 1 + e_x cos + e_y sin)/b. A long film has P = 0 at node 0, which is no state.
@@ -30,28 +22,17 @@ public:
       : g_(geometry),
         viscosity_(lubricant.viscosity),
         long_(options.kind == Options::Kind::compliant_long),
-        simpson_(options.quadrature == Options::Quadrature::simpson),
         upwind_(options.differences == Options::Differences::upwind),
         n_(options.cells[0]),
-        first_(long_ ? 1 : 0) {
-    const double ratio = g_.radius / g_.clearance;
-    pressure_ = 6.0 * viscosity_ * ratio * ratio;
-    force_ = pressure_ * g_.length * g_.radius;
-    liner_ = flexibility(geometry, options, lubricant) * pressure_ / g_.clearance;
-    step_ = 2.0 * kPi / n_;
+        first_(long_ ? 1 : 0),
+        scales_(geometry, options, lubricant),
+        ring_(n_, options.quadrature),
+        step_(ring_.step()) {
     const double ld = 0.5 * g_.length / g_.radius;
     side_ = 1.5 / (ld * ld);
-    for (int k = 0; k < n_; ++k) {
-      cos_.push_back(std::cos(angle(k)));
-      sin_.push_back(std::sin(angle(k)));
-    }
-    constexpr double root = 0.7745966692414834;  // sqrt(3/5)
-    constexpr std::array<double, 3> at = {0.5 - 0.5 * root, 0.5, 0.5 + 0.5 * root}, weight = {5. / 18, 4. / 9, 5. / 18};
-    gauss_at_ = at;
-    gauss_weight_ = weight;
-    h_.resize(cos_.size());
-    p_.resize(cos_.size());
-    forces_.resize(cos_.size());
+    h_.resize(at(n_));
+    p_.resize(at(n_));
+    forces_.resize(at(n_));
   }
 
   [[nodiscard]] std::size_t states() const override { return static_cast<std::size_t>(n_ - first_); }
@@ -60,19 +41,19 @@ public:
   void unloaded(const Motion& motion, std::span<double> states) const override {
     for (int k = first_; k < n_; ++k) states[index(k)] = rigid(motion, k) * g_.clearance;
   }
-  void evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates, Need need,
-                StateResponse& response) override;
-  void resample(const Motion& motion, std::span<const double> from, std::span<double> to) const override;
+  void evaluate_lines(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates,
+                      Need need, StateResponse& response) override;
+  void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
+                std::span<double> to) const override;
   Summary summary(const Motion& motion, std::span<const double> states) override;
   std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
 
 private:
-  [[nodiscard]] double angle(int k) const { return 0.5 * kPi + step_ * k; }
   [[nodiscard]] int wrap(int k) const { return (k + n_) % n_; }
   [[nodiscard]] std::size_t index(int k) const { return static_cast<std::size_t>(k - first_); }
   [[nodiscard]] static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   [[nodiscard]] double rigid(const Motion& m, int k) const {
-    return 1.0 - (m.position[0] * cos_[at(k)] + m.position[1] * sin_[at(k)]) / g_.clearance;
+    return 1.0 - (m.position[0] * ring_.cosine(k) + m.position[1] * ring_.sine(k)) / g_.clearance;
   }
   void set(const Motion& motion, std::span<const double> states);
   void integrate(Need need, StateResponse& response);
@@ -82,11 +63,11 @@ private:
 
   Geometry g_;
   double viscosity_;
-  bool long_, simpson_, upwind_;
+  bool long_, upwind_;
   int n_, first_;
-  double pressure_, force_, liner_, step_, side_;  // Pa s; N s; b in s; -; 1.5/(L/D)^2
-  std::vector<double> cos_, sin_;
-  std::array<double, 3> gauss_at_{}, gauss_weight_{};
+  CompliantScales scales_;
+  RingQuadrature ring_;
+  double step_, side_ = 0.0;                   // -; 1.5/(L/D)^2
   std::vector<double> h_, p_;                  // at all nodes, in clearances and 1/s
   std::vector<std::array<double, 2>> forces_;  // d force*/d P of every node
 };
@@ -95,7 +76,7 @@ void CompliantFilm::set(const Motion& motion, std::span<const double> states) {
   for (int k = 0; k < n_; ++k) {
     const double r = rigid(motion, k);
     h_[at(k)] = k < first_ ? r : states[index(k)] / g_.clearance;
-    p_[at(k)] = k < first_ ? 0.0 : (h_[at(k)] - r) / liner_;
+    p_[at(k)] = k < first_ ? 0.0 : (h_[at(k)] - r) / scales_.liner;
     if (!(h_[at(k)] > 0.0))
       throw core::DomainError("the journal touches the liner: the film thickness is not positive");
   }
@@ -105,53 +86,36 @@ void CompliantFilm::set(const Motion& motion, std::span<const double> states) {
 void CompliantFilm::integrate(Need need, StateResponse& response) {
   std::array<double, 2> sum{};
   std::fill(forces_.begin(), forces_.end(), std::array<double, 2>{});
-  if (simpson_) {
-    for (int k = 0; k < n_; ++k) {
-      if (!(p_[at(k)] > 0.0)) continue;
-      const double w = (k % 2 == 0 ? 2.0 : 4.0) / 3.0 * step_;
-      forces_[at(k)] = {-w * cos_[at(k)], -w * sin_[at(k)]};
-    }
-    for (int k = 0; k < n_; ++k)
-      for (std::size_t i = 0; i < 2; ++i) sum[i] += forces_[at(k)][i] * p_[at(k)];
-  } else {
-    for (int k = 0; k < n_; ++k) {
-      const int next = wrap(k + 1);
-      const double a = p_[at(k)], b = p_[at(next)];
-      if (a <= 0.0 && b <= 0.0) continue;
-      const double from = a < 0.0 ? a / (a - b) : 0.0, to = b < 0.0 ? a / (a - b) : 1.0;
-      for (std::size_t q = 0; q < 3; ++q) {
-        const double s = from + (to - from) * gauss_at_[q], w = step_ * (to - from) * gauss_weight_[q];
-        const double theta = angle(k) + step_ * s;
-        const std::array<double, 2> direction = {-w * std::cos(theta), -w * std::sin(theta)};
-        for (std::size_t i = 0; i < 2; ++i) {
-          sum[i] += direction[i] * ((1.0 - s) * a + s * b);
-          forces_[at(k)][i] += direction[i] * (1.0 - s);
-          forces_[at(next)][i] += direction[i] * s;
-        }
-      }
+  for (int k = 0; k < n_; ++k) {
+    const int next = wrap(k + 1);
+    const RingQuadrature::Weights w = ring_.weights(k, p_[at(k)], p_[at(next)]);
+    for (std::size_t i = 0; i < 2; ++i) {
+      sum[i] += w.left[i] * p_[at(k)] + w.right[i] * p_[at(next)];
+      forces_[at(k)][i] += w.left[i];
+      forces_[at(next)][i] += w.right[i];
     }
   }
   Response& out = response.journal;
-  for (std::size_t i = 0; i < 2; ++i) out.force[i] = force_ * sum[i];
+  for (std::size_t i = 0; i < 2; ++i) out.force[i] = scales_.force * sum[i];
   if (need == Need::force) return;
   for (int k = first_; k < n_; ++k)
     for (std::size_t i = 0; i < 2; ++i) {
-      const double slope = force_ * forces_[at(k)][i] / (liner_ * g_.clearance);
+      const double slope = scales_.force * forces_[at(k)][i] / (scales_.liner * g_.clearance);
       response.force_d_states[index(k)][i] = slope;
-      out.d_position[i][0] += slope * cos_[at(k)];
-      out.d_position[i][1] += slope * sin_[at(k)];
+      out.d_position[i][0] += slope * ring_.cosine(k);
+      out.d_position[i][1] += slope * ring_.sine(k);
     }
 }
 
 void CompliantFilm::chain(int k, int j, double by_h, double by_p, StateResponse& response) const {
   if (j < first_) {  // h = 1 - e_y at the inlet
-    response.d_position[index(k)][0] -= by_h * cos_[at(j)];
-    response.d_position[index(k)][1] -= by_h * sin_[at(j)];
+    response.d_position[index(k)][0] -= by_h * ring_.cosine(j);
+    response.d_position[index(k)][1] -= by_h * ring_.sine(j);
     return;
   }
-  response.d_states.push_back({static_cast<int>(index(k)), static_cast<int>(index(j)), by_h + by_p / liner_});
-  response.d_position[index(k)][0] += by_p / liner_ * cos_[at(j)];
-  response.d_position[index(k)][1] += by_p / liner_ * sin_[at(j)];
+  response.d_states.push_back({static_cast<int>(index(k)), static_cast<int>(index(j)), by_h + by_p / scales_.liner});
+  response.d_position[index(k)][0] += by_p / scales_.liner * ring_.cosine(j);
+  response.d_position[index(k)][1] += by_p / scales_.liner * ring_.sine(j);
 }
 
 // (4.27): dh/dt = -(1/2) (3 h^3 P/(L/D)^2 + Omega dh/dtheta); (4.29): dh/dt = (1/2) (d/dtheta (h^3 dP/dtheta) - Omega
@@ -190,9 +154,8 @@ void CompliantFilm::row(int k, double speed, Need need, StateResponse& response)
   if (upwind_) chain(k, b2, l2 * w0, 0.0, response);
 }
 
-void CompliantFilm::evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates,
-                             Need need, StateResponse& response) {
-  core::require(states.size() == this->states() && rates.size() == states.size(), "states of a compliant film");
+void CompliantFilm::evaluate_lines(const Motion& motion, Lines /*part*/, std::span<const double> states,
+                                   std::span<const double> rates, Need need, StateResponse& response) {
   set(motion, states);
   response.journal = {};
   response.residual.assign(rates.begin(), rates.end());
@@ -213,7 +176,8 @@ void CompliantFilm::evaluate(const Motion& motion, std::span<const double> state
 }
 
 // Deflections, which are periodic and zero at the inlet, are interpolated linearly.
-void CompliantFilm::resample(const Motion& motion, std::span<const double> from, std::span<double> to) const {
+void CompliantFilm::resample(const Motion& motion, const StateModel& /*other*/, std::span<const double> from,
+                             std::span<double> to) const {
   const int other = static_cast<int>(from.size()) + first_;
   const double step = 2.0 * kPi / other;
   const auto deflection = [&](int k) {
@@ -237,7 +201,7 @@ Summary CompliantFilm::summary(const Motion& motion, std::span<const double> sta
   s.min_thickness = g_.clearance * *std::min_element(h_.begin(), h_.end());
   const double U = motion.speed * g_.radius;
   for (int k = 0; k < n_; ++k) {
-    const double p = pressure_ * std::max(p_[at(k)], 0.0), h = g_.clearance * h_[at(k)];
+    const double p = scales_.pressure * std::max(p_[at(k)], 0.0), h = g_.clearance * h_[at(k)];
     s.max_pressure = std::max(s.max_pressure, (long_ ? 1.0 : 1.5) * p);
     if (!long_) s.side_flow += step_ * g_.radius * h * h * h * p / (viscosity_ * g_.length);
     const double slope = g_.clearance * (h_[at(wrap(k + 1))] - h_[at(wrap(k - 1))]) / 2.0;
@@ -248,17 +212,17 @@ Summary CompliantFilm::summary(const Motion& motion, std::span<const double> sta
 
 std::vector<Field> CompliantFilm::fields(const Motion& motion, std::span<const double> states) {
   set(motion, states);
-  const std::size_t around = cos_.size() + 1, along = long_ ? 2 : 17;
+  const std::size_t around = h_.size() + 1, along = long_ ? 2 : 17;
   Field theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
   Field pressure{0, "pressure", "Pa", {around, along}, {}}, h{0, "thickness", "m", {around, along}, {}};
   for (std::size_t j = 0; j < along; ++j)
     z.values.push_back(g_.length * (static_cast<double>(j) / static_cast<double>(along - 1) - 0.5));
   for (int k = 0; k <= n_; ++k) {
-    theta.values.push_back(angle(k));
+    theta.values.push_back(ring_.angle(k));
     const std::size_t i = at(wrap(k));
     for (std::size_t j = 0; j < along; ++j) {
       const double from_middle = 2.0 * z.values[j] / g_.length;
-      pressure.values.push_back(pressure_ * p_[i] * (long_ ? 1.0 : 1.5 * (1.0 - from_middle * from_middle)));
+      pressure.values.push_back(scales_.pressure * p_[i] * (long_ ? 1.0 : 1.5 * (1.0 - from_middle * from_middle)));
       h.values.push_back(g_.clearance * h_[i]);
     }
   }
@@ -268,19 +232,7 @@ std::vector<Field> CompliantFilm::fields(const Motion& motion, std::span<const d
 }  // namespace
 
 std::unique_ptr<StateModel> make_compliant(const Geometry& g, const Options& options, const Lubricant& lubricant) {
-  if (g.type != Geometry::Bore::cylindrical) throw core::InputError("film: a compliant film needs a cylindrical bore");
-  if (!(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0))
-    throw core::InputError("film: radius, length and clearance must be positive");
-  if (!(lubricant.viscosity > 0.0)) throw core::InputError("film: the viscosity must be positive");
-  if (options.liner.has_value() == options.compliance.has_value())
-    throw core::InputError("film: a compliant film has either a liner or a compliance");
-  if (options.compliance && !(*options.compliance > 0.0 && options.reference_speed > 0.0))
-    throw core::InputError("film: the compliance and its reference speed must be positive");
-  if (options.liner && !(options.liner->thickness > 0.0 && options.liner->modulus > 0.0 &&
-                         options.liner->poisson >= 0.0 && options.liner->poisson < 0.5))
-    throw core::InputError("film: thickness and modulus of the liner must be positive, Poisson's ratio below 1/2");
-  if (options.cells[0] < 4 || (options.quadrature == Options::Quadrature::simpson && options.cells[0] % 2 != 0))
-    throw core::InputError("film: a compliant film needs at least 4 cells, Simpson's rule an even number");
+  check_compliant(g, options, lubricant);
   return std::make_unique<CompliantFilm>(g, options, lubricant);
 }
 

@@ -44,7 +44,9 @@ std::span<const deck::Name<Options::Kind>> names(Options::Kind) {
        "harmonic sum of the short and the long film, along and across the eccentricity"},
       {Options::Kind::compliant_short, "compliant_short", "short film on an elastic liner, thickness as state"},
       {Options::Kind::compliant_long, "compliant_long",
-       "film without side flow on an elastic liner, thickness as state, pressure zero at the top (90 deg)"}};
+       "film without side flow on an elastic liner, thickness as state, pressure zero at the top (90 deg)"},
+      {Options::Kind::compliant_finite, "compliant_finite",
+       "two-dimensional film on an elastic liner, thickness on a mesh as states"}};
   return table;
 }
 
@@ -125,8 +127,8 @@ void describe(deck::Description<Options>& d) {
   d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15")
       .only(&Options::kind, {reynolds});
   d.add("cells", &Options::cells, deck::in(4, 2000),
-        "intervals around and along each pad; of a compliant film around only")
-      .only(&Options::kind, {reynolds, compliant_short, compliant_long});
+        "intervals around and along each pad; of a short or long compliant film around only")
+      .only(&Options::kind, {reynolds, compliant_short, compliant_long, compliant_finite});
   d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
       .only(&Options::kind, {reynolds});
   d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
@@ -135,24 +137,26 @@ void describe(deck::Description<Options>& d) {
   d.add("damping", &Options::damping, "N s/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
       .continuable()
       .only(&Options::kind, {linear});
-  d.add("liner", &Options::liner, "elastic layer of the bore").only(&Options::kind, {compliant_short, compliant_long});
+  d.add("liner", &Options::liner, "elastic layer of the bore")
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("compliance", &Options::compliance, "1", positive,
         "B = 6 mu Omega_0 U R^2/(p c^3), instead of a liner: its deflection U under pressure p", "000 eq. 4.23")
       .continuable()
-      .only(&Options::kind, {compliant_short, compliant_long});
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("reference_speed", &Options::reference_speed, "rad/s", deck::non_negative, "Omega_0 of 'compliance'")
-      .only(&Options::kind, {compliant_short, compliant_long});
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("quadrature", &Options::quadrature, "how the force is integrated")
-      .only(&Options::kind, {compliant_short, compliant_long});
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("differences", &Options::differences, "differences of the thickness around the bearing")
-      .only(&Options::kind, {compliant_short, compliant_long});
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.check([](const Options& o, const deck::Report& r) {
-    if (o.kind != compliant_short && o.kind != compliant_long) return;
+    if (o.kind != compliant_short && o.kind != compliant_long && o.kind != compliant_finite) return;
     if (o.liner.has_value() == o.compliance.has_value())
       r.fail("", "a compliant film has either a 'liner' or a 'compliance'");
     if (o.compliance && !(o.reference_speed > 0))
       r.fail("compliance", "'compliance' needs 'reference_speed', the speed Omega_0 that scales it");
-    if (o.quadrature == Options::Quadrature::simpson && o.cells[0] % 2 != 0)
+    const bool odd = o.cells[0] % 2 != 0 || (o.kind == compliant_finite && o.cells[1] % 2 != 0);
+    if (o.quadrature == Options::Quadrature::simpson && odd)
       r.fail("cells", "Simpson's rule needs an even number of cells");
   });
 }

@@ -18,5 +18,8 @@ std::unique_ptr<Model> make_linear(const Options& options);
 /// Short or long film of a cylindrical bore with an elastic liner; throws core::InputError alike.
 std::unique_ptr<StateModel> make_compliant(const Geometry& geometry, const Options& options,
                                            const Lubricant& lubricant);
+/// The same of finite length, on a mesh around and along the bearing.
+std::unique_ptr<StateModel> make_compliant_finite(const Geometry& geometry, const Options& options,
+                                                  const Lubricant& lubricant);
 
 }  // namespace whirl::film

@@ -18,18 +18,21 @@ std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& optio
       return make_linear(options);
     case Options::Kind::compliant_short:
     case Options::Kind::compliant_long:
+    case Options::Kind::compliant_finite:
       break;
   }
   throw core::Bug("film kind without a maker");
 }
 
 bool has_states(Options::Kind kind) {
-  return kind == Options::Kind::compliant_short || kind == Options::Kind::compliant_long;
+  using enum Options::Kind;
+  return kind == compliant_short || kind == compliant_long || kind == compliant_finite;
 }
 
 std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,
                                              const Lubricant& lubricant) {
   if (!has_states(options.kind)) throw core::Bug("this kind of film has no states");
+  if (options.kind == Options::Kind::compliant_finite) return make_compliant_finite(geometry, options, lubricant);
   return make_compliant(geometry, options, lubricant);
 }
 

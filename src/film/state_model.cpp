@@ -32,6 +32,48 @@ double norm(const std::vector<double>& v) {
 
 }  // namespace
 
+std::vector<double> with_neighbours(const StateModel& film, Lines part, std::span<const double> states) {
+  const Ring ring = film.ring();
+  const std::size_t line = film.line();
+  std::vector<double> out;
+  out.reserve(static_cast<std::size_t>(part.count() + 2 * ring.reach) * line);
+  for (int i = part.begin - ring.reach; i < part.end + ring.reach; ++i) {
+    const auto from = static_cast<std::size_t>((i % ring.lines + ring.lines) % ring.lines) * line;
+    out.insert(out.end(), states.begin() + static_cast<std::ptrdiff_t>(from),
+               states.begin() + static_cast<std::ptrdiff_t>(from + line));
+  }
+  return out;
+}
+
+void add_entries(const StateModel& film, Lines part, const Stencil& stencil, std::vector<Entry>& entries) {
+  const int line = static_cast<int>(film.line()), lines = film.ring().lines;
+  constexpr std::array<std::array<int, 2>, Stencil::n_places> offset = {
+      {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-2, 0}}};
+  for (std::size_t place = 0; place < Stencil::n_places; ++place) {
+    if (stencil.at[place].empty()) continue;
+    const double* value = stencil.at[place].data();
+    for (int i = part.begin; i < part.end; ++i)
+      for (int j = 0; j < line; ++j, ++value) {
+        const int other = j + offset[place][1];
+        if (other < 0 || other >= line) continue;
+        entries.push_back({i * line + j, (i + offset[place][0] + lines) % lines * line + other, *value});
+      }
+  }
+}
+
+void StateModel::evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates,
+                          Need need, StateResponse& response) {
+  core::require(states.size() == this->states() && rates.size() == states.size(), "states of a film");
+  const Lines all{0, ring().lines};
+  if (all.end == 1) return evaluate_lines(motion, all, states, rates, need, response);
+  evaluate_lines(motion, all, with_neighbours(*this, all, states), with_neighbours(*this, all, rates), need, response);
+  response.d_states.clear();
+  response.d_rates.clear();
+  if (need == Need::force) return;
+  add_entries(*this, all, response.by_states, response.d_states);
+  add_entries(*this, all, response.by_rates, response.d_rates);
+}
+
 // Converged by the step and not by the residual, whose rounding error grows with the square of the mesh.
 void relax(StateModel& film, const Motion& motion, std::vector<double>& states) {
   const std::vector<double> rest(states.size(), 0.0);

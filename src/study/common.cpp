@@ -127,7 +127,8 @@ std::string branch_status(const solve::BranchEnd& end, const std::string& unit) 
 system::Train with_half_film_mesh(system::Train train) {
   for (auto& s : train.supports) {
     for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = std::max(4, s.film.cells[d] / 2);
-    if (s.film.quadrature == film::Options::Quadrature::simpson) s.film.cells[0] += s.film.cells[0] % 2;
+    if (s.film.quadrature == film::Options::Quadrature::simpson)
+      for (int& cells : s.film.cells) cells += cells % 2;
   }
   return train;
 }

@@ -75,18 +75,15 @@ void RotorSystem::build() {
         bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
     }
   });
-  n_own_ = 0;
-  for (Bearing& b : bearings_) {
-    b.first = n_own_;
-    if (b.states) b.count = static_cast<PetscInt>(b.states->states());
-    n_own_ += b.count;
-  }
-
   PetscInt rotor_begin = 0, rotor_end = 0;
   check(MatGetOwnershipRange(m.mass.get(), &rotor_begin, &rotor_end));
-  on_last_ = core::rank_of(comm_) == core::size_of(comm_) - 1;
-  begin_ = rotor_begin;
-  end_ = on_last_ ? n_ : rotor_end;
+  first_holds_rotor_ =
+      train_.rotor.type == rotor::Options::Type::rigid &&
+      std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.states != nullptr; });
+  const int rank = core::rank_of(comm_), with_pedestals_on = first_holds_rotor_ ? 0 : core::size_of(comm_) - 1;
+  begin_ = rank > with_pedestals_on ? n_ : rotor_begin;
+  end_ = rank >= with_pedestals_on ? n_ : rotor_end;
+  share_out_own_states();
   std::vector<std::pair<PetscInt, double>> pm, pc, pk, pg;
   for (std::size_t i = 0; i < bearings_.size(); ++i)
     for (std::size_t d = 0; d < 2; ++d)
@@ -145,27 +142,69 @@ void RotorSystem::build() {
   unbalance_c_.resize(static_cast<std::size_t>(n_), 0.0);
   unbalance_s_.resize(static_cast<std::size_t>(n_), 0.0);
 
-  // Which entries of the state the films see: journal and pedestal positions and velocities.
-  std::vector<PetscInt> wanted;
+  // Which entries of the state the films see: journal and pedestal positions and velocities, and own states.
+  wanted_.clear();
   for (const Bearing& b : bearings_)
     for (std::size_t d = 0; d < 2; ++d)
       for (const PetscInt q : {b.journal[d], b.pedestal[d]})
-        for (PetscInt rate = 0; rate < 2; ++rate) wanted.push_back(2 * std::max<PetscInt>(q, 0) + rate);
+        for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * std::max<PetscInt>(q, 0) + rate);
+  const std::size_t inputs = wanted_.size();
+  for (Bearing& b : bearings_) {
+    b.gathered = wanted_.size() - inputs;
+    if (b.part.count() == 0) continue;
+    const film::Ring ring = b.states->ring();
+    const auto line = static_cast<PetscInt>(b.states->line());
+    for (int i = b.part.begin - ring.reach; i < b.part.end + ring.reach; ++i)
+      for (PetscInt k = 0; k < line; ++k)
+        wanted_.push_back(2 * n_ + b.first + (i + ring.lines) % ring.lines * line + k);
+  }
   core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
   core::IndexSet from;
-  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
+  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), wanted_.data(), PETSC_COPY_VALUES,
                         from.put()));
-  inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), PETSC_DETERMINE);
+  inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), PETSC_DETERMINE);
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
   blocks_.reset();
   j_at_rest_.reset();
 }
 
+// Own states stand behind all pairs, film by film. Cut at whole lines near equal shares; with the rotor spread over the
+// ranks all that can follow it is on the last one.
+void RotorSystem::share_out_own_states() {
+  n_own_ = 0;
+  for (Bearing& b : bearings_) {
+    b.first = n_own_;
+    if (b.states) b.count = static_cast<PetscInt>(b.states->states());
+    n_own_ += b.count;
+  }
+  const int rank = core::rank_of(comm_), size = core::size_of(comm_);
+  const auto cut = [&](int r) -> PetscInt {
+    if (r == size) return n_own_;
+    if (r == 0 || !first_holds_rotor_) return 0;
+    const PetscInt wanted = n_own_ * r / size;
+    for (const Bearing& b : bearings_) {
+      if (!b.states || wanted >= b.first + b.count) continue;
+      const auto line = static_cast<PetscInt>(b.states->line());
+      return b.first + (wanted - b.first + line / 2) / line * line;
+    }
+    return n_own_;
+  };
+  const PetscInt begin = cut(rank), end = cut(rank + 1);
+  own_here_ = end - begin;
+  for (Bearing& b : bearings_) {
+    b.part = {0, 0};
+    b.row = 2 * (end_ - begin_) + std::max<PetscInt>(b.first - begin, 0);
+    const PetscInt from = std::max(b.first, begin), to = std::min(b.first + b.count, end);
+    if (!b.states || from >= to) continue;
+    const auto line = static_cast<PetscInt>(b.states->line());
+    b.part = {static_cast<int>((from - b.first) / line), static_cast<int>((to - b.first) / line)};
+  }
+}
+
 // The parts of the Jacobian that are constant between builds, all in the pattern of make_jacobian(): so a Jacobian is a
 // sum of arrays plus the few entries of the films.
 void RotorSystem::make_constant_parts() {
-  const PetscInt rows = end_ - begin_;
-  const PetscInt local_rows = local_size();
+  const PetscInt rows = end_ - begin_, local_rows = local_size();
   std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local_rows, 1)), 2);
   std::vector<PetscInt> coupled(static_cast<std::size_t>(n_), 0);  // own states that act on a coordinate
   Films pattern;
@@ -177,14 +216,14 @@ void RotorSystem::make_constant_parts() {
     for (std::size_t d = 0; d < 2; ++d)
       for (const PetscInt q : {bearing.journal[d], bearing.pedestal[d]})
         if (q >= 0) coupled[static_cast<std::size_t>(q)] += bearing.count;
-    if (!on_last_) continue;
-    const std::vector<double> zero(static_cast<std::size_t>(bearing.count), 0.0);
-    std::vector<double> states = zero;
+    if (bearing.part.count() == 0) continue;
+    std::vector<double> states(static_cast<std::size_t>(bearing.count));
     bearing.states->unloaded(motion({}), states);
-    bearing.states->evaluate(motion({}), states, zero, film::Need::tangents, pattern.own[b]);
-    for (PetscInt k = 0; k < bearing.count; ++k)
-      count[static_cast<std::size_t>(2 * rows + bearing.first + k)] =
-          std::min(bearing.states->row_entries() + 8, size());
+    states = film::with_neighbours(*bearing.states, bearing.part, states);
+    const std::vector<double> zero(states.size(), 0.0);
+    bearing.states->evaluate_lines(motion({}), bearing.part, states, zero, film::Need::tangents, pattern.own[b]);
+    for (PetscInt k = bearing.row; k < bearing.row + bearing.rows(); ++k)
+      count[static_cast<std::size_t>(k)] = std::min(bearing.states->row_entries() + 8, size());
   }
   for (PetscInt i = 0; i < rows; ++i) {
     PetscInt k = 0, total = coupled[static_cast<std::size_t>(begin_ + i)];

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "whirl/core/error.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -29,7 +31,7 @@ system::Train train(const Bench& b) {
   system::Train t;
   t.gravity = 0;
   t.rotor.type = rotor::Options::Type::rigid;
-  const double load = b.kind == Kind::compliant_short ? 0.64 : 2.56;  // N, whole rotor of 1 kg, c = 25 um
+  const double load = b.kind == Kind::compliant_long ? 2.56 : 0.64;  // N, whole rotor of 1 kg, c = 25 um
   t.rotor.mass = 0.5;
   t.rotor.load = load / 2;
   system::Support s;
@@ -38,7 +40,7 @@ system::Train train(const Bench& b) {
   s.film.kind = b.kind;
   s.film.compliance = b.compliance;
   s.film.reference_speed = std::sqrt(load / 25e-6);
-  s.film.cells = {b.cells, 4};
+  s.film.cells = {b.cells, b.kind == Kind::compliant_finite ? b.cells / 5 : 4};
   if (b.as_source) {
     s.film.quadrature = film::Options::Quadrature::simpson;
     s.film.differences = film::Options::Differences::upwind;
@@ -98,9 +100,9 @@ Hopf hopf(const Bench& b, double expected, MPI_Comm comm = MPI_COMM_WORLD) {
 }  // namespace
 
 TEST(CompliantRotor, DerivativesPassTheTaylorTest) {
-  for (const Kind kind : {Kind::compliant_short, Kind::compliant_long})
+  for (const Kind kind : {Kind::compliant_short, Kind::compliant_long, Kind::compliant_finite})
     for (const bool as_source : {false, true}) {
-      auto t = train({kind, 1, 24, as_source});
+      auto t = train({kind, 1, kind == Kind::compliant_finite ? 20 : 24, as_source});
       t.unbalance = {{1, 1e-6, 0.3}};
       system::Support other = t.supports[0];  // a second one on a pedestal, and one without own states between them
       other.has_pedestal = true;
@@ -111,7 +113,7 @@ TEST(CompliantRotor, DerivativesPassTheTaylorTest) {
       rigid.film.kind = Kind::short_bearing;
       t.supports = {other, rigid, t.supports[0]};
       system::RotorSystem s(MPI_COMM_WORLD, t, 300);
-      ASSERT_EQ(s.own_states(), kind == Kind::compliant_short ? 48 : 46);
+      ASSERT_EQ(s.own_states(), kind == Kind::compliant_short ? 48 : kind == Kind::compliant_long ? 46 : 120);
       ASSERT_EQ(s.size(), s.coordinates() * 2 + s.own_states());
       core::Vector x = system::static_guess(s), rate = core::duplicate(x.get());
       PetscInt begin = 0;
@@ -154,6 +156,70 @@ TEST(CompliantRotor, HopfSpeedsApproachTheMeshFreeOnesAtSecondOrder) {
       EXPECT_LT(fine, 6e-4 * limit + 1e-4) << "B = " << b[k] << (inlet ? " long" : " short");
       EXPECT_GE(std::log(coarse / fine) / std::log(3.0), 1.6) << "B = " << b[k] << (inlet ? " long" : " short");
     }
+}
+
+// Films spread over the ranks are the films of one rank: residual, products and dF/dp of every row, in natural order.
+TEST(CompliantRotor, AFilmSpreadOverRanksIsThatOfOneRank) {
+  auto t = train({Kind::compliant_finite, 0.1, 26, false});
+  t.unbalance = {{1, 1e-6, 0.3}};
+  system::Support other = t.supports[0];  // on a pedestal, reaching two lines back
+  other.has_pedestal = true;
+  other.mass = {0.1, 0.2};
+  other.stiffness = {2e4, 3e4};
+  other.damping = {2, 3};
+  other.film.cells = {15, 6};
+  other.film.differences = film::Options::Differences::upwind;
+  t.supports.push_back(other);
+  t.supports.push_back(train({Kind::compliant_short, 0.1, 24, false}).supports[0]);
+  const auto evaluated = [&](MPI_Comm comm, double thinner) {
+    system::RotorSystem s(comm, t, 300);
+    core::Vector x = core::make_vector(comm, s.local_size(), PETSC_DETERMINE), rate = core::duplicate(x.get()),
+                 f = core::duplicate(x.get());
+    PetscInt begin = 0;
+    core::check(VecGetOwnershipRange(x.get(), &begin, nullptr));
+    {
+      const core::WriteArray a(x.get()), r(rate.get());
+      for (PetscInt i = 0; i < a.size(); ++i) {
+        const PetscInt g = begin + i;
+        const double wave = std::sin(0.37 * static_cast<double>(g * g));
+        a[i] = g < 2 * s.coordinates() ? 3e-6 * wave : 25e-6 * (1 + 0.3 * wave);
+        r[i] = 1e-3 * std::cos(2.1 * static_cast<double>(g));
+        if (g == 2 * s.coordinates() + s.own_states() - 30) a[i] -= thinner;
+      }
+    }
+    std::vector<std::vector<double>> out;
+    s.residual(0.7, x.get(), rate.get(), f.get());
+    out.push_back(s.gather(f.get()));
+    s.parameter_derivative(0.7, x.get(), rate.get(), f.get());
+    out.push_back(s.gather(f.get()));
+    core::Matrix j = s.make_jacobian();
+    s.jacobian(0.7, x.get(), rate.get(), 0.3, 2, j.get());
+    core::check(MatMult(j.get(), rate.get(), f.get()));
+    out.push_back(s.gather(f.get()));
+    const auto films = s.film_responses(s.gather(x.get()).data(), film::Need::force);
+    for (const auto& film : films) out.push_back({film.force[0], film.force[1], film.min_thickness});
+    s.relax_films(x.get());
+    out.push_back(s.gather(x.get()));
+    return out;
+  };
+  const auto all = evaluated(MPI_COMM_WORLD, 0), one = evaluated(MPI_COMM_SELF, 0);
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    ASSERT_EQ(all[k].size(), one[k].size());
+    double size = 0;
+    for (const double v : one[k]) size = std::max(size, std::abs(v));
+    EXPECT_GT(size, 0);
+    for (std::size_t i = 0; i < one[k].size(); ++i) EXPECT_NEAR(all[k][i], one[k][i], 1e-13 * size) << k << " " << i;
+  }
+  // Contact in the lines of one rank is an error of all.
+  EXPECT_THROW(evaluated(MPI_COMM_WORLD, 1e-4), core::DomainError);
+}
+
+// The Hopf speed with films of finite length, L/D = 1, approaches its limit at second order in the mesh.
+TEST(CompliantRotor, HopfSpeedsOfFiniteFilmsAreOfSecondOrder) {
+  std::array<double, 3> speed{};
+  for (std::size_t k = 0; k < 3; ++k) speed[k] = hopf({Kind::compliant_finite, 0.1, 15 << k, false}, 2.5).speed;
+  EXPECT_NEAR(std::log2((speed[0] - speed[1]) / (speed[1] - speed[2])), 2, 0.3);
+  EXPECT_NEAR(speed[2] + (speed[2] - speed[1]) / 3, 2.4996, 5e-4);
 }
 
 // At the Hopf point the rotor on the film's coefficients at the whirl frequency swings freely:

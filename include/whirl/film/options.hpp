@@ -37,7 +37,8 @@ struct Options {
     long_inlet,
     finite_approximate,
     compliant_short,
-    compliant_long
+    compliant_long,
+    compliant_finite
   };
   enum class Quadrature { sub_cell, simpson };
   enum class Differences { central, upwind };

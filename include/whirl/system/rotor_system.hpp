@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "whirl/film/state_model.hpp"
@@ -34,8 +35,9 @@ struct JournalState {
 /// in this order, so that no diagonal entry of dF/dx is zero. f_film acts on the journal and with the opposite sign on
 /// the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
 /// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
-/// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0; they and their evaluation are on the last rank.
-/// Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks in whole
+/// lines if the rotor is rigid, which then stands with the pedestals on the first rank; otherwise they are on the last
+/// one. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public problem::System {
 public:
   /// The speed [rad/s] is the parameter.
@@ -46,7 +48,7 @@ public:
 
   [[nodiscard]] MPI_Comm comm() const override { return comm_; }
   [[nodiscard]] PetscInt size() const override { return 2 * n_ + n_own_; }
-  [[nodiscard]] PetscInt local_size() const override { return 2 * (end_ - begin_) + (on_last_ ? n_own_ : 0); }
+  [[nodiscard]] PetscInt local_size() const override { return 2 * (end_ - begin_) + own_here_; }
   [[nodiscard]] double parameter() const override { return varying_.train ? varying_.value : speed_; }
   void set_parameter(double p) override;
   [[nodiscard]] double speed() const override { return speed_; }
@@ -107,9 +109,13 @@ private:
     std::array<PetscInt, 2> journal{-1, -1}, pedestal{-1, -1};
     std::unique_ptr<film::Model> film;         // null for a film with own states
     std::unique_ptr<film::StateModel> states;  // null for a film without
-    PetscInt first = 0, count = 0;             // its own states
+    PetscInt first = 0, count = 0;             // its own states: where among all of them, how many
+    film::Lines part{0, 0};                    // its lines on this rank,
+    PetscInt row = 0;                          // where they begin in this rank's part of a state,
+    std::size_t gathered = 0;                  // and, with their neighbours, among the gathered own states
+    [[nodiscard]] PetscInt rows() const { return states ? part.count() * static_cast<PetscInt>(states->line()) : 0; }
   };
-  /// Films at one state: what they do to the journals on all ranks, and what concerns own states on the last one.
+  /// Films at one state: what they do to the journals on all ranks, and this rank's rows of own states.
   struct Films {
     std::vector<film::Response> journal;
     std::vector<film::StateResponse> own;
@@ -118,19 +124,23 @@ private:
 
   void build();
   void set_train(Train train);
+  void share_out_own_states();
   void make_constant_parts();
   /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates. Collective:
   /// assembles j.
   void add_films(Mat j, const Films& films, double alpha, double sigma) const;
   [[nodiscard]] Films films_at(Vec x, Vec xdot, film::Need need);
-  /// `own` and `rates` are read on the last rank, and only if there are own states; no rates are zero rates.
-  [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, const double* own, const double* rates,
-                               film::Need need);
+  /// `own` and `rates` are this rank's lines with their neighbours, as gathered; no rates are zero rates.
+  [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, std::span<const double> own,
+                               std::span<const double> rates, film::Need need);
+  void sum_over_ranks(std::vector<film::Response>& films) const;
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
-  [[nodiscard]] int evaluator(std::size_t bearing) const;
+  /// This rank evaluates film `bearing`, or a part of it.
+  [[nodiscard]] bool evaluates(std::size_t bearing) const;
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
-  /// Journal states on every rank from the distributed state. Collective.
-  [[nodiscard]] std::vector<JournalState> journals_of(Vec x);
+  /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
+  [[nodiscard]] std::vector<double> gather_inputs(Vec x);
+  [[nodiscard]] std::vector<JournalState> journals_of(std::span<const double> inputs) const;
 
   MPI_Comm comm_;
   Train train_;
@@ -140,12 +150,13 @@ private:
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
-  PetscInt n_own_ = 0;                                    // own states of films
-  bool on_last_ = true;                                   // this is the last rank
+  PetscInt n_own_ = 0, own_here_ = 0;                     // own states of films: all, on this rank
+  bool first_holds_rotor_ = false;                        // and the own states are shared out over all ranks
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
   std::vector<double> load_;                              // gravity on this rank's coordinates [N]
   std::vector<double> unbalance_c_, unbalance_s_;         // whole, per Omega^2
+  std::vector<PetscInt> wanted_;                          // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::unique_ptr<Blocks> blocks_;

@@ -1,0 +1,91 @@
+// What all compliant films share.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "film/compliant.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::film {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Flexibility U/p of the liner [m/Pa].
+double flexibility(const Geometry& g, const Options& o, const Lubricant& lubricant) {
+  if (o.liner)
+    return o.liner->thickness * (1.0 + o.liner->poisson) * (1.0 - 2.0 * o.liner->poisson) /
+           (o.liner->modulus * (1.0 - o.liner->poisson));
+  return *o.compliance * g.clearance * g.clearance * g.clearance /
+         (6.0 * lubricant.viscosity * o.reference_speed * g.radius * g.radius);
+}
+
+}  // namespace
+
+CompliantScales::CompliantScales(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+  const double ratio = g.radius / g.clearance;
+  pressure = 6.0 * lubricant.viscosity * ratio * ratio;
+  force = pressure * g.length * g.radius;
+  liner = flexibility(g, options, lubricant) * pressure / g.clearance;
+}
+
+void check_compliant(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+  if (g.type != Geometry::Bore::cylindrical) throw core::InputError("film: a compliant film needs a cylindrical bore");
+  if (!(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0))
+    throw core::InputError("film: radius, length and clearance must be positive");
+  if (!(lubricant.viscosity > 0.0)) throw core::InputError("film: the viscosity must be positive");
+  if (options.liner.has_value() == options.compliance.has_value())
+    throw core::InputError("film: a compliant film has either a liner or a compliance");
+  if (options.compliance && !(*options.compliance > 0.0 && options.reference_speed > 0.0))
+    throw core::InputError("film: the compliance and its reference speed must be positive");
+  if (options.liner && !(options.liner->thickness > 0.0 && options.liner->modulus > 0.0 &&
+                         options.liner->poisson >= 0.0 && options.liner->poisson < 0.5))
+    throw core::InputError("film: thickness and modulus of the liner must be positive, Poisson's ratio below 1/2");
+  const bool finite = options.kind == Options::Kind::compliant_finite;
+  if (options.cells[0] < 4 || (finite && options.cells[1] < 2))
+    throw core::InputError("film: a compliant film needs at least 4 cells around and 2 along the bearing");
+  if (options.quadrature == Options::Quadrature::simpson &&
+      (options.cells[0] % 2 != 0 || (finite && options.cells[1] % 2 != 0)))
+    throw core::InputError("film: Simpson's rule needs even numbers of cells");
+}
+
+RingQuadrature::RingQuadrature(int n, Options::Quadrature rule)
+    : n_(n), simpson_(rule == Options::Quadrature::simpson), step_(2.0 * kPi / n) {
+  for (int k = 0; k < n; ++k) {
+    cos_.push_back(std::cos(angle(k)));
+    sin_.push_back(std::sin(angle(k)));
+  }
+  for (int k = 0; k < n; ++k) {
+    if (!simpson_) {
+      full_.push_back(part(k, 1.0, 1.0));
+      continue;
+    }
+    // Half of the two-sided weight of each node on either side of it.
+    const double left = (k % 2 == 0 ? 1.0 : 2.0) / 3.0 * step_, right = step_ - left;
+    full_.push_back({{-left * cosine(k), -left * sine(k)}, {-right * cosine(k + 1), -right * sine(k + 1)}});
+  }
+}
+
+double RingQuadrature::angle(int k) const {
+  return 0.5 * kPi + step_ * k;
+}
+
+// Gauss's rule of three points on the positive part of the cell.
+RingQuadrature::Weights RingQuadrature::part(int k, double a, double b) const {
+  constexpr double root = 0.7745966692414834;  // sqrt(3/5)
+  constexpr std::array<double, 3> place = {0.5 - 0.5 * root, 0.5, 0.5 + 0.5 * root},
+                                  weight = {5. / 18, 4. / 9, 5. / 18};
+  const double from = a < 0.0 ? a / (a - b) : 0.0, to = b < 0.0 ? a / (a - b) : 1.0;
+  Weights out;
+  for (std::size_t q = 0; q < 3; ++q) {
+    const double s = from + (to - from) * place[q], w = step_ * (to - from) * weight[q], theta = angle(k) + step_ * s;
+    const std::array<double, 2> direction = {-w * std::cos(theta), -w * std::sin(theta)};
+    for (std::size_t i = 0; i < 2; ++i) {
+      out.left[i] += direction[i] * (1.0 - s);
+      out.right[i] += direction[i] * s;
+    }
+  }
+  return out;
+}
+
+}  // namespace whirl::film

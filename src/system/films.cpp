@@ -1,0 +1,257 @@
+// Films of a train: who evaluates what, what they see, and what they add to residual and Jacobian.
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::system {
+
+using core::check;
+
+std::vector<double> RotorSystem::gather_inputs(Vec x) {
+  check(VecScatterBegin(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const core::ReadArray a(inputs_.get());
+  return {a.data(), a.data() + a.size()};
+}
+
+std::vector<JournalState> RotorSystem::journals_of(std::span<const double> inputs) const {
+  std::vector<JournalState> out(bearings_.size());
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      const double* a = inputs.data() + 8 * i + 4 * d;
+      const bool moves = bearings_[i].pedestal[d] >= 0;
+      out[i].position[d] = a[0] - (moves ? a[2] : 0.0);
+      out[i].velocity[d] = a[1] - (moves ? a[3] : 0.0);
+    }
+    out[i].position[1] -= train_.supports[i].elevation;
+  }
+  return out;
+}
+
+std::vector<JournalState> RotorSystem::journals(const double* x) const {
+  std::vector<JournalState> out(bearings_.size());
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt j = bearings_[i].journal[d], p = bearings_[i].pedestal[d];
+      out[i].position[d] = x[2 * j] - (p >= 0 ? x[2 * p] : 0.0);
+      out[i].velocity[d] = x[2 * j + 1] - (p >= 0 ? x[2 * p + 1] : 0.0);
+    }
+    out[i].position[1] -= train_.supports[i].elevation;
+  }
+  return out;
+}
+
+film::Motion RotorSystem::motion(const JournalState& journal) const {
+  film::Motion motion;
+  for (std::size_t d = 0; d < 2; ++d) {
+    motion.position[d] = journal.position[d];
+    motion.velocity[d] = journal.velocity[d];
+  }
+  motion.speed = speed_;
+  return motion;
+}
+
+bool RotorSystem::evaluates(std::size_t bearing) const {
+  const Bearing& b = bearings_[bearing];
+  if (b.states) return b.part.count() > 0;
+  return static_cast<int>(bearing) % core::size_of(comm_) == core::rank_of(comm_);
+}
+
+std::vector<film::Response> RotorSystem::film_responses(const std::vector<JournalState>& journals, film::Need need) {
+  core::require(n_own_ == 0, "films with own states need the whole state");
+  return films_at(journals, {}, {}, need).journal;
+}
+
+std::vector<film::Response> RotorSystem::film_responses(const double* x, film::Need need) {
+  std::vector<double> own;
+  for (std::size_t k = 8 * bearings_.size(); k < wanted_.size(); ++k) own.push_back(x[wanted_[k]]);
+  return films_at(journals(x), own, {}, need).journal;
+}
+
+RotorSystem::Films RotorSystem::films_at(Vec x, Vec xdot, film::Need need) {
+  const std::vector<double> inputs = gather_inputs(x),
+                            rates = n_own_ > 0 ? gather_inputs(xdot) : std::vector<double>(inputs.size());
+  const auto own = static_cast<std::ptrdiff_t>(8 * bearings_.size());
+  return films_at(journals_of(inputs), {inputs.begin() + own, inputs.end()}, {rates.begin() + own, rates.end()}, need);
+}
+
+RotorSystem::Films RotorSystem::films_at(const std::vector<JournalState>& journals, std::span<const double> own,
+                                         std::span<const double> rates, film::Need need) {
+  Films films;
+  films.journal.resize(bearings_.size());
+  films.own.resize(bearings_.size());
+  const std::vector<double> zero(rates.empty() ? own.size() : 0, 0.0);
+  if (rates.empty()) rates = zero;
+  core::agree(comm_, [&] {
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      if (!evaluates(i)) continue;
+      const Bearing& b = bearings_[i];
+      try {
+        if (b.states) {
+          const std::size_t n =
+              static_cast<std::size_t>(b.part.count() + 2 * b.states->ring().reach) * b.states->line();
+          b.states->evaluate_lines(motion(journals[i]), b.part, own.subspan(b.gathered, n),
+                                   rates.subspan(b.gathered, n), need, films.own[i]);
+          films.journal[i] = films.own[i].journal;
+        } else {
+          b.film->evaluate(motion(journals[i]), need, films.journal[i]);
+        }
+      } catch (const core::DomainError& e) {
+        throw core::DomainError("bearing " + train_.supports[i].name + ": " + e.what());
+      }
+    }
+  });
+  if (core::size_of(comm_) > 1) sum_over_ranks(films.journal);
+  return films;
+}
+
+// Forces and tangents add up, be it over the parts of a film or because all ranks but one have none; of thicknesses the
+// least counts.
+void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
+  constexpr std::size_t width = 2 + 4 + 4 + 2;
+  std::vector<double> flat(width * films.size(), 0.0), thickness(films.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < films.size(); ++i) {
+    if (!evaluates(i)) continue;
+    double* f = flat.data() + width * i;
+    for (std::size_t d = 0; d < 2; ++d) {
+      f[d] = films[i].force[d];
+      for (std::size_t e = 0; e < 2; ++e) {
+        f[2 + 2 * d + e] = films[i].d_position[d][e];
+        f[6 + 2 * d + e] = films[i].d_velocity[d][e];
+      }
+      f[10 + d] = films[i].d_speed[d];
+    }
+    thickness[i] = films[i].min_thickness;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, flat.data(), static_cast<int>(flat.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, thickness.data(), static_cast<int>(thickness.size()), MPI_DOUBLE, MPI_MIN, comm_);
+  for (std::size_t i = 0; i < films.size(); ++i) {
+    const double* f = flat.data() + width * i;
+    for (std::size_t d = 0; d < 2; ++d) {
+      films[i].force[d] = f[d];
+      for (std::size_t e = 0; e < 2; ++e) {
+        films[i].d_position[d][e] = f[2 + 2 * d + e];
+        films[i].d_velocity[d][e] = f[6 + 2 * d + e];
+      }
+      films[i].d_speed[d] = f[10 + d];
+    }
+    films[i].min_thickness = thickness[i];
+  }
+}
+
+void RotorSystem::add_films(Mat j, const Films& all, double alpha, double sigma) const {
+  const std::vector<film::Response>& films = all.journal;
+  for (std::size_t b = 0; b < bearings_.size(); ++b)
+    for (std::size_t d = 0; d < 2; ++d)
+      for (const auto& [row, sign] :
+           {std::pair{bearings_[b].journal[d], -1.0}, std::pair{bearings_[b].pedestal[d], 1.0}}) {
+        if (row < 0 || !owns(row)) continue;
+        for (std::size_t e = 0; e < 2; ++e)
+          for (const auto& [column, side] :
+               {std::pair{bearings_[b].journal[e], 1.0}, std::pair{bearings_[b].pedestal[e], -1.0}}) {
+            if (column < 0) continue;
+            check(MatSetValue(j, 2 * row, 2 * column, alpha * sign * side * films[b].d_position[d][e], ADD_VALUES));
+            check(MatSetValue(j, 2 * row, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
+          }
+      }
+  std::vector<film::Entry> lines;
+  for (std::size_t b = 0; b < bearings_.size(); ++b) {
+    const Bearing& bearing = bearings_[b];
+    if (bearing.part.count() == 0) continue;
+    const film::StateResponse& own = all.own[b];
+    const PetscInt first = 2 * n_ + bearing.first,
+                   begin = first + bearing.part.begin * static_cast<PetscInt>(bearing.states->line());
+    const bool ring = bearing.states->ring().lines > 1;
+    for (const auto& [triplets, stencil, factor] :
+         {std::tuple(&own.d_states, &own.by_states, alpha), std::tuple(&own.d_rates, &own.by_rates, sigma)}) {
+      lines.clear();
+      if (ring) film::add_entries(*bearing.states, bearing.part, *stencil, lines);
+      for (const film::Entry& e : ring ? lines : *triplets)
+        check(MatSetValue(j, first + e.row, first + e.column, factor * e.value, ADD_VALUES));
+    }
+    for (std::size_t d = 0; d < 2; ++d)
+      for (const auto& [q, side] : {std::pair{bearing.journal[d], 1.0}, std::pair{bearing.pedestal[d], -1.0}})
+        for (PetscInt k = 0; k < bearing.rows() && q >= 0; ++k) {
+          const auto state = static_cast<std::size_t>(k);
+          const PetscInt row = begin + k;
+          check(MatSetValue(j, row, 2 * q, alpha * side * own.d_position[state][d], ADD_VALUES));
+          check(MatSetValue(j, row, 2 * q + 1, alpha * side * own.d_velocity[state][d], ADD_VALUES));
+          check(MatSetValue(j, 2 * q, row, -alpha * side * own.force_d_states[state][d], ADD_VALUES));
+        }
+  }
+  check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
+}
+
+film::Summary RotorSystem::film_summary(int b, const double* x) {
+  const auto i = static_cast<std::size_t>(b);
+  const Bearing& bearing = bearings_[i];
+  const film::Motion at = motion(journals(x)[i]);
+  if (!bearing.states) return bearing.film->summary(at);
+  return bearing.states->summary(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
+}
+
+std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
+  const auto i = static_cast<std::size_t>(b);
+  const Bearing& bearing = bearings_[i];
+  const film::Motion at = motion(journals(x)[i]);
+  if (!bearing.states) return bearing.film->fields(at);
+  return bearing.states->fields(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
+}
+
+film::Coefficients RotorSystem::film_coefficients(int b, const double* x, double omega) {
+  const auto i = static_cast<std::size_t>(b);
+  const Bearing& bearing = bearings_[i];
+  const film::Motion at = motion(journals(x)[i]);
+  if (bearing.states)
+    return film::coefficients(*bearing.states, at, {x + 2 * n_ + bearing.first, bearing.states->states()}, omega);
+  film::Response response;
+  bearing.film->evaluate(at, film::Need::tangents, response);
+  film::Coefficients out;
+  for (std::size_t d = 0; d < 2; ++d)
+    for (std::size_t e = 0; e < 2; ++e) {
+      out.stiffness[2 * d + e] = -response.d_position[d][e];
+      out.damping[2 * d + e] = -response.d_velocity[d][e];
+    }
+  return out;
+}
+
+// Every rank relaxes the whole of a film that it has a part of.
+void RotorSystem::relax_films(Vec x) {
+  const std::vector<JournalState> journals = journals_of(gather_inputs(x));
+  core::agree(comm_, [&] {
+    const core::WriteArray xa(x);
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      const Bearing& b = bearings_[i];
+      if (b.part.count() == 0) continue;
+      film::Motion still = motion(journals[i]);
+      still.velocity = {};
+      std::vector<double> states(b.states->states());
+      b.states->unloaded(still, states);
+      film::relax(*b.states, still, states);
+      const auto begin = states.begin() + b.part.begin * static_cast<std::ptrdiff_t>(b.states->line());
+      std::copy(begin, begin + b.rows(), xa.data() + b.row);
+    }
+  });
+}
+
+std::vector<double> RotorSystem::resampled(const RotorSystem& other, const double* x) const {
+  core::require(other.n_ == n_, "systems that differ in more than film meshes");
+  std::vector<double> out(x, x + 2 * n_);
+  out.resize(static_cast<std::size_t>(size()));
+  const std::vector<JournalState> at = journals(x);
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    const Bearing &to = bearings_[i], &from = other.bearings_[i];
+    if (to.states)
+      to.states->resample(motion(at[i]), *from.states, {x + 2 * n_ + from.first, static_cast<std::size_t>(from.count)},
+                          {out.data() + 2 * n_ + to.first, static_cast<std::size_t>(to.count)});
+  }
+  return out;
+}
+
+}  // namespace whirl::system
