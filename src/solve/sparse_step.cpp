@@ -17,6 +17,7 @@ std::size_t at(Index i) {
 }
 
 constexpr PetscInt direct_below = 3000;
+constexpr double product_tolerance = 1e-9, newton_tolerance = 1e-5;  // of frozen equations
 
 bool is_diagonal(MPI_Comm comm, Mat matrix) {
   PetscInt begin = 0, end = 0;
@@ -87,27 +88,37 @@ std::shared_ptr<const core::LinearSolver> make_solver(MPI_Comm comm, Mat matrix)
 
 void StepProduct::stages(Vec v, const std::vector<core::Vector>& lift, const std::vector<core::Vector>& load,
                          Vec out) const {
-  std::vector<core::Vector> k;
-  core::Vector w = core::duplicate(v), rhs = core::duplicate(v);
+  const std::vector<core::Vector>& k = work_->k;
+  Vec w = work_->w.get(), rhs = work_->rhs.get();
   for (Index j = 0; j < tableau_->stages(); ++j) {
-    check(VecCopy(v, w.get()));
+    const Stage& stage = stages_[at(j)];
+    check(VecCopy(v, w));
     for (Index l = 0; l < j; ++l)
-      if (tableau_->a(j, l) != 0) check(VecAXPY(w.get(), length_ * tableau_->a(j, l), k[at(l)].get()));
-    if (!lift.empty()) check(VecAXPY(w.get(), 1, lift[at(j)].get()));
-    check(MatMult(stages_[at(j)].jx.get(), w.get(), rhs.get()));
-    if (!load.empty()) check(VecAXPY(rhs.get(), 1, load[at(j)].get()));
-    check(VecScale(rhs.get(), -1));
-    k.push_back(core::duplicate(v));
-    check(KSPSolve(stages_[at(j)].solver->get(), rhs.get(), k.back().get()));
+      if (tableau_->a(j, l) != 0) check(VecAXPY(w, length_ * tableau_->a(j, l), k[at(l)].get()));
+    if (!lift.empty()) check(VecAXPY(w, 1, lift[at(j)].get()));
+    if (stage.frozen) {
+      // H a(j,j) dF/dx w = A w - dF/d(dx/dt) w.
+      const double own = length_ * tableau_->a(j, j);
+      stage.frozen->multiply_rates(w, rhs);
+      stage.frozen->multiply(w, k[at(j)].get());
+      check(VecAXPY(rhs, -1, k[at(j)].get()));
+      if (!load.empty()) check(VecAXPY(rhs, -own, load[at(j)].get()));
+      stage.frozen->solve(rhs, k[at(j)].get(), product_tolerance);
+      check(VecScale(k[at(j)].get(), 1 / own));
+      continue;
+    }
+    check(MatMult(stage.jx.get(), w, rhs));
+    if (!load.empty()) check(VecAXPY(rhs, 1, load[at(j)].get()));
+    check(VecScale(rhs, -1));
+    check(KSPSolve(stage.solver->get(), rhs, k[at(j)].get()));
   }
   for (Index j = 0; j < tableau_->stages(); ++j)
     if (tableau_->b(j) != 0) check(VecAXPY(out, length_ * tableau_->b(j), k[at(j)].get()));
 }
 
 void StepProduct::apply(Vec v) const {
-  core::Vector start = core::duplicate(v);
-  check(VecCopy(v, start.get()));
-  stages(start.get(), {}, {}, v);
+  check(VecCopy(v, work_->start.get()));
+  stages(work_->start.get(), {}, {}, v);
 }
 
 SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau)
@@ -118,7 +129,12 @@ SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau)
     *v = core::duplicate(x_.get());
   system.scales(state_scale_.get(), residual_inverse_.get());
   check(VecReciprocal(residual_inverse_.get()));
-  for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(x_.get()));
+  work_ = std::make_shared<StepProduct::Work>();
+  for (Index j = 0; j < tableau_.stages(); ++j) {
+    slopes_.push_back(core::duplicate(x_.get()));
+    work_->k.push_back(core::duplicate(x_.get()));
+  }
+  for (core::Vector* v : {&work_->start, &work_->w, &work_->rhs}) *v = core::duplicate(x_.get());
 }
 
 void SparseRungeKutta::fail() const {
@@ -152,8 +168,38 @@ void SparseRungeKutta::factorise(core::Matrix matrix) {
   solver_ = make_solver(system_.comm(), matrix_->get());
 }
 
+std::shared_ptr<const problem::Frozen> SparseRungeKutta::freeze(double angle, Vec x, Vec k, double alpha) {
+  check(VecPointwiseMult(x_.get(), x, state_scale_.get()));
+  check(VecPointwiseMult(k_.get(), k, state_scale_.get()));
+  return system_.freeze(angle, x_.get(), k_.get(), alpha, 1, frozen_.get());
+}
+
+// By chords: the equations stay frozen while every correction is at most a fifth of the last one.
+bool SparseRungeKutta::solve_frozen_stage(double angle, double own, Vec base, Vec k) {
+  double size = 0, correction = 0, last = 0;
+  check(VecNorm(base, NORM_INFINITY, &size));
+  std::shared_ptr<const problem::Frozen> frozen;
+  for (int it = 0;; ++it) {
+    check(VecWAXPY(value_.get(), own, k, base));
+    residual(angle, value_.get(), k, f_.get());
+    if (!frozen || (it > 1 && correction > 0.2 * last)) {
+      frozen = freeze(angle, value_.get(), k, own);
+      if (!frozen) return false;
+      frozen_ = frozen;
+    }
+    frozen->solve(f_.get(), d_.get(), newton_tolerance);
+    check(VecAXPY(k, -1, d_.get()));
+    last = correction;
+    check(VecNorm(d_.get(), NORM_INFINITY, &correction));
+    if (!std::isfinite(correction)) fail();
+    if (own * correction <= 1e-9 * (1 + size)) return true;
+    if (it == 20) fail();
+  }
+}
+
 // F(angle, base + own k, k) = 0.
 void SparseRungeKutta::solve_stage(double angle, double own, Vec base, Vec k) {
+  if (own != 0 && solve_frozen_stage(angle, own, base, k)) return;
   double size = 0, correction = 0;
   check(VecNorm(base, NORM_INFINITY, &size));
   for (int it = 0;; ++it) {
@@ -178,9 +224,11 @@ void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, 
   const Index s = tableau_.stages();
   std::vector<core::Vector> lifts, loads;
   core::Vector lift = core::duplicate(x);
+  frozen_.reset();  // a new preconditioner for every step
   if (product) {
     product->tableau_ = &tableau_;
     product->length_ = length;
+    product->work_ = work_;
     product->stages_.clear();
   }
   for (Index j = 0; j < s; ++j) {
@@ -198,10 +246,13 @@ void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, 
     if (!product) continue;
     check(VecWAXPY(value_.get(), own, k, base_.get()));
     StepProduct::Stage stage;
-    stage.jx = jacobian(here, value_.get(), k, 1, 0);
-    factorise(jacobian(here, value_.get(), k, own, 1));
-    stage.matrix = matrix_;
-    stage.solver = solver_;
+    if (own != 0) stage.frozen = freeze(here, value_.get(), k, own);
+    if (!stage.frozen) {
+      stage.jx = jacobian(here, value_.get(), k, 1, 0);
+      factorise(jacobian(here, value_.get(), k, own, 1));
+      stage.matrix = matrix_;
+      stage.solver = solver_;
+    }
     product->stages_.push_back(std::move(stage));
     check(VecAXPY(lift.get(), tableau_.a(j, j), k));
     lifts.push_back(core::duplicate(x));

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "whirl/problem/frozen.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/tableau.hpp"
 
@@ -21,22 +22,30 @@ public:
 private:
   friend class SparseRungeKutta;
   struct Stage {
-    core::Matrix jx;                             // dF/dx
-    std::shared_ptr<const core::Matrix> matrix;  // dF/d(dx/dt) + H a(j,j) dF/dx
+    std::shared_ptr<const problem::Frozen>
+        frozen;                                  // A = dF/d(dx/dt) + H a(j,j) dF/dx of a system that solves it itself
+    core::Matrix jx;                             // of the others: dF/dx,
+    std::shared_ptr<const core::Matrix> matrix;  // A
     std::shared_ptr<const core::LinearSolver> solver;
+  };
+  // Work space that the products of one scheme share.
+  struct Work {
+    std::vector<core::Vector> k;
+    core::Vector start, w, rhs;
   };
   /// k_j for dF/dx (v + w_j + H sum_(l<j) a k_l) + (...) k_j + g_j = 0 at all stages, then out += H sum b k; `lift` and
   /// `load` may be empty.
   void stages(Vec v, const std::vector<core::Vector>& lift, const std::vector<core::Vector>& load, Vec out) const;
   const Tableau* tableau_ = nullptr;
+  std::shared_ptr<Work> work_;
   double length_ = 0;
   std::vector<Stage> stages_;
   core::Vector d_length_, d_parameter_;
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
-/// system.comm(): exact LU (on each rank, for small systems), GMRES with
-/// block Jacobi for large ones on several ranks (PETSc prefix "stage_").
+/// system.comm(): those of System::freeze() if it has them; otherwise exact LU (on each rank, for small systems), GMRES
+/// with block Jacobi for large ones on several ranks (PETSc prefix "stage_").
 class SparseRungeKutta {
 public:
   SparseRungeKutta(problem::System& system, Tableau tableau);
@@ -53,6 +62,8 @@ private:
   [[nodiscard]] core::Matrix jacobian(double angle, Vec x, Vec k, double alpha, double sigma);
   void factorise(core::Matrix matrix);
   void solve_stage(double angle, double own, Vec base, Vec k);
+  bool solve_frozen_stage(double angle, double own, Vec base, Vec k);
+  [[nodiscard]] std::shared_ptr<const problem::Frozen> freeze(double angle, Vec x, Vec k, double alpha);
   [[noreturn]] void fail() const;
   problem::System& system_;
   Tableau tableau_;
@@ -60,6 +71,8 @@ private:
   std::vector<core::Vector> slopes_;
   std::shared_ptr<const core::Matrix> matrix_;  // the last one factorised: constant mass matrices are so once
   std::shared_ptr<const core::LinearSolver> solver_;
+  std::shared_ptr<const problem::Frozen> frozen_;  // the last one of this step
+  std::shared_ptr<StepProduct::Work> work_;
 };
 
 }  // namespace whirl::solve

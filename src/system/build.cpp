@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "blocks.hpp"
+#include "frozen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -165,6 +166,8 @@ void RotorSystem::build() {
   inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), PETSC_DETERMINE);
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
   blocks_.reset();
+  film_solver_.reset();
+  film_solver_tried_ = false;
   j_at_rest_.reset();
 }
 

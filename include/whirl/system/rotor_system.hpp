@@ -59,6 +59,9 @@ public:
   void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override;
   void scales(Vec state_scale, Vec residual_scale) override;
   [[nodiscard]] problem::Structure* structure() override;
+  /// Of a rigid rotor with one film in lines, at least two on every rank.
+  [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
+                                                        const problem::Frozen* similar) override;
 
   /// Switches the unbalance forces off (and on again): an equilibrium is that of the balanced machine. On at the start.
   void set_forcing(bool on) { forcing_ = on; }
@@ -121,6 +124,7 @@ private:
     std::vector<film::StateResponse> own;
   };
   class Blocks;
+  class FilmSolver;
 
   void build();
   void set_train(Train train);
@@ -140,6 +144,8 @@ private:
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
   [[nodiscard]] std::vector<double> gather_inputs(Vec x);
+  /// The same into inputs_.
+  void scatter_inputs(Vec x);
   [[nodiscard]] std::vector<JournalState> journals_of(std::span<const double> inputs) const;
 
   MPI_Comm comm_;
@@ -160,6 +166,8 @@ private:
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::unique_ptr<Blocks> blocks_;
+  std::unique_ptr<FilmSolver> film_solver_;
+  bool film_solver_tried_ = false;
 };
 
 }  // namespace whirl::system
