@@ -91,8 +91,39 @@ std::shared_ptr<const StageSolver> SparseRungeKutta::solver_at(double angle, Vec
   return solver;
 }
 
-// F(angle, base + own k, k) = 0; returns the solver of the last iteration.
+std::shared_ptr<const problem::Frozen> SparseRungeKutta::freeze(double angle, Vec x, Vec k, double own) {
+  check(VecPointwiseMult(x_.get(), x, state_scale_.get()));
+  check(VecPointwiseMult(k_.get(), k, state_scale_.get()));
+  return system_.freeze(angle, x_.get(), k_.get(), own, 1, frozen_.get());
+}
+
+// By chords: the equations stay frozen while every correction is at most a fifth of the last one.
+bool SparseRungeKutta::solve_frozen_stage(double angle, double own, Vec base, Vec k) {
+  constexpr double tolerance = 1e-5;
+  double size = 0, correction = 0, last = 0;
+  check(VecNorm(base, NORM_INFINITY, &size));
+  std::shared_ptr<const problem::Frozen> frozen;
+  for (int it = 0;; ++it) {
+    check(VecWAXPY(value_.get(), own, k, base));
+    residual(angle, value_.get(), k, f_.get());
+    if (!frozen || (it > 1 && correction > 0.2 * last)) {
+      frozen = freeze(angle, value_.get(), k, own);
+      if (!frozen) return false;
+      frozen_ = frozen;
+    }
+    frozen->solve(f_.get(), d_.get(), tolerance);
+    check(VecAXPY(k, -1, d_.get()));
+    last = correction;
+    check(VecNorm(d_.get(), NORM_INFINITY, &correction));
+    if (!std::isfinite(correction)) fail();
+    if (own * correction <= 1e-9 * (1 + size)) return true;
+    if (it == 20) fail();
+  }
+}
+
+// F(angle, base + own k, k) = 0.
 std::shared_ptr<const StageSolver> SparseRungeKutta::solve_stage(double angle, double own, Vec base, Vec k) {
+  if (own != 0 && solve_frozen_stage(angle, own, base, k)) return nullptr;
   double size = 0, correction = 0;
   check(VecNorm(base, NORM_INFINITY, &size));
   for (int it = 0;; ++it) {
@@ -117,6 +148,7 @@ void SparseRungeKutta::rate(double angle, Vec x, Vec xdot) {
 void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, StepProduct* product) {
   const Index s = tableau_.stages();
   StepProduct::Columns lifts, loads;
+  frozen_.reset();  // a new preconditioner for every step
   if (product) {
     product->tableau_ = &tableau_;
     product->length_ = length;
@@ -136,8 +168,12 @@ void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, 
     auto solver = solve_stage(here, own, base_.get(), k);
     if (!product) continue;
     check(VecWAXPY(value_.get(), own, k, base_.get()));
-    if (own != 0) solver = solver_at(here, value_.get(), k, own);
-    product->stages_.push_back(product_at(here, value_.get(), k, std::move(solver)));
+    if (auto frozen = own != 0 ? freeze(here, value_.get(), k, own) : nullptr) {
+      product->stages_.emplace_back(std::move(frozen), own, value_.get());
+    } else {
+      if (own != 0) solver = solver_at(here, value_.get(), k, own);
+      product->stages_.push_back(product_at(here, value_.get(), k, std::move(solver)));
+    }
     check(VecAXPY(lift_.get(), tableau_.a(j, j), k));
     lifts.push_back(get(lift_.get()));
     check(VecPointwiseMult(x_.get(), value_.get(), state_scale_.get()));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solve/stage_solver.hpp"
+#include "whirl/problem/frozen.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/tableau.hpp"
 
@@ -34,8 +35,8 @@ private:
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
-/// system.comm(), or one pass over dF/dx where
-/// dF/d(dx/dt) of an explicit stage is inverted entry by entry.
+/// system.comm(): those of System::freeze() if it has them, or one pass over dF/dx where dF/d(dx/dt) of an explicit
+/// stage is inverted entry by entry.
 class SparseRungeKutta {
 public:
   /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter.
@@ -57,7 +58,10 @@ private:
   [[nodiscard]] StageProduct product_at(double angle, Vec x, Vec k, std::shared_ptr<const StageSolver> solver);
   /// dF/d(dx/dt) + own dF/dx, factorised.
   [[nodiscard]] std::shared_ptr<const StageSolver> solver_at(double angle, Vec x, Vec k, double own);
+  /// The solver of the last iteration; none where the frozen equations of the system were solved.
   [[nodiscard]] std::shared_ptr<const StageSolver> solve_stage(double angle, double own, Vec base, Vec k);
+  bool solve_frozen_stage(double angle, double own, Vec base, Vec k);
+  [[nodiscard]] std::shared_ptr<const problem::Frozen> freeze(double angle, Vec x, Vec k, double own);
   [[noreturn]] void fail() const;
   problem::System& system_;
   Tableau tableau_;
@@ -65,7 +69,8 @@ private:
   core::Vector state_scale_, residual_inverse_, x_, k_, value_, base_, f_, d_, lift_;
   std::vector<core::Vector> slopes_;
   core::Matrix scratch_;
-  std::shared_ptr<const StageSolver> rates_;  // of explicit stages with constant rates
+  std::shared_ptr<const StageSolver> rates_;       // of explicit stages with constant rates
+  std::shared_ptr<const problem::Frozen> frozen_;  // the last one of this step
 };
 
 }  // namespace whirl::solve

@@ -126,7 +126,34 @@ StageProduct::StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver) : 
   direct_.finalize();
 }
 
+StageProduct::StageProduct(std::shared_ptr<const problem::Frozen> frozen, double own, Vec like)
+    : frozen_(std::move(frozen)), own_(own) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(like)));
+  *like_.put() = like;
+}
+
+// own dF/dx w = A w - dF/d(dx/dt) w.
+MatrixXd StageProduct::frozen_slope(const MatrixXd& w, const VectorXd* load) const {
+  constexpr double tolerance = 1e-9;
+  MatrixXd out(w.rows(), w.cols());
+  core::Vector v = core::duplicate(like_.get()), rhs = core::duplicate(like_.get()), k = core::duplicate(like_.get());
+  for (Index c = 0; c < w.cols(); ++c) {
+    put(w.col(c), v.get());
+    frozen_->multiply_rates(v.get(), rhs.get());
+    frozen_->multiply(v.get(), k.get());
+    check(VecAXPY(rhs.get(), -1, k.get()));
+    if (load) {
+      put(*load, v.get());
+      check(VecAXPY(rhs.get(), -own_, v.get()));
+    }
+    frozen_->solve(rhs.get(), k.get(), tolerance);
+    out.col(c) = get(k.get()) / own_;
+  }
+  return out;
+}
+
 MatrixXd StageProduct::slope(const MatrixXd& w, const VectorXd* load) const {
+  if (frozen_) return frozen_slope(w, load);
   if (!jx_) {
     MatrixXd k = direct_ * w;
     for (Index i = 0; load && i < k.rows(); ++i) k(solver_->column()(i), 0) -= solver_->inverse()(i) * (*load)(i);

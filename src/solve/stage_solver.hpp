@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/problem/frozen.hpp"
 
 namespace whirl::solve {
 
@@ -36,13 +37,20 @@ public:
       : solver_(std::move(solver)), jx_(std::move(jx)) {}
   /// Of dF/dx on one rank and a solver that inverts entry by entry: only their product is kept.
   StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver);
+  /// Of the equations A = dF/d(dx/dt) + own dF/dx, own = H a(j,j) > 0, of a system that solves them itself; `like`
+  /// gives the layout of its states.
+  StageProduct(std::shared_ptr<const problem::Frozen> frozen, double own, Vec like);
   /// All columns of w [local x k] at once; `load` g may be null, else w has one column.
   [[nodiscard]] Eigen::MatrixXd slope(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
 
 private:
+  [[nodiscard]] Eigen::MatrixXd frozen_slope(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
   std::shared_ptr<const StageSolver> solver_;
+  std::shared_ptr<const problem::Frozen> frozen_;
+  double own_ = 0;
+  core::Vector like_;  // of the frozen equations
   core::Matrix jx_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> direct_;  // the product, if there is no jx_
+  Eigen::SparseMatrix<double, Eigen::RowMajor> direct_;  // the product, if there is neither
 };
 
 }  // namespace whirl::solve

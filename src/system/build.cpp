@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "blocks.hpp"
+#include "frozen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -166,6 +167,8 @@ void RotorSystem::build() {
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
   if (blocks_) blocks_->rebuild();
   neighbours_ = {};
+  film_solver_.reset();
+  film_solver_tried_ = false;
   j_at_rest_.reset();
 }
 

@@ -12,9 +12,13 @@ namespace whirl::system {
 
 using core::check;
 
-std::vector<double> RotorSystem::gather_inputs(Vec x) {
+void RotorSystem::scatter_inputs(Vec x) {
   check(VecScatterBegin(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+}
+
+std::vector<double> RotorSystem::gather_inputs(Vec x) {
+  scatter_inputs(x);
   const core::ReadArray a(inputs_.get());
   return {a.data(), a.data() + a.size()};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "blocks.hpp"
+#include "frozen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -181,6 +182,13 @@ problem::Structure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
   if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
   return blocks_.get();
+}
+
+std::unique_ptr<problem::Frozen> RotorSystem::freeze(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma,
+                                                     const problem::Frozen* similar) {
+  if (!film_solver_tried_) film_solver_ = FilmSolver::make(*this);
+  film_solver_tried_ = true;
+  return film_solver_ ? film_solver_->freeze(x, xdot, alpha, sigma, similar) : nullptr;
 }
 
 std::vector<double> RotorSystem::gather(Vec x) const {

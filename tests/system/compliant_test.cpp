@@ -214,6 +214,64 @@ TEST(CompliantRotor, AFilmSpreadOverRanksIsThatOfOneRank) {
   EXPECT_THROW(evaluated(MPI_COMM_WORLD, 1e-4), core::DomainError);
 }
 
+// The equations that the system solves itself are those of its Jacobian, on any number of ranks, also with a
+// preconditioner of another point.
+TEST(CompliantRotor, FrozenEquationsAreTheJacobian) {
+  for (const bool pedestal : {false, true}) {
+    auto t = train({Kind::compliant_finite, 0.1, 45, pedestal});
+    if (pedestal) {
+      t.supports[0].has_pedestal = true;
+      t.supports[0].mass = {0.1, 0.2};
+      t.supports[0].stiffness = {2e4, 3e4};
+      t.supports[0].damping = {2, 3};
+      t.supports[0].film.cells = {46, 8};
+      auto rigid = t.supports[0];
+      rigid.film.kind = Kind::short_bearing;
+      t.supports.insert(t.supports.begin(), rigid);
+    }
+    system::RotorSystem s(MPI_COMM_WORLD, t, 700);
+    core::Vector x = system::static_guess(s), rest = core::duplicate(x.get()), scale = core::duplicate(x.get()),
+                 rows = core::duplicate(x.get()), v = core::duplicate(x.get()), a = core::duplicate(x.get()),
+                 b = core::duplicate(x.get()), sv = core::duplicate(x.get());
+    s.scales(scale.get(), rows.get());
+    PetscInt begin = 0;
+    core::check(VecGetOwnershipRange(x.get(), &begin, nullptr));
+    {
+      const core::WriteArray va(v.get());
+      for (PetscInt i = 0; i < va.size(); ++i) va[i] = std::sin(1.3 * static_cast<double>((begin + i) * (begin + i)));
+    }
+    core::check(VecPointwiseMult(sv.get(), scale.get(), v.get()));
+    const double alpha = 3e-4;
+    const auto near = s.freeze(0, x.get(), rest.get(), 0.7 * alpha, 1, nullptr);
+    const auto frozen = s.freeze(0, x.get(), rest.get(), alpha, 1, near.get());
+    ASSERT_TRUE(frozen);
+    core::Matrix j = s.make_jacobian();
+    const auto expect_equal = [&](const char* what) {
+      core::check(VecPointwiseDivide(b.get(), b.get(), rows.get()));
+      double size = 0, difference = 0;
+      core::check(VecNorm(b.get(), NORM_INFINITY, &size));
+      core::check(VecAXPY(a.get(), -1, b.get()));
+      core::check(VecNorm(a.get(), NORM_INFINITY, &difference));
+      EXPECT_GT(size, 0);
+      EXPECT_LE(difference, 1e-12 * size) << what;
+    };
+    s.jacobian(0, x.get(), rest.get(), 0, 1, j.get());
+    core::check(MatMult(j.get(), sv.get(), b.get()));
+    frozen->multiply_rates(v.get(), a.get());
+    expect_equal("rates");
+    s.jacobian(0, x.get(), rest.get(), alpha, 1, j.get());
+    core::check(MatMult(j.get(), sv.get(), b.get()));
+    frozen->multiply(v.get(), a.get());
+    expect_equal("all");
+    frozen->multiply(v.get(), b.get());
+    frozen->solve(b.get(), a.get(), 1e-12);
+    core::check(VecAXPY(a.get(), -1, v.get()));
+    double error = 0;
+    core::check(VecNorm(a.get(), NORM_INFINITY, &error));
+    EXPECT_LE(error, 1e-9);
+  }
+}
+
 // The Hopf speed with films of finite length, L/D = 1, approaches its limit at second order in the mesh.
 TEST(CompliantRotor, HopfSpeedsOfFiniteFilmsAreOfSecondOrder) {
   std::array<double, 3> speed{};

@@ -4,9 +4,11 @@
 #include <petscmat.h>
 #include <petscvec.h>
 
+#include <memory>
 #include <string>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/problem/frozen.hpp"
 #include "whirl/problem/structure.hpp"
 
 namespace whirl::problem {
@@ -48,6 +50,13 @@ public:
   /// Typical magnitude of each state and of each row of F, all positive, in SI: solvers work on x/state_scale and
   /// F/residual_scale.
   virtual void scales(Vec state_scale, Vec residual_scale) = 0;
+
+  /// The linearised equations at (angle, x, xdot) if the system solves them itself, else nullptr (on all ranks). What
+  /// `similar`, made by this system and still alive, has prepared may be used again. They end with the system.
+  [[nodiscard]] virtual std::unique_ptr<Frozen> freeze(double /*angle*/, Vec /*x*/, Vec /*xdot*/, double /*alpha*/,
+                                                       double /*sigma*/, const Frozen* /*similar*/) {
+    return nullptr;
+  }
 
   /// Linear blocks and thin couplings if this rank holds the whole system (communicator of size 1) and it has them,
   /// else nullptr. Not collective.

@@ -59,6 +59,9 @@ public:
   void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override;
   void scales(Vec state_scale, Vec residual_scale) override;
   [[nodiscard]] problem::Structure* structure() override;
+  /// Of a rigid rotor with one film in lines, at least two on every rank.
+  [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
+                                                        const problem::Frozen* similar) override;
 
   /// Another train of the same shape (nodes, masters, film meshes): everything is rebuilt, the active parameter and the
   /// speed stay. Collective.
@@ -125,6 +128,7 @@ private:
     std::vector<film::StateResponse> own;
   };
   class Blocks;
+  class FilmSolver;
   /// The systems at p - step and p + step, for the difference quotient dF/dp.
   struct Neighbours {
     std::unique_ptr<RotorSystem> minus, plus;
@@ -150,6 +154,8 @@ private:
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
   [[nodiscard]] std::vector<double> gather_inputs(Vec x);
+  /// The same into inputs_.
+  void scatter_inputs(Vec x);
   [[nodiscard]] std::vector<JournalState> journals_of(std::span<const double> inputs) const;
 
   MPI_Comm comm_;
@@ -171,6 +177,8 @@ private:
   core::Vector inputs_;
   std::unique_ptr<Blocks> blocks_;
   Neighbours neighbours_;
+  std::unique_ptr<FilmSolver> film_solver_;
+  bool film_solver_tried_ = false;
 };
 
 }  // namespace whirl::system

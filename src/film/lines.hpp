@@ -1,0 +1,108 @@
+#pragma once
+// Tridiagonal work on many lines side by side: arrays are [along the line][lines], so that loops over lines run in
+// vector registers.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace whirl::film {
+
+inline std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+// Values at lines first .. first + count - 1 of one colour, with one neighbour's column on either side.
+struct Columns {
+  int length = 0, count = 0, stride = 0;
+  std::vector<double> data;
+  Columns() = default;
+  Columns(int along, int columns) : length(along), count(columns), stride(columns + 2) {
+    data.assign(at(length * stride), 0.0);
+  }
+  [[nodiscard]] double* row(int z) { return data.data() + z * stride + 1; }
+  [[nodiscard]] const double* row(int z) const { return data.data() + z * stride + 1; }
+};
+
+// A block that is tridiagonal along the line: entries of row z at z - 1, z, z + 1.
+struct Block {
+  Columns below, centre, above;
+  Block() = default;
+  Block(int along, int columns) : below(along, columns), centre(along, columns), above(along, columns) {}
+  std::array<Columns*, 3> parts() { return {&below, &centre, &above}; }
+};
+
+// Exact solves with the blocks on the diagonal, all lines at once.
+class LineSolver {
+public:
+  void factor(const Block& own) {
+    const int n = own.centre.count;
+    inverse_ = own.centre;
+    lower_ = own.below;
+    upper_ = own.above;
+    for (int z = 0; z < inverse_.length; ++z) {
+      double *inv = inverse_.row(z), *low = lower_.row(z);
+      const double *before = z > 0 ? inverse_.row(z - 1) : nullptr, *up = z > 0 ? upper_.row(z - 1) : nullptr;
+      for (int i = 0; i < n; ++i) {
+        if (before) low[i] *= before[i];
+        inv[i] = 1.0 / (before ? inv[i] - low[i] * up[i] : inv[i]);
+      }
+    }
+  }
+  void solve(Columns& x) const {
+    const int n = x.count, length = x.length;
+    for (int z = 1; z < length; ++z) {
+      double* y = x.row(z);
+      const double *before = x.row(z - 1), *low = lower_.row(z);
+      for (int i = 0; i < n; ++i) y[i] -= low[i] * before[i];
+    }
+    for (int z = length - 1; z >= 0; --z) {
+      double* y = x.row(z);
+      const double *after = z + 1 < length ? x.row(z + 1) : nullptr, *up = upper_.row(z), *inv = inverse_.row(z);
+      if (after)
+        for (int i = 0; i < n; ++i) y[i] = (y[i] - up[i] * after[i]) * inv[i];
+      else
+        for (int i = 0; i < n; ++i) y[i] *= inv[i];
+    }
+  }
+  // With the transposed blocks: U^T w = x, then L^T.
+  void solve_transposed(Columns& x) const {
+    const int n = x.count, length = x.length;
+    for (int z = 0; z < length; ++z) {
+      double* y = x.row(z);
+      for (int i = 0; i < n; ++i) {
+        if (z > 0) y[i] -= upper_.row(z - 1)[i] * x.row(z - 1)[i];
+        y[i] *= inverse_.row(z)[i];
+      }
+    }
+    for (int z = length - 2; z >= 0; --z) {
+      double* y = x.row(z);
+      const double *after = x.row(z + 1), *low = lower_.row(z + 1);
+      for (int i = 0; i < n; ++i) y[i] -= low[i] * after[i];
+    }
+  }
+
+private:
+  Columns lower_, upper_, inverse_;
+};
+
+// y -= block x, with x of the neighbour `shift` columns on; a diagonal block has only its centre.
+inline void subtract(const Block& block, bool diagonal, const Columns& x, int shift, Columns& y) {
+  const int n = y.count;
+  for (int z = 0; z < y.length; ++z) {
+    double* to = y.row(z);
+    const double *a = block.centre.row(z), *v = x.row(z) + shift;
+    for (int i = 0; i < n; ++i) to[i] -= a[i] * v[i];
+    if (diagonal) continue;
+    if (z > 0) {
+      const double *b = block.below.row(z), *u = x.row(z - 1) + shift;
+      for (int i = 0; i < n; ++i) to[i] -= b[i] * u[i];
+    }
+    if (z + 1 < y.length) {
+      const double *b = block.above.row(z), *u = x.row(z + 1) + shift;
+      for (int i = 0; i < n; ++i) to[i] -= b[i] * u[i];
+    }
+  }
+}
+
+}  // namespace whirl::film

@@ -1,0 +1,316 @@
+#include "frozen.hpp"
+
+#include <algorithm>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::system {
+
+using core::check;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// The rows of a matrix that stands as a whole on the first rank.
+MatrixXd dense(Mat m, PetscInt n) {
+  MatrixXd out = MatrixXd::Zero(n, n);
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(m, &begin, &end));
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt k = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(m, i, &k, &columns, &values));
+    for (PetscInt e = 0; e < k; ++e) out(i, columns[e]) = values[e];
+    check(MatRestoreRow(m, i, &k, &columns, &values));
+  }
+  return out;
+}
+
+// y = rows of a stencil times x, which has the neighbouring lines in front of it and behind it.
+void multiply(const film::Stencil& a, int lines, int line, int reach, const double* x, double* y) {
+  using enum film::Stencil::Place;
+  const std::array<int, film::Stencil::n_places> offset = {0, -line, line, -1, 1, -2 * line};
+  std::fill_n(y, lines * line, 0.0);
+  for (const auto place : {centre, before, after, below, above, second_before}) {
+    if (a.at[place].empty()) continue;
+    const double *value = a.at[place].data(), *from = x + reach * line + offset[place];
+    for (int k = 0; k < lines * line; ++k) y[k] += value[k] * from[k];
+  }
+}
+
+}  // namespace
+
+// One set of linearised equations.
+class RotorSystem::FilmSolver::Equations final : public problem::Frozen {
+public:
+  // Approximate inverse of the film and of what it leaves of the rotor. Good for similar equations too.
+  struct Preconditioner {
+    Preconditioner(MPI_Comm comm, const film::StateModel& film, film::Lines part)
+        : ring(comm, film.ring().lines, static_cast<int>(film.line()), part) {}
+    film::RingPreconditioner ring;
+    std::array<std::vector<double>, 4> driven;  // D^-1 G, per input
+    Eigen::PartialPivLU<MatrixXd> rest;         // S, on the first rank
+  };
+
+  Equations(FilmSolver& solver, Vec x, Vec xdot, double alpha, double sigma, const Equations* similar);
+  void multiply(Vec v, Vec y) const override;
+  void multiply_rates(Vec v, Vec y) const override;
+  void solve(Vec r, Vec y, double tolerance) const override;
+  void precondition(Vec r, Vec y) const;
+
+private:
+  [[nodiscard]] const Bearing& film() const { return solver_.system_.bearings_[solver_.film_]; }
+  [[nodiscard]] bool first() const { return solver_.state_.size() > 0; }
+  [[nodiscard]] Eigen::Vector2d force(const double* states) const;
+
+  FilmSolver& solver_;
+  double alpha_;
+  MatrixXd rotor_;                             // A_rr, on the first rank
+  film::Stencil a_, rates_;                    // D, dg/ds'
+  std::array<std::vector<double>, 4> driven_;  // alpha G
+  std::array<std::vector<double>, 2> force_;   // F
+  std::shared_ptr<Preconditioner> preconditioner_;
+};
+
+std::unique_ptr<RotorSystem::FilmSolver> RotorSystem::FilmSolver::make(RotorSystem& system) {
+  int films = 0;
+  for (const Bearing& b : system.bearings_) films += b.states != nullptr;
+  int enough = 1;
+  for (const Bearing& b : system.bearings_)
+    if (b.states && (b.states->ring().lines == 1 || b.part.count() < 2)) enough = 0;
+  MPI_Allreduce(MPI_IN_PLACE, &enough, 1, MPI_INT, MPI_MIN, system.comm_);
+  if (!system.first_holds_rotor_ || films != 1 || enough == 0) return nullptr;
+  return std::make_unique<FilmSolver>(system);
+}
+
+RotorSystem::FilmSolver::FilmSolver(RotorSystem& s) : system_(s), gate_(s.comm_) {
+  while (!s.bearings_[film_].states) ++film_;
+  const PetscInt n = s.n_;
+  mass_ = dense(s.mass_.get(), n);
+  damping_ = dense(s.damping_.get(), n);
+  gyroscopic_ = dense(s.gyroscopic_.get(), n);
+  stiffness_ = dense(s.stiffness_.get(), n);
+  inputs_ = MatrixXd::Zero(4, 2 * n);
+  outputs_ = MatrixXd::Zero(2 * n, 2);
+  const Bearing& b = s.bearings_[film_];
+  core::Vector state = core::make_vector(s.comm_, s.local_size(), PETSC_DETERMINE),
+               residual = core::duplicate(state.get());
+  s.scales(state.get(), residual.get());
+  {
+    const core::ReadArray sa(state.get()), ra(residual.get());
+    film_state_ = sa[b.row];
+    film_residual_ = ra[b.row];
+    const Eigen::Index rows = s.owns(0) ? 2 * n : 0;
+    state_ = Map<const VectorXd>(sa.data(), rows);
+    residual_ = Map<const VectorXd>(ra.data(), rows);
+  }
+  s.scatter_inputs(state.get());
+  const core::ReadArray of_inputs(s.inputs_.get());
+  std::copy_n(of_inputs.data() + 8 * film_, 8, journal_scale_.begin());
+  for (Eigen::Index d = 0; d < 2; ++d)
+    for (const auto& [q, side] : {std::pair{b.journal[static_cast<std::size_t>(d)], 1.0},
+                                  std::pair{b.pedestal[static_cast<std::size_t>(d)], -1.0}}) {
+      if (q < 0) continue;
+      inputs_(d, 2 * q) = inputs_(2 + d, 2 * q + 1) = side;
+      outputs_(2 * q, d) = side;
+    }
+  if (state_.size() > 0) {
+    inputs_ *= state_.asDiagonal();
+    outputs_ = residual_.cwiseInverse().asDiagonal() * outputs_;
+  }
+  check(MatCreateShell(s.comm_, s.local_size(), s.local_size(), s.size(), s.size(), this, shell_.put()));
+  check(MatShellSetOperation(shell_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(shell_multiply)));
+  check(KSPCreate(s.comm_, krylov_.put()));
+  check(KSPSetOptionsPrefix(krylov_.get(), "stage_"));
+  check(KSPSetOperators(krylov_.get(), shell_.get(), shell_.get()));
+  check(KSPSetType(krylov_.get(), KSPGMRES));
+  check(KSPSetPCSide(krylov_.get(), PC_RIGHT));
+  PC pc = nullptr;
+  check(KSPGetPC(krylov_.get(), &pc));
+  check(PCSetType(pc, PCSHELL));
+  check(PCShellSetContext(pc, this));
+  check(PCShellSetApply(pc, shell_precondition));
+  check(KSPSetFromOptions(krylov_.get()));
+}
+
+PetscErrorCode RotorSystem::FilmSolver::shell_multiply(Mat m, Vec v, Vec y) {
+  void* raw = nullptr;
+  PetscCall(MatShellGetContext(m, &raw));
+  auto& solver = *static_cast<FilmSolver*>(raw);
+  return solver.gate_.run([&] { solver.current_->multiply(v, y); });
+}
+
+PetscErrorCode RotorSystem::FilmSolver::shell_precondition(PC pc, Vec r, Vec y) {
+  void* raw = nullptr;
+  PetscCall(PCShellGetContext(pc, &raw));
+  auto& solver = *static_cast<FilmSolver*>(raw);
+  return solver.gate_.run([&] { solver.current_->precondition(r, y); });
+}
+
+// Rows (momentum, velocity) of the pairs, without films.
+MatrixXd RotorSystem::FilmSolver::rotor_block(double alpha, double sigma) const {
+  const Eigen::Index n = mass_.rows();
+  MatrixXd a = MatrixXd::Zero(2 * n, 2 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      a(2 * i, 2 * j) = alpha * stiffness_(i, j);
+      a(2 * i, 2 * j + 1) = alpha * (damping_(i, j) + system_.speed_ * gyroscopic_(i, j)) + sigma * mass_(i, j);
+    }
+    a(2 * i + 1, 2 * i) = sigma;
+    a(2 * i + 1, 2 * i + 1) = -alpha;
+  }
+  return residual_.cwiseInverse().asDiagonal() * a * state_.asDiagonal();
+}
+
+std::unique_ptr<problem::Frozen> RotorSystem::FilmSolver::freeze(Vec x, Vec xdot, double alpha, double sigma,
+                                                                 const problem::Frozen* similar) {
+  return std::make_unique<Equations>(*this, x, xdot, alpha, sigma, static_cast<const Equations*>(similar));
+}
+
+RotorSystem::FilmSolver::Equations::Equations(FilmSolver& solver, Vec x, Vec xdot, double alpha, double sigma,
+                                              const Equations* similar)
+    : solver_(solver), alpha_(alpha) {
+  RotorSystem& s = solver.system_;
+  Films films = s.films_at(x, xdot, film::Need::tangents);
+  film::StateResponse& own = films.own[solver.film_];
+  a_ = std::move(own.by_states);
+  rates_ = std::move(own.by_rates);
+  for (std::size_t p = 0; p < film::Stencil::n_places; ++p) {
+    for (double& value : a_.at[p]) value *= alpha;
+    if (rates_.at[p].empty()) continue;
+    a_.at[p].resize(rates_.at[p].size());
+    for (std::size_t k = 0; k < rates_.at[p].size(); ++k) a_.at[p][k] += sigma * rates_.at[p][k];
+  }
+  const double rows = solver.film_state_ / solver.film_residual_;
+  for (auto* stencil : {&a_, &rates_})
+    for (auto& place : stencil->at)
+      for (double& value : place) value *= rows;
+  const std::size_t n = own.residual.size();
+  for (std::size_t i = 0; i < 2; ++i) {
+    force_[i].resize(n);
+    driven_[i].resize(n);
+    driven_[2 + i].resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      force_[i][k] = own.force_d_states[k][i] * solver.film_state_;
+      driven_[i][k] = alpha * own.d_position[k][i] / solver.film_residual_;
+      driven_[2 + i][k] = alpha * own.d_velocity[k][i] / solver.film_residual_;
+    }
+  }
+  if (first()) {
+    rotor_ = solver.rotor_block(alpha, sigma);
+    for (std::size_t b = 0; b < s.bearings_.size(); ++b)
+      for (std::size_t d = 0; d < 2; ++d)
+        for (const auto& [row, sign] :
+             {std::pair{s.bearings_[b].journal[d], -alpha}, std::pair{s.bearings_[b].pedestal[d], alpha}})
+          for (std::size_t e = 0; e < 2; ++e)
+            for (const auto& [column, side] :
+                 {std::pair{s.bearings_[b].journal[e], 1.0}, std::pair{s.bearings_[b].pedestal[e], -1.0}}) {
+              if (row < 0 || column < 0) continue;
+              const double factor = sign * side / solver.residual_(2 * row);
+              rotor_(2 * row, 2 * column) += factor * films.journal[b].d_position[d][e] * solver.state_(2 * column);
+              rotor_(2 * row, 2 * column + 1) +=
+                  factor * films.journal[b].d_velocity[d][e] * solver.state_(2 * column + 1);
+            }
+  }
+  if (similar) {
+    preconditioner_ = similar->preconditioner_;
+    return;
+  }
+  preconditioner_ = std::make_shared<Preconditioner>(s.comm_, *film().states, film().part);
+  preconditioner_->ring.set(a_);
+  Eigen::Matrix<double, 2, 4> through = Eigen::Matrix<double, 2, 4>::Zero();
+  for (std::size_t u = 0; u < 4; ++u) {
+    preconditioner_->driven[u].resize(n);
+    preconditioner_->ring.apply(driven_[u], preconditioner_->driven[u]);
+    through.col(static_cast<Eigen::Index>(u)) = force(preconditioner_->driven[u].data());
+  }
+  if (first()) preconditioner_->rest.compute(rotor_ + alpha * solver.outputs_ * through * solver.inputs_);
+}
+
+// F s, summed over the ranks.
+Eigen::Vector2d RotorSystem::FilmSolver::Equations::force(const double* states) const {
+  Eigen::Vector2d f;
+  const auto n = static_cast<Eigen::Index>(force_[0].size());
+  for (Eigen::Index i = 0; i < 2; ++i)
+    f(i) = Map<const VectorXd>(force_[static_cast<std::size_t>(i)].data(), n).dot(Map<const VectorXd>(states, n));
+  MPI_Allreduce(MPI_IN_PLACE, f.data(), 2, MPI_DOUBLE, MPI_SUM, solver_.system_.comm_);
+  return f;
+}
+
+void RotorSystem::FilmSolver::Equations::multiply(Vec v, Vec y) const {
+  RotorSystem& s = solver_.system_;
+  s.scatter_inputs(v);
+  const core::ReadArray inputs(s.inputs_.get()), va(v);
+  const core::WriteArray ya(y);
+  const Bearing& b = film();
+  const film::StateModel& model = *b.states;
+  double* rows = ya.data() + b.row;
+  system::multiply(a_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
+                   inputs.data() + 8 * s.bearings_.size() + b.gathered, rows);
+  std::array<double, 4> u{};  // position, velocity
+  for (std::size_t d = 0; d < 2; ++d)
+    for (std::size_t rate = 0; rate < 2; ++rate) {
+      const std::size_t j = 4 * d + rate, p = j + 2;
+      const double *x = inputs.data() + 8 * solver_.film_, *scale = solver_.journal_scale_.data();
+      u[2 * rate + d] = x[j] * scale[j] - (b.pedestal[d] >= 0 ? x[p] * scale[p] : 0.0);
+    }
+  for (PetscInt k = 0; k < b.rows(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    rows[k] += driven_[0][i] * u[0] + driven_[1][i] * u[1] + driven_[2][i] * u[2] + driven_[3][i] * u[3];
+  }
+  const Eigen::Vector2d f = force(va.data() + b.row);
+  if (!first()) return;
+  Map<VectorXd>(ya.data(), rotor_.rows()) =
+      rotor_ * Map<const VectorXd>(va.data(), rotor_.rows()) - alpha_ * (solver_.outputs_ * f);
+}
+
+void RotorSystem::FilmSolver::Equations::multiply_rates(Vec v, Vec y) const {
+  RotorSystem& s = solver_.system_;
+  const Bearing& b = film();
+  const film::StateModel& model = *b.states;
+  s.scatter_inputs(v);
+  const core::ReadArray inputs(s.inputs_.get()), va(v);
+  const core::WriteArray ya(y);
+  system::multiply(rates_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
+                   inputs.data() + 8 * s.bearings_.size() + b.gathered, ya.data() + b.row);
+  if (first())
+    Map<VectorXd>(ya.data(), 2 * s.n_) = solver_.rotor_block(0, 1) * Map<const VectorXd>(va.data(), 2 * s.n_);
+}
+
+void RotorSystem::FilmSolver::Equations::precondition(Vec r, Vec y) const {
+  const RotorSystem& s = solver_.system_;
+  const Bearing& b = film();
+  const core::ReadArray ra(r);
+  const core::WriteArray ya(y);
+  const auto n = static_cast<std::size_t>(b.rows());
+  double* states = ya.data() + b.row;
+  preconditioner_->ring.apply({ra.data() + b.row, n}, {states, n});
+  const Eigen::Vector2d f = force(states);
+  Eigen::Vector4d u;
+  if (first()) {
+    const VectorXd z = preconditioner_->rest.solve(
+        VectorXd(Map<const VectorXd>(ra.data(), 2 * s.n_) + alpha_ * (solver_.outputs_ * f)));
+    Map<VectorXd>(ya.data(), 2 * s.n_) = z;
+    u = solver_.inputs_ * z;
+  }
+  MPI_Bcast(u.data(), 4, MPI_DOUBLE, 0, s.comm_);
+  const auto& w = preconditioner_->driven;
+  for (std::size_t k = 0; k < n; ++k) states[k] -= w[0][k] * u(0) + w[1][k] * u(1) + w[2][k] * u(2) + w[3][k] * u(3);
+}
+
+void RotorSystem::FilmSolver::Equations::solve(Vec r, Vec y, double tolerance) const {
+  KSP ksp = solver_.krylov_.get();
+  solver_.current_ = this;
+  check(KSPSetTolerances(ksp, tolerance, 1e-300, PETSC_DEFAULT, 100));
+  solver_.gate_.rethrow(KSPSolve(ksp, r, y));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0)
+    core::agree(solver_.system_.comm_, [] { throw core::DomainError("the linearised film was not solved"); });
+}
+
+}  // namespace whirl::system

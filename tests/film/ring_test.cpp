@@ -1,0 +1,68 @@
+// The V-cycle for films in lines: its rate of convergence does not depend on mesh, ratio of spacings or parity.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "film/cases.hpp"
+#include "whirl/film/ring_preconditioner.hpp"
+
+namespace whirl::film::testing {
+namespace {
+
+// Reduction of the residual of (1 + dt dg/ds) x = b per cycle x <- x + M (b - A x), over the last of eight or the one
+// that brings it near rounding.
+double rate(std::array<int, 2> cells, double dt, Options::Differences differences) {
+  const Geometry g{Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0.0, 0.0, 0.0};
+  Options o;
+  o.kind = Options::Kind::compliant_finite;
+  o.cells = cells;
+  o.compliance = 0.1;
+  o.reference_speed = 160.0;
+  o.differences = differences;
+  auto film = make_state_model(g, o, {0.001, 1000.0});
+  const Motion m = motion(g, {0.5, -0.55, 0.0, 0.0}, {}, 800.0);
+  const std::size_t n = film->states();
+  const Lines all{0, cells[0]};
+  std::vector<double> s(n), zero(n, 0.0);
+  film->unloaded(m, s);
+  for (std::size_t k = 0; k < n; ++k) s[k] *= 1.0 + 0.1 * std::sin(0.01 * static_cast<double>(k));
+  StateResponse r;
+  film->evaluate(m, s, zero, Need::tangents, r);
+  for (auto& place : r.by_states.at)
+    for (double& value : place) value *= dt;
+  for (double& value : r.by_states.at[Stencil::centre]) value += 1.0;
+  RingPreconditioner cycle(MPI_COMM_SELF, cells[0], static_cast<int>(film->line()), all);
+  cycle.set(r.by_states);
+  std::vector<Entry> entries;
+  add_entries(*film, all, r.by_states, entries);
+  std::vector<double> x(n, 0.0), residual(n), d(n);
+  double size = 0.0, last = 0.0, first = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    for (std::size_t i = 0; i < n; ++i) residual[i] = std::sin(1.7 * static_cast<double>(i * (i + 1)));
+    for (const Entry& e : entries)
+      residual[static_cast<std::size_t>(e.row)] -= e.value * x[static_cast<std::size_t>(e.column)];
+    last = size;
+    size = 0.0;
+    for (const double v : residual) size += v * v;
+    if (k == 0) first = size;
+    if (size < 1e-20 * first) break;
+    cycle.apply(residual, d);
+    for (std::size_t i = 0; i < n; ++i) x[i] += d[i];
+  }
+  return std::sqrt(size / last);
+}
+
+TEST(RingPreconditioner, RateDoesNotDependOnTheMesh) {
+  const double dt = 0.005 / 160.0;
+  using enum Options::Differences;
+  for (const auto cells :
+       {std::array{48, 10}, std::array{96, 20}, std::array{192, 40}, std::array{200, 6}, std::array{8, 60}})
+    EXPECT_LT(rate(cells, dt, central), 0.1) << cells[0] << " x " << cells[1];
+  for (const auto cells : {std::array{25, 10}, std::array{45, 40}, std::array{61, 9}, std::array{4, 2}})
+    EXPECT_LT(rate(cells, dt, central), 0.25) << cells[0] << " x " << cells[1];
+  EXPECT_LT(rate({96, 20}, 10.0 * dt, central), 0.2);
+  EXPECT_LT(rate({96, 20}, dt, upwind), 0.3);
+}
+
+}  // namespace
+}  // namespace whirl::film::testing

@@ -1,0 +1,96 @@
+// Cycles of a rigid rotor in a compliant film of finite length by Newton-Picard, whose stages are solved by the system
+// itself: the same numbers as dense shooting with the same steps, on any number of ranks.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton.hpp"
+#include "whirl/solve/newton_picard.hpp"
+#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+using namespace whirl;
+
+namespace {
+
+constexpr double speed_scale = 160, speed = 4.5 * speed_scale;
+
+system::Train train(int around, int along) {
+  system::Train t;
+  t.gravity = 0;
+  t.rotor.type = rotor::Options::Type::rigid;
+  t.rotor.mass = 0.5;
+  t.rotor.load = 0.32;
+  t.unbalance = {{1, 0.5 * 5e-6, 0}};
+  system::Support s;
+  s.name = "half";
+  s.node = 1;
+  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
+  s.film.kind = film::Options::Kind::compliant_finite;
+  s.film.compliance = 0.1;
+  s.film.reference_speed = speed_scale;
+  s.film.cells = {around, along};
+  s.lubricant = {0.001, 1000};
+  t.supports = {s};
+  return t;
+}
+
+// The equilibrium held for a turn.
+solve::Cycle rest(system::RotorSystem& s) {
+  s.set_forcing(false);
+  core::Vector x = system::static_guess(s);
+  for (const double stop : {2.2, 3.0, 3.8, 4.5}) {
+    s.set_parameter(stop * speed_scale);
+    solve::NewtonOptions newton;
+    newton.max_iterations = 40;
+    EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged);
+  }
+  s.set_forcing(true);
+  const std::vector<double> whole = s.gather(x.get());
+  return {solve::uniform_mesh(1),
+          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+          2 * std::numbers::pi / speed, speed};
+}
+
+}  // namespace
+
+TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShooting) {
+  constexpr int steps = 16;
+  solve::NewtonOptions newton;
+  newton.tolerance = 1e-10;
+  system::RotorSystem s(MPI_COMM_WORLD, train(12, 4), speed), alone(PETSC_COMM_SELF, train(12, 4), speed);
+  const solve::Cycle start = rest(alone);
+  solve::NewtonPicardOptions options;
+  options.parameter_scale = speed_scale;
+  solve::NewtonPicardProblem picard(s, options, solve::sdirk(4), steps, solve::uniform_mesh(1));
+  core::Vector u = picard.scatter(start), row = core::duplicate(u.get());
+  solve::parameter_row(picard, row.get());
+  const auto r = solve::newton(picard, u.get(), row.get(), speed / speed_scale, newton);
+  ASSERT_TRUE(r.converged) << r.reason;
+  picard.linearise(u.get(), row.get());
+  const auto mu = picard.multipliers();
+  const solve::Cycle cycle = picard.gather(u.get());
+
+  solve::CycleOptions dense_options;
+  dense_options.parameter_scale = speed_scale;
+  solve::ShootingProblem dense(PETSC_COMM_SELF, alone, dense_options, solve::sdirk(4), steps, solve::uniform_mesh(1));
+  core::Vector v = dense.scatter(start), dense_row = core::duplicate(v.get());
+  solve::parameter_row(dense, dense_row.get());
+  const auto q = solve::newton(dense, v.get(), dense_row.get(), speed / speed_scale, newton);
+  ASSERT_TRUE(q.converged) << q.reason;
+  dense.linearise(v.get(), dense_row.get());
+  auto exact = spectral::eigenvalues(dense.monodromy());
+  const solve::Cycle expected = dense.gather(v.get());
+  for (Eigen::Index k = 0; k < cycle.x.rows(); ++k)
+    EXPECT_NEAR(cycle.x(k, 0), expected.x(k, 0), 1e-7 * expected.x.cwiseAbs().maxCoeff()) << k;
+  for (const auto& m : mu) {
+    double nearest = 1;
+    for (const auto& e : exact) nearest = std::min(nearest, std::abs(m - e));
+    EXPECT_LE(nearest, 1e-6) << m;
+  }
+}
