@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "cycle_follower.hpp"
+#include "whirl/film/state_model.hpp"
 #include "whirl/solve/newton_picard.hpp"
 #include "whirl/solve/shooting_problem.hpp"
 
@@ -34,8 +35,13 @@ solve::Tableau tableau_of(CycleBranchOptions::Stepping scheme) {
 
 }  // namespace
 
+// Only films with many states of their own are worth the messages; below that every rank does the same.
 MPI_Comm CycleFollower::space() const {
-  return options_.method == Method::newton_picard ? context_.comm : PETSC_COMM_SELF;
+  constexpr int shared_from = 3000;
+  int states = 0;
+  for (const auto& b : context_.machine.bearings)
+    if (film::has_states(b.film.kind)) states += b.film.cells[0] * b.film.cells[1];
+  return options_.method == Method::newton_picard && states >= shared_from ? context_.comm : PETSC_COMM_SELF;
 }
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::RotorSystem& system, int turns,
