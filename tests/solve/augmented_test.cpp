@@ -229,6 +229,7 @@ Start at_parameter(solve::ExtendedProblem& problem, core::Vector u, double p) {
   problem.linearise(u.get(), row.get());
   core::Vector along = core::duplicate(u.get());
   (void)solve::solve_linear(problem, row.get(), along.get(), "tangent_");
+  core::check(VecScale(along.get(), 1 / std::sqrt(solve::inner(problem, along.get(), along.get()))));
   return {std::move(u), std::move(along)};
 }
 
