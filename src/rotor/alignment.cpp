@@ -164,10 +164,19 @@ std::vector<double> align(MPI_Comm comm, const Options& options, const std::vect
     unit[static_cast<std::size_t>(rule.adjustable[static_cast<std::size_t>(j)] - 1)] = 1;
     influence.col(j) = conditions(shaft.solve(unit, 0), rule);
   }
+  // Lifting and tilting the whole shaft by one metre changes no load and no moment: what it changes is rounding.
+  const std::vector<double> z = node_positions(options);
+  std::vector<double> lift(supports.size(), 1.0), tilt;
+  for (const Support& at : supports) tilt.push_back(z[static_cast<std::size_t>(at.node - 1)] / z.back());
+  const Eigen::VectorXd rounding =
+      conditions(shaft.solve(lift, 0), rule).cwiseAbs().cwiseMax(conditions(shaft.solve(tilt, 0), rule).cwiseAbs());
   // Moments and loads have different sizes: rows are scaled before the rank is judged.
   for (Eigen::Index i = 0; i < n; ++i) {
     const double size = influence.row(i).cwiseAbs().maxCoeff();
-    if (size == 0) continue;
+    if (size <= 1e3 * rounding(i)) {
+      influence.row(i).setZero();
+      continue;
+    }
     influence.row(i) /= size;
     wanted(i) /= size;
   }
