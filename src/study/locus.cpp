@@ -150,7 +150,7 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   c.state_weight = std::pow(continuation_.max_step / 0.5, 2);
   c.base_intervals = o.intervals;
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
-  // The structure of a system is told once, and here its blocks change.
+  // With structure a problem keeps what its last residual computed, which the second parameter would make stale.
   c.use_structure = false;
   continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
   continuation_.newton.tolerance = o.tolerance;
@@ -159,9 +159,6 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
   condition_ = solve::condition_of(*cycles_, seed_.event, seed_.critical);
-  if (!condition_)
-    throw core::InputError(
-        "a curve of bifurcations of cycles is not followed with so many film states: take a coarser film mesh");
 }
 
 void LocusFollower::make_equilibria(const EquilibriumBranchOptions& o) {
