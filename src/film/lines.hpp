@@ -8,6 +8,9 @@
 
 namespace whirl::film {
 
+/// Of a preconditioner, which no digit of the result depends on: half the bytes, twice the lanes of a register.
+using Real = float;
+
 inline std::size_t at(int k) {
   return static_cast<std::size_t>(k);
 }
@@ -15,13 +18,13 @@ inline std::size_t at(int k) {
 // Values at lines first .. first + count - 1 of one colour, with one neighbour's column on either side.
 struct Columns {
   int length = 0, count = 0, stride = 0;
-  std::vector<double> data;
+  std::vector<Real> data;
   Columns() = default;
   Columns(int along, int columns) : length(along), count(columns), stride(columns + 2) {
-    data.assign(at(length * stride), 0.0);
+    data.assign(at(length * stride), Real{0});
   }
-  [[nodiscard]] double* row(int z) { return data.data() + z * stride + 1; }
-  [[nodiscard]] const double* row(int z) const { return data.data() + z * stride + 1; }
+  [[nodiscard]] Real* row(int z) { return data.data() + z * stride + 1; }
+  [[nodiscard]] const Real* row(int z) const { return data.data() + z * stride + 1; }
 };
 
 // A block that is tridiagonal along the line: entries of row z at z - 1, z, z + 1.
@@ -41,24 +44,24 @@ public:
     lower_ = own.below;
     upper_ = own.above;
     for (int z = 0; z < inverse_.length; ++z) {
-      double *inv = inverse_.row(z), *low = lower_.row(z);
-      const double *before = z > 0 ? inverse_.row(z - 1) : nullptr, *up = z > 0 ? upper_.row(z - 1) : nullptr;
+      Real *inv = inverse_.row(z), *low = lower_.row(z);
+      const Real *before = z > 0 ? inverse_.row(z - 1) : nullptr, *up = z > 0 ? upper_.row(z - 1) : nullptr;
       for (int i = 0; i < n; ++i) {
         if (before) low[i] *= before[i];
-        inv[i] = 1.0 / (before ? inv[i] - low[i] * up[i] : inv[i]);
+        inv[i] = Real{1} / (before ? inv[i] - low[i] * up[i] : inv[i]);
       }
     }
   }
   void solve(Columns& x) const {
     const int n = x.count, length = x.length;
     for (int z = 1; z < length; ++z) {
-      double* y = x.row(z);
-      const double *before = x.row(z - 1), *low = lower_.row(z);
+      Real* y = x.row(z);
+      const Real *before = x.row(z - 1), *low = lower_.row(z);
       for (int i = 0; i < n; ++i) y[i] -= low[i] * before[i];
     }
     for (int z = length - 1; z >= 0; --z) {
-      double* y = x.row(z);
-      const double *after = z + 1 < length ? x.row(z + 1) : nullptr, *up = upper_.row(z), *inv = inverse_.row(z);
+      Real* y = x.row(z);
+      const Real *after = z + 1 < length ? x.row(z + 1) : nullptr, *up = upper_.row(z), *inv = inverse_.row(z);
       if (after)
         for (int i = 0; i < n; ++i) y[i] = (y[i] - up[i] * after[i]) * inv[i];
       else
@@ -69,15 +72,15 @@ public:
   void solve_transposed(Columns& x) const {
     const int n = x.count, length = x.length;
     for (int z = 0; z < length; ++z) {
-      double* y = x.row(z);
+      Real* y = x.row(z);
       for (int i = 0; i < n; ++i) {
         if (z > 0) y[i] -= upper_.row(z - 1)[i] * x.row(z - 1)[i];
         y[i] *= inverse_.row(z)[i];
       }
     }
     for (int z = length - 2; z >= 0; --z) {
-      double* y = x.row(z);
-      const double *after = x.row(z + 1), *low = lower_.row(z + 1);
+      Real* y = x.row(z);
+      const Real *after = x.row(z + 1), *low = lower_.row(z + 1);
       for (int i = 0; i < n; ++i) y[i] -= low[i] * after[i];
     }
   }
@@ -90,16 +93,16 @@ private:
 inline void subtract(const Block& block, bool diagonal, const Columns& x, int shift, Columns& y) {
   const int n = y.count;
   for (int z = 0; z < y.length; ++z) {
-    double* to = y.row(z);
-    const double *a = block.centre.row(z), *v = x.row(z) + shift;
+    Real* to = y.row(z);
+    const Real *a = block.centre.row(z), *v = x.row(z) + shift;
     for (int i = 0; i < n; ++i) to[i] -= a[i] * v[i];
     if (diagonal) continue;
     if (z > 0) {
-      const double *b = block.below.row(z), *u = x.row(z - 1) + shift;
+      const Real *b = block.below.row(z), *u = x.row(z - 1) + shift;
       for (int i = 0; i < n; ++i) to[i] -= b[i] * u[i];
     }
     if (z + 1 < y.length) {
-      const double *b = block.above.row(z), *u = x.row(z + 1) + shift;
+      const Real *b = block.above.row(z), *u = x.row(z + 1) + shift;
       for (int i = 0; i < n; ++i) to[i] -= b[i] * u[i];
     }
   }

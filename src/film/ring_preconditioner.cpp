@@ -4,6 +4,7 @@
 #include <array>
 #include <initializer_list>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "film/lines.hpp"
@@ -12,7 +13,9 @@
 namespace whirl::film {
 namespace {
 
-constexpr int few_lines = 8;
+// Below this many lines a rank, messages cost more than doing all lines everywhere.
+constexpr int few_lines = 32;
+static_assert(std::is_same_v<Real, float>, "exchange() and gather() send MPI_FLOAT");
 
 }  // namespace
 
@@ -25,7 +28,7 @@ public:
     Block own, before, after;
   };
   void set(const Rows& rows);
-  void cycle(const std::vector<double>& r, std::vector<double>& x);  // [line][lines here]
+  void cycle(const std::vector<Real>& r, std::vector<Real>& x);  // [line][lines here]
 
 private:
   struct Colour {
@@ -37,7 +40,7 @@ private:
   void exchange(std::initializer_list<Columns*> columns) const;
   void gather(const Rows& mine, Rows& all) const;
   void coarsen(Rows& coarse);
-  void solve_f(bool zero);
+  void solve_f(bool zero, bool last = false);
   void coarse_residual(Columns& out) const;
 
   MPI_Comm comm_;
@@ -50,7 +53,8 @@ private:
   Block wrap_before_, wrap_after_;  // coupling of the first even line to the last one and back
   LineSolver single_;
   Columns single_x_, residual_;
-  std::vector<double> coarse_r_, coarse_x_, part_;
+  std::vector<Real> coarse_r_, coarse_x_, part_;
+  mutable std::vector<Real> send_, receive_;
   std::vector<int> counts_, offsets_;  // of gathered lines
   std::unique_ptr<Level> coarse_;
   bool gathered_ = false;  // the coarse level holds all lines on every rank
@@ -98,38 +102,47 @@ void RingPreconditioner::Level::exchange(std::initializer_list<Columns*> columns
   if (size_ == 1) {
     for (Columns* c : columns)
       for (int z = 0; z < c->length; ++z) {
-        double* row = c->row(z);
+        Real* row = c->row(z);
         row[-1] = row[c->count - 1];
         row[c->count] = row[0];
       }
     return;
   }
+  // First columns, then last ones. Two ranks are each other's neighbours on both sides: one message instead of two.
   const std::size_t n = columns.size() * at(line_);
-  std::vector<double> first(n), last(n), from_before(n), from_after(n);
+  send_.resize(2 * n);
+  receive_.resize(2 * n);
   std::size_t k = 0;
   for (Columns* c : columns)
     for (int z = 0; z < line_; ++z, ++k) {
-      first[k] = c->row(z)[0];
-      last[k] = c->row(z)[c->count - 1];
+      send_[k] = c->row(z)[0];
+      send_[n + k] = c->row(z)[c->count - 1];
     }
   const int before = (rank_ + size_ - 1) % size_, after = (rank_ + 1) % size_, m = static_cast<int>(n);
-  MPI_Sendrecv(last.data(), m, MPI_DOUBLE, after, 1, from_before.data(), m, MPI_DOUBLE, before, 1, comm_,
-               MPI_STATUS_IGNORE);
-  MPI_Sendrecv(first.data(), m, MPI_DOUBLE, before, 2, from_after.data(), m, MPI_DOUBLE, after, 2, comm_,
-               MPI_STATUS_IGNORE);
+  if (size_ == 2) {
+    MPI_Sendrecv(send_.data(), 2 * m, MPI_FLOAT, after, 1, receive_.data(), 2 * m, MPI_FLOAT, after, 1, comm_,
+                 MPI_STATUS_IGNORE);
+  } else {
+    std::array<MPI_Request, 4> all{};
+    MPI_Irecv(receive_.data(), m, MPI_FLOAT, after, 1, comm_, &all[0]);
+    MPI_Irecv(receive_.data() + n, m, MPI_FLOAT, before, 2, comm_, &all[1]);
+    MPI_Isend(send_.data(), m, MPI_FLOAT, before, 1, comm_, &all[2]);
+    MPI_Isend(send_.data() + n, m, MPI_FLOAT, after, 2, comm_, &all[3]);
+    MPI_Waitall(4, all.data(), MPI_STATUSES_IGNORE);
+  }
   k = 0;
   for (Columns* c : columns)
     for (int z = 0; z < line_; ++z, ++k) {
-      c->row(z)[-1] = from_before[k];
-      c->row(z)[c->count] = from_after[k];
+      c->row(z)[-1] = receive_[n + k];
+      c->row(z)[c->count] = receive_[k];
     }
 }
 
 void RingPreconditioner::Level::split(const Columns& from, Columns& even, Columns& odd) const {
   const int e = here_.begin % 2, o = 1 - e;  // column of the first even and odd line
   for (int z = 0; z < line_; ++z) {
-    const double* row = from.row(z);
-    double *c = even.row(z), *f = odd.row(z);
+    const Real* row = from.row(z);
+    Real *c = even.row(z), *f = odd.row(z);
     for (int i = 0; i < even.count; ++i) c[i] = row[e + 2 * i];
     for (int i = 0; i < odd.count; ++i) f[i] = row[o + 2 * i];
   }
@@ -160,7 +173,7 @@ void RingPreconditioner::Level::set(const Rows& given) {
       for (std::size_t p = 0; p < 3; ++p)
         for (int z = 0; z < line_; ++z) {
           target[p]->row(z)[0] = source[p]->row(z)[column];
-          source[p]->row(z)[column] = 0.0;
+          source[p]->row(z)[column] = Real{0};
         }
     };
     if (here_.begin == 0) move(c_.before, 0, wrap_before_);
@@ -183,14 +196,14 @@ void RingPreconditioner::Level::gather(const Rows& mine, Rows& all) const {
   Rows from = mine;
   const std::array<Block*, 3> source = {&from.own, &from.before, &from.after},
                               target = {&all.own, &all.before, &all.after};
-  std::vector<double> part(part_.size()), whole(coarse_r_.size());
+  std::vector<Real> part(part_.size()), whole(coarse_r_.size());
   const int n = c_.x.count, m = coarse_->here_.count();
   for (std::size_t b = 0; b < 3; ++b)
     for (std::size_t p = 0; p < 3; ++p) {
       for (int z = 0; z < line_; ++z)
         for (int i = 0; i < n; ++i) part[at(i * line_ + z)] = source[b]->parts()[p]->row(z)[i];
-      MPI_Allgatherv(part.data(), static_cast<int>(part.size()), MPI_DOUBLE, whole.data(), counts_.data(),
-                     offsets_.data(), MPI_DOUBLE, comm_);
+      MPI_Allgatherv(part.data(), static_cast<int>(part.size()), MPI_FLOAT, whole.data(), counts_.data(),
+                     offsets_.data(), MPI_FLOAT, comm_);
       for (int z = 0; z < line_; ++z)
         for (int i = 0; i < m; ++i) target[b]->parts()[p]->row(z)[i] = whole[at(i * line_ + z)];
     }
@@ -203,13 +216,13 @@ void RingPreconditioner::Level::coarsen(Rows& coarse) {
     for (int z = 0; z < line_; ++z)
       for (int i = 0; i < b.centre.count; ++i)
         out.row(z)[i] =
-            -(b.centre.row(z)[i] + (z > 0 ? b.below.row(z)[i] : 0.0) + (z + 1 < line_ ? b.above.row(z)[i] : 0.0));
+            -(b.centre.row(z)[i] + (z > 0 ? b.below.row(z)[i] : Real{0}) + (z + 1 < line_ ? b.above.row(z)[i] : Real{0}));
   };
   const auto column_sum = [&](const Block& b, Columns& out) {
     for (int z = 0; z < line_; ++z)
       for (int i = 0; i < b.centre.count; ++i)
-        out.row(z)[i] = -(b.centre.row(z)[i] + (z > 0 ? b.above.row(z - 1)[i] : 0.0) +
-                          (z + 1 < line_ ? b.below.row(z + 1)[i] : 0.0));
+        out.row(z)[i] = -(b.centre.row(z)[i] + (z > 0 ? b.above.row(z - 1)[i] : Real{0}) +
+                          (z + 1 < line_ ? b.below.row(z + 1)[i] : Real{0}));
   };
   // P of odd lines from the even line before and after.
   Columns p_before(line_, nf), p_after(line_, nf);
@@ -246,7 +259,7 @@ void RingPreconditioner::Level::coarsen(Rows& coarse) {
     for (int z = 0; z < line_; ++z)
       for (int i = 0; i < nc; ++i) {
         const int f = i + f_shift_ + shift;
-        const double weight = r.row(z)[f];
+        const Real weight = r.row(z)[f];
         to.centre.row(z)[i] += a.centre.row(z)[i] * p.row(z)[f] + weight * q.centre.row(z)[f];
         if (z > 0) to.below.row(z)[i] += a.below.row(z)[i] * p.row(z - 1)[f] + weight * q.below.row(z)[f];
         if (z + 1 < line_) to.above.row(z)[i] += a.above.row(z)[i] * p.row(z + 1)[f] + weight * q.above.row(z)[f];
@@ -267,8 +280,8 @@ void RingPreconditioner::Level::coarsen(Rows& coarse) {
   if (here_.end == lines_) put(wrap_after_, nc - 1, coarse.after);
 }
 
-// x_F = A_FF^-1 (r_F - A_FC x_C).
-void RingPreconditioner::Level::solve_f(bool zero) {
+// x_F = A_FF^-1 (r_F - A_FC x_C); the last one of a cycle is wanted by no other line.
+void RingPreconditioner::Level::solve_f(bool zero, bool last) {
   f_.x.data = f_.rhs.data;
   if (!zero) {
     exchange({&c_.x});
@@ -276,7 +289,7 @@ void RingPreconditioner::Level::solve_f(bool zero) {
     subtract(f_.after, finest_, c_.x, c_shift_ + 1, f_.x);
   }
   f_.solver.solve(f_.x);
-  exchange({&f_.x});
+  if (!last) exchange({&f_.x});
 }
 
 // r_C - A_CF x_F.
@@ -286,7 +299,7 @@ void RingPreconditioner::Level::coarse_residual(Columns& out) const {
   subtract(c_.before, finest_, f_.x, f_shift_ - 1, out);
 }
 
-void RingPreconditioner::Level::cycle(const std::vector<double>& r, std::vector<double>& x) {
+void RingPreconditioner::Level::cycle(const std::vector<Real>& r, std::vector<Real>& x) {
   const int n = here_.count(), nc = c_.x.count;
   if (lines_ == 1) {
     for (int z = 0; z < line_; ++z) single_x_.row(z)[0] = r[at(z)];
@@ -296,7 +309,7 @@ void RingPreconditioner::Level::cycle(const std::vector<double>& r, std::vector<
   }
   const int e = here_.begin % 2, o = 1 - e;
   for (int z = 0; z < line_; ++z) {
-    const double* from = r.data() + at(z * n);
+    const Real* from = r.data() + at(z * n);
     for (int i = 0; i < nc; ++i) c_.rhs.row(z)[i] = from[e + 2 * i];
     for (int i = 0; i < f_.x.count; ++i) f_.rhs.row(z)[i] = from[o + 2 * i];
   }
@@ -308,11 +321,11 @@ void RingPreconditioner::Level::cycle(const std::vector<double>& r, std::vector<
     for (int z = 0; z < line_; ++z) std::copy_n(coarse_x_.data() + at(z * nc), nc, c_.x.row(z));
   } else {
     const int m = coarse_->here_.count();
-    std::vector<double>& whole = coarse_x_;
+    std::vector<Real>& whole = coarse_x_;
     for (int z = 0; z < line_; ++z)
       for (int i = 0; i < nc; ++i) part_[at(i * line_ + z)] = residual_.row(z)[i];
-    MPI_Allgatherv(part_.data(), static_cast<int>(part_.size()), MPI_DOUBLE, whole.data(), counts_.data(),
-                   offsets_.data(), MPI_DOUBLE, comm_);
+    MPI_Allgatherv(part_.data(), static_cast<int>(part_.size()), MPI_FLOAT, whole.data(), counts_.data(),
+                   offsets_.data(), MPI_FLOAT, comm_);
     for (int z = 0; z < line_; ++z)
       for (int i = 0; i < m; ++i) coarse_r_[at(z * m + i)] = whole[at(i * line_ + z)];
     coarse_->cycle(coarse_r_, coarse_x_);
@@ -334,9 +347,9 @@ void RingPreconditioner::Level::cycle(const std::vector<double>& r, std::vector<
   }
   std::swap(c_.x.data, residual_.data);
   c_.solver.solve(c_.x);
-  solve_f(false);
+  solve_f(false, true);
   for (int z = 0; z < line_; ++z) {
-    double* to = x.data() + at(z * n);
+    Real* to = x.data() + at(z * n);
     for (int i = 0; i < nc; ++i) to[e + 2 * i] = c_.x.row(z)[i];
     for (int i = 0; i < f_.x.count; ++i) to[o + 2 * i] = f_.x.row(z)[i];
   }
@@ -357,7 +370,7 @@ void RingPreconditioner::set(const Stencil& rows) {
   const auto put = [&](Stencil::Place place, Columns& to) {
     const std::vector<double>& from = rows.at[place];
     for (int i = 0; i < n && !from.empty(); ++i)
-      for (int z = 0; z < line_; ++z) to.row(z)[i] += from[at(i * line_ + z)];
+      for (int z = 0; z < line_; ++z) to.row(z)[i] += static_cast<Real>(from[at(i * line_ + z)]);
   };
   put(Stencil::centre, out.own.centre);
   put(Stencil::below, out.own.below);
@@ -371,7 +384,7 @@ void RingPreconditioner::set(const Stencil& rows) {
 void RingPreconditioner::apply(std::span<const double> r, std::span<double> x) {
   const int n = here_.count();
   for (int i = 0; i < n; ++i)
-    for (int z = 0; z < line_; ++z) r_[at(z * n + i)] = r[at(i * line_ + z)];
+    for (int z = 0; z < line_; ++z) r_[at(z * n + i)] = static_cast<Real>(r[at(i * line_ + z)]);
   top_->cycle(r_, x_);
   for (int i = 0; i < n; ++i)
     for (int z = 0; z < line_; ++z) x[at(i * line_ + z)] = x_[at(z * n + i)];

@@ -20,16 +20,8 @@ void CycleBranch::run(Context& context) {
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const std::string born = fmt::format("{} flip {}", name(), k + 1);
     if (context.resume && context.results.finished(born)) continue;
-    CycleBranchOptions twice = options;
-    twice.period *= 2;
-    // The same steps over twice the time.
-    const int steps = steps_of(options);
-    const bool whole = options.method == CycleBranchOptions::Method::shooting;
-    twice.steps = whole ? 2 * steps : steps;
-    twice.intervals *= whole ? 1 : 2;
-    twice.follow_flips = false;
     context.results.begin(born, std::string(kind()));
-    CycleFollower(context, twice, seeds[k]).run();
+    CycleFollower(context, twice_the_period(options), seeds[k]).run();
   }
 }
 

@@ -19,18 +19,7 @@ double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle
                             bool half_film) const {
   const auto other = half_film ? make_system(true) : nullptr;
   system::RotorSystem& system = other ? *other : *system_;
-  const auto on_other_film = [&](solve::Cycle c) {
-    if (system.size() == system_->size()) return c;
-    const Eigen::MatrixXd x = c.x;
-    c.x.resize(system.size(), x.cols());
-    for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      const Eigen::VectorXd column = x.col(k);
-      const std::vector<double> here = system.resampled(*system_, column.data());
-      c.x.col(k) = Eigen::Map<const Eigen::VectorXd>(here.data(), system.size());
-    }
-    return c;
-  };
-  const solve::Cycle cycle = on_other_film(given);
+  const solve::Cycle cycle = on_film_of(system, given);
   const auto made = make_problem(system, options_.period, cycle.mesh, doubled_mesh);
   solve::PeriodicProblem& problem = *made;
   if (autonomous()) problem.set_phase_reference(cycle);
@@ -52,7 +41,7 @@ double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle
     // Own states of a film are resampled with the journal's place, affinely: a direction is the difference of two.
     solve::Cycle direction = problem_->gather(along.get()), moved = given;
     moved.x += direction.x;
-    direction.x = on_other_film(std::move(moved)).x - cycle.x;
+    direction.x = on_film_of(system, std::move(moved)).x - cycle.x;
     const core::Vector tangent = problem.scatter(direction);
     solve::set_last_entry(problem.comm(), tangent.get(), 0);
     solve::weighted_row(problem, tangent.get(), row.get());
@@ -131,7 +120,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   }
   set_normal_form(b, found, u);
   context_.results.summary().bifurcations.push_back(b);
-  if (keeps_located_) located_.push_back({found.event, found.critical, cycle});
+  if (keeps_located_) located_.push_back({found.event, found.critical, cycle, found.sensitivity});
 }
 
 }  // namespace whirl::study

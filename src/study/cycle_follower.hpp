@@ -23,6 +23,13 @@ struct FlipSeed {
 void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds);
 [[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group);
 
+/// A bifurcation found again on another film mesh.
+struct Relocated {
+  Located found;
+  double bracket = 0;  ///< scaled width left by the location
+  int solves = 0;      ///< cycles that were solved
+};
+
 /// The solver's problem, what is recorded of the branch, and how to restart it. Collective throughout.
 class CycleFollower {
 public:
@@ -33,6 +40,11 @@ public:
   void run();
   /// The flips located on the way.
   [[nodiscard]] const std::vector<FlipSeed>& seeds() const { return seeds_; }
+  [[nodiscard]] const system::RotorSystem& system() const { return *system_; }
+  /// Finds the bifurcation that `other` found on another film mesh. Throws core::NotConverged or core::DomainError.
+  [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other);
+  /// How far the steps in time leave the bifurcation uncertain, scaled; NaN if that cannot be told.
+  [[nodiscard]] double time_error(const Located& at);
 
 private:
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
@@ -69,6 +81,11 @@ private:
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
   [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
                              bool half_film) const;
+  /// The cycle with the own states of its films on the meshes of `to`.
+  [[nodiscard]] solve::Cycle on_film_of(const system::RotorSystem& to, solve::Cycle cycle) const;
+  void correct(Vec u, Vec row, double offset, Relocated& out);
+  void relocate_crossing(core::Vector& u, Relocated& out);
+  void relocate_fold(core::Vector& u, Relocated& out);
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 

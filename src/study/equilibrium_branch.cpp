@@ -16,7 +16,6 @@
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/solve/normal_form.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
-#include "whirl/study/locus.hpp"
 #include "whirl/system/start.hpp"
 
 namespace whirl::study {

@@ -3,6 +3,7 @@
 #include "whirl/study/cycle_branch.hpp"
 #include "whirl/study/equilibrium_branch.hpp"
 #include "whirl/study/locus.hpp"
+#include "whirl/study/mesh_convergence.hpp"
 #include "whirl/study/modes.hpp"
 #include "whirl/study/motion.hpp"
 #include "whirl/study/static.hpp"
@@ -31,6 +32,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
       kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
       kind<Locus>("curve of one bifurcation of a branch in two parameters, with points of codimension two"),
+      kind<MeshConvergence>("bifurcations of a branch of cycles on finer and finer film meshes: order, limit, error"),
   };
   return all;
 }

@@ -2,9 +2,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "cycle_record.hpp"
 
 namespace whirl::study {
+
+bool is_followed(const Context& context, const std::string& name) {
+  return std::any_of(context.studies.begin(), context.studies.end(),
+                     [&](const auto& s) { return s->starts_from() == name; });
+}
 
 void write_located(io::Group& group, const std::vector<Located>& all) {
   group.set("count", static_cast<int>(all.size()));
@@ -13,6 +20,7 @@ void write_located(io::Group& group, const std::vector<Located>& all) {
     g.set("event", static_cast<int>(all[k].event));
     g.set("real", all[k].critical.real());
     g.set("imag", all[k].critical.imag());
+    g.set("sensitivity", all[k].sensitivity);
     write_cycle(g.child("cycle"), all[k].cycle);
   }
 }
@@ -23,7 +31,8 @@ std::vector<Located> read_located(const io::Group& group) {
     const auto& g = group.group(fmt::format("{}", k));
     all.push_back({static_cast<solve::Event>(g.integer("event")),
                    {g.real("real"), g.real("imag")},
-                   read_cycle(g.group("cycle"))});
+                   read_cycle(g.group("cycle")),
+                   g.real("sensitivity")});
   }
   return all;
 }

@@ -7,6 +7,7 @@
 #include "whirl/io/record.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/cycle.hpp"
+#include "whirl/study/study.hpp"
 
 namespace whirl::study {
 
@@ -15,7 +16,11 @@ struct Located {
   solve::Event event = solve::Event::branch_point;
   std::complex<double> critical;  ///< multiplier, or eigenvalue [1/s]
   solve::Cycle cycle;
+  double sensitivity = 0;  ///< d(distance from the border of stability)/d(parameter in the unit of the range)
 };
+
+/// Whether a study of the deck goes on from the bifurcations of the study `name`, which then keeps them.
+[[nodiscard]] bool is_followed(const Context& context, const std::string& name);
 void write_located(io::Group& group, const std::vector<Located>& all);
 [[nodiscard]] std::vector<Located> read_located(const io::Group& group);
 

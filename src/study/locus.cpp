@@ -345,13 +345,6 @@ void LocusFollower::run() {
 
 }  // namespace
 
-bool is_followed(const Context& context, const std::string& name) {
-  return std::any_of(context.studies.begin(), context.studies.end(), [&](const auto& s) {
-    const auto* locus = dynamic_cast<const Locus*>(s.get());
-    return locus && locus->options.of == name;
-  });
-}
-
 void Locus::run(Context& context) {
   LocusFollower(context, options).run();
 }

@@ -31,15 +31,27 @@ MatrixXd dense(Mat m, PetscInt n) {
 }
 
 // y = rows of a stencil times x, which has the neighbouring lines in front of it and behind it.
-void multiply(const film::Stencil& a, int lines, int line, int reach, const double* x, double* y) {
+void multiply(const film::Stencil& a, int lines, int line, int reach, const double* x, double* __restrict y) {
   using enum film::Stencil::Place;
   const std::array<int, film::Stencil::n_places> offset = {0, -line, line, -1, 1, -2 * line};
-  std::fill_n(y, lines * line, 0.0);
-  for (const auto place : {centre, before, after, below, above, second_before}) {
-    if (a.at[place].empty()) continue;
-    const double *value = a.at[place].data(), *from = x + reach * line + offset[place];
-    for (int k = 0; k < lines * line; ++k) y[k] += value[k] * from[k];
-  }
+  // In runs short enough for y and x to stay in the nearest cache while the places add up.
+  constexpr int run = 512;
+  const int n = lines * line;
+  std::fill_n(y, n, 0.0);
+  for (int begin = 0; begin < n; begin += run)
+    for (const auto place : {centre, before, after, below, above, second_before}) {
+      if (a.at[place].empty()) continue;
+      const double *__restrict value = a.at[place].data(), *__restrict from = x + reach * line + offset[place];
+      for (int k = begin; k < std::min(n, begin + run); ++k) y[k] += value[k] * from[k];
+    }
+}
+
+// y += four columns times u.
+void add(const std::array<std::vector<double>, 4>& columns, const std::array<double, 4>& u, double* __restrict y) {
+  const double *__restrict c0 = columns[0].data(), *__restrict c1 = columns[1].data(),
+                           *__restrict c2 = columns[2].data(), *__restrict c3 = columns[3].data();
+  const double u0 = u[0], u1 = u[1], u2 = u[2], u3 = u[3];
+  for (std::size_t k = 0; k < columns[0].size(); ++k) y[k] += c0[k] * u0 + c1[k] * u1 + c2[k] * u2 + c3[k] * u3;
 }
 
 }  // namespace
@@ -54,6 +66,7 @@ public:
     film::RingPreconditioner ring;
     std::array<std::vector<double>, 4> driven;  // D^-1 G, per input
     Eigen::PartialPivLU<MatrixXd> rest;         // S, on the first rank
+    Eigen::Matrix<double, 4, 2> to_force;       // inputs per force, with the film eliminated
   };
 
   Equations(FilmSolver& solver, Vec x, Vec xdot, double alpha, double sigma, const Equations* similar);
@@ -127,7 +140,7 @@ RotorSystem::FilmSolver::FilmSolver(RotorSystem& s) : system_(s), gate_(s.comm_)
   check(KSPCreate(s.comm_, krylov_.put()));
   check(KSPSetOptionsPrefix(krylov_.get(), "stage_"));
   check(KSPSetOperators(krylov_.get(), shell_.get(), shell_.get()));
-  check(KSPSetType(krylov_.get(), KSPGMRES));
+  check(KSPSetType(krylov_.get(), KSPFGMRES));
   check(KSPSetPCSide(krylov_.get(), PC_RIGHT));
   PC pc = nullptr;
   check(KSPGetPC(krylov_.get(), &pc));
@@ -228,16 +241,21 @@ RotorSystem::FilmSolver::Equations::Equations(FilmSolver& solver, Vec x, Vec xdo
     preconditioner_->ring.apply(driven_[u], preconditioner_->driven[u]);
     through.col(static_cast<Eigen::Index>(u)) = force(preconditioner_->driven[u].data());
   }
-  if (first()) preconditioner_->rest.compute(rotor_ + alpha * solver.outputs_ * through * solver.inputs_);
+  MPI_Allreduce(MPI_IN_PLACE, through.data(), 8, MPI_DOUBLE, MPI_SUM, s.comm_);
+  auto& to_force = preconditioner_->to_force;
+  if (first()) {
+    preconditioner_->rest.compute(rotor_ + alpha * solver.outputs_ * through * solver.inputs_);
+    to_force = alpha * solver.inputs_ * preconditioner_->rest.solve(solver.outputs_);
+  }
+  MPI_Bcast(to_force.data(), 8, MPI_DOUBLE, 0, s.comm_);
 }
 
-// F s, summed over the ranks.
+// This rank's share of F s.
 Eigen::Vector2d RotorSystem::FilmSolver::Equations::force(const double* states) const {
   Eigen::Vector2d f;
   const auto n = static_cast<Eigen::Index>(force_[0].size());
   for (Eigen::Index i = 0; i < 2; ++i)
     f(i) = Map<const VectorXd>(force_[static_cast<std::size_t>(i)].data(), n).dot(Map<const VectorXd>(states, n));
-  MPI_Allreduce(MPI_IN_PLACE, f.data(), 2, MPI_DOUBLE, MPI_SUM, solver_.system_.comm_);
   return f;
 }
 
@@ -248,9 +266,6 @@ void RotorSystem::FilmSolver::Equations::multiply(Vec v, Vec y) const {
   const core::WriteArray ya(y);
   const Bearing& b = film();
   const film::StateModel& model = *b.states;
-  double* rows = ya.data() + b.row;
-  system::multiply(a_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
-                   inputs.data() + 8 * s.bearings_.size() + b.gathered, rows);
   std::array<double, 4> u{};  // position, velocity
   for (std::size_t d = 0; d < 2; ++d)
     for (std::size_t rate = 0; rate < 2; ++rate) {
@@ -258,11 +273,13 @@ void RotorSystem::FilmSolver::Equations::multiply(Vec v, Vec y) const {
       const double *x = inputs.data() + 8 * solver_.film_, *scale = solver_.journal_scale_.data();
       u[2 * rate + d] = x[j] * scale[j] - (b.pedestal[d] >= 0 ? x[p] * scale[p] : 0.0);
     }
-  for (PetscInt k = 0; k < b.rows(); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    rows[k] += driven_[0][i] * u[0] + driven_[1][i] * u[1] + driven_[2][i] * u[2] + driven_[3][i] * u[3];
-  }
-  const Eigen::Vector2d f = force(va.data() + b.row);
+  double* rows = ya.data() + b.row;
+  system::multiply(a_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
+                   inputs.data() + 8 * s.bearings_.size() + b.gathered, rows);
+  add(driven_, u, rows);
+  const Eigen::Vector2d share = force(va.data() + b.row);
+  Eigen::Vector2d f;
+  MPI_Reduce(share.data(), f.data(), 2, MPI_DOUBLE, MPI_SUM, 0, s.comm_);
   if (!first()) return;
   Map<VectorXd>(ya.data(), rotor_.rows()) =
       rotor_ * Map<const VectorXd>(va.data(), rotor_.rows()) - alpha_ * (solver_.outputs_ * f);
@@ -289,17 +306,20 @@ void RotorSystem::FilmSolver::Equations::precondition(Vec r, Vec y) const {
   const auto n = static_cast<std::size_t>(b.rows());
   double* states = ya.data() + b.row;
   preconditioner_->ring.apply({ra.data() + b.row, n}, {states, n});
-  const Eigen::Vector2d f = force(states);
-  Eigen::Vector4d u;
+  // The forces of all ranks and what the first one knows of the inputs, in one message.
+  Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
+  sums.head<2>() = force(states);
+  VectorXd z;
   if (first()) {
-    const VectorXd z = preconditioner_->rest.solve(
-        VectorXd(Map<const VectorXd>(ra.data(), 2 * s.n_) + alpha_ * (solver_.outputs_ * f)));
-    Map<VectorXd>(ya.data(), 2 * s.n_) = z;
-    u = solver_.inputs_ * z;
+    z = preconditioner_->rest.solve(Map<const VectorXd>(ra.data(), 2 * s.n_));
+    sums.tail<4>() = solver_.inputs_ * z;
   }
-  MPI_Bcast(u.data(), 4, MPI_DOUBLE, 0, s.comm_);
-  const auto& w = preconditioner_->driven;
-  for (std::size_t k = 0; k < n; ++k) states[k] -= w[0][k] * u(0) + w[1][k] * u(1) + w[2][k] * u(2) + w[3][k] * u(3);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 6, MPI_DOUBLE, MPI_SUM, s.comm_);
+  const Eigen::Vector4d u = sums.tail<4>() + preconditioner_->to_force * sums.head<2>();
+  if (first())
+    Map<VectorXd>(ya.data(), 2 * s.n_) =
+        z + preconditioner_->rest.solve(VectorXd(alpha_ * (solver_.outputs_ * sums.head<2>())));
+  add(preconditioner_->driven, {-u(0), -u(1), -u(2), -u(3)}, states);
 }
 
 void RotorSystem::FilmSolver::Equations::solve(Vec r, Vec y, double tolerance) const {

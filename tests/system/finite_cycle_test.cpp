@@ -4,58 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
-#include "whirl/solve/equilibrium.hpp"
+#include "support/finite_rotor.hpp"
 #include "whirl/solve/newton.hpp"
 #include "whirl/solve/newton_picard.hpp"
 #include "whirl/solve/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 
 namespace {
 
-constexpr double speed_scale = 160, speed = 4.5 * speed_scale;
-
-system::Train train(int around, int along) {
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  t.unbalance = {{1, 0.5 * 5e-6, 0}};
-  system::Support s;
-  s.name = "half";
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
-  s.film.kind = film::Options::Kind::compliant_finite;
-  s.film.compliance = 0.1;
-  s.film.reference_speed = speed_scale;
-  s.film.cells = {around, along};
-  s.lubricant = {0.001, 1000};
-  t.supports = {s};
-  return t;
-}
-
-// The equilibrium held for a turn.
-solve::Cycle rest(system::RotorSystem& s) {
-  s.set_forcing(false);
-  core::Vector x = system::static_guess(s);
-  for (const double stop : {2.2, 3.0, 3.8, 4.5}) {
-    s.set_parameter(stop * speed_scale);
-    solve::NewtonOptions newton;
-    newton.max_iterations = 40;
-    EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged);
-  }
-  s.set_forcing(true);
-  const std::vector<double> whole = s.gather(x.get());
-  return {solve::uniform_mesh(1),
-          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
-          2 * std::numbers::pi / speed, speed};
-}
+constexpr double speed_scale = test::finite_speed_scale, speed = 4.5 * speed_scale;
 
 }  // namespace
 
@@ -63,8 +24,8 @@ TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShooting) {
   constexpr int steps = 16;
   solve::NewtonOptions newton;
   newton.tolerance = 1e-10;
-  system::RotorSystem s(MPI_COMM_WORLD, train(12, 4), speed), alone(PETSC_COMM_SELF, train(12, 4), speed);
-  const solve::Cycle start = rest(alone);
+  system::RotorSystem s(MPI_COMM_WORLD, test::finite_rotor(12, 4), speed), alone(PETSC_COMM_SELF, test::finite_rotor(12, 4), speed);
+  const solve::Cycle start = test::finite_rotor_at_rest(alone, speed);
   solve::NewtonPicardOptions options;
   options.parameter_scale = speed_scale;
   solve::NewtonPicardProblem picard(s, options, solve::sdirk(4), steps, solve::uniform_mesh(1));

@@ -40,7 +40,7 @@ private:
   std::unique_ptr<Level> top_;
   int line_;
   Lines here_;
-  std::vector<double> r_, x_;  // transposed: lines run fastest
+  std::vector<float> r_, x_;  // transposed: lines run fastest
 };
 
 }  // namespace whirl::film

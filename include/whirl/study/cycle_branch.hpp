@@ -45,6 +45,8 @@ struct CycleBranchOptions {
 };
 /// Steps in each interval (in the whole period for single shooting): those asked for, or as many as make 120 a period.
 [[nodiscard]] int steps_of(const CycleBranchOptions& options);
+/// Those of a branch born at one of its flips.
+[[nodiscard]] CycleBranchOptions twice_the_period(CycleBranchOptions options);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Method>> names(CycleBranchOptions::Method);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Stepping>> names(CycleBranchOptions::Stepping);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points);

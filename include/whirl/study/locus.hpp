@@ -24,10 +24,8 @@ public:
   [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
+  [[nodiscard]] std::string starts_from() const override { return options.of; }
   void run(Context& context) override;
 };
-
-/// Whether a locus of the deck starts at a bifurcation of the study `name`, which then keeps them.
-[[nodiscard]] bool is_followed(const Context& context, const std::string& name);
 
 }  // namespace whirl::study

@@ -44,6 +44,8 @@ public:
   /// The same for what does not fit the studies before it in the deck.
   virtual void validate_among(std::span<const std::unique_ptr<Study>> /*before*/,
                               const deck::Report& /*report*/) const {}
+  /// Name of the study whose bifurcations this one goes on from; empty if it needs none.
+  [[nodiscard]] virtual std::string starts_from() const { return {}; }
   /// True if run() itself looks which of its results a resumed run already has; else a finished study is not run again.
   [[nodiscard]] virtual bool resumes_itself() const { return false; }
   /// Collective.

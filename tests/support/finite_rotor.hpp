@@ -1,0 +1,58 @@
+#pragma once
+// The rotor of inputs/compliant_rotor/finite_curve.yaml: half of it on one compliant bearing of finite length.
+
+#include <Eigen/Core>
+#include <numbers>
+
+#include "whirl/core/error.hpp"
+#include "whirl/solve/cycle.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+namespace whirl::test {
+
+/// Omega* = 1 [rad/s].
+inline constexpr double finite_speed_scale = 160;
+
+/// F0* = 1, L/D = 1, B = 0.1, a* = 0.2, film mesh of `around` x `along` cells.
+inline system::Train finite_rotor(int around, int along) {
+  system::Train t;
+  t.gravity = 0;
+  t.rotor.type = rotor::Options::Type::rigid;
+  t.rotor.mass = 0.5;
+  t.rotor.load = 0.32;
+  t.unbalance = {{1, 0.5 * 5e-6, 0}};
+  system::Support s;
+  s.name = "half";
+  s.node = 1;
+  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
+  s.film.kind = film::Options::Kind::compliant_finite;
+  s.film.compliance = 0.1;
+  s.film.reference_speed = finite_speed_scale;
+  s.film.cells = {around, along};
+  s.lubricant = {0.001, 1000};
+  t.supports = {s};
+  return t;
+}
+
+/// The equilibrium at the speed of `s` [rad/s], reached from a slow rotor, held for a turn: a first guess of the cycle.
+inline solve::Cycle finite_rotor_at_rest(system::RotorSystem& s, double speed) {
+  s.set_forcing(false);
+  core::Vector x = system::static_guess(s);
+  for (const double part : {0.45, 0.65, 0.85, 1.0}) {
+    s.set_parameter(part * speed);
+    solve::NewtonOptions newton;
+    newton.max_iterations = 40;
+    core::require(solve::find_equilibrium(s, x.get(), newton).converged, "no equilibrium");
+  }
+  s.set_forcing(true);
+  const std::vector<double> whole = s.gather(x.get());
+  return {{0, 1},
+          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+          2 * std::numbers::pi / speed,
+          speed};
+}
+
+}  // namespace whirl::test
