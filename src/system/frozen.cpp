@@ -65,14 +65,16 @@ public:
 private:
   [[nodiscard]] const Bearing& film() const { return solver_.system_.bearings_[solver_.film_]; }
   [[nodiscard]] bool first() const { return solver_.state_.size() > 0; }
-  [[nodiscard]] Eigen::Vector2d force(const double* states) const;
+  [[nodiscard]] Eigen::Vector2d force(const double* states) const { return sum(force_, states); }
+  [[nodiscard]] Eigen::Vector2d sum(const std::array<std::vector<double>, 2>& weights, const double* states) const;
 
   FilmSolver& solver_;
   double alpha_;
-  MatrixXd rotor_;                             // A_rr, on the first rank
-  film::Stencil a_, rates_;                    // D, dg/ds'
-  std::array<std::vector<double>, 4> driven_;  // alpha G
-  std::array<std::vector<double>, 2> force_;   // F
+  MatrixXd rotor_;                                  // A_rr, on the first rank
+  film::Stencil a_, rates_;                         // D, dg/ds'
+  std::array<std::vector<double>, 4> driven_;       // alpha G
+  std::array<std::vector<double>, 2> force_;        // F = df/ds + sigma/alpha df/ds'
+  std::array<std::vector<double>, 2> force_rates_;  // df/ds', or empty
   std::shared_ptr<Preconditioner> preconditioner_;
 };
 
@@ -194,8 +196,13 @@ RotorSystem::FilmSolver::Equations::Equations(FilmSolver& solver, Vec x, Vec xdo
     force_[i].resize(n);
     driven_[i].resize(n);
     driven_[2 + i].resize(n);
+    force_rates_[i].resize(own.force_d_rates.empty() ? 0 : n);
     for (std::size_t k = 0; k < n; ++k) {
       force_[i][k] = own.force_d_states[k][i] * solver.film_state_;
+      if (!own.force_d_rates.empty()) {
+        force_rates_[i][k] = own.force_d_rates[k][i] * solver.film_state_;
+        force_[i][k] += sigma / alpha * force_rates_[i][k];
+      }
       driven_[i][k] = alpha * own.d_position[k][i] / solver.film_residual_;
       driven_[2 + i][k] = alpha * own.d_velocity[k][i] / solver.film_residual_;
     }
@@ -231,12 +238,13 @@ RotorSystem::FilmSolver::Equations::Equations(FilmSolver& solver, Vec x, Vec xdo
   if (first()) preconditioner_->rest.compute(rotor_ + alpha * solver.outputs_ * through * solver.inputs_);
 }
 
-// F s, summed over the ranks.
-Eigen::Vector2d RotorSystem::FilmSolver::Equations::force(const double* states) const {
+// Weights times states, summed over the ranks.
+Eigen::Vector2d RotorSystem::FilmSolver::Equations::sum(const std::array<std::vector<double>, 2>& weights,
+                                                        const double* states) const {
   Eigen::Vector2d f;
-  const auto n = static_cast<Eigen::Index>(force_[0].size());
+  const auto n = static_cast<Eigen::Index>(weights[0].size());
   for (Eigen::Index i = 0; i < 2; ++i)
-    f(i) = Map<const VectorXd>(force_[static_cast<std::size_t>(i)].data(), n).dot(Map<const VectorXd>(states, n));
+    f(i) = Map<const VectorXd>(weights[static_cast<std::size_t>(i)].data(), n).dot(Map<const VectorXd>(states, n));
   MPI_Allreduce(MPI_IN_PLACE, f.data(), 2, MPI_DOUBLE, MPI_SUM, solver_.system_.comm_);
   return f;
 }
@@ -277,8 +285,11 @@ void RotorSystem::FilmSolver::Equations::multiply_rates(Vec v, Vec y) const {
   const core::WriteArray ya(y);
   system::multiply(rates_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
                    inputs.data() + 8 * s.bearings_.size() + b.gathered, ya.data() + b.row);
-  if (first())
-    Map<VectorXd>(ya.data(), 2 * s.n_) = solver_.rotor_block(0, 1) * Map<const VectorXd>(va.data(), 2 * s.n_);
+  const bool rates = !s.constant_rates();
+  const Eigen::Vector2d f = rates ? sum(force_rates_, va.data() + b.row) : Eigen::Vector2d::Zero();
+  if (!first()) return;
+  Map<VectorXd>(ya.data(), 2 * s.n_) = solver_.rotor_block(0, 1) * Map<const VectorXd>(va.data(), 2 * s.n_);
+  if (rates) Map<VectorXd>(ya.data(), 2 * s.n_) -= solver_.outputs_ * f;
 }
 
 void RotorSystem::FilmSolver::Equations::precondition(Vec r, Vec y) const {
