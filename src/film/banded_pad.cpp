@@ -1,6 +1,8 @@
 // Any pad by a banded factorisation of the five-point equation.
 //
-// Unknowns p_ij, i = 1..n_theta - 1 around and j along the pad, numbered along z first. Per unit of cell area
+// Unknowns p_ij, i = 1..n_theta - 1 around and j along the pad, numbered along z first; on a closed pad i = 0..n_theta
+// - 1 with the columns in the order 0, n - 1, 1, n - 2, ..., which keeps neighbours within twice the bandwidth. Columns
+// in grooves hold p = 0. Per unit of cell area
 //     (A p)_ij + v_j src_ij = 0,   A from conductances v_j a_(i+1/2,j)/(R dtheta)^2 around and b_(i,j+1/2)/dz^2 along.
 // An aligned journal needs only half the length: v_j = 1/2 on a mid-plane row, no flow across the mid-plane.
 // Reynolds cavitation: p >= 0, A p + src >= 0, complementary; primal-dual active set (Hintermueller, Ito, Kunisch
@@ -11,6 +13,7 @@
 #include <limits>
 
 #include "film/band.hpp"
+#include "film/groove.hpp"
 #include "film/mobility.hpp"
 #include "film/pad.hpp"
 #include "film/truncation.hpp"
@@ -40,12 +43,19 @@ private:
   void integrate(Need need, Response& response);
   void adjoint(const Motion& motion, Response& response);
 
-  std::size_t at(int i, int j) const { return static_cast<std::size_t>((i - 1) * rows_ + j); }
+  int wrap(int i) const { return pad_.closed ? (i + grid_.n_theta) % grid_.n_theta : i; }
+  // Pressure zero on the whole column: beyond an edge of the pad, or in a groove.
+  bool wall(int i) const {
+    return pad_.closed ? grooves_[static_cast<std::size_t>(wrap(i))] : i <= 0 || i >= grid_.n_theta;
+  }
+  int place(int i) const {
+    if (!pad_.closed) return i - 1;
+    return 2 * i < grid_.n_theta ? 2 * i : 2 * (grid_.n_theta - i) - 1;
+  }
+  std::size_t at(int i, int j) const { return static_cast<std::size_t>(place(i) * rows_ + j); }
   std::size_t around(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * rows_ + j : i); }
   std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
-  double pressure_at(int i, int j) const {
-    return i <= 0 || i >= grid_.n_theta || j < 0 || j >= rows_ ? 0.0 : x_[at(i, j)][0];
-  }
+  double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)][0]; }
   double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
   double row_z(int j) const { return (j + 1) * grid_.dz - 0.5 * pad_.length; }
 
@@ -57,6 +67,8 @@ private:
   double viscosity_, density_;
   int rows_, z_faces_;
   double last_share_;
+  int first_;                  // first column of unknowns
+  std::vector<bool> grooves_;  // columns of a closed pad
 
   double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
   Faces a_, b_;                         // [n_theta][rows], [n_theta][z_faces]; one column if aligned
@@ -78,13 +90,17 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
       rows_(tilt_ ? grid_.n_z - 1 : grid_.n_z / 2),
       z_faces_(tilt_ ? rows_ + 1 : rows_),
       last_share_(!tilt_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
-      band_((grid_.n_theta - 1) * rows_, rows_) {
+      first_(pad.closed ? 0 : 1),
+      band_((grid_.n_theta - first_) * rows_, (pad.closed ? 2 : 1) * rows_) {
   const auto n = static_cast<std::size_t>(grid_.n_theta);
   a_.resize(tilt_ ? n * static_cast<std::size_t>(rows_) : n);
   b_.resize(tilt_ ? n * static_cast<std::size_t>(z_faces_) : n);
-  const auto size = (n - 1) * static_cast<std::size_t>(rows_);
+  const auto size = (n - static_cast<std::size_t>(first_)) * static_cast<std::size_t>(rows_);
   source_.assign(size, 0.0);
   cavitated_.assign(size, 0);
+  if (pad.closed) grooves_ = grooved(grid_.n_theta, options.grooves);
+  for (int i = first_; i < grid_.n_theta; ++i)
+    for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = wall(i);
   next_.assign(size, 0);
   x_.assign(size, Quad::zero());
   load_.assign(size, Quad::zero());
@@ -131,7 +147,7 @@ void BandedPad::coefficients(const Motion& motion) {
   mobilities(b_, resistance_along_, grid_.dz);
 
   // Exact cell means of (Omega/2) dh/dtheta + dh/dt.
-  for (int i = 1; i < n; ++i) {
+  for (int i = first_; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     for (int j = 0; j < rows_; ++j) {
       const double z = row_z(j);
@@ -143,20 +159,25 @@ void BandedPad::coefficients(const Motion& motion) {
 }
 
 void BandedPad::assemble() {
-  for (int i = 1; i < grid_.n_theta; ++i) {
+  for (int i = first_; i < grid_.n_theta; ++i) {
     for (int j = 0; j < rows_; ++j) {
       const std::size_t here = at(i, j);
       double* row = band_.row(static_cast<int>(here));
-      std::fill(row, row + rows_ + 1, 0.0);
+      std::fill(row, row + (pad_.closed ? 2 : 1) * rows_ + 1, 0.0);
       if (cavitated_[here]) {
         row[0] = 1.0;
         continue;
       }
-      const double right = share(j) * a_.value[around(i, j)];
+      const double left = share(j) * a_.value[around(wrap(i - 1), j)], right = share(j) * a_.value[around(i, j)];
       const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
-      row[0] = share(j) * a_.value[around(i - 1, j)] + right + b_.value[along(i, j)] + up;
+      row[0] = left + right + b_.value[along(i, j)] + up;
       if (j + 1 < rows_ && !cavitated_[here + 1]) row[1] -= up;
-      if (i + 1 < grid_.n_theta && !cavitated_[at(i + 1, j)]) row[rows_] -= right;
+      // Of two neighbours the one that comes first holds the entry.
+      for (const auto& [side, value] : {std::pair{i + 1, right}, std::pair{i - 1, left}}) {
+        if (wall(side)) continue;
+        const std::size_t there = at(wrap(side), j);
+        if (there > here && !cavitated_[there]) row[there - here] -= value;
+      }
     }
   }
 }
@@ -165,7 +186,7 @@ void BandedPad::solve() {
   if (cavitation_ == Options::Cavitation::reynolds) return solve_complementarity();
   assemble();
   band_.factor();
-  for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(-source_[k]);
+  for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -source_[k]);
   band_.solve(x_);
 }
 
@@ -173,7 +194,7 @@ void BandedPad::solve() {
 double BandedPad::residual(int i, int j) const {
   const double p = pressure_at(i, j);
   double r = source_[at(i, j)] + b_.value[along(i, j)] * (p - pressure_at(i, j - 1));
-  r += share(j) * (a_.value[around(i - 1, j)] * (p - pressure_at(i - 1, j)) +
+  r += share(j) * (a_.value[around(wrap(i - 1), j)] * (p - pressure_at(i - 1, j)) +
                    a_.value[around(i, j)] * (p - pressure_at(i + 1, j)));
   if (j + 1 < z_faces_) r += b_.value[along(i, j + 1)] * (p - pressure_at(i, j + 1));
   return r;
@@ -192,10 +213,10 @@ void BandedPad::solve_complementarity() {
     double top = 0.0;
     for (const Quad& x : x_) top = std::max(top, std::abs(x[0]));
     int changes = 0;
-    for (int i = 1; i < grid_.n_theta; ++i) {
+    for (int i = first_; i < grid_.n_theta; ++i) {
       for (int j = 0; j < rows_; ++j) {
         const std::size_t k = at(i, j);
-        const bool now = cavitated_[k] ? residual(i, j) >= -kRound * scale : x_[k][0] < -kRound * top;
+        const bool now = wall(i) || (cavitated_[k] ? residual(i, j) >= -kRound * scale : x_[k][0] < -kRound * top);
         changes += now != static_cast<bool>(cavitated_[k]);
         next_[k] = now;
       }
@@ -212,13 +233,15 @@ void BandedPad::integrate(Need need, Response& response) {
   const double area = pad_.radius * grid_.dtheta * grid_.dz * grid_.mean;
   std::fill(load_.begin(), load_.end(), Quad::zero());
   Quad force = Quad::zero();
-  const int last = grid_.n_theta - 1;
-  for (int strip = 0; strip <= last; ++strip) {
+  for (int strip = 0; strip < grid_.n_theta; ++strip) {
     const auto face = static_cast<std::size_t>(strip);
     const double cosine = -area * grid_.face_cos[face], sine = -area * grid_.face_sin[face];
-    const bool edge = strip == 0 || strip == last;
+    if (wall(strip) && wall(strip + 1)) continue;
+    const bool edge = wall(strip) || wall(strip + 1);
     // Left and right column, or near and far column of an edge.
-    const int first = strip == 0 ? 1 : strip, second = strip == 0 ? 2 : strip == last ? last - 1 : strip + 1;
+    const int first = wrap(wall(strip) ? strip + 1 : strip), second = wrap(wall(strip) ? strip + 2
+                                                                           : edge      ? strip - 1
+                                                                                       : strip + 1);
     for (int j = 0; j < rows_; ++j) {
       const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
@@ -247,7 +270,7 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
   }
   band_.solve(load_);
   const auto lambda = [&](int i, int j) {
-    return i <= 0 || i >= grid_.n_theta || j < 0 || j >= rows_ ? Quad::zero() : load_[at(i, j)];
+    return wall(i) || j < 0 || j >= rows_ ? Quad::zero() : load_[at(wrap(i), j)];
   };
   // Sums of e = (jump of lambda)(jump of p) over faces, weighted as dh = -cos (dx + z dtx) - sin (dy + z dty) asks, and
   // of lambda over cells as d src asks; lanes are F_x, F_y, M_x, M_y.
@@ -270,7 +293,7 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
       speed += a_.d_speed[around(i, j)] * e;
     }
     spread(position, level, moment, grid_.face_cos[k], grid_.face_sin[k]);
-    if (i == 0) continue;
+    if (i < first_) continue;
     level = moment = Quad::zero();
     for (int j = 0; j < z_faces_; ++j) {
       const Quad e = (pressure_at(i, j) - pressure_at(i, j - 1)) * (lambda(i, j) - lambda(i, j - 1));

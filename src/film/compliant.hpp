@@ -1,5 +1,6 @@
 #pragma once
-// What all compliant films share: the liner, the scales, and the integral of the positive pressure around the bearing.
+// What all compliant films share: scales, differences, and the integral of the positive pressure around the
+// bearing.
 
 #include <array>
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace whirl::film {
 
-/// Scales of a compliant film. With thickness h and eccentricity e in clearances and P = p (c/R)^2/(6 mu) in 1/s the
-/// liner gives P = (h - 1 + e_x cos + e_y sin)/b.
+/// Scales of a compliant film with thickness h and eccentricity e in clearances and P = p (c/R)^2/(6 mu) in 1/s. A
+/// linear liner gives P = u/b with its deflection u = h - 1 + e_x cos + e_y sin.
 struct CompliantScales {
   CompliantScales(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
   double pressure;  // Pa s, p/P = 6 mu (R/c)^2
@@ -19,6 +20,18 @@ struct CompliantScales {
 
 /// Throws core::InputError unless bore, lubricant and liner make a compliant film.
 void check_compliant(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+
+/// Weights of the nodes k - 2 ... k + 1 around the bearing. `third_order` is the difference of third order that is
+/// biased against the flow (kappa = 1/3), exact for cubics; the speed must not be negative for both upwind kinds.
+struct Neighbours {
+  explicit Neighbours(Options::Differences which);
+  std::array<double, 4> slope{};  // of dh/dtheta at k, over the step
+  std::array<double, 4> face{};   // of h midway between k - 1 and k
+  int reach = 1;                  // lines before k that enter the slope
+};
+
+/// The rates s' at which g(motion, s, s') = 0, which is linear in them.
+[[nodiscard]] std::vector<double> settled_rates(StateModel& film, const Motion& motion, std::span<const double> states);
 
 /// -int max(P, 0) (cos, sin) d theta over the cells between nodes k = 0 .. n - 1 at 90 deg + k 2 pi/n, by its weights:
 /// exact for a P that is linear between the nodes, or Simpson's rule over nodal values.

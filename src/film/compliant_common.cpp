@@ -1,4 +1,5 @@
 // What all compliant films share.
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,12 +42,52 @@ void check_compliant(const Geometry& g, const Options& options, const Lubricant&
   if (options.liner && !(options.liner->thickness > 0.0 && options.liner->modulus > 0.0 &&
                          options.liner->poisson >= 0.0 && options.liner->poisson < 0.5))
     throw core::InputError("film: thickness and modulus of the liner must be positive, Poisson's ratio below 1/2");
+  if (!(options.liner_damping >= 0.0)) throw core::InputError("film: the damping of the liner must not be negative");
+  if (options.rubber_thickness && !(*options.rubber_thickness > 0.0))
+    throw core::InputError("film: the thickness of the rubber must be positive");
+  if (options.contact && !(options.contact->roughness > 0.0 && options.contact->pressure > 0.0))
+    throw core::InputError("film: roughness and pressure of the contact must be positive");
   const bool finite = options.kind == Options::Kind::compliant_finite;
   if (options.cells[0] < 4 || (finite && options.cells[1] < 2))
     throw core::InputError("film: a compliant film needs at least 4 cells around and 2 along the bearing");
   if (options.quadrature == Options::Quadrature::simpson &&
       (options.cells[0] % 2 != 0 || (finite && options.cells[1] % 2 != 0)))
     throw core::InputError("film: Simpson's rule needs even numbers of cells");
+}
+
+Neighbours::Neighbours(Options::Differences which) {
+  switch (which) {
+    case Options::Differences::central:
+      slope = {0.0, -0.5, 0.0, 0.5};
+      face = {0.0, 0.5, 0.5, 0.0};
+      return;
+    case Options::Differences::upwind:
+      slope = {0.5, -2.0, 1.5, 0.0};
+      face = {-0.125, 0.75, 0.375, 0.0};
+      reach = 2;
+      return;
+    case Options::Differences::third_order:
+      slope = {1.0 / 6.0, -1.0, 0.5, 1.0 / 3.0};
+      face = {0.0, 0.5, 0.5, 0.0};
+      reach = 2;
+      return;
+  }
+  throw core::Bug("differences without weights");
+}
+
+std::vector<double> settled_rates(StateModel& film, const Motion& motion, std::span<const double> states) {
+  const auto n = static_cast<Eigen::Index>(states.size());
+  std::vector<double> rates(states.size(), 0.0);
+  StateResponse at;
+  film.evaluate(motion, states, rates, Need::tangents, at);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Entry& e : at.d_rates) entries.emplace_back(e.row, e.column, e.value);
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
+  if (lu.info() != Eigen::Success) throw core::NotConverged("the rates of the film are singular");
+  Eigen::Map<Eigen::VectorXd>(rates.data(), n) = -lu.solve(Eigen::Map<const Eigen::VectorXd>(at.residual.data(), n));
+  return rates;
 }
 
 RingQuadrature::RingQuadrature(int n, Options::Quadrature rule)

@@ -29,7 +29,7 @@ std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore) {
       {Geometry::Bore::partial_arc, "partial_arc", "one pad centred at 270 deg"},
       {Geometry::Bore::lemon_bore, "lemon_bore",
        "two pads centred at 90 and 270 deg, moved towards each other by the preload"},
-      {Geometry::Bore::cylindrical, "cylindrical", "a full circle, for the films in closed form"}};
+      {Geometry::Bore::cylindrical, "cylindrical", "a full circle without edges"}};
   return table;
 }
 
@@ -68,7 +68,8 @@ std::span<const deck::Name<Options::Quadrature>> names(Options::Quadrature) {
 std::span<const deck::Name<Options::Differences>> names(Options::Differences) {
   static constexpr deck::Name<Options::Differences> table[] = {
       {Options::Differences::central, "central", "central differences of second order"},
-      {Options::Differences::upwind, "upwind", "backward differences of second order, as in the source"}};
+      {Options::Differences::upwind, "upwind", "backward differences of second order, as in the source"},
+      {Options::Differences::third_order, "third_order", "third order, biased against the flow (kappa = 1/3)"}};
   return table;
 }
 
@@ -119,6 +120,21 @@ void describe(deck::Description<Liner>& d) {
       .required();
 }
 
+void describe(deck::Description<Groove>& d) {
+  d.add("angle", &Groove::angle, "rad", deck::any, "middle of the groove, from +x counter-clockwise").required();
+  d.add("width", &Groove::width, "rad", deck::Check{.min = 0, .max = 2 * pi, .max_open = true},
+        "angle that it covers; its edges are moved to the nearest nodes");
+}
+
+void describe(deck::Description<Contact>& d) {
+  d.add("roughness", &Contact::roughness, "m", positive, "standard deviation sigma of the heights of both surfaces")
+      .required()
+      .continuable();
+  d.add("pressure", &Contact::pressure, "Pa", positive, "K E' of p = K E' 4.4086e-5 (4 - h/sigma)^6.804")
+      .required()
+      .continuable();
+}
+
 void describe(deck::Description<Options>& d) {
   using enum Options::Kind;
   d.add("type", &Options::kind, "model of the film");
@@ -145,6 +161,20 @@ void describe(deck::Description<Options>& d) {
       .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("reference_speed", &Options::reference_speed, "rad/s", deck::non_negative, "Omega_0 of 'compliance'")
       .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
+  d.add("liner_damping", &Options::liner_damping, "s", deck::non_negative,
+        "tau of a Kelvin-Voigt liner: p = (elastic pressure) + tau (rate of the deflection)/(deflection per pressure)")
+      .continuable()
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
+  d.add("rubber_thickness", &Options::rubber_thickness, "m", positive,
+        "thickness of a liner that stiffens as bonded rubber does (Lindley 1966); linear if absent", "000 sec. 6.2")
+      .continuable()
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
+  d.add("contact", &Options::contact, "asperities that carry where the film is thin (Greenwood and Tripp 1971)",
+        "000 sec. 6.2")
+      .only(&Options::kind, {compliant_short, compliant_long});
+  d.add("grooves", &Options::grooves, "axial grooves at pressure zero; of a long film one at the top if absent",
+        "000 sec. 6.2")
+      .only(&Options::kind, {reynolds, compliant_short, compliant_long, compliant_finite});
   d.add("quadrature", &Options::quadrature, "how the force is integrated")
       .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("differences", &Options::differences, "differences of the thickness around the bearing")

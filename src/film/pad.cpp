@@ -9,13 +9,15 @@
 namespace whirl::film {
 
 std::vector<Pad> make_pads(const Geometry& g) {
+  if (g.type == Geometry::Bore::cylindrical)
+    return {{g.radius, g.length, g.clearance, 0.5 * std::numbers::pi, 2.0 * std::numbers::pi, 0.0, 0.0, true}};
   const double machined = g.clearance / (1.0 - g.preload);
   const double rise = machined - g.clearance;  // the centre of each arc lies beyond the bearing centre
   const bool lobes = g.type == Geometry::Bore::lemon_bore;
   const double shift = lobes ? 0.5 * g.offset : 0.0;
   const double half = 0.5 * g.arc;
-  std::vector<Pad> pads = {{g.radius, g.length, machined, 1.5 * std::numbers::pi - half, g.arc, shift, rise}};
-  if (lobes) pads.push_back({g.radius, g.length, machined, 0.5 * std::numbers::pi - half, g.arc, -shift, -rise});
+  std::vector<Pad> pads = {{g.radius, g.length, machined, 1.5 * std::numbers::pi - half, g.arc, shift, rise, false}};
+  if (lobes) pads.push_back({g.radius, g.length, machined, 0.5 * std::numbers::pi - half, g.arc, -shift, -rise, false});
   return pads;
 }
 

@@ -13,9 +13,11 @@ struct Pad {
   double clearance;           // m, machined clearance c_p
   double start, arc;          // rad
   double centre_x, centre_y;  // m, centre of the arc relative to the bearing centre
+  bool closed;                // a whole circle: the last node is the first one
 };
 
-/// The pads of a bore, lower pad first (errata of Gavalas 2022, eq. 2.10, items 18-19).
+/// The pads of a bore, lower pad first (errata of Gavalas 2022, eq. 2.10, items 18-19); a cylindrical bore is one
+/// closed pad that begins at 90 deg.
 std::vector<Pad> make_pads(const Geometry& geometry);
 
 /// Uniform grid of a pad: n_theta x n_z cells, nodes on all edges, faces midway between nodes along theta.

@@ -18,10 +18,11 @@ void demand(bool condition, const char* what) {
 }
 
 void check(const Geometry& g, const Options& o, const Lubricant& l) {
-  demand(g.type != Geometry::Bore::cylindrical, "a reynolds film needs the edges of pads (a partial arc of 360 deg)");
   demand(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
   const double limit = (g.type == Geometry::Bore::lemon_bore ? 1.0 : 2.0) * std::numbers::pi;
-  demand(g.arc > 0.0 && g.arc <= limit, "the arc must be positive and its pads must not overlap");
+  const bool closed = g.type == Geometry::Bore::cylindrical;
+  demand(closed || (g.arc > 0.0 && g.arc <= limit), "the arc must be positive and its pads must not overlap");
+  demand(closed || o.grooves.empty(), "only a cylindrical bore has grooves");
   demand(g.preload < 1.0, "the preload must be below 1");
   demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
   demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");
@@ -36,7 +37,8 @@ public:
       : options_(options), lubricant_(lubricant), pads_(make_pads(geometry)) {
     const bool modal = !options.tilt && options.cavitation != Options::Cavitation::reynolds;
     for (const Pad& pad : pads_) {
-      solvers_.push_back(modal ? make_modal_pad(pad, options, lubricant) : make_banded_pad(pad, options, lubricant));
+      solvers_.push_back(modal && !pad.closed ? make_modal_pad(pad, options, lubricant)
+                                              : make_banded_pad(pad, options, lubricant));
     }
   }
 
@@ -94,8 +96,12 @@ Summary ReynoldsFilm::summary(const Motion& motion) {
         const double area = share * grid.dz * (side ? 0.5 : 1.0);
         const double couette = laminar ? 1.0 : 1.0 + 0.0012 * std::pow(Re, 0.94);
         double slope = 0.0;
-        if (i > 0 && i < grid.n_theta)
-          slope = (row[columns + static_cast<std::size_t>(j)] - *(row - columns + j)) / (2.0 * grid.dtheta);
+        if (pad.closed || (i > 0 && i < grid.n_theta)) {
+          const auto at = [&](int line) {
+            return p[static_cast<std::size_t>(line) * columns + static_cast<std::size_t>(j)];
+          };
+          slope = (at(i == grid.n_theta ? 1 : i + 1) - at(i == 0 ? grid.n_theta - 1 : i - 1)) / (2.0 * grid.dtheta);
+        }
         shear += area * (mu * U / h * couette + 0.5 * h * slope / pad.radius);
         result.min_thickness = std::min(result.min_thickness, h);
         result.max_pressure = std::max(result.max_pressure, row[j]);

@@ -105,7 +105,7 @@ void relax(StateModel& film, const Motion& motion, std::vector<double>& states) 
   throw core::NotConverged("the film by itself did not relax");
 }
 
-// s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + df/ds s.
+// s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.
 Coefficients coefficients(StateModel& film, const Motion& motion, std::span<const double> states, double omega) {
   if (!(omega > 0.0)) throw core::InputError("film: the frequency of stiffness and damping must be positive");
   const std::vector<double> rest(states.size(), 0.0);
@@ -124,7 +124,11 @@ Coefficients coefficients(StateModel& film, const Motion& motion, std::span<cons
     const Eigen::VectorXcd s = lu.solve(rhs);
     for (std::size_t i = 0; i < 2; ++i) {
       Complex transfer = r.journal.d_position[i][j] + iw * r.journal.d_velocity[i][j];
-      for (Eigen::Index k = 0; k < n; ++k) transfer -= r.force_d_states[static_cast<std::size_t>(k)][i] * s(k);
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const auto state = static_cast<std::size_t>(k);
+        transfer -= r.force_d_states[state][i] * s(k);
+        if (!r.force_d_rates.empty()) transfer -= iw * r.force_d_rates[state][i] * s(k);
+      }
       out.stiffness[2 * i + j] = -transfer.real();
       out.damping[2 * i + j] = -transfer.imag() / omega;
     }

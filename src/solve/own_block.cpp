@@ -135,8 +135,17 @@ public:
       for (Index j = 0; j < m(); ++j) out(j, c) = input(state, active_[static_cast<std::size_t>(c)])[j];
     return out;
   }
-  [[nodiscard]] MatrixXd forces_of(Index state) const override {
-    return Map<const MatrixXd>(force_of(state), m(), forces_);
+  [[nodiscard]] VectorXd forces_of(Index state, int j, int l) const override {
+    VectorXd out(forces_);
+    for (Index d = 0; d < forces_; ++d) {
+      if (l == 0) {
+        out(d) = force_at_start(state, d, j);
+        continue;
+      }
+      out(d) = value_(j, l - 1) * force_of(state)[d * m() + j];
+      if (rated()) out(d) += slope_(j, l - 1) * force_rate_of(state)[d * m() + j];
+    }
+    return out;
   }
   [[nodiscard]] double entry(Index row, Index slot, int j, int l) const override {
     const Index at = (row * shape_.width() + slot) * m() + j;
@@ -152,6 +161,8 @@ private:
   }
   [[nodiscard]] const double* input(Index state, Index c) const { return input_.data() + (state * inputs_ + c) * m(); }
   [[nodiscard]] const double* force_of(Index state) const { return force_.data() + state * forces_ * m(); }
+  [[nodiscard]] const double* force_rate_of(Index state) const { return force_rate_.data() + state * forces_ * m(); }
+  [[nodiscard]] bool rated() const { return !force_rate_.empty(); }
   // The blocks of L left of the diagonal, the inverse of the diagonal one, those of the unit U right of it.
   [[nodiscard]] double* factor(Index row, Index slot) {
     return factor_.data() + (row * shape_.width() + slot) * m() * m();
@@ -171,15 +182,23 @@ private:
   void read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales, Index first);
   void factorise_band();
   void find_border();
-  // force += F value v for v [m x columns] of one state.
+  // force += (F value + F' slope) v for v [m x columns] of one state.
   void add_force(Index state, const double* v, Index columns, double* force) const {
+    add_force(value_, force_of(state), v, columns, force);
+    if (rated()) add_force(slope_, force_rate_of(state), v, columns, force);
+  }
+  void add_force(const MatrixXd& by, const double* of, const double* v, Index columns, double* force) const {
     for (Index c = 0; c < columns; ++c)
       for (Index j = 0; j < m(); ++j) {
         double at_point = 0;
-        for (Index l = 0; l < m(); ++l) at_point += value_(j, l) * v[c * m() + l];
-        for (Index d = 0; d < forces_; ++d)
-          force[(c * m() + j) * forces_ + d] += force_of(state)[d * m() + j] * at_point;
+        for (Index l = 0; l < m(); ++l) at_point += by(j, l) * v[c * m() + l];
+        for (Index d = 0; d < forces_; ++d) force[(c * m() + j) * forces_ + d] += of[d * m() + j] * at_point;
       }
+  }
+  // What force d at point j makes of the value at the start of the interval.
+  [[nodiscard]] double force_at_start(Index state, Index d, Index j) const {
+    const double by_value = scheme_.value(j, 0) * force_of(state)[d * m() + j];
+    return rated() ? by_value + scheme_.slope(j, 0) / length_ * force_rate_of(state)[d * m() + j] : by_value;
   }
 
   const Scheme& scheme_;
@@ -188,6 +207,7 @@ private:
   MatrixXd value_, slope_;                             // V and D/H
   std::vector<double> by_state_, by_rate_, at_start_;  // dg/ds, dg/ds' and minus A0 by row, slot, point
   std::vector<double> force_, input_;                  // df/ds by state, force, point; dg/dw by state, input, point
+  std::vector<double> force_rate_;                     // df/ds', or empty
   std::vector<double> factor_, z_;
 };
 
@@ -208,7 +228,10 @@ void Blocks<M>::read(const std::vector<const PointState*>& points, std::size_t i
     };
     put(shape_.states, t.states, by_state_);
     put(shape_.rates, t.rates, by_rate_);
+    force_rate_.resize(t.force_rates.rows() > 0 ? force_.size() : 0);
     for (Index a = 0; a < shape_.count; ++a) {
+      for (Index f = 0; f < t.force_rates.rows(); ++f)
+        force_rate_[static_cast<std::size_t>((a * forces_ + f) * m() + j)] = t.force_rates(f, a) * column[a];
       for (Index f = 0; f < forces_; ++f)
         force_[static_cast<std::size_t>((a * forces_ + f) * m() + j)] = t.forces(f, a) * column[a];
       for (Index c = 0; c < inputs_; ++c) {
@@ -359,7 +382,7 @@ template <int M>
 void Blocks<M>::start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const {
   const Index size = m() * columns, width = shape_.width();
   force.setZero(m() * forces_, columns);
-  const bool forces_at_start = scheme_.value.col(0).cwiseAbs().maxCoeff() > 0;
+  const bool forces_at_start = rated() || scheme_.value.col(0).cwiseAbs().maxCoeff() > 0;
   std::vector<double> seen(static_cast<std::size_t>(width));
   for (Index a = 0; a < shape_.count; ++a)
     for (Index c = 0; c < columns; ++c) {
@@ -374,9 +397,7 @@ void Blocks<M>::start(Index columns, const double* s, Index stride, double* y, M
     double* sum = force.col(c).data();
     for (Index a = 0; a < shape_.count; ++a)
       for (Index d = 0; d < forces_; ++d)
-        for (Index j = 0; j < m(); ++j) sum[j * forces_ + d] += force_of(a)[d * m() + j] * s[c * stride + a];
-    for (Index j = 0; j < m(); ++j)
-      for (Index d = 0; d < forces_; ++d) sum[j * forces_ + d] *= scheme_.value(j, 0);
+        for (Index j = 0; j < m(); ++j) sum[j * forces_ + d] += force_at_start(a, d, j) * s[c * stride + a];
   }
 }
 
@@ -402,7 +423,10 @@ void Blocks<M>::multiply(const double* start, const double* s, double* rows, Vec
       }
       values[static_cast<std::size_t>(a * m() + j)] = value;
       slopes[static_cast<std::size_t>(a * m() + j)] = slope;
-      for (Index d = 0; d < forces_; ++d) force(j * forces_ + d) += force_of(a)[d * m() + j] * value;
+      for (Index d = 0; d < forces_; ++d) {
+        force(j * forces_ + d) += force_of(a)[d * m() + j] * value;
+        if (rated()) force(j * forces_ + d) += force_rate_of(a)[d * m() + j] * slope;
+      }
     }
   for (Index a = 0; a < shape_.count; ++a)
     for (Index j = 0; j < m(); ++j) {
@@ -465,6 +489,9 @@ void Blocks<M>::forces_transposed(const double* force, double* y) const {
       for (Index j = 0; j < m(); ++j) {
         const double v = force_of(a)[d * m() + j] * force[j * forces_ + d];
         for (Index l = 0; l < m(); ++l) y[a * m() + l] += value_(j, l) * v;
+        if (!rated()) continue;
+        const double w = force_rate_of(a)[d * m() + j] * force[j * forces_ + d];
+        for (Index l = 0; l < m(); ++l) y[a * m() + l] += slope_(j, l) * w;
       }
 }
 
@@ -474,8 +501,7 @@ void Blocks<M>::start_transposed(const double* y, const double* force, double* s
     for (Index j = 0; j < m(); ++j) {
       for (Index slot = 0; slot < shape_.width(); ++slot)
         s[shape_.column(a, slot)] -= band(at_start_, a, slot)[j] * y[a * m() + j];
-      for (Index d = 0; d < forces_; ++d)
-        s[a] -= scheme_.value(j, 0) * force_of(a)[d * m() + j] * force[j * forces_ + d];
+      for (Index d = 0; d < forces_; ++d) s[a] -= force_at_start(a, d, j) * force[j * forces_ + d];
     }
 }
 

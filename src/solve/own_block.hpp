@@ -35,9 +35,9 @@ struct OwnShape {
 ///     [ T_SI  T_SS ] [ s_S ] + G eta = [ y_S ]     T_II banded, G(a) = dg_a/dw, diagonal in the points
 ///
 /// s_I is eliminated by an LU of T_II without row exchanges between states (rounding that this costs comes back by
-/// GMRES): s_I = T_II^-1 y_I - Z (eta, s_S). What is left are the separators and the forces f = F (value s):
+/// GMRES): s_I = T_II^-1 y_I - Z (eta, s_S). What is left are the separators and the forces f = F value s + F' slope/H s:
 ///
-///     Sigma s_S + Q eta = y_S - T_SI T_II^-1 y_I,    f = f_eta eta + f_s s_S + F value T_II^-1 y_I
+///     Sigma s_S + Q eta = y_S - T_SI T_II^-1 y_I,    f = f_eta eta + f_s s_S + (F value + F' slope/H) T_II^-1 y_I
 ///
 /// Cost: O(count m^3) to factorise, O(count m^2) to solve, times the square of the bandwidth and the bandwidth.
 /// Everything is scaled. Inputs are ordered by input, then point; forces by point, then force.
@@ -62,7 +62,7 @@ public:
   virtual void substitute(Eigen::Index columns, double* y, const Eigen::MatrixXd& eta,
                           const Eigen::MatrixXd& separators) const = 0;
   /// y = - A0 s: the rows' dependence on the states at the start of the interval [count x columns, leading dimension
-  /// `stride`]; force = F value_0 s.
+  /// `stride`]; force = (F value_0 + F' slope_0/H) s.
   virtual void start(Eigen::Index columns, const double* s, Eigen::Index stride, double* y,
                      Eigen::MatrixXd& force) const = 0;
   /// y += factor G eta for eta [m active].
@@ -74,13 +74,14 @@ public:
   virtual void solve_transposed(double* y) const = 0;
   /// eta [m active] = G^T y.
   virtual void inputs_transposed(const double* y, double* eta) const = 0;
-  /// y += (F value)^T force, and s += A0^T y - (F value_0)^T force [count].
+  /// y += (F value + F' slope/H)^T force, and s += A0^T y - (F value_0 + F' slope_0/H)^T force [count].
   virtual void forces_transposed(const double* force, double* y) const = 0;
   virtual void start_transposed(const double* y, const double* force, double* s) const = 0;
 
-  /// dg/dw [m x active] and df/ds [m x forces] of a state.
+  /// dg/dw [m x active] of a state.
   [[nodiscard]] virtual Eigen::MatrixXd inputs_of(Eigen::Index state) const = 0;
-  [[nodiscard]] virtual Eigen::MatrixXd forces_of(Eigen::Index state) const = 0;
+  /// What the forces at point j make of a state at node l, or of its start for l = 0 [forces].
+  [[nodiscard]] virtual Eigen::VectorXd forces_of(Eigen::Index state, int j, int l) const = 0;
   /// A(j, l) for l = 1..m and A0(j) for l = 0 between two states.
   [[nodiscard]] virtual double entry(Eigen::Index row, Eigen::Index slot, int j, int l) const = 0;
 

@@ -329,8 +329,8 @@ MatrixXd OwnInterval::block(int j, int l) const {
       const MatrixXd g = blocks_[i]->inputs_of(a);
       for (Index e = 0; e < g.cols(); ++e)
         out.row(n + film.first + a).head(n) += p.scheme.value(j, l) * g(j, e) * p.c.row(input_row(i, 0, e));
-      const VectorXd f = blocks_[i]->forces_of(a).row(j).transpose();
-      out.col(n + film.first + a).head(n) -= p.scheme.value(j, l) * (p.b.middleCols(film.first_force, film.forces) * f);
+      out.col(n + film.first + a).head(n) -=
+          p.b.middleCols(film.first_force, film.forces) * blocks_[i]->forces_of(a, j, l);
       for (Index slot = 0; slot < blocks_[i]->shape().width(); ++slot)
         out(n + film.first + a, n + film.first + blocks_[i]->shape().column(a, slot)) +=
             blocks_[i]->entry(a, slot, j, l);

@@ -106,9 +106,15 @@ void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Re
   out.tail(own_states()).setZero();
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const problem::OwnStates& film = structure_->own()[i];
+    const Eigen::MatrixXd& forces = at.films.own[i].force_rates;
+    const Index first = n + film.first;
+    if (forces.rows() > 0)
+      out.head(n).noalias() -=
+          b_.middleCols(film.first_force, film.forces) *
+          (forces * v.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count)));
     const std::vector<double>& values = at.films.own[i].rates;
     for (std::size_t e = 0; e < values.size(); ++e) {
-      const Index row = n + film.first + film.rates[e].row, column = n + film.first + film.rates[e].column;
+      const Index row = first + film.rates[e].row, column = first + film.rates[e].column;
       out(row) += values[e] * v(column) * state_scale_(column) / residual_scale_(row);
     }
   }
@@ -130,6 +136,9 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
         rows * (t.inputs.transpose() * c_.middleRows(film.first_input, film.inputs));
     jx.block(0, first, n, film.count).noalias() =
         -b_.middleCols(film.first_force, film.forces) * t.forces * state_scale_.segment(first, film.count).asDiagonal();
+    if (t.force_rates.rows() > 0)
+      jxdot.block(0, first, n, film.count).noalias() = -b_.middleCols(film.first_force, film.forces) * t.force_rates *
+                                                       state_scale_.segment(first, film.count).asDiagonal();
     const auto add = [&](const std::vector<problem::Place>& places, const std::vector<double>& values, MatrixXd& out) {
       for (std::size_t e = 0; e < places.size(); ++e) {
         const Index row = first + places[e].row, column = first + places[e].column;

@@ -65,7 +65,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Roto
     o.parameter_scale = scale_;
     o.state_weight = state_weight();
     o.radius = options_.radius;
-    o.constant_rates = true;  // masses, and own states of films as ds/dt with the factor one
+    o.constant_rates = system.constant_rates();
     return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
   }
   solve::CycleOptions o;

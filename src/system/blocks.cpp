@@ -108,6 +108,7 @@ void take(const film::StateResponse& response, const problem::OwnStates& at, Eig
   for (std::size_t e = 0; e < out.rates.size(); ++e) out.rates[e] = response.d_rates[e].value;
   out.inputs.resize(at.inputs, at.count);
   out.forces.resize(at.forces, at.count);
+  out.force_rates.resize(response.force_d_rates.empty() ? 0 : at.forces, at.count);
   for (Eigen::Index k = 0; k < at.count; ++k) {
     const auto state = static_cast<std::size_t>(k);
     for (std::size_t d = 0; d < 2; ++d) {
@@ -115,6 +116,7 @@ void take(const film::StateResponse& response, const problem::OwnStates& at, Eig
       out.inputs(e, k) = response.d_position[state][d];
       out.inputs(2 + e, k) = response.d_velocity[state][d];
       out.forces(e, k) = response.force_d_states[state][d];
+      if (out.force_rates.rows() > 0) out.force_rates(e, k) = response.force_d_rates[state][d];
     }
     d_speed(coordinates + at.first + k) = response.d_speed[state];
   }

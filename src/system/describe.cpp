@@ -68,11 +68,10 @@ void describe(deck::Description<Bearing>& d) {
   d.check([](const Bearing& b, const deck::Report& r) {
     if (b.film.kind == film::Options::Kind::linear) return;
     if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
-    const bool pads = b.film.kind == film::Options::Kind::reynolds;
-    if (b.geometry && pads == (b.geometry->type == film::Geometry::Bore::cylindrical))
-      r.fail("film.type", pads ? "a reynolds film needs a bore with pads; a full circle with an inlet at the top is a "
-                                 "partial_arc of 360 deg"
-                               : "a film in closed form needs a cylindrical bore");
+    const bool closed = b.geometry && b.geometry->type == film::Geometry::Bore::cylindrical;
+    if (b.geometry && !closed && b.film.kind != film::Options::Kind::reynolds)
+      r.fail("film.type", "a film in closed form needs a cylindrical bore");
+    if (b.geometry && !closed && !b.film.grooves.empty()) r.fail("film.grooves", "only a cylindrical bore has grooves");
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
   });

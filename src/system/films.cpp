@@ -185,11 +185,18 @@ void RotorSystem::add_films(Mat j, const Films& all, double alpha, double sigma)
           const PetscInt row = begin + k;
           check(MatSetValue(j, row, 2 * q, alpha * side * own.d_position[state][d], ADD_VALUES));
           check(MatSetValue(j, row, 2 * q + 1, alpha * side * own.d_velocity[state][d], ADD_VALUES));
-          check(MatSetValue(j, 2 * q, row, -alpha * side * own.force_d_states[state][d], ADD_VALUES));
+          const double by_rate = own.force_d_rates.empty() ? 0 : own.force_d_rates[state][d];
+          const double force = alpha * own.force_d_states[state][d] + sigma * by_rate;
+          check(MatSetValue(j, 2 * q, row, -side * force, ADD_VALUES));
         }
   }
   check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
+}
+
+bool RotorSystem::constant_rates() const {
+  return std::all_of(bearings_.begin(), bearings_.end(),
+                     [](const Bearing& b) { return !b.states || b.states->constant_rates(); });
 }
 
 film::Summary RotorSystem::film_summary(int b, const double* x) {

@@ -78,14 +78,17 @@ public:
 private:
   [[nodiscard]] const Bearing& film() const { return solver_.system_.bearings_[solver_.film_]; }
   [[nodiscard]] bool first() const { return solver_.state_.size() > 0; }
-  [[nodiscard]] Eigen::Vector2d force(const double* states) const;
+  [[nodiscard]] Eigen::Vector2d force(const double* states) const { return sum(force_, states); }
+  [[nodiscard]] static Eigen::Vector2d sum(const std::array<std::vector<double>, 2>& weights, const double* states);
+  [[nodiscard]] Eigen::Vector2d at_first(const Eigen::Vector2d& share) const;
 
   FilmSolver& solver_;
   double alpha_;
-  MatrixXd rotor_;                             // A_rr, on the first rank
-  film::Stencil a_, rates_;                    // D, dg/ds'
-  std::array<std::vector<double>, 4> driven_;  // alpha G
-  std::array<std::vector<double>, 2> force_;   // F
+  MatrixXd rotor_;                                  // A_rr, on the first rank
+  film::Stencil a_, rates_;                         // D, dg/ds'
+  std::array<std::vector<double>, 4> driven_;       // alpha G
+  std::array<std::vector<double>, 2> force_;        // F = df/ds + sigma/alpha df/ds'
+  std::array<std::vector<double>, 2> force_rates_;  // df/ds', or empty
   std::shared_ptr<Preconditioner> preconditioner_;
 };
 
@@ -207,8 +210,13 @@ RotorSystem::FilmSolver::Equations::Equations(FilmSolver& solver, Vec x, Vec xdo
     force_[i].resize(n);
     driven_[i].resize(n);
     driven_[2 + i].resize(n);
+    force_rates_[i].resize(own.force_d_rates.empty() ? 0 : n);
     for (std::size_t k = 0; k < n; ++k) {
       force_[i][k] = own.force_d_states[k][i] * solver.film_state_;
+      if (!own.force_d_rates.empty()) {
+        force_rates_[i][k] = own.force_d_rates[k][i] * solver.film_state_;
+        force_[i][k] += sigma / alpha * force_rates_[i][k];
+      }
       driven_[i][k] = alpha * own.d_position[k][i] / solver.film_residual_;
       driven_[2 + i][k] = alpha * own.d_velocity[k][i] / solver.film_residual_;
     }
@@ -250,13 +258,21 @@ RotorSystem::FilmSolver::Equations::Equations(FilmSolver& solver, Vec x, Vec xdo
   MPI_Bcast(to_force.data(), 8, MPI_DOUBLE, 0, s.comm_);
 }
 
-// This rank's share of F s.
-Eigen::Vector2d RotorSystem::FilmSolver::Equations::force(const double* states) const {
+// This rank's share of weights times states.
+Eigen::Vector2d RotorSystem::FilmSolver::Equations::sum(const std::array<std::vector<double>, 2>& weights,
+                                                        const double* states) {
   Eigen::Vector2d f;
-  const auto n = static_cast<Eigen::Index>(force_[0].size());
+  const auto n = static_cast<Eigen::Index>(weights[0].size());
   for (Eigen::Index i = 0; i < 2; ++i)
-    f(i) = Map<const VectorXd>(force_[static_cast<std::size_t>(i)].data(), n).dot(Map<const VectorXd>(states, n));
+    f(i) = Map<const VectorXd>(weights[static_cast<std::size_t>(i)].data(), n).dot(Map<const VectorXd>(states, n));
   return f;
+}
+
+// The sum of all shares, known to the first rank.
+Eigen::Vector2d RotorSystem::FilmSolver::Equations::at_first(const Eigen::Vector2d& share) const {
+  Eigen::Vector2d all = Eigen::Vector2d::Zero();
+  MPI_Reduce(share.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, 0, solver_.system_.comm_);
+  return all;
 }
 
 void RotorSystem::FilmSolver::Equations::multiply(Vec v, Vec y) const {
@@ -277,9 +293,7 @@ void RotorSystem::FilmSolver::Equations::multiply(Vec v, Vec y) const {
   system::multiply(a_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
                    inputs.data() + 8 * s.bearings_.size() + b.gathered, rows);
   add(driven_, u, rows);
-  const Eigen::Vector2d share = force(va.data() + b.row);
-  Eigen::Vector2d f;
-  MPI_Reduce(share.data(), f.data(), 2, MPI_DOUBLE, MPI_SUM, 0, s.comm_);
+  const Eigen::Vector2d f = at_first(force(va.data() + b.row));
   if (!first()) return;
   Map<VectorXd>(ya.data(), rotor_.rows()) =
       rotor_ * Map<const VectorXd>(va.data(), rotor_.rows()) - alpha_ * (solver_.outputs_ * f);
@@ -294,8 +308,11 @@ void RotorSystem::FilmSolver::Equations::multiply_rates(Vec v, Vec y) const {
   const core::WriteArray ya(y);
   system::multiply(rates_, b.part.count(), static_cast<int>(model.line()), model.ring().reach,
                    inputs.data() + 8 * s.bearings_.size() + b.gathered, ya.data() + b.row);
-  if (first())
-    Map<VectorXd>(ya.data(), 2 * s.n_) = solver_.rotor_block(0, 1) * Map<const VectorXd>(va.data(), 2 * s.n_);
+  const bool rates = !s.constant_rates();
+  const Eigen::Vector2d f = rates ? at_first(sum(force_rates_, va.data() + b.row)) : Eigen::Vector2d::Zero();
+  if (!first()) return;
+  Map<VectorXd>(ya.data(), 2 * s.n_) = solver_.rotor_block(0, 1) * Map<const VectorXd>(va.data(), 2 * s.n_);
+  if (rates) Map<VectorXd>(ya.data(), 2 * s.n_) -= solver_.outputs_ * f;
 }
 
 void RotorSystem::FilmSolver::Equations::precondition(Vec r, Vec y) const {

@@ -47,8 +47,17 @@ system::Train train(std::vector<system::Support> supports) {
   return t;
 }
 
+enum class Mix { plain, as_source, damped };
+
+void damp(system::Support& s) {
+  s.film.liner_damping = 0.3 / 160;
+  s.film.rubber_thickness = 4 * clearance;
+  s.film.differences = film::Options::Differences::third_order;
+}
+
 // A short film beside a short rigid one, a long film on a pedestal and one with a mesh of lines.
-system::Train mixed(bool as_source) {
+system::Train mixed(Mix mix) {
+  const bool as_source = mix == Mix::as_source;
   system::Support rigid = support(Kind::short_bearing, false, 0.1, 8),
                   on_pedestal = support(Kind::compliant_long, as_source, 0.3, 14);
   rigid.film.compliance.reset();
@@ -56,8 +65,13 @@ system::Train mixed(bool as_source) {
   on_pedestal.mass = {0.1, 0.1};
   on_pedestal.stiffness = {1e6, 2e6};
   on_pedestal.damping = {50, 60};
-  system::Support lines = support(Kind::compliant_finite, false, 0.2, 10);
-  return train({support(Kind::compliant_short, as_source, 0.1, 12), rigid, on_pedestal, lines});
+  system::Support lines = support(Kind::compliant_finite, false, 0.2, 10),
+                  first = support(Kind::compliant_short, as_source, 0.1, 12);
+  if (mix == Mix::damped) {
+    for (auto* film : {&lines, &first, &on_pedestal}) damp(*film);
+    lines.film.grooves = {{2.0, 0.0}};
+  }
+  return train({first, rigid, on_pedestal, lines});
 }
 
 double apart(const MatrixXd& a, const MatrixXd& b) {
@@ -80,8 +94,9 @@ VectorXd state_at(const system::RotorSystem& s, double angle) {
 
 TEST(OwnStates, CondensedIntervalsAreTheDenseMatrix) {
   std::srand(3);
-  for (const bool as_source : {false, true}) {
-    system::RotorSystem s(PETSC_COMM_SELF, mixed(as_source), speed);
+  for (const Mix mix : {Mix::plain, Mix::as_source, Mix::damped}) {
+    system::RotorSystem s(PETSC_COMM_SELF, mixed(mix), speed);
+    EXPECT_EQ(s.constant_rates(), mix != Mix::damped);
     problem::Structure* structure = s.structure();
     ASSERT_NE(structure, nullptr);
     ASSERT_EQ(structure->own().size(), 3U);
@@ -193,22 +208,26 @@ void expect_same(const Answer& a, const Answer& b, const char* what) {
 
 // Every way to the same cycle; the dense ones on one rank only, as a reference.
 TEST(OwnStates, AllWaysLeadToTheSameCycle) {
-  const system::Train t = train({support(Kind::compliant_short, false, 0.1, 16)});
-  solve::CycleOptions o;
-  o.joining = Joining::dense;
-  const Answer own = cycle_of(MPI_COMM_WORLD, t, o);
-  o.joining = Joining::sweeps;
-  const Answer sweeps = cycle_of(MPI_COMM_WORLD, t, o);
-  o.joining = Joining::cheapest;
-  o.use_structure = false;
-  const Answer dense = cycle_of(PETSC_COMM_SELF, t, o);
-  o.assembled = true;
-  const Answer assembled = cycle_of(MPI_COMM_WORLD, t, o);
-  expect_same(own, dense, "condensed");
-  expect_same(sweeps, dense, "sweeps");
-  expect_same(assembled, dense, "assembled");
-  EXPECT_GE(sweeps.multipliers.size(), 3U);
-  EXPECT_GT(std::abs(dense.multipliers[0]), 0.3);
+  for (const bool damped : {false, true}) {
+    system::Support film = support(Kind::compliant_short, false, 0.1, 16);
+    if (damped) damp(film);
+    const system::Train t = train({film});
+    solve::CycleOptions o;
+    o.joining = Joining::dense;
+    const Answer own = cycle_of(MPI_COMM_WORLD, t, o);
+    o.joining = Joining::sweeps;
+    const Answer sweeps = cycle_of(MPI_COMM_WORLD, t, o);
+    o.joining = Joining::cheapest;
+    o.use_structure = false;
+    const Answer dense = cycle_of(PETSC_COMM_SELF, t, o);
+    o.assembled = true;
+    const Answer assembled = cycle_of(MPI_COMM_WORLD, t, o);
+    expect_same(own, dense, "condensed");
+    expect_same(sweeps, dense, "sweeps");
+    expect_same(assembled, dense, "assembled");
+    EXPECT_GE(sweeps.multipliers.size(), 3U);
+    EXPECT_GT(std::abs(dense.multipliers[0]), 0.3);
+  }
 }
 
 // Residual and linearisation fit each other for every kind of parameter: remainders of second order, on every way.
@@ -229,9 +248,16 @@ TEST(OwnStates, LinearisationIsTheDerivativeForAnyParameter) {
          return t;
        },
        0.5, 0.5},
+      {"liner damping",
+       [](double tau) {
+         auto t = mixed(Mix::damped);
+         t.supports[0].film.liner_damping = tau;
+         return t;
+       },
+       0.3 / 160, 0.3 / 160},
       {"unbalance",
        [](double u) {
-         auto t = mixed(false);
+         auto t = mixed(Mix::plain);
          t.unbalance[0].amount = u;
          return t;
        },
@@ -239,7 +265,7 @@ TEST(OwnStates, LinearisationIsTheDerivativeForAnyParameter) {
   for (const Case& k : cases) {
     const auto s = k.train ? std::make_unique<system::RotorSystem>(
                                  PETSC_COMM_SELF, system::Varying{k.train, k.value, k.magnitude}, speed)
-                           : std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, mixed(false), speed);
+                           : std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, mixed(Mix::plain), speed);
     EXPECT_NE(s->structure(), nullptr);
     for (const auto joining : {Joining::dense, Joining::sweeps}) {
       solve::CycleOptions o;

@@ -15,6 +15,8 @@ namespace whirl::film {
 
 void describe(deck::Description<Geometry>& d);
 void describe(deck::Description<Liner>& d);
+void describe(deck::Description<Groove>& d);
+void describe(deck::Description<Contact>& d);
 void describe(deck::Description<Options>& d);
 void describe(deck::Description<Lubricant>& d);
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace whirl::film {
 
@@ -19,12 +20,25 @@ struct Geometry {
   double offset = 0.0;     // m, horizontal distance between the lobe centres: lower +offset/2, upper -offset/2
 };
 
-/// A thin elastic layer on a rigid bore, in plane strain: U = p d (1 + nu)(1 - 2 nu)/(E (1 - nu)), nu not close to 1/2.
-/// Source: van de Vrande (2001), sec. 4.2, after Higginson (1966).
+/// A thin elastic layer on a rigid bore, in plane strain: U = k p, k = d (1 + nu)(1 - 2 nu)/(E (1 - nu)), nu not close
+/// to 1/2. Source: van de Vrande (2001), sec. 4.2, after Higginson (1966).
 struct Liner {
   double thickness = 0.0;  // m, d
   double modulus = 0.0;    // Pa, E
   double poisson = 0.0;    // -, nu
+};
+
+/// An axial groove of a bore at lubricant pressure zero, over the whole length.
+struct Groove {
+  double angle = 0.0;  // rad, of its middle
+  double width = 0.0;  // rad, 0: a single line of nodes
+};
+
+/// Contact of rough surfaces: the asperities carry p_c = K E' F(h/sigma), F(x) = 4.4086e-5 (4 - x)^6.804 below x = 4,
+/// none above. Source: Greenwood and Tripp (1971), with F fitted by Hu et al. (1994).
+struct Contact {
+  double roughness = 0.0;  // m, sigma: standard deviation of the heights of both surfaces
+  double pressure = 0.0;   // Pa, K E'
 };
 
 /// How the film is modelled and discretised.
@@ -41,7 +55,7 @@ struct Options {
     compliant_finite
   };
   enum class Quadrature { sub_cell, simpson };
-  enum class Differences { central, upwind };
+  enum class Differences { central, upwind, third_order };
   enum class Cavitation { half_sommerfeld, reynolds, none };
   enum class Turbulence { laminar, constantinescu };
   Kind kind = Kind::reynolds;
@@ -55,6 +69,10 @@ struct Options {
   std::optional<Liner> liner;
   std::optional<double> compliance;                // -, B
   double reference_speed = 0.0;                    // rad/s, Omega_0 of B
+  double liner_damping = 0.0;                      // s, tau: p = (p of the deflection at rest) + tau dU/dt/k
+  std::optional<double> rubber_thickness;          // m, of a liner that stiffens as it is compressed
+  std::optional<Contact> contact;                  // absent: a film that touches is an error
+  std::vector<Groove> grooves;
   Quadrature quadrature = Quadrature::sub_cell;    // of the force
   Differences differences = Differences::central;  // of dh/dtheta
 };

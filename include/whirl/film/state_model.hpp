@@ -35,6 +35,7 @@ struct StateResponse {
   std::vector<std::array<double, 4>> d_position, d_velocity;  // [n] dg/d(position), dg/d(velocity)
   std::vector<double> d_speed;                                // [n] dg/dOmega
   std::vector<std::array<double, 4>> force_d_states;          // [n] d force_i/d s_k at [k][i]
+  std::vector<std::array<double, 4>> force_d_rates;           // likewise d force_i/d s'_k; empty if zero
 };
 
 /// How the states of a film may be shared out: `lines` runs of equal length that form a ring. A row depends on its own
@@ -49,7 +50,7 @@ struct Lines {
   [[nodiscard]] int count() const { return end - begin; }
 };
 
-/// A film with own states: g(motion, s, s') = 0, force = f(motion, s). Not thread-safe (own workspace).
+/// A film with own states: g(motion, s, s') = 0, force = f(motion, s, s'). Not thread-safe (own workspace).
 class StateModel {
 public:
   StateModel() = default;
@@ -63,6 +64,8 @@ public:
   [[nodiscard]] std::size_t line() const { return states() / static_cast<std::size_t>(ring().lines); }
   /// At most so many entries of d_states and d_rates together have the same row.
   [[nodiscard]] virtual int row_entries() const = 0;
+  /// True if the force does not depend on s' and dg/ds' depends on nothing.
+  [[nodiscard]] virtual bool constant_rates() const { return true; }
   /// Typical magnitude of every state.
   [[nodiscard]] virtual double state_scale() const = 0;
   /// The states of a film that carries nothing, to start from. Throws as evaluate() does.

@@ -25,6 +25,7 @@ struct OwnTangents {
   std::vector<double> states, rates;  ///< dg/ds, dg/ds' at the places told
   Eigen::MatrixXd inputs;             ///< dg/dw [inputs x count]
   Eigen::MatrixXd forces;             ///< df/ds [forces x count]
+  Eigen::MatrixXd force_rates;        ///< df/ds', likewise; empty if zero
 };
 
 /// The nonlinear part at one point.
@@ -39,8 +40,8 @@ struct Films {
 
 /// With the state (x, s), x [n] coordinates and rates, s [k] own states of films:
 ///
-///     F = L1 xdot + L0(p) x - l(angle; p) - B f(C x, s; p)     [n]
-///     G = g(C x, s, sdot; p)                                   [k]
+///     F = L1 xdot + L0(p) x - l(angle; p) - B f(C x, s, sdot; p)     [n]
+///     G = g(C x, s, sdot; p)                                         [k]
 ///
 /// L1, L0 [n x n] are constant along a cycle, l [n] is the constant load and the forcing, f [r] the nonlinear forces
 /// (journal forces of the films) that depend on the thin inputs C x [w] (positions and velocities of the journals in

@@ -90,6 +90,8 @@ public:
   [[nodiscard]] std::vector<film::Response> film_responses(const std::vector<JournalState>& journals, film::Need need);
   /// The same at a whole state [size()] of a train whose films may have own states; these are held constant.
   [[nodiscard]] std::vector<film::Response> film_responses(const double* x, film::Need need);
+  /// True if dF/d(dx/dt) depends on nothing but the parameter.
+  [[nodiscard]] bool constant_rates() const;
   /// Number of own states of all films, which stand at the end of a whole state.
   [[nodiscard]] PetscInt own_states() const { return n_own_; }
   /// Report quantities and fields of film b at a whole state [size()]. Not collective.

@@ -1,0 +1,14 @@
+#pragma once
+// Axial grooves on the mesh of a whole circle.
+
+#include <vector>
+
+#include "whirl/film/options.hpp"
+
+namespace whirl::film {
+
+/// True for the nodes k = 0 .. n - 1 at 90 deg + k 2 pi/n that lie in a groove, whose edges are moved to the nearest
+/// nodes. Throws core::InputError if they leave nothing.
+[[nodiscard]] std::vector<bool> grooved(int n, const std::vector<Groove>& grooves);
+
+}  // namespace whirl::film
