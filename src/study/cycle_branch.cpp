@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "cycle_follower.hpp"
 
 namespace whirl::study {
@@ -18,6 +20,8 @@ void CycleBranch::run(Context& context) {
     seeds = follower.seeds();
   }
   for (std::size_t k = 0; k < seeds.size(); ++k) {
+    const auto& chosen = options.flips;
+    if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k) + 1) == chosen.end()) continue;
     const std::string born = fmt::format("{} flip {}", name(), k + 1);
     if (context.resume && context.results.finished(born)) continue;
     context.results.begin(born, std::string(kind()));

@@ -111,12 +111,16 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("detect", &O::detect, "bifurcations to locate");
   d.add("follow_flips", &O::follow_flips,
         "also follow the cycles of twice the period born at the flips found, each as a study 'NAME flip K'");
+  d.add("flips", &O::flips, deck::positive,
+        "which of them, 1 being the first found; all if not given. A branch that runs back into the simple cycle meets "
+        "another flip there, whose branch is the same");
   d.add("orbits", &O::orbits, deck::non_negative, "cycles whose time history is stored, spread over the branch");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
   d.check([](const O& o, const deck::Report& r) {
     for (std::size_t i = 0; i < o.detect.size(); ++i)
       if (o.detect[i] == Event::fold || o.detect[i] == Event::hopf)
         r.fail(fmt::format("detect.{}", i + 1), "cycles have cyclic_fold, flip, neimark_sacker and branch_point");
+    if (!o.flips.empty() && !o.follow_flips) r.fail("flips", "'flips' belongs to 'follow_flips: true'");
     const bool by_steps = o.method != collocation && o.method != finite_difference;
     if (!by_steps && o.intervals < 4) r.fail("intervals", "a cycle needs at least 4 intervals");
     if (by_steps && (o.method == shooting ? 1 : o.intervals) * steps_of(o) < 4)

@@ -40,6 +40,7 @@ struct CycleBranchOptions {
   std::optional<double> max_eccentricity;  ///< of a journal per clearance, at which a branch ends as in contact
   std::vector<Event> detect{Event::cyclic_fold, Event::flip, Event::neimark_sacker};
   bool follow_flips = false;  ///< also follow the cycles of twice the period born at the flips found
+  std::vector<int> flips;     ///< of which flips, 1-based in the order found; of all if empty
   int orbits = 20;            ///< cycles whose time history is stored, spread over the branch
   bool checkpoint = true;
 };
