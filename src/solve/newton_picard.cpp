@@ -22,6 +22,10 @@ namespace {
 
 constexpr int stale_after = 12;
 
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
 }  // namespace
 
 NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau,
@@ -50,7 +54,7 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
 NewtonPicardProblem::~NewtonPicardProblem() = default;
 
 double NewtonPicardProblem::length(Index i) const {
-  return mesh_[static_cast<std::size_t>(i) + 1] - mesh_[static_cast<std::size_t>(i)];
+  return mesh_[at(i) + 1] - mesh_[at(i)];
 }
 
 double NewtonPicardProblem::angle(double s) const {
@@ -85,38 +89,55 @@ void NewtonPicardProblem::sum(MatrixXd& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm());
 }
 
-// Carries x over interval i; with `columns`, keeps the products of its steps and fills -d phi/d(border).
-void NewtonPicardProblem::march(Index i, double period, Vec x, MatrixXd* columns) {
-  const double begin = mesh_[static_cast<std::size_t>(i)], h = length(i) / steps_;
-  if (!columns) {
+// Carries x over interval i; with `links`, keeps the products of its steps and fills -d phi/d(border).
+void NewtonPicardProblem::march(Index i, double period, Vec x, Links* links) {
+  const double begin = mesh_[at(i)], h = length(i) / steps_;
+  if (!links) {
     for (int k = 0; k < steps_; ++k) stepper_->step(angle(begin + k * h), angle(h), h * period, x, nullptr);
     return;
   }
-  columns->setZero(local_, borders_);
-  auto& link = links_[static_cast<std::size_t>(i)];
-  link = std::vector<StepProduct>(static_cast<std::size_t>(steps_));
+  MatrixXd& columns = links->columns[at(i)];
+  columns.setZero(local_, borders_);
+  auto& steps = links->steps[at(i)];
+  steps.resize(static_cast<std::size_t>(steps_));
   const bool by_speed = !options_.autonomous && system_.parameter_is_speed();
   for (int k = 0; k < steps_; ++k) {
-    StepProduct& step = link[static_cast<std::size_t>(k)];
+    StepProduct& step = steps[at(k)];
     stepper_->step(angle(begin + k * h), angle(h), h * period, x, &step);
-    if (k > 0) step.apply(*columns);
-    VectorXd d_parameter = step.d_parameter();
-    if (by_speed) d_parameter -= h * period / system_.speed() * step.d_length();
-    columns->col(borders_ - 1) -= d_parameter * options_.parameter_scale;
-    if (options_.autonomous) columns->col(0) -= h * period_scale_ * step.d_length();
+    if (k > 0) step.apply(columns);
+    columns.col(borders_ - 1) -= options_.parameter_scale * step.d_parameter();
+    if (by_speed)
+      columns.col(borders_ - 1) += options_.parameter_scale * h * period / system_.speed() * step.d_length();
+    if (options_.autonomous) columns.col(0) -= h * period_scale_ * step.d_length();
   }
+}
+
+// The ends of all intervals from the states of u, with what linearise() wants of them if `links` is not null.
+void NewtonPicardProblem::march_all(Vec u, double period, MatrixXd& ends, Links* links) {
+  const core::ReadArray ua(u);
+  const Map<const MatrixXd> x(ua.data(), local_, intervals());
+  if (links) {
+    links->u.resize(0);
+    links->steps.resize(at(intervals()));
+    links->columns.resize(at(intervals()));
+  }
+  ends.resize(local_, intervals());
+  for (Index i = 0; i < intervals(); ++i) {
+    put(x.col(i == 0 ? intervals() - 1 : i - 1), work_.get());
+    march(i, period, work_.get(), links);
+    ends.col(i) = get(work_.get());
+  }
+  if (links) links->u = get(u);
 }
 
 void NewtonPicardProblem::residual(Vec u, Vec r) {
   const double period = begin_point(border_of(u));
+  MatrixXd ends;
+  march_all(u, period, ends, stepper_->product_is_free() ? &next_ : nullptr);
   const core::ReadArray ua(u);
   const core::WriteArray ra(r);
   const Map<const MatrixXd> x(ua.data(), local_, intervals());
-  for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(i == 0 ? intervals() - 1 : i - 1), work_.get());
-    march(i, period, work_.get(), nullptr);
-    Map<VectorXd>(ra.data() + i * local_, local_) = x.col(i) - get(work_.get());
-  }
+  Map<MatrixXd>(ra.data(), local_, intervals()) = x - ends;
   if (!options_.autonomous) return;
   MatrixXd phase(1, 1);
   phase(0, 0) = (x.array() * phase_row_.array()).sum();
@@ -125,7 +146,7 @@ void NewtonPicardProblem::residual(Vec u, Vec r) {
 }
 
 void NewtonPicardProblem::apply(Index i, MatrixXd& v) const {
-  for (const StepProduct& step : links_[static_cast<std::size_t>(i)]) step.apply(v);
+  for (const StepProduct& step : links_.steps[at(i)]) step.apply(v);
 }
 
 // M v, and what the motions add to the rows [nb x columns].
@@ -134,7 +155,7 @@ MatrixXd NewtonPicardProblem::monodromy_times(const MatrixXd& v, MatrixXd& added
   added = MatrixXd::Zero(borders_, v.cols());
   for (Index i = 0; i < intervals(); ++i) {
     apply(i, state);
-    added += rows_[static_cast<std::size_t>(i)] * state;
+    added += rows_[at(i)] * state;
   }
   sum(added);
   products_ += v.cols();
@@ -156,19 +177,22 @@ MatrixXd NewtonPicardProblem::picard(const MatrixXd& right) const {
 
 void NewtonPicardProblem::linearise(Vec u, Vec row) {
   const double period = begin_point(border_of(u));
-  const core::ReadArray ua(u), wa(row);
+  // The residual at u may have left its links behind; they are exchanged, because those of this linearisation are wanted
+  // until the next one.
+  if (stepper_->product_is_free() && next_.u.size() > 0 && next_.u == get(u)) {
+    std::swap(links_, next_);
+    next_.u.resize(0);
+  } else {
+    MatrixXd ends;
+    march_all(u, period, ends, &links_);
+  }
+  const core::ReadArray wa(row);
   const Index count = intervals();
-  const Map<const MatrixXd> x(ua.data(), local_, count), w(wa.data(), local_, count);
-  links_.resize(static_cast<std::size_t>(count));
-  columns_.resize(static_cast<std::size_t>(count));
-  rows_.assign(static_cast<std::size_t>(count), MatrixXd(borders_, local_));
-  core::Vector state = core::duplicate(work_.get());
+  const Map<const MatrixXd> w(wa.data(), local_, count);
+  rows_.assign(at(count), MatrixXd(borders_, local_));
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    put(x.col(i == 0 ? count - 1 : i - 1), state.get());
-    march(i, period, state.get(), &columns_[k]);
-    if (options_.autonomous) rows_[k].row(0) = phase_row_.col(i).transpose();
-    rows_[k].bottomRows(1) = w.col(i).transpose();
+    if (options_.autonomous) rows_[at(i)].row(0) = phase_row_.col(i).transpose();
+    rows_[at(i)].bottomRows(1) = w.col(i).transpose();
   }
   corner_ = MatrixXd::Zero(borders_, borders_);
   corner_.row(borders_ - 1) = border_of(row).transpose();
@@ -176,9 +200,9 @@ void NewtonPicardProblem::linearise(Vec u, Vec row) {
   ends_ = MatrixXd::Zero(local_, borders_);
   ends_added_ = MatrixXd::Zero(borders_, borders_);
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const auto k = at(i);
     if (i > 0) apply(i, ends_);
-    ends_ -= columns_[k];
+    ends_ -= links_.columns[k];
     ends_added_ += rows_[k] * ends_;
   }
   sum(ends_added_);
@@ -273,10 +297,10 @@ void NewtonPicardProblem::multiply(Vec v, Vec y) {
   const Map<const MatrixXd> x(va.data(), local_, count);
   MatrixXd added = MatrixXd::Zero(borders_, 1);
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const auto k = at(i);
     MatrixXd state = x.col(i == 0 ? count - 1 : i - 1);
     apply(i, state);
-    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + columns_[k] * border;
+    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + links_.columns[k] * border;
     added += rows_[k] * x.col(i);
   }
   ++products_;
@@ -297,7 +321,7 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   for (Index i = 0; i < count; ++i) {
     if (i > 0) apply(i, state);
     state += r.col(i);
-    added += rows_[static_cast<std::size_t>(i)] * state;
+    added += rows_[at(i)] * state;
   }
   sum(added);
   products_ += count > 1;
@@ -314,7 +338,7 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   state = basis_ * small.head(p) + q + q_ends_ * border;
   for (Index i = 0; i < count; ++i) {
     apply(i, state);
-    state += r.col(i) - columns_[static_cast<std::size_t>(i)] * border;
+    state += r.col(i) - links_.columns[at(i)] * border;
     Map<VectorXd>(xa.data() + i * local_, local_) = state;
   }
   ++products_;

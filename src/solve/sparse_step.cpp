@@ -36,6 +36,7 @@ MatrixXd StepProduct::change(const MatrixXd& v, const Columns& lift, const Colum
 }
 
 void StepProduct::apply(MatrixXd& v) const {
+  if (rate_) return apply_structured(v);
   v += change(v, {}, {});
 }
 
@@ -48,6 +49,7 @@ SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, boo
   system.scales(state_scale_.get(), residual_inverse_.get());
   check(VecReciprocal(residual_inverse_.get()));
   for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(x_.get()));
+  if (constant_rates && tableau_.is_explicit()) structured_ = StructuredRate::make(system);
 }
 
 void SparseRungeKutta::fail() const {
@@ -146,6 +148,10 @@ void SparseRungeKutta::rate(double angle, Vec x, Vec xdot) {
 }
 
 void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, StepProduct* product) {
+  if (structured_) {
+    const core::WriteArray xa(x);
+    return structured_step(angle, d_angle, length, {xa.data(), xa.size()}, product ? *product : unused_);
+  }
   const Index s = tableau_.stages();
   StepProduct::Columns lifts, loads;
   frozen_.reset();  // a new preconditioner for every step

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solve/stage_solver.hpp"
+#include "solve/structured_rate.hpp"
 #include "whirl/problem/frozen.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/tableau.hpp"
@@ -28,22 +29,30 @@ private:
   /// H sum b k of the k_j with dF/dx (v + w_j + H sum_(l<j) a k_l) + (...) k_j + g_j = 0 at all stages; `lift` and
   /// `load` (w and g) may be empty.
   [[nodiscard]] Eigen::MatrixXd change(const Eigen::MatrixXd& v, const Columns& lift, const Columns& load) const;
+  void apply_structured(Eigen::MatrixXd& v) const;
   const Tableau* tableau_ = nullptr;
   double length_ = 0;
   std::vector<StageProduct> stages_;
+  const StructuredRate* rate_ = nullptr;  // and in place of stages_, of a system that tells its structure:
+  std::vector<RateMatrix> rates_;         // [stages]
   Eigen::VectorXd d_length_, d_parameter_;
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
 /// system.comm(): those of System::freeze() if it has them, or one pass over dF/dx where dF/d(dx/dt) of an explicit
-/// stage is inverted entry by entry.
+/// stage is inverted entry by entry; none at all for explicit schemes on one rank where StructuredRate serves.
 class SparseRungeKutta {
 public:
   /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter.
   SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates);
 
   /// To be called after each change of the system's parameter.
-  void refresh() { rates_.reset(); }
+  void refresh() {
+    rates_.reset();
+    if (structured_) structured_->refresh();
+  }
+  /// A step makes its product on the way, so that both are best taken together.
+  [[nodiscard]] bool product_is_free() const { return structured_ != nullptr; }
   /// Carries x over one step; fills `product` if not null. Collective; throws core::DomainError on all ranks.
   void step(double angle, double d_angle, double length, Vec x, StepProduct* product);
   /// xdot of F(angle, x, xdot) = 0.
@@ -62,6 +71,8 @@ private:
   [[nodiscard]] std::shared_ptr<const StageSolver> solve_stage(double angle, double own, Vec base, Vec k);
   bool solve_frozen_stage(double angle, double own, Vec base, Vec k);
   [[nodiscard]] std::shared_ptr<const problem::Frozen> freeze(double angle, Vec x, Vec k, double own);
+  void structured_step(double angle, double d_angle, double length, Eigen::Map<Eigen::VectorXd> x,
+                       StepProduct& product);
   [[noreturn]] void fail() const;
   problem::System& system_;
   Tableau tableau_;
@@ -71,6 +82,8 @@ private:
   core::Matrix scratch_;
   std::shared_ptr<const StageSolver> rates_;       // of explicit stages with constant rates
   std::shared_ptr<const problem::Frozen> frozen_;  // the last one of this step
+  std::unique_ptr<StructuredRate> structured_;
+  StepProduct unused_;  // of structured steps whose product nobody asks for
 };
 
 }  // namespace whirl::solve

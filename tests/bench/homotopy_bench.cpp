@@ -1,7 +1,7 @@
 // Table 3.1 of van de Vrande (2001): what a point of a branch costs by each solver of periodic solutions. A rigid rotor
 // in compliant short bearings, L/D = 1, F0* = 1, B = 0.1, Omega* = 2, N = 50, from the loaded equilibrium at a* = 0 to
 // a* = 0.2, improved Euler with 100 steps a period where a scheme of steps is used. Processor time of one rank, with
-// multipliers at every point; least of several runs. bench_homotopy [--quick].
+// multipliers at every point; least of several runs. bench_homotopy [--quick] [--only WORDS_OF_A_ROW].
 #include <fmt/core.h>
 
 #include <Eigen/LU>
@@ -147,14 +147,16 @@ private:
 class DifferenceShooting : public solve::ExtendedProblem {
 public:
   DifferenceShooting(Homotopy& system, const VectorXd& rest, double state_weight)
-      : system_(system), n_(system.size()), matrix_(n_ + 1, n_ + 1) {
-    for (core::Vector* v : {&x_, &rate_, &f_}) *v = core::make_vector(comm(), system.size(), PETSC_DETERMINE);
-    core::Vector state = core::duplicate(x_.get()), rows = core::duplicate(x_.get());
-    system.scales(state.get(), rows.get());
-    scale_ = values(state.get());
+      : system_(system),
+        n_(system.size()),
+        point_(system, system.structure()),
+        still_(VectorXd::Zero(n_)),
+        f_(n_),
+        matrix_(n_ + 1, n_ + 1) {
+    core::Vector x = core::make_vector(comm(), system.size(), PETSC_DETERMINE), rest_rate = core::duplicate(x.get());
     core::Matrix rates = system.make_jacobian();
-    put(rest, x_.get());
-    system.jacobian(0, x_.get(), rate_.get(), 0, 1, rates.get());
+    put(rest, x.get());
+    system.jacobian(0, x.get(), rest_rate.get(), 0, 1, rates.get());
     inverse_.resize(n_);
     column_.resize(n_);
     for (PetscInt i = 0; i < system.size(); ++i) {
@@ -165,7 +167,7 @@ public:
       for (PetscInt k = 0; k < count; ++k)
         if (entries[k] != 0) {
           column_(i) = columns[k];
-          inverse_(i) = 1 / (entries[k] * scale_(columns[k]));
+          inverse_(i) = point_.residual_scale()(i) / (entries[k] * point_.state_scale()(columns[k]));
         }
       check(MatRestoreRow(rates.get(), i, &count, &columns, &entries));
     }
@@ -214,16 +216,14 @@ private:
     Eigen::Map<VectorXd>(a.data(), from.size()) = from;
   }
   VectorXd slope(double angle, const VectorXd& x) {
-    put(scale_.cwiseProduct(x), x_.get());
-    check(VecSet(rate_.get(), 0));
-    system_.residual(angle, x_.get(), rate_.get(), f_.get());
-    const core::ReadArray f(f_.get());
+    point_.residual(angle, x, still_, f_);
     VectorXd k(n_);
-    for (Index i = 0; i < n_; ++i) k(column_(i)) = -inverse_(i) * f[static_cast<PetscInt>(i)];
+    for (Index i = 0; i < n_; ++i) k(column_(i)) = -inverse_(i) * f_(i);
     return k;
   }
   VectorXd flow(VectorXd x, double a) {
     system_.set_parameter(a);
+    point_.refresh();
     const double h = period / steps, turn = 2 * M_PI / steps;
     for (int i = 0; i < steps; ++i) {
       const VectorXd first = slope(i * turn, x), second = slope((i + 1) * turn, x + h * first);
@@ -233,9 +233,10 @@ private:
   }
   Homotopy& system_;
   Index n_;
-  VectorXd scale_, inverse_;  // state scales; of the only entry in each row of dF/d(dx/dt), at column_
+  solve::ScaledPoint point_;
+  VectorXd still_, f_, inverse_;  // inverse_: of the only entry in each row of dF/d(dx/dt), at column_
   Eigen::VectorX<PetscInt> column_;
-  core::Vector x_, rate_, f_, weights_;
+  core::Vector weights_;
   MatrixXd matrix_, monodromy_;
   Eigen::PartialPivLU<MatrixXd> lu_;
 };
@@ -277,7 +278,7 @@ Result follow(solve::ExtendedProblem& problem, const VectorXd& u0,
   return r;
 }
 
-int run(int runs) {
+int run(int runs, const std::string& only) {
   Homotopy system;
   const VectorXd rest = system.equilibrium();
   constexpr double weight = 0.01;
@@ -330,23 +331,27 @@ int run(int runs) {
   double baseline = 0;
   fmt::print("{:<58} {:>6} {:>6} {:>11} {:>8} {:>10}\n", "solver", "points", "Newton", "ms a point", "ratio",
              "|mu| off");
-  const auto row = [&](const char* name, const Result& r) {
+  const auto row = [&](const std::string& name, const std::function<Result()>& result) {
+    if (name.find(only) == std::string::npos) return;
+    const Result r = result();
     const double point = r.seconds / r.points;
     if (baseline == 0) baseline = point;
     fmt::print("{:<58} {:>6} {:>6} {:>11.3f} {:>8.1f} {:>10.1e}\n", name, r.points, r.iterations, 1e3 * point,
                baseline / point, std::abs(std::abs(r.leading) - exact));
   };
-  row("single shooting, columns by forward differences (document)", least([&] {
-        DifferenceShooting problem(system, rest, weight);
-        return follow(problem, still, [&] { return spectral::eigenvalues(problem.monodromy()); });
-      }));
-  row("single shooting, exact columns", shooting(1));
-  row("multiple shooting, 10 intervals", shooting(10));
-  row("finite differences", shooting(steps));
-  row("shooting-based Newton-Picard", picard(1));
-  row("finite-difference-based Newton-Picard", picard(steps));
-  row("collocation, 20 intervals of degree 2", collocation(20, 2));
-  row("collocation, 12 intervals of degree 3", collocation(12, 3));
+  row("single shooting, columns by forward differences (document)", [&] {
+    return least([&] {
+      DifferenceShooting problem(system, rest, weight);
+      return follow(problem, still, [&] { return spectral::eigenvalues(problem.monodromy()); });
+    });
+  });
+  row("single shooting, exact columns", [&] { return shooting(1); });
+  row("multiple shooting, 10 intervals", [&] { return shooting(10); });
+  row("finite differences", [&] { return shooting(steps); });
+  row("shooting-based Newton-Picard", [&] { return picard(1); });
+  row("finite-difference-based Newton-Picard", [&] { return picard(steps); });
+  row("collocation, 20 intervals of degree 2", [&] { return collocation(20, 2); });
+  row("collocation, 12 intervals of degree 3", [&] { return collocation(12, 3); });
   return 0;
 }
 
@@ -354,5 +359,11 @@ int run(int runs) {
 
 int main(int argc, char** argv) {
   const core::Session session(argc, argv);
-  return run(argc > 1 && std::strcmp(argv[1], "--quick") == 0 ? 1 : 5);
+  int runs = 5;
+  std::string only;
+  for (int k = 1; k < argc; ++k) {
+    if (std::strcmp(argv[k], "--quick") == 0) runs = 1;
+    if (std::strcmp(argv[k], "--only") == 0 && k + 1 < argc) only = argv[k + 1];
+  }
+  return run(runs, only);
 }

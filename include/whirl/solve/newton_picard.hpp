@@ -88,7 +88,13 @@ private:
   /// Columns [local x k] of every rank as [n x k] on all ranks.
   [[nodiscard]] Eigen::MatrixXd whole(const Eigen::MatrixXd& columns) const;
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
-  void march(Eigen::Index i, double period, Vec x, Eigen::MatrixXd* columns);
+  struct Links {
+    Eigen::VectorXd u;                            // where: this rank's unknowns
+    std::vector<std::vector<StepProduct>> steps;  // per interval
+    std::vector<Eigen::MatrixXd> columns;         // dR/d(border) per interval [local x nb]
+  };
+  void march(Eigen::Index i, double period, Vec x, Links* links);
+  void march_all(Vec u, double period, Eigen::MatrixXd& ends, Links* links);
   void sum(Eigen::MatrixXd& values) const;
   /// Each column of v [local x k] over interval i.
   void apply(Eigen::Index i, Eigen::MatrixXd& v) const;
@@ -112,8 +118,7 @@ private:
   Eigen::MatrixXd phase_row_;  // [local x N]
 
   // The linearisation.
-  std::vector<std::vector<StepProduct>> links_;
-  std::vector<Eigen::MatrixXd> columns_;        // dR/d(border) per interval [local x nb]
+  Links links_, next_;                          // of the linearisation, and of the last residual if they are free
   std::vector<Eigen::MatrixXd> rows_;           // added rows per interval [nb x local]
   Eigen::MatrixXd corner_, ends_, ends_added_;  // E [local x nb], and what it adds to the rows
   Eigen::MatrixXd basis_, image_, q_ends_, image_q_ends_;

@@ -1,0 +1,62 @@
+#pragma once
+// The rates dz/dt of a system that tells its structure, and their derivatives by the places of its films.
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <memory>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/scaled_point.hpp"
+
+namespace whirl::solve {
+
+/// A = d(dz/dt)/dz at one point, in the places that StructuredRate knows.
+using RateMatrix = std::vector<double>;
+
+/// dz/dt of F(angle, z, dz/dt) = 0 with z = (x, s) in scaled states, for a system on one rank whose dF/d(dx/dt) depends
+/// on nothing but the parameter: L1 beside one entry in each row of a film's own states. With these
+///
+///     d(dz/dt)/dz = [ K     Q P ]     K [n x n], Q = L1^-1 B [n x r], P = df/ds [r x k],
+///                   [ E C   D   ]     E = -R^-1 dg/dw [k x w], D = -R^-1 dg/ds: one array per distance of neighbours,
+///                                     film by film, counted around the ring of its states
+///
+/// No sparse matrix is assembled, and a product costs one pass over these arrays. Nothing here communicates.
+class StructuredRate {
+public:
+  /// Null if the system tells no structure of this kind, or if its films are small beside its coordinates.
+  static std::unique_ptr<StructuredRate> make(problem::System& system);
+
+  [[nodiscard]] Eigen::Index size() const { return point_.size(); }
+  /// To be called after each change of the system's parameter.
+  void refresh();
+  /// rate = dz/dt [n + k] at (angle, z), and its derivatives by z and (per SI unit) by the parameter. Throws
+  /// core::DomainError.
+  void evaluate(double angle, const Eigen::VectorXd& z, Eigen::VectorXd& rate, RateMatrix& a,
+                Eigen::VectorXd& d_parameter);
+  /// y = A v [n + k].
+  void times(const RateMatrix& a, const double* v, double* y) const;
+
+private:
+  // One film: where its arrays stand in a RateMatrix.
+  struct Film {
+    problem::OwnStates at;
+    std::vector<Eigen::Index> shifts;   // column - row of each diagonal, the shorter way around
+    std::vector<Eigen::Index> entries;  // of dg/ds: where each belongs, counted from `diagonals`
+    Eigen::Index forces = 0, inputs = 0, diagonals = 0, reach = 0;
+  };
+  explicit StructuredRate(problem::System& system);
+  bool find_places();
+
+  ScaledPoint point_;
+  const std::vector<problem::OwnStates>& own_;
+  Eigen::Index n_;  // coordinates, without own states
+  std::vector<Film> films_;
+  Eigen::Index values_ = 0, reach_ = 0;
+  Eigen::MatrixXd mass_, lead_;  // L1^-1 and Q
+  PointState at_;
+  Eigen::VectorXd f_, inverse_;                   // inverse_: 1/R in scaled states per SI of the residual [k]
+  mutable Eigen::VectorXd eta_, padded_;  // work space of times()
+};
+
+}  // namespace whirl::solve
