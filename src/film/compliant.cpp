@@ -30,9 +30,17 @@ public:
         step_(ring_.step()) {
     const double ld = 0.5 * g_.length / g_.radius;
     side_ = 1.5 / (ld * ld);
-    h_.resize(at(n_));
+    h_.resize(at(n_ + halo));
     p_.resize(at(n_));
     forces_.resize(at(n_));
+    for (int k = 0; k < n_; ++k) {
+      cos_.push_back(ring_.cosine(k));
+      sin_.push_back(ring_.sine(k));
+      // Of a node between two cells without negative pressure.
+      const RingQuadrature::Weights before = ring_.weights(k - 1, 1.0, 1.0), behind = ring_.weights(k, 1.0, 1.0);
+      full_.push_back({before.right[0] + behind.left[0], before.right[1] + behind.left[1]});
+    }
+    simpson_ = options.quadrature == Options::Quadrature::simpson;
   }
 
   [[nodiscard]] std::size_t states() const override { return static_cast<std::size_t>(n_ - first_); }
@@ -53,11 +61,12 @@ private:
   [[nodiscard]] std::size_t index(int k) const { return static_cast<std::size_t>(k - first_); }
   [[nodiscard]] static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   [[nodiscard]] double rigid(const Motion& m, int k) const {
-    return 1.0 - (m.position[0] * ring_.cosine(k) + m.position[1] * ring_.sine(k)) / g_.clearance;
+    return 1.0 - (m.position[0] * cos_[at(k)] + m.position[1] * sin_[at(k)]) / g_.clearance;
   }
   void set(const Motion& motion, std::span<const double> states);
   void integrate(Need need, StateResponse& response);
   void row(int k, double speed, Need need, StateResponse& response);
+  void short_rows(double speed, Need need, StateResponse& response);
   // dg_k/dh_j and dg_k/dP_j to the derivatives in the states and in the position of the journal.
   void chain(int k, int j, double by_h, double by_p, StateResponse& response) const;
 
@@ -68,25 +77,43 @@ private:
   CompliantScales scales_;
   RingQuadrature ring_;
   double step_, side_ = 0.0;                   // -; 1.5/(L/D)^2
-  std::vector<double> h_, p_;                  // at all nodes, in clearances and 1/s
+  static constexpr int halo = 1;               // nodes that stand behind the last one again
+  std::vector<double> cos_, sin_;              // at all nodes
+  std::vector<double> h_, p_;                  // at all nodes (h also around the ring), in clearances and 1/s
   std::vector<std::array<double, 2>> forces_;  // d force*/d P of every node
+  std::vector<std::array<double, 2>> full_;    // the same where all pressure is positive
+  bool simpson_;
 };
 
 void CompliantFilm::set(const Motion& motion, std::span<const double> states) {
+  const double per_clearance = 1.0 / g_.clearance, per_liner = 1.0 / scales_.liner,
+               x = motion.position[0] * per_clearance, y = motion.position[1] * per_clearance;
+  double least = 1.0;
+  for (int k = first_; k < n_; ++k) h_[at(k)] = states[index(k)] * per_clearance;
+  if (long_) h_[0] = 1.0 - x * cos_[0] - y * sin_[0];
   for (int k = 0; k < n_; ++k) {
-    const double r = rigid(motion, k);
-    h_[at(k)] = k < first_ ? r : states[index(k)] / g_.clearance;
-    p_[at(k)] = k < first_ ? 0.0 : (h_[at(k)] - r) / scales_.liner;
-    if (!(h_[at(k)] > 0.0))
-      throw core::DomainError("the journal touches the liner: the film thickness is not positive");
+    p_[at(k)] = (h_[at(k)] - (1.0 - x * cos_[at(k)] - y * sin_[at(k)])) * per_liner;
+    least = h_[at(k)] > 0.0 ? least : -1.0;  // NaN too
   }
+  if (long_) p_[0] = 0.0;
+  for (int k = 0; k < halo; ++k) h_[at(n_ + k)] = h_[at(k)];
+  if (least < 0.0) throw core::DomainError("the journal touches the liner: the film thickness is not positive");
 }
 
 // F* = -int max(P, 0) (cos, sin) and dF*/dP of every node.
 void CompliantFilm::integrate(Need need, StateResponse& response) {
   std::array<double, 2> sum{};
-  std::fill(forces_.begin(), forces_.end(), std::array<double, 2>{});
-  for (int k = 0; k < n_; ++k) {
+  if (simpson_) {
+    // The rule sees each node by itself.
+    for (int k = 0; k < n_; ++k)
+      for (std::size_t i = 0; i < 2; ++i) {
+        forces_[at(k)][i] = p_[at(k)] > 0.0 ? full_[at(k)][i] : 0.0;
+        sum[i] += forces_[at(k)][i] * p_[at(k)];
+      }
+  } else {
+    std::fill(forces_.begin(), forces_.end(), std::array<double, 2>{});
+  }
+  for (int k = 0; k < n_ && !simpson_; ++k) {
     const int next = wrap(k + 1);
     const RingQuadrature::Weights w = ring_.weights(k, p_[at(k)], p_[at(next)]);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -98,28 +125,28 @@ void CompliantFilm::integrate(Need need, StateResponse& response) {
   Response& out = response.journal;
   for (std::size_t i = 0; i < 2; ++i) out.force[i] = scales_.force * sum[i];
   if (need == Need::force) return;
+  const double scale = scales_.force / (scales_.liner * g_.clearance);
   for (int k = first_; k < n_; ++k)
     for (std::size_t i = 0; i < 2; ++i) {
-      const double slope = scales_.force * forces_[at(k)][i] / (scales_.liner * g_.clearance);
+      const double slope = scale * forces_[at(k)][i];
       response.force_d_states[index(k)][i] = slope;
-      out.d_position[i][0] += slope * ring_.cosine(k);
-      out.d_position[i][1] += slope * ring_.sine(k);
+      out.d_position[i][0] += slope * cos_[at(k)];
+      out.d_position[i][1] += slope * sin_[at(k)];
     }
 }
 
 void CompliantFilm::chain(int k, int j, double by_h, double by_p, StateResponse& response) const {
   if (j < first_) {  // h = 1 - e_y at the inlet
-    response.d_position[index(k)][0] -= by_h * ring_.cosine(j);
-    response.d_position[index(k)][1] -= by_h * ring_.sine(j);
+    response.d_position[index(k)][0] -= by_h * cos_[at(j)];
+    response.d_position[index(k)][1] -= by_h * sin_[at(j)];
     return;
   }
   response.d_states.push_back({static_cast<int>(index(k)), static_cast<int>(index(j)), by_h + by_p / scales_.liner});
-  response.d_position[index(k)][0] += by_p / scales_.liner * ring_.cosine(j);
-  response.d_position[index(k)][1] += by_p / scales_.liner * ring_.sine(j);
+  response.d_position[index(k)][0] += by_p / scales_.liner * cos_[at(j)];
+  response.d_position[index(k)][1] += by_p / scales_.liner * sin_[at(j)];
 }
 
-// (4.27): dh/dt = -(1/2) (3 h^3 P/(L/D)^2 + Omega dh/dtheta); (4.29): dh/dt = (1/2) (d/dtheta (h^3 dP/dtheta) - Omega
-// dh/dtheta).
+// (4.29): dh/dt = (1/2) (d/dtheta (h^3 dP/dtheta) - Omega dh/dtheta).
 void CompliantFilm::row(int k, double speed, Need need, StateResponse& response) {
   const int b2 = wrap(k - 2), b = wrap(k - 1), f = wrap(k + 1);
   const auto h = [&](int j) { return h_[at(j)]; };
@@ -129,10 +156,7 @@ void CompliantFilm::row(int k, double speed, Need need, StateResponse& response)
   const double w0 = upwind_ ? -0.125 : 0.0, w1 = upwind_ ? 0.75 : 0.5, w2 = upwind_ ? 0.375 : 0.5;
   const double left = w0 * h(b2) + w1 * h(b) + w2 * h(k), right = w0 * h(b) + w1 * h(k) + w2 * h(f);
   const double dl = (p_[at(k)] - p_[at(b)]) / (step_ * step_), dr = (p_[at(f)] - p_[at(k)]) / (step_ * step_);
-  if (long_)
-    g -= 0.5 * (right * right * right * dr - left * left * left * dl);
-  else
-    g += side_ * h(k) * h(k) * h(k) * p_[at(k)];
+  g -= 0.5 * (right * right * right * dr - left * left * left * dl);
   response.residual[index(k)] += g_.clearance * g;
   if (need == Need::force) return;
   const double c = 0.25 * speed / step_;
@@ -145,13 +169,37 @@ void CompliantFilm::row(int k, double speed, Need need, StateResponse& response)
     chain(k, b, -c, 0.0, response);
   }
   response.d_speed[index(k)] = 0.5 * g_.clearance * slope;
-  if (!long_) return chain(k, k, 3.0 * side_ * h(k) * h(k) * p_[at(k)], side_ * h(k) * h(k) * h(k), response);
   const double r2 = 1.5 * right * right * dr, l2 = 1.5 * left * left * dl;
   const double r3 = 0.5 * right * right * right / (step_ * step_), l3 = 0.5 * left * left * left / (step_ * step_);
   chain(k, f, -r2 * w2, -r3, response);
   chain(k, k, -r2 * w1 + l2 * w2, r3 + l3, response);
   chain(k, b, -r2 * w0 + l2 * w1, -l3, response);
   if (upwind_) chain(k, b2, l2 * w0, 0.0, response);
+}
+
+// (4.27): dh/dt = -(1/2) (3 h^3 P/(L/D)^2 + Omega dh/dtheta), all rows in loops without calls: steps in time spend their
+// time here.
+void CompliantFilm::short_rows(double speed, Need need, StateResponse& response) {
+  const double c = 0.25 * speed / step_, w[4] = {upwind_ ? 1.0 : 0.0, upwind_ ? -4.0 : -1.0, upwind_ ? 3.0 : 0.0,
+                                                 upwind_ ? 0.0 : 1.0};
+  for (int k = 0; k < n_; ++k) {
+    const double *before = h_.data() + (k < 2 ? k + n_ - 2 : k - 2), here = h_[at(k)];
+    const double slope = w[0] * before[0] + w[1] * before[1] + w[2] * here + w[3] * h_[at(k + 1)];
+    response.residual[at(k)] += g_.clearance * (c * slope + side_ * here * here * here * p_[at(k)]);
+    if (need == Need::tangents) response.d_speed[at(k)] = 0.25 / step_ * g_.clearance * slope;
+  }
+  if (need == Need::force) return;
+  response.d_states.resize(at(3 * n_));
+  const double per_liner = 1.0 / scales_.liner;
+  const int other = upwind_ ? n_ - 2 : 1;  // the third node of a row is k - 2 or k + 1
+  for (int k = 0; k < n_; ++k) {
+    const double h = h_[at(k)], by_p = side_ * h * h * h * per_liner;
+    Entry* e = response.d_states.data() + 3 * k;
+    e[0] = {k, k, w[2] * c + 3.0 * side_ * h * h * p_[at(k)] + by_p};
+    e[1] = {k, k > 0 ? k - 1 : n_ - 1, w[1] * c};
+    e[2] = {k, k + other < n_ ? k + other : k + other - n_, (upwind_ ? w[0] : w[3]) * c};
+    response.d_position[at(k)] = {by_p * cos_[at(k)], by_p * sin_[at(k)], 0.0, 0.0};
+  }
 }
 
 void CompliantFilm::evaluate_lines(const Motion& motion, Lines /*part*/, std::span<const double> states,
@@ -168,11 +216,11 @@ void CompliantFilm::evaluate_lines(const Motion& motion, Lines /*part*/, std::sp
   response.force_d_states.assign(n, {});
   response.journal.min_thickness = g_.clearance * *std::min_element(h_.begin(), h_.end());
   integrate(need, response);
-  for (int k = first_; k < n_; ++k) {
-    row(k, motion.speed, need, response);
-    if (need == Need::tangents)
-      response.d_rates.push_back({static_cast<int>(index(k)), static_cast<int>(index(k)), 1.0});
-  }
+  if (long_)
+    for (int k = first_; k < n_; ++k) row(k, motion.speed, need, response);
+  else
+    short_rows(motion.speed, need, response);
+  for (int k = 0; k < static_cast<int>(n); ++k) response.d_rates.push_back({k, k, 1.0});
 }
 
 // Deflections, which are periodic and zero at the inlet, are interpolated linearly.
@@ -212,7 +260,7 @@ Summary CompliantFilm::summary(const Motion& motion, std::span<const double> sta
 
 std::vector<Field> CompliantFilm::fields(const Motion& motion, std::span<const double> states) {
   set(motion, states);
-  const std::size_t around = h_.size() + 1, along = long_ ? 2 : 17;
+  const std::size_t around = p_.size() + 1, along = long_ ? 2 : 17;
   Field theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
   Field pressure{0, "pressure", "Pa", {around, along}, {}}, h{0, "thickness", "m", {around, along}, {}};
   for (std::size_t j = 0; j < along; ++j)

@@ -1,7 +1,7 @@
 #include "whirl/solve/newton_picard.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -35,7 +35,8 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
       steps_(steps),
       scheme_(make_scheme(1, Points::radau)),
       mesh_(std::move(mesh)),
-      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates)),
+      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates,
+                                                  options.autonomous || system.parameter_is_speed())),
       local_(system.local_size()),
       borders_(options.autonomous ? 2 : 1),
       last_(core::rank_of(system.comm()) == core::size_of(system.comm()) - 1),
@@ -168,11 +169,36 @@ MatrixXd NewtonPicardProblem::complement(const MatrixXd& v) const {
   return v - basis_ * inner;
 }
 
-MatrixXd NewtonPicardProblem::picard(const MatrixXd& right) const {
+// q of (I - Q M) q = Q right with M q and what that adds. Iteration stops where another one would change less than
+// Newton's linear solves ask for; the last change is then missing in M q.
+MatrixXd NewtonPicardProblem::picard(const MatrixXd& right, MatrixXd& image, MatrixXd& added) const {
+  constexpr double enough = 1e-7;
   const MatrixXd fixed = complement(right);
-  MatrixXd q = fixed, added;
-  for (int k = 0; k < options_.picard; ++k) q = complement(monodromy_times(q, added)) + fixed;
-  return q;
+  MatrixXd q = fixed, sizes(2, 1);
+  for (int k = 0;; ++k) {
+    image = monodromy_times(q, added);
+    if (k == options_.picard) return q;
+    const MatrixXd next = complement(image) + fixed;
+    sizes << (next - q).squaredNorm(), fixed.squaredNorm();
+    sum(sizes);
+    q = next;
+    if (sizes(0) <= enough * enough * sizes(1)) return q;
+  }
+}
+
+// Columns to an orthonormal basis of their span, one after the other, so that leading columns span what they did.
+void NewtonPicardProblem::orthonormalise(MatrixXd& v, Index from) const {
+  for (Index c = from; c < v.cols(); ++c) {
+    for (int pass = 0; pass < 2; ++pass) {
+      MatrixXd inner = v.leftCols(c).transpose() * v.col(c);
+      sum(inner);
+      v.col(c) -= v.leftCols(c) * inner;
+      MatrixXd square(1, 1);
+      square(0) = v.col(c).squaredNorm();
+      sum(square);
+      v.col(c) /= std::sqrt(square(0));
+    }
+  }
 }
 
 void NewtonPicardProblem::linearise(Vec u, Vec row) {
@@ -208,33 +234,43 @@ void NewtonPicardProblem::linearise(Vec u, Vec row) {
   sum(ends_added_);
 
   const bool stale = solves_ > stale_after || image_.rows() != local_;
-  if (stale) {
+  if (stale)
     (void)find_subspace();
-  } else if (basis_.cols() > 0) {
-    // V <- orth(M V) with the image of the last linearisation, by Cholesky of its Gram matrix, twice.
+  else
     basis_ = image_;
-    for (int k = 0; k < 2; ++k) {
-      MatrixXd gram = basis_.transpose() * basis_;
-      sum(gram);
-      basis_ = gram.llt().matrixU().solve<Eigen::OnTheRight>(basis_).eval();
-    }
-  }
+  if (!stale) orthonormalise(basis_, 0);
+  find_image();
   prepare();
 }
 
-// Everything that solve() needs of the subspace.
+// M V. While V is not invariant and gets better at once, V <- orth(M V): it spares linear iterations.
+void NewtonPicardProblem::find_image() {
+  constexpr double invariant = 1e-7;
+  double last = 0;
+  for (int k = 0;; ++k) {
+    image_ = monodromy_times(basis_, basis_added_);
+    MatrixXd sizes(2, 1);
+    sizes << complement(image_).squaredNorm(), image_.squaredNorm();
+    sum(sizes);
+    const double defect = sizes(1) > 0 ? std::sqrt(sizes(0) / sizes(1)) : 0;
+    if (defect <= invariant || k == 2 || (k > 0 && defect > 0.1 * last)) return;
+    last = defect;
+    basis_ = image_;
+    orthonormalise(basis_, 0);
+  }
+}
+
+// Everything that solve() needs of the subspace and its image.
 void NewtonPicardProblem::prepare() {
   const Index p = basis_.cols();
-  MatrixXd basis_added, q_added;
-  image_ = monodromy_times(basis_, basis_added);
-  q_ends_ = picard(ends_);
-  image_q_ends_ = monodromy_times(q_ends_, q_added);
+  MatrixXd q_added;
+  q_ends_ = picard(ends_, image_q_ends_, q_added);
   MatrixXd top(p, p + borders_);
   top << basis_.transpose() * image_, basis_.transpose() * (ends_ + image_q_ends_);
   sum(top);
   MatrixXd small(p + borders_, p + borders_);
   small.topRows(p) = MatrixXd::Identity(p, p + borders_) - top;
-  small.bottomLeftCorner(borders_, p) = basis_added;
+  small.bottomLeftCorner(borders_, p) = basis_added_;
   small.bottomRightCorner(borders_, borders_) = q_added + ends_added_ + corner_;
   small_.compute(small);
   solves_ = 0;
@@ -267,8 +303,66 @@ std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
   return found.values;
 }
 
+// Multipliers by orthogonal iteration on V and two generic vectors, which would show a multiplier that V does not know;
+// those below the radius, which nothing depends on, to six digits. Empty if this does not settle at once or if their
+// number has changed: then they are to be found anew.
+std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
+  constexpr Index probes = 2;
+  constexpr int most = 3;
+  constexpr double below_radius = 1e-6;
+  const Index p = basis_.cols();
+  if (image_.rows() != local_ || p == 0 || p + probes > system_.size()) return {};
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
+  MatrixXd x(local_, p + probes), y = x, added(borders_, p + probes), new_added;
+  x.leftCols(p) = basis_;
+  for (Index c = 0; c < probes; ++c)
+    for (Index k = 0; k < local_; ++k) {
+      const double phase = (0.7 + 0.4 * static_cast<double>(c)) * static_cast<double>(begin + k);
+      x(k, p + c) = 1 + std::sin(phase + std::sin(phase * phase));
+    }
+  orthonormalise(x, p);
+  y.leftCols(p) = image_;
+  y.rightCols(probes) = monodromy_times(x.rightCols(probes), new_added);
+  added << basis_added_, new_added;
+  for (int k = 0;; ++k) {
+    MatrixXd projected = x.transpose() * y;
+    sum(projected);
+    const Eigen::EigenSolver<MatrixXd> modes(projected);
+    const Eigen::MatrixXcd defects = (y - x * projected) * modes.eigenvectors();
+    MatrixXd sizes = defects.colwise().squaredNorm().transpose();
+    sum(sizes);
+    bool settled = true;
+    std::vector<std::complex<double>> values;
+    for (Index c = 0; c < x.cols(); ++c) {
+      values.push_back(modes.eigenvalues()(c));
+      const double size = std::abs(values.back());
+      settled = settled &&
+                std::sqrt(sizes(c)) <= (size > options_.radius ? options_.multiplier_tolerance * size : below_radius);
+    }
+    std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+    if (settled) {
+      const auto large = std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > options_.radius; });
+      if (large != p) return {};
+      if (k == 0) return values;
+      basis_ = x.leftCols(p);
+      image_ = y.leftCols(p);
+      basis_added_ = added.leftCols(p);
+      prepare();
+      return values;
+    }
+    if (k == most) return {};
+    x = y;
+    orthonormalise(x, 0);
+    y = monodromy_times(x, added);
+  }
+}
+
 std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
-  auto values = find_subspace();
+  auto values = settled_multipliers();
+  if (!values.empty()) return values;
+  values = find_subspace();
+  find_image();
   prepare();
   return values;
 }
@@ -315,20 +409,21 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   const core::WriteArray xa(out);
   const Index count = intervals(), p = basis_.cols();
   const Map<const MatrixXd> r(ra.data(), local_, count);
-  // The motion that the right-hand side alone drives.
-  MatrixXd added = MatrixXd::Zero(borders_, 1);
-  MatrixXd state = MatrixXd::Zero(local_, 1);
-  for (Index i = 0; i < count; ++i) {
-    if (i > 0) apply(i, state);
-    state += r.col(i);
-    added += rows_[at(i)] * state;
+  // The motion that the right-hand side alone drives: none for a tangent.
+  MatrixXd added = MatrixXd::Zero(borders_, 1), driven(1, 1);
+  MatrixXd state = MatrixXd::Zero(local_, 1), q = state, image_q = state, q_added = added;
+  driven(0) = r.squaredNorm();
+  sum(driven);
+  if (driven(0) > 0) {
+    for (Index i = 0; i < count; ++i) {
+      if (i > 0) apply(i, state);
+      state += r.col(i);
+      added += rows_[at(i)] * state;
+    }
+    sum(added);
+    products_ += count > 1;
+    q = picard(state, image_q, q_added);
   }
-  sum(added);
-  products_ += count > 1;
-
-  const MatrixXd q = picard(state);
-  MatrixXd q_added;
-  const MatrixXd image_q = monodromy_times(q, q_added);
   MatrixXd top = basis_.transpose() * (state + image_q);
   sum(top);
   VectorXd small(p + borders_);

@@ -40,8 +40,8 @@ void StepProduct::apply(MatrixXd& v) const {
   v += change(v, {}, {});
 }
 
-SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates)
-    : system_(system), tableau_(std::move(tableau)), constant_rates_(constant_rates) {
+SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates, bool by_length)
+    : system_(system), tableau_(std::move(tableau)), constant_rates_(constant_rates), by_length_wanted_(by_length) {
   core::require(tableau_.sequential(), "steps distributed in space need a scheme with sequential stages");
   x_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   for (core::Vector* v : {&state_scale_, &residual_inverse_, &k_, &value_, &base_, &f_, &d_, &lift_})

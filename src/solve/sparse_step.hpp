@@ -43,8 +43,9 @@ private:
 /// stage is inverted entry by entry; none at all for explicit schemes on one rank where StructuredRate serves.
 class SparseRungeKutta {
 public:
-  /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter.
-  SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates);
+  /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter. Without `by_length`, products need not
+  /// know d phi/dH.
+  SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates, bool by_length);
 
   /// To be called after each change of the system's parameter.
   void refresh() {
@@ -76,7 +77,7 @@ private:
   [[noreturn]] void fail() const;
   problem::System& system_;
   Tableau tableau_;
-  bool constant_rates_;
+  bool constant_rates_, by_length_wanted_;
   core::Vector state_scale_, residual_inverse_, x_, k_, value_, base_, f_, d_, lift_;
   std::vector<core::Vector> slopes_;
   core::Matrix scratch_;
@@ -84,6 +85,8 @@ private:
   std::shared_ptr<const problem::Frozen> frozen_;  // the last one of this step
   std::unique_ptr<StructuredRate> structured_;
   StepProduct unused_;  // of structured steps whose product nobody asks for
+  Eigen::MatrixXd stage_slopes_, by_length_, by_parameter_;  // work space of structured steps
+  Eigen::VectorXd value_now_, slope_now_, d_parameter_now_;
 };
 
 }  // namespace whirl::solve

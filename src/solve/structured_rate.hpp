@@ -12,7 +12,7 @@
 namespace whirl::solve {
 
 /// A = d(dz/dt)/dz at one point, in the places that StructuredRate knows.
-using RateMatrix = std::vector<double>;
+using RateMatrix = Eigen::VectorXd;
 
 /// dz/dt of F(angle, z, dz/dt) = 0 with z = (x, s) in scaled states, for a system on one rank whose dF/d(dx/dt) depends
 /// on nothing but the parameter: L1 beside one entry in each row of a film's own states. With these
@@ -36,6 +36,8 @@ public:
                 Eigen::VectorXd& d_parameter);
   /// y = A v [n + k].
   void times(const RateMatrix& a, const double* v, double* y) const;
+  /// Work space [n + k, columns] for whoever multiplies.
+  [[nodiscard]] Eigen::MatrixXd& work() const { return work_; }
 
 private:
   // One film: where its arrays stand in a RateMatrix.
@@ -43,20 +45,27 @@ private:
     problem::OwnStates at;
     std::vector<Eigen::Index> shifts;   // column - row of each diagonal, the shorter way around
     std::vector<Eigen::Index> entries;  // of dg/ds: where each belongs, counted from `diagonals`
-    Eigen::Index forces = 0, inputs = 0, diagonals = 0, reach = 0;
+    Eigen::Index forces = 0, inputs = 0, diagonals = 0, seen = 0;  // seen: one for each input that the film sees
+    Eigen::Index reach = 0;                                         // the largest shift
+    Eigen::Index stride = 0;                                        // of arrays: count, filled up with zeros
   };
   explicit StructuredRate(problem::System& system);
   bool find_places();
+  void follow_rates();
 
   ScaledPoint point_;
   const std::vector<problem::OwnStates>& own_;
   Eigen::Index n_;  // coordinates, without own states
   std::vector<Film> films_;
   Eigen::Index values_ = 0, reach_ = 0;
-  Eigen::MatrixXd mass_, lead_;  // L1^-1 and Q
+  Eigen::MatrixXd mass_, lead_, linear_;  // L1^-1, Q and -L1^-1 L0
   PointState at_;
-  Eigen::VectorXd f_, inverse_;                   // inverse_: 1/R in scaled states per SI of the residual [k]
-  mutable Eigen::VectorXd eta_, padded_;  // work space of times()
+  Eigen::VectorXd f_, inverse_;                    // inverse_: -1/R in scaled states per SI of the residual [k]
+  Eigen::MatrixXd inputs_;                         // df/dw C
+  std::vector<double> rates_;                      // R of all films at the last point
+  std::vector<double> factors_;                    // of all entries of dg/ds: -1/R in scaled states
+  mutable Eigen::VectorXd ring_;                   // states of a film with their neighbours around the ring
+  mutable Eigen::MatrixXd work_;
 };
 
 }  // namespace whirl::solve

@@ -16,8 +16,8 @@ std::size_t at(Index i) {
 }
 
 // out += length sum over the first `count` of weights_l k_l.
-template <class Weights>
-void add(double length, const Weights& weights, Index count, const MatrixXd& k, VectorXd& out) {
+template <class Weights, class Vector>
+void add(double length, const Weights& weights, Index count, const MatrixXd& k, Vector& out) {
   for (Index l = 0; l < count; ++l)
     if (weights(l) != 0) out += length * weights(l) * k.col(l);
 }
@@ -33,48 +33,53 @@ void SparseRungeKutta::structured_step(double angle, double d_angle, double leng
   product.length_ = length;
   product.rate_ = structured_.get();
   product.rates_.resize(at(s));
-  MatrixXd k(n, s), by_length(n, s), by_parameter(n, s);
-  VectorXd value, slope, d_parameter, seen(n);
+  stage_slopes_.resize(n, s);
+  by_length_.setZero(n, by_length_wanted_ ? s : 0);
+  by_parameter_.resize(n, s);
   for (Index j = 0; j < s; ++j) {
     const auto row = tableau_.a.row(j);
     RateMatrix& matrix = product.rates_[at(j)];
-    value = x;
-    add(length, row, j, k, value);
-    structured_->evaluate(angle + tableau_.c(j) * d_angle, value, slope, matrix, d_parameter);
-    if (!slope.allFinite()) fail();
-    k.col(j) = slope;
-    value.setZero();
-    add(1, row, j, k, value);
-    add(length, row, j, by_length, value);
-    structured_->times(matrix, value.data(), by_length.col(j).data());
-    value.setZero();
-    add(length, row, j, by_parameter, value);
-    structured_->times(matrix, value.data(), by_parameter.col(j).data());
-    by_parameter.col(j) += d_parameter;
+    value_now_ = x;
+    add(length, row, j, stage_slopes_, value_now_);
+    structured_->evaluate(angle + tableau_.c(j) * d_angle, value_now_, slope_now_, matrix, d_parameter_now_);
+    if (!slope_now_.allFinite()) fail();
+    stage_slopes_.col(j) = slope_now_;
+    by_parameter_.col(j) = d_parameter_now_;
+    if (j == 0) continue;  // nothing before it
+    value_now_.setZero();
+    add(length, row, j, by_parameter_, value_now_);
+    structured_->times(matrix, value_now_.data(), slope_now_.data());
+    by_parameter_.col(j) += slope_now_;
+    if (!by_length_wanted_) continue;
+    value_now_.setZero();
+    add(1, row, j, stage_slopes_, value_now_);
+    add(length, row, j, by_length_, value_now_);
+    structured_->times(matrix, value_now_.data(), by_length_.col(j).data());
   }
-  value = x;
-  add(length, tableau_.b, s, k, value);
-  x = value;
-  product.d_length_.setZero(n);
-  add(1, tableau_.b, s, k, product.d_length_);
-  add(length, tableau_.b, s, by_length, product.d_length_);
+  value_now_ = x;
+  add(length, tableau_.b, s, stage_slopes_, value_now_);
+  x = value_now_;
   product.d_parameter_.setZero(n);
-  add(length, tableau_.b, s, by_parameter, product.d_parameter_);
+  add(length, tableau_.b, s, by_parameter_, product.d_parameter_);
+  if (!by_length_wanted_) return;
+  product.d_length_.setZero(n);
+  add(1, tableau_.b, s, stage_slopes_, product.d_length_);
+  add(length, tableau_.b, s, by_length_, product.d_length_);
 }
 
 void StepProduct::apply_structured(MatrixXd& v) const {
   const Index s = tableau_->stages();
-  MatrixXd k(v.rows(), s);
-  VectorXd w(v.rows());
+  MatrixXd& work = rate_->work();
+  work.resize(v.rows(), s + 1);
+  auto w = work.col(s);
   for (Index c = 0; c < v.cols(); ++c) {
+    auto x = v.col(c);
     for (Index j = 0; j < s; ++j) {
-      w = v.col(c);
-      add(length_, tableau_->a.row(j), j, k, w);
-      rate_->times(rates_[at(j)], w.data(), k.col(j).data());
+      w = x;
+      add(length_, tableau_->a.row(j), j, work, w);
+      rate_->times(rates_[at(j)], w.data(), work.col(j).data());
     }
-    w = v.col(c);
-    add(length_, tableau_->b, s, k, w);
-    v.col(c) = w;
+    add(length_, tableau_->b, s, work, x);
   }
 }
 

@@ -1,7 +1,7 @@
 // Table 3.1 of van de Vrande (2001): what a point of a branch costs by each solver of periodic solutions. A rigid rotor
 // in compliant short bearings, L/D = 1, F0* = 1, B = 0.1, Omega* = 2, N = 50, from the loaded equilibrium at a* = 0 to
 // a* = 0.2, improved Euler with 100 steps a period where a scheme of steps is used. Processor time of one rank, with
-// multipliers at every point; least of several runs. bench_homotopy [--quick] [--only WORDS_OF_A_ROW].
+// multipliers at every point; least of several runs. bench_homotopy [--runs N] [--only WORDS_OF_A_ROW].
 #include <fmt/core.h>
 
 #include <Eigen/LU>
@@ -327,7 +327,9 @@ int run(int runs, const std::string& only) {
       return std::make_unique<solve::CycleProblem>(PETSC_COMM_SELF, system, o, solve::uniform_mesh(intervals));
     });
   };
+  const int repeated = std::exchange(runs, 1);
   const auto exact = std::abs(collocation(40, 4).leading);
+  runs = repeated;
   double baseline = 0;
   fmt::print("{:<58} {:>6} {:>6} {:>11} {:>8} {:>10}\n", "solver", "points", "Newton", "ms a point", "ratio",
              "|mu| off");
@@ -362,7 +364,7 @@ int main(int argc, char** argv) {
   int runs = 5;
   std::string only;
   for (int k = 1; k < argc; ++k) {
-    if (std::strcmp(argv[k], "--quick") == 0) runs = 1;
+    if (std::strcmp(argv[k], "--runs") == 0 && k + 1 < argc) runs = std::stoi(argv[k + 1]);
     if (std::strcmp(argv[k], "--only") == 0 && k + 1 < argc) only = argv[k + 1];
   }
   return run(runs, only);

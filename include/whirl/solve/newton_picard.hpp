@@ -22,7 +22,7 @@ struct NewtonPicardOptions {
   double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
   double radius = 0.3;         ///< multipliers above it are solved by Newton, the rest by Picard iterations
-  int picard = 3;              ///< Picard iterations on the rest per linear solve
+  int picard = 3;              ///< at most so many Picard iterations on the rest per linear solve
   double multiplier_tolerance = 1e-9;
   bool constant_rates = false;  ///< dF/d(dx/dt) depends on nothing but the parameter: explicit stages keep it
 };
@@ -100,8 +100,11 @@ private:
   void apply(Eigen::Index i, Eigen::MatrixXd& v) const;
   Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
   [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
-  [[nodiscard]] Eigen::MatrixXd picard(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd picard(const Eigen::MatrixXd& right, Eigen::MatrixXd& image, Eigen::MatrixXd& added) const;
+  void orthonormalise(Eigen::MatrixXd& v, Eigen::Index from) const;
   std::vector<std::complex<double>> find_subspace();
+  std::vector<std::complex<double>> settled_multipliers();
+  void find_image();
   void prepare();
 
   problem::System& system_;
@@ -121,7 +124,8 @@ private:
   Links links_, next_;                          // of the linearisation, and of the last residual if they are free
   std::vector<Eigen::MatrixXd> rows_;           // added rows per interval [nb x local]
   Eigen::MatrixXd corner_, ends_, ends_added_;  // E [local x nb], and what it adds to the rows
-  Eigen::MatrixXd basis_, image_, q_ends_, image_q_ends_;
+  Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
+  Eigen::MatrixXd q_ends_, image_q_ends_;
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;
   mutable long products_ = 0;
   int solves_ = 0;  // since the linearisation: many mean that the subspace is stale
