@@ -49,7 +49,8 @@ SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, boo
   system.scales(state_scale_.get(), residual_inverse_.get());
   check(VecReciprocal(residual_inverse_.get()));
   for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(x_.get()));
-  if (constant_rates && tableau_.is_explicit()) structured_ = StructuredRate::make(system);
+  if (constant_rates) structured_ = StructuredRate::make(system);
+  if (structured_ && !tableau_.is_explicit() && !structured_->narrow()) structured_.reset();
 }
 
 void SparseRungeKutta::fail() const {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solve/stage_solver.hpp"
-#include "solve/structured_rate.hpp"
+#include "solve/structured_stage.hpp"
 #include "whirl/problem/frozen.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/tableau.hpp"
@@ -35,12 +35,13 @@ private:
   std::vector<StageProduct> stages_;
   const StructuredRate* rate_ = nullptr;  // and in place of stages_, of a system that tells its structure:
   std::vector<RateMatrix> rates_;         // [stages]
+  std::vector<StructuredStage> implicit_;  // [stages] of an implicit scheme
   Eigen::VectorXd d_length_, d_parameter_;
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
 /// system.comm(): those of System::freeze() if it has them, or one pass over dF/dx where dF/d(dx/dt) of an explicit
-/// stage is inverted entry by entry; none at all for explicit schemes on one rank where StructuredRate serves.
+/// stage is inverted entry by entry; none at all on one rank where StructuredRate serves.
 class SparseRungeKutta {
 public:
   /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter. Without `by_length`, products need not
@@ -74,6 +75,7 @@ private:
   [[nodiscard]] std::shared_ptr<const problem::Frozen> freeze(double angle, Vec x, Vec k, double own);
   void structured_step(double angle, double d_angle, double length, Eigen::Map<Eigen::VectorXd> x,
                        StepProduct& product);
+  void structured_stage(double angle, double own, RateMatrix& matrix, StructuredStage& solver);
   [[noreturn]] void fail() const;
   problem::System& system_;
   Tableau tableau_;
@@ -86,7 +88,7 @@ private:
   std::unique_ptr<StructuredRate> structured_;
   StepProduct unused_;  // of structured steps whose product nobody asks for
   Eigen::MatrixXd stage_slopes_, by_length_, by_parameter_;  // work space of structured steps
-  Eigen::VectorXd value_now_, slope_now_, d_parameter_now_;
+  Eigen::VectorXd base_now_, value_now_, slope_now_, d_parameter_now_;
 };
 
 }  // namespace whirl::solve

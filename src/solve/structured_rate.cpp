@@ -48,11 +48,11 @@ StructuredRate::StructuredRate(problem::System& system)
 // False if the dense blocks or scattered entries would make products dearer than those of a sparse matrix.
 bool StructuredRate::find_places() {
   const Index k = size() - n_;
-  if (n_ * n_ > 8 * size()) return false;
+  if (n_ > 24 && n_ * n_ > 8 * size()) return false;
   values_ = filled(n_ * n_);
   Index told = 0;
   for (const problem::OwnStates& own : own_) {
-    Film film;
+    RateFilm film;
     film.at = own;
     film.stride = filled(own.count);
     told += own.count;
@@ -78,12 +78,17 @@ bool StructuredRate::find_places() {
     films_.push_back(std::move(film));
   }
   Index longest = 0;
-  for (const Film& film : films_) {
+  for (const RateFilm& film : films_) {
     longest = std::max(longest, film.stride);
     reach_ = std::max(reach_, filled(film.reach));
   }
   ring_.setZero(longest + 2 * reach_);
   return told == k;
+}
+
+bool StructuredRate::narrow() const {
+  return std::all_of(films_.begin(), films_.end(),
+                     [](const RateFilm& f) { return f.reach <= 4 && f.at.count > 4 * f.reach; });
 }
 
 void StructuredRate::refresh() {
@@ -132,7 +137,7 @@ void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, R
   Map<MatrixXd>(a.data(), n_, n_).noalias() += lead_.lazyProduct(inputs_);
   const double* factor = factors_.data();
   for (std::size_t i = 0; i < films_.size(); ++i) {
-    const Film& film = films_[i];
+    const RateFilm& film = films_[i];
     const problem::OwnTangents& t = at_.films.own[i];
     const Index count = film.at.count;
     const auto scale = states.segment(n_ + film.at.first, count);
@@ -160,7 +165,7 @@ void StructuredRate::times(const RateMatrix& a, const double* v, double* y) cons
   const Map<const VectorXd> x(v, n_);
   Map<VectorXd> core(y, n_);
   core.noalias() = Map<const MatrixXd>(a.data(), n_, n_).lazyProduct(x);
-  for (const Film& film : films_) {
+  for (const RateFilm& film : films_) {
     const Index count = film.at.count, stride = film.stride;
     const double* s = v + n_ + film.at.first;
     double *ring = ring_.data() + reach_, *out = y + n_ + film.at.first;

@@ -14,6 +14,16 @@ namespace whirl::solve {
 /// A = d(dz/dt)/dz at one point, in the places that StructuredRate knows.
 using RateMatrix = Eigen::VectorXd;
 
+/// One film: where its arrays stand in a RateMatrix.
+struct RateFilm {
+  problem::OwnStates at;
+  std::vector<Eigen::Index> shifts;                               ///< column - row of each diagonal, the shorter way around
+  std::vector<Eigen::Index> entries;                              ///< of dg/ds: where each belongs, counted from `diagonals`
+  Eigen::Index forces = 0, inputs = 0, diagonals = 0, seen = 0;  ///< seen: one for each input that the film sees
+  Eigen::Index reach = 0;                                         ///< the largest shift
+  Eigen::Index stride = 0;                                        ///< of arrays: count, filled up with zeros
+};
+
 /// dz/dt of F(angle, z, dz/dt) = 0 with z = (x, s) in scaled states, for a system on one rank whose dF/d(dx/dt) depends
 /// on nothing but the parameter: L1 beside one entry in each row of a film's own states. With these
 ///
@@ -36,19 +46,17 @@ public:
                 Eigen::VectorXd& d_parameter);
   /// y = A v [n + k].
   void times(const RateMatrix& a, const double* v, double* y) const;
+  [[nodiscard]] Eigen::Index coordinates() const { return n_; }
+  [[nodiscard]] const std::vector<RateFilm>& films() const { return films_; }
+  /// Q [n x r] and C [w x n], scaled.
+  [[nodiscard]] const Eigen::MatrixXd& lead() const { return lead_; }
+  [[nodiscard]] const Eigen::MatrixXd& inputs() const { return point_.c(); }
+  /// True if films have neighbours so few that implicit stages are solved in bands.
+  [[nodiscard]] bool narrow() const;
   /// Work space [n + k, columns] for whoever multiplies.
   [[nodiscard]] Eigen::MatrixXd& work() const { return work_; }
 
 private:
-  // One film: where its arrays stand in a RateMatrix.
-  struct Film {
-    problem::OwnStates at;
-    std::vector<Eigen::Index> shifts;   // column - row of each diagonal, the shorter way around
-    std::vector<Eigen::Index> entries;  // of dg/ds: where each belongs, counted from `diagonals`
-    Eigen::Index forces = 0, inputs = 0, diagonals = 0, seen = 0;  // seen: one for each input that the film sees
-    Eigen::Index reach = 0;                                         // the largest shift
-    Eigen::Index stride = 0;                                        // of arrays: count, filled up with zeros
-  };
   explicit StructuredRate(problem::System& system);
   bool find_places();
   void follow_rates();
@@ -56,7 +64,7 @@ private:
   ScaledPoint point_;
   const std::vector<problem::OwnStates>& own_;
   Eigen::Index n_;  // coordinates, without own states
-  std::vector<Film> films_;
+  std::vector<RateFilm> films_;
   Eigen::Index values_ = 0, reach_ = 0;
   Eigen::MatrixXd mass_, lead_, linear_;  // L1^-1, Q and -L1^-1 L0
   PointState at_;
