@@ -177,11 +177,11 @@ void CompliantFilm::row(int k, double speed, Need need, StateResponse& response)
   if (upwind_) chain(k, b2, l2 * w0, 0.0, response);
 }
 
-// (4.27): dh/dt = -(1/2) (3 h^3 P/(L/D)^2 + Omega dh/dtheta), all rows in loops without calls: steps in time spend their
-// time here.
+// (4.27): dh/dt = -(1/2) (3 h^3 P/(L/D)^2 + Omega dh/dtheta), all rows in loops without calls: steps in time spend
+// their time here.
 void CompliantFilm::short_rows(double speed, Need need, StateResponse& response) {
-  const double c = 0.25 * speed / step_, w[4] = {upwind_ ? 1.0 : 0.0, upwind_ ? -4.0 : -1.0, upwind_ ? 3.0 : 0.0,
-                                                 upwind_ ? 0.0 : 1.0};
+  const double c = 0.25 * speed / step_,
+               w[4] = {upwind_ ? 1.0 : 0.0, upwind_ ? -4.0 : -1.0, upwind_ ? 3.0 : 0.0, upwind_ ? 0.0 : 1.0};
   for (int k = 0; k < n_; ++k) {
     const double *before = h_.data() + (k < 2 ? k + n_ - 2 : k - 2), here = h_[at(k)];
     const double slope = w[0] * before[0] + w[1] * before[1] + w[2] * here + w[3] * h_[at(k + 1)];

@@ -153,7 +153,7 @@ MatrixXd NewtonPicardProblem::monodromy_times(const MatrixXd& v, MatrixXd& added
   added = MatrixXd::Zero(borders_, v.cols());
   for (Index i = 0; i < intervals(); ++i) {
     apply(i, state);
-    added += rows_[at(i)] * state;
+    added.noalias() += rows_[at(i)].transpose().lazyProduct(state);
   }
   sum(added);
   products_ += v.cols();
@@ -185,8 +185,8 @@ MatrixXd NewtonPicardProblem::picard(const MatrixXd& right, MatrixXd& image, Mat
 
 void NewtonPicardProblem::linearise(Vec u, Vec row) {
   const double period = begin_point(border_of(u));
-  // The residual at u may have left its links behind; they are exchanged, because those of this linearisation are wanted
-  // until the next one.
+  // The residual at u may have left its links behind; they are exchanged, because those of this linearisation are
+  // wanted until the next one.
   if (stepper_->product_is_free() && next_.u.size() > 0 && next_.u == get(u)) {
     std::swap(links_, next_);
     next_.u.resize(0);
@@ -197,10 +197,11 @@ void NewtonPicardProblem::linearise(Vec u, Vec row) {
   const core::ReadArray wa(row);
   const Index count = intervals();
   const Map<const MatrixXd> w(wa.data(), local_, count);
-  rows_.assign(at(count), MatrixXd(borders_, local_));
+  rows_.resize(at(count));
   for (Index i = 0; i < count; ++i) {
-    if (options_.autonomous) rows_[at(i)].row(0) = phase_row_.col(i).transpose();
-    rows_[at(i)].bottomRows(1) = w.col(i).transpose();
+    rows_[at(i)].resize(local_, borders_);
+    if (options_.autonomous) rows_[at(i)].col(0) = phase_row_.col(i);
+    rows_[at(i)].rightCols(1) = w.col(i);
   }
   corner_ = MatrixXd::Zero(borders_, borders_);
   corner_.row(borders_ - 1) = border_of(row).transpose();
@@ -211,7 +212,7 @@ void NewtonPicardProblem::linearise(Vec u, Vec row) {
     const auto k = at(i);
     if (i > 0) apply(i, ends_);
     ends_ -= links_.columns[k];
-    ends_added_ += rows_[k] * ends_;
+    ends_added_.noalias() += rows_[k].transpose().lazyProduct(ends_);
   }
   sum(ends_added_);
 
@@ -247,13 +248,13 @@ void NewtonPicardProblem::multiply(Vec v, Vec y) {
   const core::WriteArray ya(y);
   const Index count = intervals();
   const Map<const MatrixXd> x(va.data(), local_, count);
-  MatrixXd added = MatrixXd::Zero(borders_, 1);
+  MatrixXd added = MatrixXd::Zero(borders_, 1), state;
   for (Index i = 0; i < count; ++i) {
     const auto k = at(i);
-    MatrixXd state = x.col(i == 0 ? count - 1 : i - 1);
+    state = x.col(i == 0 ? count - 1 : i - 1);
     apply(i, state);
-    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + links_.columns[k] * border;
-    added += rows_[k] * x.col(i);
+    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + links_.columns[k].lazyProduct(border);
+    added.noalias() += rows_[k].transpose().lazyProduct(x.col(i));
   }
   ++products_;
   sum(added);
@@ -276,7 +277,7 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
     for (Index i = 0; i < count; ++i) {
       if (i > 0) apply(i, state);
       state += r.col(i);
-      added += rows_[at(i)] * state;
+      added.noalias() += rows_[at(i)].transpose().lazyProduct(state);
     }
     sum(added);
     products_ += count > 1;
@@ -291,7 +292,7 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   state = basis_ * small.head(p) + q + q_ends_ * border;
   for (Index i = 0; i < count; ++i) {
     apply(i, state);
-    state += r.col(i) - links_.columns[at(i)] * border;
+    state += r.col(i) - links_.columns[at(i)].lazyProduct(border);
     Map<VectorXd>(xa.data() + i * local_, local_) = state;
   }
   ++products_;

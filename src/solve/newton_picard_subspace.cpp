@@ -100,6 +100,7 @@ std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
   for (int k = 0;; ++k) {
     MatrixXd projected = x.transpose() * y;
     sum(projected);
+    if (!projected.allFinite()) return {};
     const Eigen::EigenSolver<MatrixXd> modes(projected);
     const Eigen::MatrixXcd defects = (y - x * projected) * modes.eigenvectors();
     MatrixXd sizes = defects.colwise().squaredNorm().transpose();
@@ -114,7 +115,8 @@ std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
     }
     std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
     if (settled) {
-      const auto large = std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > options_.radius; });
+      const auto large =
+          std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > options_.radius; });
       if (large != p) return {};
       if (k == 0) return values;
       basis_ = x.leftCols(p);

@@ -33,8 +33,8 @@ private:
   const Tableau* tableau_ = nullptr;
   double length_ = 0;
   std::vector<StageProduct> stages_;
-  const StructuredRate* rate_ = nullptr;  // and in place of stages_, of a system that tells its structure:
-  std::vector<RateMatrix> rates_;         // [stages]
+  const StructuredRate* rate_ = nullptr;   // and in place of stages_, of a system that tells its structure:
+  std::vector<RateMatrix> rates_;          // [stages]
   std::vector<StructuredStage> implicit_;  // [stages] of an implicit scheme
   Eigen::VectorXd d_length_, d_parameter_;
 };
@@ -86,7 +86,7 @@ private:
   std::shared_ptr<const StageSolver> rates_;       // of explicit stages with constant rates
   std::shared_ptr<const problem::Frozen> frozen_;  // the last one of this step
   std::unique_ptr<StructuredRate> structured_;
-  StepProduct unused_;  // of structured steps whose product nobody asks for
+  StepProduct unused_;                                       // of structured steps whose product nobody asks for
   Eigen::MatrixXd stage_slopes_, by_length_, by_parameter_;  // work space of structured steps
   Eigen::VectorXd base_now_, value_now_, slope_now_, d_parameter_now_;
 };

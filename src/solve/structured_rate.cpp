@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr Index max_inputs = 4;  // of one film: position and velocity of its journal
-constexpr Index width = 8;  // of vector registers, in numbers
+constexpr Index width = 8;       // of vector registers, in numbers
 using Pack = Eigen::Array<double, width, 1>;
 
 Index filled(Index count) {
@@ -33,6 +33,9 @@ Map<const Pack> shifted(const double* from) {
 
 std::unique_ptr<StructuredRate> StructuredRate::make(problem::System& system) {
   if (core::size_of(system.comm()) > 1 || !system.structure()) return nullptr;
+  // Dense blocks would make products dearer than those of a sparse matrix.
+  const Index n = system.structure()->size();
+  if (n > 24 && n * n > 8 * system.size()) return nullptr;
   std::unique_ptr<StructuredRate> out(new StructuredRate(system));
   if (!out->find_places()) return nullptr;
   out->refresh();
@@ -45,10 +48,9 @@ StructuredRate::StructuredRate(problem::System& system)
   inverse_.resize(size() - n_);
 }
 
-// False if the dense blocks or scattered entries would make products dearer than those of a sparse matrix.
+// False if rates are not one in a row, or if entries are too scattered for diagonals.
 bool StructuredRate::find_places() {
   const Index k = size() - n_;
-  if (n_ > 24 && n_ * n_ > 8 * size()) return false;
   values_ = filled(n_ * n_);
   Index told = 0;
   for (const problem::OwnStates& own : own_) {
@@ -56,7 +58,8 @@ bool StructuredRate::find_places() {
     film.at = own;
     film.stride = filled(own.count);
     told += own.count;
-    if (own.inputs > max_inputs || own.first != told - own.count || static_cast<Index>(own.rates.size()) != own.count) return false;
+    if (own.inputs > max_inputs || own.first != told - own.count || static_cast<Index>(own.rates.size()) != own.count)
+      return false;
     for (const problem::Place& p : own.rates)
       if (p.row != p.column) return false;
     std::vector<Index> shift_of;
@@ -142,12 +145,17 @@ void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, R
     const Index count = film.at.count;
     const auto scale = states.segment(n_ + film.at.first, count);
     const auto inverse = inverse_.segment(film.at.first, count);
-    for (Index e = 0; e < film.at.forces; ++e)
-      a.segment(film.forces + e * film.stride, count) = t.forces.row(e).transpose().cwiseProduct(scale);
+    for (Index e = 0; e < film.at.forces; ++e) {
+      double* to = a.data() + film.forces + e * film.stride;
+      for (Index k = 0; k < count; ++k) to[k] = t.forces(e, k) * scale(k);
+    }
     for (Index e = 0; e < film.at.inputs; ++e) {
-      auto column = a.segment(film.inputs + e * film.stride, count);
-      column = t.inputs.row(e).transpose().cwiseProduct(inverse);
-      a(film.seen + e) = column.isZero(0) ? 0 : 1;
+      double *to = a.data() + film.inputs + e * film.stride, &seen = a(film.seen + e);
+      seen = 0;
+      for (Index k = 0; k < count; ++k) {
+        to[k] = t.inputs(e, k) * inverse(k);
+        if (to[k] != 0) seen = 1;
+      }
     }
     double* diagonals = a.data() + film.diagonals;
     std::fill(diagonals, a.data() + film.seen, 0.0);

@@ -17,11 +17,11 @@ using RateMatrix = Eigen::VectorXd;
 /// One film: where its arrays stand in a RateMatrix.
 struct RateFilm {
   problem::OwnStates at;
-  std::vector<Eigen::Index> shifts;                               ///< column - row of each diagonal, the shorter way around
-  std::vector<Eigen::Index> entries;                              ///< of dg/ds: where each belongs, counted from `diagonals`
+  std::vector<Eigen::Index> shifts;   ///< column - row of each diagonal, the shorter way around
+  std::vector<Eigen::Index> entries;  ///< of dg/ds: where each belongs, counted from `diagonals`
   Eigen::Index forces = 0, inputs = 0, diagonals = 0, seen = 0;  ///< seen: one for each input that the film sees
-  Eigen::Index reach = 0;                                         ///< the largest shift
-  Eigen::Index stride = 0;                                        ///< of arrays: count, filled up with zeros
+  Eigen::Index reach = 0;                                        ///< the largest shift
+  Eigen::Index stride = 0;                                       ///< of arrays: count, filled up with zeros
 };
 
 /// dz/dt of F(angle, z, dz/dt) = 0 with z = (x, s) in scaled states, for a system on one rank whose dF/d(dx/dt) depends
@@ -34,7 +34,7 @@ struct RateFilm {
 /// No sparse matrix is assembled, and a product costs one pass over these arrays. Nothing here communicates.
 class StructuredRate {
 public:
-  /// Null if the system tells no structure of this kind, or if its films are small beside its coordinates.
+  /// Null if the system tells no structure of this kind, or if it has many coordinates beside its films' states.
   static std::unique_ptr<StructuredRate> make(problem::System& system);
 
   [[nodiscard]] Eigen::Index size() const { return point_.size(); }
@@ -44,7 +44,7 @@ public:
   /// core::DomainError.
   void evaluate(double angle, const Eigen::VectorXd& z, Eigen::VectorXd& rate, RateMatrix& a,
                 Eigen::VectorXd& d_parameter);
-  /// y = A v [n + k].
+  /// y = A v [n + k] of an A at the parameter of the last refresh().
   void times(const RateMatrix& a, const double* v, double* y) const;
   [[nodiscard]] Eigen::Index coordinates() const { return n_; }
   [[nodiscard]] const std::vector<RateFilm>& films() const { return films_; }
@@ -68,11 +68,11 @@ private:
   Eigen::Index values_ = 0, reach_ = 0;
   Eigen::MatrixXd mass_, lead_, linear_;  // L1^-1, Q and -L1^-1 L0
   PointState at_;
-  Eigen::VectorXd f_, inverse_;                    // inverse_: -1/R in scaled states per SI of the residual [k]
-  Eigen::MatrixXd inputs_;                         // df/dw C
-  std::vector<double> rates_;                      // R of all films at the last point
-  std::vector<double> factors_;                    // of all entries of dg/ds: -1/R in scaled states
-  mutable Eigen::VectorXd ring_;                   // states of a film with their neighbours around the ring
+  Eigen::VectorXd f_, inverse_;   // inverse_: -1/R in scaled states per SI of the residual [k]
+  Eigen::MatrixXd inputs_;        // df/dw C
+  std::vector<double> rates_;     // R of all films at the last point
+  std::vector<double> factors_;   // of all entries of dg/ds: -1/R in scaled states
+  mutable Eigen::VectorXd ring_;  // states of a film with their neighbours around the ring
   mutable Eigen::MatrixXd work_;
 };
 

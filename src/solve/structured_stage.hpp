@@ -40,10 +40,10 @@ public:
 private:
   struct Part {
     BandLu band;
-    Eigen::MatrixXd response;   // B^-1 U: of the seen inputs, then of the last states [interior x ...]
-    Eigen::MatrixXd forces;     // own P^T [interior x forces]
-    Eigen::MatrixXd ends;       // own D^T of the last states' rows [interior x reach]
-    Eigen::MatrixXd inputs;     // C of the seen inputs [seen x n]
+    Eigen::MatrixXd response;  // B^-1 U: of the seen inputs, then of the last states [interior x ...]
+    Eigen::MatrixXd forces;    // own P^T [interior x forces]
+    Eigen::MatrixXd ends;      // own D^T of the last states' rows [interior x reach]
+    Eigen::MatrixXd inputs;    // C of the seen inputs [seen x n]
   };
   const StructuredRate* rate_ = nullptr;
   std::vector<Part> parts_;

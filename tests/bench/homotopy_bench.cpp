@@ -11,7 +11,8 @@
 // "Exact columns" is the program's own single shooting: dense products with the exact Jacobians of the stages.
 //
 // Columns of the table: errors at a* = 0.2 against collocation on 40 Gauss intervals of degree 4, of the modulus of the
-// leading multiplier and of the journal's position at the end of the period, in clearances. bench_homotopy [--runs N] [--only WORDS_OF_A_ROW].
+// leading multiplier and of the journal's position at the end of the period, in clearances. bench_homotopy [--runs N]
+// [--only WORDS_OF_A_ROW].
 #include <fmt/core.h>
 
 #include <Eigen/LU>
@@ -349,15 +350,15 @@ int run(int runs, const std::string& only) {
   const Result exact = collocation(40, 4);
   runs = repeated;
   double baseline = 0;
-  fmt::print("{:<58} {:>6} {:>6} {:>11} {:>8} {:>9} {:>9}\n", "solver", "points", "Newton", "ms a point",
-             "ratio", "|mu| off", "x, y off");
+  fmt::print("{:<58} {:>6} {:>6} {:>11} {:>8} {:>9} {:>9}\n", "solver", "points", "Newton", "ms a point", "ratio",
+             "|mu| off", "x, y off");
   const auto row = [&](const std::string& name, const std::function<Result()>& result) {
     if (name.find(only) == std::string::npos) return;
     const Result r = result();
     const double point = r.seconds / r.points;
     if (baseline == 0) baseline = point;
-    fmt::print("{:<58} {:>6} {:>6} {:>11.3f} {:>8.1f} {:>9.1e} {:>9.1e}\n", name, r.points, r.iterations,
-               1e3 * point, baseline / point, std::abs(std::abs(r.leading) - std::abs(exact.leading)),
+    fmt::print("{:<58} {:>6} {:>6} {:>11.3f} {:>8.1f} {:>9.1e} {:>9.1e}\n", name, r.points, r.iterations, 1e3 * point,
+               baseline / point, std::abs(std::abs(r.leading) - std::abs(exact.leading)),
                std::max(std::abs(r.journal[0] - exact.journal[0]), std::abs(r.journal[1] - exact.journal[1])));
   };
   for (const bool by_structure : {false, true})

@@ -121,9 +121,9 @@ private:
   Eigen::MatrixXd phase_row_;  // [local x N]
 
   // The linearisation.
-  Links links_, next_;                          // of the linearisation, and of the last residual if they are free
-  std::vector<Eigen::MatrixXd> rows_;           // added rows per interval [nb x local]
-  Eigen::MatrixXd corner_, ends_, ends_added_;  // E [local x nb], and what it adds to the rows
+  Links links_, next_;                           // of the linearisation, and of the last residual if they are free
+  std::vector<Eigen::MatrixXd> rows_;            // added rows per interval, transposed [local x nb]
+  Eigen::MatrixXd corner_, ends_, ends_added_;   // E [local x nb], and what it adds to the rows
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
   Eigen::MatrixXd q_ends_, image_q_ends_;
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;
