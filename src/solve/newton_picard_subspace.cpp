@@ -31,9 +31,11 @@ void NewtonPicardProblem::orthonormalise(MatrixXd& v, Index from) const {
   }
 }
 
-// M V. While V is not invariant and gets better at once, V <- orth(M V): it spares linear iterations.
+// M V. While V is not invariant and gets better at once, V <- orth(M V): it spares linear iterations. Multipliers below
+// the radius are near it or not, which does not change from one point to the next: what did not help is not tried
+// again.
 void NewtonPicardProblem::find_image() {
-  constexpr double invariant = 1e-7;
+  constexpr double invariant = 1e-7, at_once = 0.1;
   double last = 0;
   for (int k = 0;; ++k) {
     image_ = monodromy_times(basis_, basis_added_);
@@ -41,7 +43,8 @@ void NewtonPicardProblem::find_image() {
     sizes << complement(image_).squaredNorm(), image_.squaredNorm();
     sum(sizes);
     const double defect = sizes(1) > 0 ? std::sqrt(sizes(0) / sizes(1)) : 0;
-    if (defect <= invariant || k == 2 || (k > 0 && defect > 0.1 * last)) return;
+    if (k > 0) contraction_ = defect / last;
+    if (defect <= invariant || k == 2 || contraction_ > at_once) return;
     last = defect;
     basis_ = image_;
     orthonormalise(basis_, 0);
@@ -71,17 +74,18 @@ std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
         ++products_;
       },
       first.get(), options);
+  if (found.basis.cols() != basis_.cols()) contraction_ = 0;
   basis_ = std::move(found.basis);
   return found.values;
 }
 
 // Multipliers by orthogonal iteration on V and two generic vectors, which would show a multiplier that V does not know;
-// those below the radius, which nothing depends on, to six digits. Empty if this does not settle at once or if their
-// number has changed: then they are to be found anew.
+// those below the radius, which nothing depends on, to six digits. Empty if this does not settle at once, because there
+// are multipliers just below the radius, or if their number has changed: then they are to be found anew.
 std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
   constexpr Index probes = 2;
-  constexpr int most = 3;
-  constexpr double below_radius = 1e-6;
+  constexpr int most = 2;
+  constexpr double below_radius = 1e-6, slow = 1e-2;
   const Index p = basis_.cols();
   if (image_.rows() != local_ || p == 0 || p + probes > system_.size()) return {};
   PetscInt begin = 0;
@@ -125,7 +129,7 @@ std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
       prepare();
       return values;
     }
-    if (k == most) return {};
+    if (k == most || sizes.maxCoeff() > slow * slow) return {};
     x = y;
     orthonormalise(x, 0);
     y = monodromy_times(x, added);

@@ -40,9 +40,11 @@ struct NewtonPicardOptions {
 ///     x_0 = V p + q_R + q_E d,  then x_(i+1) = G_i x_i + ... forward.
 ///
 /// It preconditions GMRES around multiply(), which is exact: Newton keeps its quadratic convergence, folds stay regular
-/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation and by
-/// multipliers(), with a size that follows the radius; in between one orthogonal subspace iteration V <- orth(M V)
-/// costs nothing, because M V is known. Source: Lust (1997); van de Vrande (2001), Sec. 3.2 and (3.18), with errata.
+/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation, with
+/// a size that follows the radius; then orthogonal subspace iteration V <- orth(M V) keeps it, of which the first one
+/// costs nothing, because M V is known. multipliers() takes V as long as it is invariant, two generic vectors find no
+/// other multiplier above the radius, and their number stays; else Krylov-Schur again. Source: Lust (1997); van de
+/// Vrande (2001), Sec. 3.2 and (3.18), with errata.
 class NewtonPicardProblem : public PeriodicProblem {
 public:
   /// `tableau` has sequential stages; `steps` per interval of `mesh`. The communicator is that of `system`.
@@ -126,6 +128,7 @@ private:
   Eigen::MatrixXd corner_, ends_, ends_added_;   // E [local x nb], and what it adds to the rows
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
   Eigen::MatrixXd q_ends_, image_q_ends_;
+  double contraction_ = 0;  // of the error of V by one iteration, as last seen
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;
   mutable long products_ = 0;
   int solves_ = 0;  // since the linearisation: many mean that the subspace is stale
