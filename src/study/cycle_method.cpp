@@ -10,6 +10,9 @@
 namespace whirl::study {
 namespace {
 
+// Masses, and own states of films as ds/dt with the factor one.
+constexpr bool constant_rates = true;
+
 using Method = CycleBranchOptions::Method;
 
 solve::Tableau tableau_of(CycleBranchOptions::Stepping scheme) {
@@ -65,7 +68,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Roto
     o.parameter_scale = scale_;
     o.state_weight = state_weight();
     o.radius = options_.radius;
-    o.constant_rates = true;  // masses, and own states of films as ds/dt with the factor one
+    o.constant_rates = constant_rates;
     return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
   }
   solve::CycleOptions o;
@@ -81,7 +84,8 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Roto
     return std::make_unique<solve::CycleProblem>(context_.comm, system, o, std::move(mesh));
   // Single shooting has nothing to share: every rank computes the same.
   const MPI_Comm time = options_.method == Method::shooting ? PETSC_COMM_SELF : context_.comm;
-  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh));
+  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh),
+                                                  constant_rates);
 }
 
 }  // namespace whirl::study

@@ -8,7 +8,7 @@
 // of F each, no Jacobian, dense LU of size n + 1, all multipliers by LAPACK. dF/d(dx/dt) is inverted entry by entry
 // once. It stands here twice: with F as every other user of problem::System gets it (sparse products, PETSc vectors),
 // and with F by the system's structure, which is the quickest there is here and what Newton-Picard and collocation use.
-// "Exact columns" is the program's own single shooting: dense products with the exact Jacobians of the stages.
+// "Exact columns" is the program's own single shooting: all columns by the exact products of the stages.
 //
 // Columns of the table: errors at a* = 0.2 against collocation on 40 Gauss intervals of degree 4, of the modulus of the
 // leading multiplier and of the journal's position at the end of the period, in clearances. bench_homotopy [--runs N]
@@ -327,7 +327,7 @@ int run(int runs, const std::string& only) {
   const auto shooting = [&](int intervals) {
     return periodic([&, intervals] {
       return std::make_unique<solve::ShootingProblem>(PETSC_COMM_SELF, system, cycle, solve::heun(), steps / intervals,
-                                                      solve::uniform_mesh(intervals));
+                                                      solve::uniform_mesh(intervals), true);
     });
   };
   const auto picard = [&](int intervals) {

@@ -140,6 +140,41 @@ TEST_P(StructuredSteps, ResidualAndProductsAreThoseOfTheSparsePath) {
   }
 }
 
+// Maps and their derivatives of shooting, dense by the Jacobians of the stages and by the structure.
+TEST_P(StructuredSteps, ShootingIsTheSameDense) {
+  const auto mesh = solve::uniform_mesh(3);
+  for (const auto& tableau : {solve::heun(), solve::sdirk(2)}) {
+    SCOPED_TRACE(tableau.stages());
+    system::RotorSystem s(PETSC_COMM_SELF, train(GetParam()), speed);
+    const solve::Cycle c = motion(s, mesh);
+    VectorXd residual[2], solved[2];
+    Eigen::MatrixXd monodromy[2];
+    for (const bool structured : {false, true}) {
+      solve::CycleOptions options;
+      options.parameter_scale = speed_scale;
+      const int steps = !tableau.is_explicit() ? 4 : GetParam().kind == Kind::compliant_long ? 1000 : 100;
+      solve::ShootingProblem problem(PETSC_COMM_SELF, s, options, tableau, steps, mesh, structured);
+      core::Vector u = problem.scatter(c), row = core::duplicate(u.get()), r = core::duplicate(u.get()),
+                   v = core::duplicate(u.get());
+      solve::parameter_row(problem, row.get());
+      problem.residual(u.get(), r.get());
+      problem.linearise(u.get(), row.get());
+      {
+        const core::WriteArray va(v.get()), ra(r.get());
+        ra[ra.size() - 1] = 0;
+        for (PetscInt k = 0; k < va.size(); ++k) va[k] = std::sin(0.9 * k);
+      }
+      residual[structured] = values(r.get());
+      (void)solve::solve_linear(problem, v.get(), r.get(), "");
+      solved[structured] = values(r.get());
+      monodromy[structured] = problem.monodromy();
+    }
+    EXPECT_LE((residual[1] - residual[0]).cwiseAbs().maxCoeff(), 1e-8 * residual[0].cwiseAbs().maxCoeff());
+    EXPECT_LE((solved[1] - solved[0]).cwiseAbs().maxCoeff(), 1e-6 * solved[0].cwiseAbs().maxCoeff());
+    EXPECT_LE((monodromy[1] - monodromy[0]).cwiseAbs().maxCoeff(), 1e-7 * monodromy[0].cwiseAbs().maxCoeff());
+  }
+}
+
 // Multipliers from the subspace that is there, at neighbouring points, against all of the dense monodromy matrix.
 TEST_P(StructuredSteps, MultipliersFollowTheDenseOnes) {
   const auto mesh = solve::uniform_mesh(2);
