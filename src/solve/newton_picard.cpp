@@ -1,11 +1,8 @@
 #include "whirl/solve/newton_picard.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
-#include "solve/dominant_subspace.hpp"
 #include "solve/local_part.hpp"
 #include "solve/sparse_step.hpp"
 #include "whirl/core/agree.hpp"
@@ -22,6 +19,10 @@ namespace {
 
 constexpr int stale_after = 12;
 
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
 }  // namespace
 
 NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau,
@@ -31,7 +32,8 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
       steps_(steps),
       scheme_(make_scheme(1, Points::radau)),
       mesh_(std::move(mesh)),
-      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates)),
+      stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates,
+                                                  options.autonomous || system.parameter_is_speed())),
       local_(system.local_size()),
       borders_(options.autonomous ? 2 : 1),
       last_(core::rank_of(system.comm()) == core::size_of(system.comm()) - 1),
@@ -50,7 +52,7 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
 NewtonPicardProblem::~NewtonPicardProblem() = default;
 
 double NewtonPicardProblem::length(Index i) const {
-  return mesh_[static_cast<std::size_t>(i) + 1] - mesh_[static_cast<std::size_t>(i)];
+  return mesh_[at(i) + 1] - mesh_[at(i)];
 }
 
 double NewtonPicardProblem::angle(double s) const {
@@ -85,38 +87,55 @@ void NewtonPicardProblem::sum(MatrixXd& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm());
 }
 
-// Carries x over interval i; with `columns`, keeps the products of its steps and fills -d phi/d(border).
-void NewtonPicardProblem::march(Index i, double period, Vec x, MatrixXd* columns) {
-  const double begin = mesh_[static_cast<std::size_t>(i)], h = length(i) / steps_;
-  if (!columns) {
+// Carries x over interval i; with `links`, keeps the products of its steps and fills -d phi/d(border).
+void NewtonPicardProblem::march(Index i, double period, Vec x, Links* links) {
+  const double begin = mesh_[at(i)], h = length(i) / steps_;
+  if (!links) {
     for (int k = 0; k < steps_; ++k) stepper_->step(angle(begin + k * h), angle(h), h * period, x, nullptr);
     return;
   }
-  columns->setZero(local_, borders_);
-  auto& link = links_[static_cast<std::size_t>(i)];
-  link = std::vector<StepProduct>(static_cast<std::size_t>(steps_));
+  MatrixXd& columns = links->columns[at(i)];
+  columns.setZero(local_, borders_);
+  auto& steps = links->steps[at(i)];
+  steps.resize(static_cast<std::size_t>(steps_));
   const bool by_speed = !options_.autonomous && system_.parameter_is_speed();
   for (int k = 0; k < steps_; ++k) {
-    StepProduct& step = link[static_cast<std::size_t>(k)];
+    StepProduct& step = steps[at(k)];
     stepper_->step(angle(begin + k * h), angle(h), h * period, x, &step);
-    if (k > 0) step.apply(*columns);
-    VectorXd d_parameter = step.d_parameter();
-    if (by_speed) d_parameter -= h * period / system_.speed() * step.d_length();
-    columns->col(borders_ - 1) -= d_parameter * options_.parameter_scale;
-    if (options_.autonomous) columns->col(0) -= h * period_scale_ * step.d_length();
+    if (k > 0) step.apply(columns);
+    columns.col(borders_ - 1) -= options_.parameter_scale * step.d_parameter();
+    if (by_speed)
+      columns.col(borders_ - 1) += options_.parameter_scale * h * period / system_.speed() * step.d_length();
+    if (options_.autonomous) columns.col(0) -= h * period_scale_ * step.d_length();
   }
+}
+
+// The ends of all intervals from the states of u, with what linearise() wants of them if `links` is not null.
+void NewtonPicardProblem::march_all(Vec u, double period, MatrixXd& ends, Links* links) {
+  const core::ReadArray ua(u);
+  const Map<const MatrixXd> x(ua.data(), local_, intervals());
+  if (links) {
+    links->u.resize(0);
+    links->steps.resize(at(intervals()));
+    links->columns.resize(at(intervals()));
+  }
+  ends.resize(local_, intervals());
+  for (Index i = 0; i < intervals(); ++i) {
+    put(x.col(i == 0 ? intervals() - 1 : i - 1), work_.get());
+    march(i, period, work_.get(), links);
+    ends.col(i) = get(work_.get());
+  }
+  if (links) links->u = get(u);
 }
 
 void NewtonPicardProblem::residual(Vec u, Vec r) {
   const double period = begin_point(border_of(u));
+  MatrixXd ends;
+  march_all(u, period, ends, stepper_->product_is_free() ? &next_ : nullptr);
   const core::ReadArray ua(u);
   const core::WriteArray ra(r);
   const Map<const MatrixXd> x(ua.data(), local_, intervals());
-  for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(i == 0 ? intervals() - 1 : i - 1), work_.get());
-    march(i, period, work_.get(), nullptr);
-    Map<VectorXd>(ra.data() + i * local_, local_) = x.col(i) - get(work_.get());
-  }
+  Map<MatrixXd>(ra.data(), local_, intervals()) = x - ends;
   if (!options_.autonomous) return;
   MatrixXd phase(1, 1);
   phase(0, 0) = (x.array() * phase_row_.array()).sum();
@@ -125,7 +144,7 @@ void NewtonPicardProblem::residual(Vec u, Vec r) {
 }
 
 void NewtonPicardProblem::apply(Index i, MatrixXd& v) const {
-  for (const StepProduct& step : links_[static_cast<std::size_t>(i)]) step.apply(v);
+  for (const StepProduct& step : links_.steps[at(i)]) step.apply(v);
 }
 
 // M v, and what the motions add to the rows [nb x columns].
@@ -134,7 +153,7 @@ MatrixXd NewtonPicardProblem::monodromy_times(const MatrixXd& v, MatrixXd& added
   added = MatrixXd::Zero(borders_, v.cols());
   for (Index i = 0; i < intervals(); ++i) {
     apply(i, state);
-    added += rows_[static_cast<std::size_t>(i)] * state;
+    added.noalias() += rows_[at(i)].transpose().lazyProduct(state);
   }
   sum(added);
   products_ += v.cols();
@@ -147,28 +166,42 @@ MatrixXd NewtonPicardProblem::complement(const MatrixXd& v) const {
   return v - basis_ * inner;
 }
 
-MatrixXd NewtonPicardProblem::picard(const MatrixXd& right) const {
+// q of (I - Q M) q = Q right with M q and what that adds. Iteration stops where another one would change less than
+// Newton's linear solves ask for; the last change is then missing in M q.
+MatrixXd NewtonPicardProblem::picard(const MatrixXd& right, MatrixXd& image, MatrixXd& added) const {
+  constexpr double enough = 1e-7;
   const MatrixXd fixed = complement(right);
-  MatrixXd q = fixed, added;
-  for (int k = 0; k < options_.picard; ++k) q = complement(monodromy_times(q, added)) + fixed;
-  return q;
+  MatrixXd q = fixed, sizes(2, 1);
+  for (int k = 0;; ++k) {
+    image = monodromy_times(q, added);
+    if (k == options_.picard) return q;
+    const MatrixXd next = complement(image) + fixed;
+    sizes << (next - q).squaredNorm(), fixed.squaredNorm();
+    sum(sizes);
+    q = next;
+    if (sizes(0) <= enough * enough * sizes(1)) return q;
+  }
 }
 
 void NewtonPicardProblem::linearise(Vec u, Vec row) {
   const double period = begin_point(border_of(u));
-  const core::ReadArray ua(u), wa(row);
+  // The residual at u may have left its links behind; they are exchanged, because those of this linearisation are
+  // wanted until the next one.
+  if (stepper_->product_is_free() && next_.u.size() > 0 && next_.u == get(u)) {
+    std::swap(links_, next_);
+    next_.u.resize(0);
+  } else {
+    MatrixXd ends;
+    march_all(u, period, ends, &links_);
+  }
+  const core::ReadArray wa(row);
   const Index count = intervals();
-  const Map<const MatrixXd> x(ua.data(), local_, count), w(wa.data(), local_, count);
-  links_.resize(static_cast<std::size_t>(count));
-  columns_.resize(static_cast<std::size_t>(count));
-  rows_.assign(static_cast<std::size_t>(count), MatrixXd(borders_, local_));
-  core::Vector state = core::duplicate(work_.get());
+  const Map<const MatrixXd> w(wa.data(), local_, count);
+  rows_.resize(at(count));
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    put(x.col(i == 0 ? count - 1 : i - 1), state.get());
-    march(i, period, state.get(), &columns_[k]);
-    if (options_.autonomous) rows_[k].row(0) = phase_row_.col(i).transpose();
-    rows_[k].bottomRows(1) = w.col(i).transpose();
+    rows_[at(i)].resize(local_, borders_);
+    if (options_.autonomous) rows_[at(i)].col(0) = phase_row_.col(i);
+    rows_[at(i)].rightCols(1) = w.col(i);
   }
   corner_ = MatrixXd::Zero(borders_, borders_);
   corner_.row(borders_ - 1) = border_of(row).transpose();
@@ -176,93 +209,37 @@ void NewtonPicardProblem::linearise(Vec u, Vec row) {
   ends_ = MatrixXd::Zero(local_, borders_);
   ends_added_ = MatrixXd::Zero(borders_, borders_);
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+    const auto k = at(i);
     if (i > 0) apply(i, ends_);
-    ends_ -= columns_[k];
-    ends_added_ += rows_[k] * ends_;
+    ends_ -= links_.columns[k];
+    ends_added_.noalias() += rows_[k].transpose().lazyProduct(ends_);
   }
   sum(ends_added_);
 
   const bool stale = solves_ > stale_after || image_.rows() != local_;
-  if (stale) {
+  if (stale)
     (void)find_subspace();
-  } else if (basis_.cols() > 0) {
-    // V <- orth(M V) with the image of the last linearisation, by Cholesky of its Gram matrix, twice.
+  else
     basis_ = image_;
-    for (int k = 0; k < 2; ++k) {
-      MatrixXd gram = basis_.transpose() * basis_;
-      sum(gram);
-      basis_ = gram.llt().matrixU().solve<Eigen::OnTheRight>(basis_).eval();
-    }
-  }
+  if (!stale) orthonormalise(basis_, 0);
+  find_image();
   prepare();
 }
 
-// Everything that solve() needs of the subspace.
+// Everything that solve() needs of the subspace and its image.
 void NewtonPicardProblem::prepare() {
   const Index p = basis_.cols();
-  MatrixXd basis_added, q_added;
-  image_ = monodromy_times(basis_, basis_added);
-  q_ends_ = picard(ends_);
-  image_q_ends_ = monodromy_times(q_ends_, q_added);
+  MatrixXd q_added;
+  q_ends_ = picard(ends_, image_q_ends_, q_added);
   MatrixXd top(p, p + borders_);
   top << basis_.transpose() * image_, basis_.transpose() * (ends_ + image_q_ends_);
   sum(top);
   MatrixXd small(p + borders_, p + borders_);
   small.topRows(p) = MatrixXd::Identity(p, p + borders_) - top;
-  small.bottomLeftCorner(borders_, p) = basis_added;
+  small.bottomLeftCorner(borders_, p) = basis_added_;
   small.bottomRightCorner(borders_, borders_) = q_added + ends_added_ + corner_;
   small_.compute(small);
   solves_ = 0;
-}
-
-std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
-  VectorXd start(local_);
-  if (basis_.cols() > 0) {
-    start = basis_.rowwise().sum();
-  } else {
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
-    for (Index k = 0; k < local_; ++k) start(k) = 1 + std::sin(0.7 * static_cast<double>(begin + k));
-  }
-  core::Vector first = core::duplicate(work_.get());
-  put(start, first.get());
-  SubspaceOptions options;
-  options.radius = options_.radius;
-  options.tolerance = options_.multiplier_tolerance;
-  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
-  DominantSubspace found = dominant_subspace(
-      [this](Vec v) {
-        MatrixXd state = get(v);
-        for (Index i = 0; i < intervals(); ++i) apply(i, state);
-        put(state, v);
-        ++products_;
-      },
-      first.get(), options);
-  basis_ = std::move(found.basis);
-  return found.values;
-}
-
-std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
-  auto values = find_subspace();
-  prepare();
-  return values;
-}
-
-// In the basis the motion is the eigenvector of V^T M V; the intervals carry it on.
-MatrixXd NewtonPicardProblem::critical_motion(double mu) {
-  MatrixXd projected = basis_.transpose() * image_;
-  sum(projected);
-  const Eigen::EigenSolver<MatrixXd> modes(projected);
-  Index nearest = 0;
-  (modes.eigenvalues().array() - mu).abs().minCoeff(&nearest);
-  MatrixXd state = basis_ * modes.eigenvectors().col(nearest).real().normalized();
-  MatrixXd motion(local_, intervals());
-  for (Index i = 0; i < intervals(); ++i) {
-    apply(i, state);
-    motion.col(i) = scale_.cwiseProduct(state);
-  }
-  return whole(motion);
 }
 
 void NewtonPicardProblem::multiply(Vec v, Vec y) {
@@ -271,13 +248,13 @@ void NewtonPicardProblem::multiply(Vec v, Vec y) {
   const core::WriteArray ya(y);
   const Index count = intervals();
   const Map<const MatrixXd> x(va.data(), local_, count);
-  MatrixXd added = MatrixXd::Zero(borders_, 1);
+  MatrixXd added = MatrixXd::Zero(borders_, 1), state;
   for (Index i = 0; i < count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    MatrixXd state = x.col(i == 0 ? count - 1 : i - 1);
+    const auto k = at(i);
+    state = x.col(i == 0 ? count - 1 : i - 1);
     apply(i, state);
-    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + columns_[k] * border;
-    added += rows_[k] * x.col(i);
+    Map<VectorXd>(ya.data() + i * local_, local_) = x.col(i) - state + links_.columns[k].lazyProduct(border);
+    added.noalias() += rows_[k].transpose().lazyProduct(x.col(i));
   }
   ++products_;
   sum(added);
@@ -291,20 +268,21 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   const core::WriteArray xa(out);
   const Index count = intervals(), p = basis_.cols();
   const Map<const MatrixXd> r(ra.data(), local_, count);
-  // The motion that the right-hand side alone drives.
-  MatrixXd added = MatrixXd::Zero(borders_, 1);
-  MatrixXd state = MatrixXd::Zero(local_, 1);
-  for (Index i = 0; i < count; ++i) {
-    if (i > 0) apply(i, state);
-    state += r.col(i);
-    added += rows_[static_cast<std::size_t>(i)] * state;
+  // The motion that the right-hand side alone drives: none for a tangent.
+  MatrixXd added = MatrixXd::Zero(borders_, 1), driven(1, 1);
+  MatrixXd state = MatrixXd::Zero(local_, 1), q = state, image_q = state, q_added = added;
+  driven(0) = r.squaredNorm();
+  sum(driven);
+  if (driven(0) > 0) {
+    for (Index i = 0; i < count; ++i) {
+      if (i > 0) apply(i, state);
+      state += r.col(i);
+      added.noalias() += rows_[at(i)].transpose().lazyProduct(state);
+    }
+    sum(added);
+    products_ += count > 1;
+    q = picard(state, image_q, q_added);
   }
-  sum(added);
-  products_ += count > 1;
-
-  const MatrixXd q = picard(state);
-  MatrixXd q_added;
-  const MatrixXd image_q = monodromy_times(q, q_added);
   MatrixXd top = basis_.transpose() * (state + image_q);
   sum(top);
   VectorXd small(p + borders_);
@@ -314,7 +292,7 @@ void NewtonPicardProblem::solve(Vec rhs, Vec out) {
   state = basis_ * small.head(p) + q + q_ends_ * border;
   for (Index i = 0; i < count; ++i) {
     apply(i, state);
-    state += r.col(i) - columns_[static_cast<std::size_t>(i)] * border;
+    state += r.col(i) - links_.columns[at(i)].lazyProduct(border);
     Map<VectorXd>(xa.data() + i * local_, local_) = state;
   }
   ++products_;

@@ -36,11 +36,12 @@ MatrixXd StepProduct::change(const MatrixXd& v, const Columns& lift, const Colum
 }
 
 void StepProduct::apply(MatrixXd& v) const {
+  if (rate_) return apply_structured(v);
   v += change(v, {}, {});
 }
 
-SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates)
-    : system_(system), tableau_(std::move(tableau)), constant_rates_(constant_rates) {
+SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates, bool by_length)
+    : system_(system), tableau_(std::move(tableau)), constant_rates_(constant_rates), by_length_wanted_(by_length) {
   core::require(tableau_.sequential(), "steps distributed in space need a scheme with sequential stages");
   x_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   for (core::Vector* v : {&state_scale_, &residual_inverse_, &k_, &value_, &base_, &f_, &d_, &lift_})
@@ -48,6 +49,8 @@ SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, boo
   system.scales(state_scale_.get(), residual_inverse_.get());
   check(VecReciprocal(residual_inverse_.get()));
   for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(x_.get()));
+  if (constant_rates) structured_ = StructuredRate::make(system);
+  if (structured_ && !tableau_.is_explicit() && !structured_->narrow()) structured_.reset();
 }
 
 void SparseRungeKutta::fail() const {
@@ -146,6 +149,10 @@ void SparseRungeKutta::rate(double angle, Vec x, Vec xdot) {
 }
 
 void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, StepProduct* product) {
+  if (structured_) {
+    const core::WriteArray xa(x);
+    return structured_step(angle, d_angle, length, {xa.data(), xa.size()}, product ? *product : unused_);
+  }
   const Index s = tableau_.stages();
   StepProduct::Columns lifts, loads;
   frozen_.reset();  // a new preconditioner for every step

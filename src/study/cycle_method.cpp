@@ -81,7 +81,8 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Roto
     return std::make_unique<solve::CycleProblem>(context_.comm, system, o, std::move(mesh));
   // Single shooting has nothing to share: every rank computes the same.
   const MPI_Comm time = options_.method == Method::shooting ? PETSC_COMM_SELF : context_.comm;
-  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh));
+  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh),
+                                                  system.constant_rates());
 }
 
 }  // namespace whirl::study

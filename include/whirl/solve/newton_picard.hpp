@@ -22,7 +22,7 @@ struct NewtonPicardOptions {
   double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
   double radius = 0.3;         ///< multipliers above it are solved by Newton, the rest by Picard iterations
-  int picard = 3;              ///< Picard iterations on the rest per linear solve
+  int picard = 3;              ///< at most so many Picard iterations on the rest per linear solve
   double multiplier_tolerance = 1e-9;
   bool constant_rates = false;  ///< dF/d(dx/dt) depends on nothing but the parameter: explicit stages keep it
 };
@@ -40,9 +40,11 @@ struct NewtonPicardOptions {
 ///     x_0 = V p + q_R + q_E d,  then x_(i+1) = G_i x_i + ... forward.
 ///
 /// It preconditions GMRES around multiply(), which is exact: Newton keeps its quadratic convergence, folds stay regular
-/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation and by
-/// multipliers(), with a size that follows the radius; in between one orthogonal subspace iteration V <- orth(M V)
-/// costs nothing, because M V is known. Source: Lust (1997); van de Vrande (2001), Sec. 3.2 and (3.18), with errata.
+/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation, with
+/// a size that follows the radius; then orthogonal subspace iteration V <- orth(M V) keeps it, of which the first one
+/// costs nothing, because M V is known. multipliers() takes V as long as it is invariant, two generic vectors find no
+/// other multiplier above the radius, and their number stays; else Krylov-Schur again. Source: Lust (1997); van de
+/// Vrande (2001), Sec. 3.2 and (3.18), with errata.
 class NewtonPicardProblem : public PeriodicProblem {
 public:
   /// `tableau` has sequential stages; `steps` per interval of `mesh`. The communicator is that of `system`.
@@ -88,14 +90,23 @@ private:
   /// Columns [local x k] of every rank as [n x k] on all ranks.
   [[nodiscard]] Eigen::MatrixXd whole(const Eigen::MatrixXd& columns) const;
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
-  void march(Eigen::Index i, double period, Vec x, Eigen::MatrixXd* columns);
+  struct Links {
+    Eigen::VectorXd u;                            // where: this rank's unknowns
+    std::vector<std::vector<StepProduct>> steps;  // per interval
+    std::vector<Eigen::MatrixXd> columns;         // dR/d(border) per interval [local x nb]
+  };
+  void march(Eigen::Index i, double period, Vec x, Links* links);
+  void march_all(Vec u, double period, Eigen::MatrixXd& ends, Links* links);
   void sum(Eigen::MatrixXd& values) const;
   /// Each column of v [local x k] over interval i.
   void apply(Eigen::Index i, Eigen::MatrixXd& v) const;
   Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
   [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
-  [[nodiscard]] Eigen::MatrixXd picard(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd picard(const Eigen::MatrixXd& right, Eigen::MatrixXd& image, Eigen::MatrixXd& added) const;
+  void orthonormalise(Eigen::MatrixXd& v, Eigen::Index from) const;
   std::vector<std::complex<double>> find_subspace();
+  std::vector<std::complex<double>> settled_multipliers();
+  void find_image();
   void prepare();
 
   problem::System& system_;
@@ -112,11 +123,12 @@ private:
   Eigen::MatrixXd phase_row_;  // [local x N]
 
   // The linearisation.
-  std::vector<std::vector<StepProduct>> links_;
-  std::vector<Eigen::MatrixXd> columns_;        // dR/d(border) per interval [local x nb]
-  std::vector<Eigen::MatrixXd> rows_;           // added rows per interval [nb x local]
-  Eigen::MatrixXd corner_, ends_, ends_added_;  // E [local x nb], and what it adds to the rows
-  Eigen::MatrixXd basis_, image_, q_ends_, image_q_ends_;
+  Links links_, next_;                           // of the linearisation, and of the last residual if they are free
+  std::vector<Eigen::MatrixXd> rows_;            // added rows per interval, transposed [local x nb]
+  Eigen::MatrixXd corner_, ends_, ends_added_;   // E [local x nb], and what it adds to the rows
+  Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
+  Eigen::MatrixXd q_ends_, image_q_ends_;
+  double contraction_ = 0;  // of the error of V by one iteration, as last seen
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;
   mutable long products_ = 0;
   int solves_ = 0;  // since the linearisation: many mean that the subspace is stale

@@ -1,10 +1,14 @@
 #pragma once
 // Periodic solutions by one-step maps: single and multiple shooting, and the finite differences of explicit schemes.
 
+#include <memory>
+
 #include "whirl/solve/cycle_problem.hpp"
 #include "whirl/solve/runge_kutta.hpp"
 
 namespace whirl::solve {
+
+class SparseRungeKutta;
 
 /// Equations x_(i+1) = phi_i(x_i; T, p), i over the intervals of the mesh with x_N = x_0, where phi_i are `steps` equal
 /// Runge-Kutta steps.
@@ -14,12 +18,15 @@ namespace whirl::solve {
 /// (3.4) is condensed by the same products of G_i. Unknowns, border, phase condition, monodromy and parallel
 /// condensation are those of CycleProblem with the states at the ends of the intervals (degree 1) as unknowns; the
 /// residual is in scaled states. With Radau IIA steps the states at the mesh points and the monodromy are those of
-/// collocation.
+/// collocation. G_i are dense; where Newton-Picard takes its steps by the structure of the system, their columns are
+/// found by its products.
 class ShootingProblem : public CycleProblem {
 public:
-  /// Degree, points and mesh tolerance of `options` are not used. `mesh` has at least one interval per rank.
+  /// Degree, points and mesh tolerance of `options` are not used. `mesh` has at least one interval per rank. With
+  /// `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter.
   ShootingProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, Tableau tableau, int steps,
-                  std::vector<double> mesh);
+                  std::vector<double> mesh, bool constant_rates = false);
+  ~ShootingProblem() override;
 
   [[nodiscard]] const Tableau& tableau() const { return stepper_.tableau(); }
   /// Steps per interval.
@@ -47,7 +54,11 @@ private:
   /// Carries x over interval i; `states`, if not null, gets those after each step [n x steps].
   void march(Eigen::Index i, double period, Eigen::VectorXd& x, Eigen::MatrixXd* tangents,
              Eigen::MatrixXd* states = nullptr);
+  void step(double begin, double end, double length, Eigen::VectorXd& x, Eigen::MatrixXd* tangents);
   RungeKutta stepper_;
+  std::unique_ptr<SparseRungeKutta> structured_;  // instead, of systems that tell their structure
+  double structured_at_ = 0;                      // the parameter that it knows
+  core::Vector state_;
   int steps_;
 };
 
