@@ -48,8 +48,8 @@ TEST(CompliantFinite, ManufacturedPressureAtSecondOrder) {
           const double ht = ex * std::sin(theta) - ey * std::cos(theta) + soft * pt, hz = soft * pz;
           const double flow = 0.5 * (3.0 * h * h * ht * pt + h * h * h * ptt +
                                      k * (3.0 * h * h * hz * pz + h * h * h * pzz) - kSpeed * ht);
-          const double left = 1.0 - soft * p / rubber,
-                       elastic = damped ? rubber / 3.0 * (1.0 / (left * left) - left) : soft * p;
+          const double left = 1.0 - soft * std::abs(p) / rubber,
+                       elastic = damped ? std::copysign(rubber / 3.0 * (1.0 / (left * left) - left), p) : soft * p;
           const double rate =
               damped ? (b * p - elastic) / tau - kSpeed * (vx * std::cos(theta) + vy * std::sin(theta)) : flow;
           states.push_back(c * h);

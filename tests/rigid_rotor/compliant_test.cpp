@@ -63,4 +63,28 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"long_b1", "long.yaml", 320, 1, 0.9, 1.25, 40, {{Type::neimark_sacker, 1.1602, 1e-3}}}),
     [](const auto& which) { return which.param.name; });
 
+// A resonance that bends to higher speeds: the folds of figure_5_13.yaml, whose 120 cells these values come from; none
+// where the liner does not stiffen.
+TEST(RubberLiner, BendsTheResonance) {
+  const std::string film = "bearings.rubber.film.";
+  const auto run = [&](const std::string& rubber, const std::string& to, const std::string& name) {
+    return test::run_deck(
+               study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_13.yaml",
+                           {film + "cells=[60, 4]", film + "rubber_thickness=" + rubber,
+                            "studies.1.cycle_branch.range={from: 300 rad/s, to: " + to + "}"}),
+               name)
+        .at(0);
+  };
+  const io::StudySummary bent = run("0.2 mm", "556 rad/s", "rubber_bent");
+  EXPECT_EQ(bent.status, "completed");
+  ASSERT_EQ(bent.bifurcations.size(), 2U);
+  for (const auto& [k, speed] : {std::pair{0U, 544.26}, {1U, 540.27}}) {
+    EXPECT_EQ(bent.bifurcations[k].type, Type::cyclic_fold);
+    EXPECT_NEAR(bent.bifurcations[k].value, speed, 0.4);
+  }
+  const io::StudySummary straight = run("", "480 rad/s", "rubber_straight");
+  EXPECT_EQ(straight.status, "completed");
+  EXPECT_TRUE(straight.bifurcations.empty());
+}
+
 }  // namespace
