@@ -22,10 +22,11 @@ LinerLaw::LinerLaw(const Geometry& geometry, const Options& options, double b, d
 
 LinerLaw::Value LinerLaw::elastic(double u) const {
   if (!rubber_) return {stiffness_ * u, stiffness_};
-  const double left = 1.0 - u / thickness_;
+  const double left = 1.0 - std::abs(u) / thickness_;
   if (!(left > 0.0)) throw core::DomainError("the liner has no thickness left");
   const double square = 1.0 / (left * left);
-  return {stiffness_ * thickness_ / 3.0 * (square - left), stiffness_ / 3.0 * (2.0 * square / left + 1.0)};
+  return {std::copysign(stiffness_ * thickness_ / 3.0 * (square - left), u),
+          stiffness_ / 3.0 * (2.0 * square / left + 1.0)};
 }
 
 LinerLaw::Value LinerLaw::contact(double h) const {

@@ -10,8 +10,10 @@ namespace whirl::film {
 ///     P = (phi(u) + tau du/dt)/b,   phi(u) = u, or of rubber of thickness D: D/3 ((1 - u/D)^-2 - (1 - u/D))
 ///
 /// The damping is that of a Kelvin-Voigt solid. The rubber law has the slope 1 at u = 0, stiffens without bound as u
-/// tends to D and is that of bonded blocks, Lindley (1966) after Gent and Lindley (1959), with b in place of their
-/// apparent modulus. The film carries P less the contact pressure P_c(h) of the asperities (Contact).
+/// tends to D and is that of bonded blocks in compression, Lindley (1966) after Gent and Lindley (1959), with b in
+/// place of their apparent modulus. Under suction, phi(-u) = -phi(u): a liner that gave way more easily there would
+/// have its film pressed out by a large whirl, because the equation of the film keeps negative pressures. The film
+/// carries P less the contact pressure P_c(h) of the asperities (Contact).
 class LinerLaw {
 public:
   /// `b` in s, `pressure` = p/P in Pa s.

@@ -137,18 +137,25 @@ FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) {
   return seed;
 }
 
+namespace {
+
+// A motion on the first lap, `second` times it on the second one.
+solve::Cycle two(const solve::Cycle& one, double second) {
+  solve::Cycle out{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period, one.parameter};
+  out.x << one.x, second * one.x;
+  return out;
+}
+
+}  // namespace
+
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
-  return make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), false);
+  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), false);
+  if (autonomous()) twice->set_phase_reference(two(seed.cycle, 1));
+  return twice;
 }
 
 // The branch leaves along +delta on the first lap and -delta on the second, at first without a change of the parameter.
 solve::Restart CycleFollower::leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const {
-  const auto two = [](const solve::Cycle& one, double second) {
-    solve::Cycle out{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period,
-                     one.parameter};
-    out.x << one.x, second * one.x;
-    return out;
-  };
   solve::Cycle direction = two(seed.direction, -1);
   direction.parameter = 0;
   solve::Restart restart;
@@ -162,6 +169,7 @@ solve::Restart CycleFollower::leave_flip(const solve::PeriodicProblem& twice, co
 solve::Restart CycleFollower::start_at_flip() {
   system_->set_parameter(seed_->cycle.parameter);
   problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), false);
+  if (autonomous()) problem_->set_phase_reference(two(seed_->cycle, 1));
   solve::Restart restart = leave_flip(*problem_, *seed_);
   restart.step = continuation_.initial_step;
   restart.point.index = -1;  // the flip itself belongs to the branch of the simple period

@@ -231,6 +231,29 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
   }
 }
 
+// A film that carries nothing has the residual Omega/2 dh/dtheta alone.
+TEST(CompliantLimits, OrdersOfTheDifferences) {
+  using enum Options::Differences;
+  for (const auto kind : {Options::Kind::compliant_short, Options::Kind::compliant_finite})
+    for (const auto& [differences, order] : {std::pair{central, 2.0}, {upwind, 2.0}, {third_order, 3.0}}) {
+      std::array<double, 2> error{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        Options o = compliant(kind, 0.1, 40 << k, false);
+        o.differences = differences;
+        auto film = make_state_model(cylinder(), o, oil());
+        std::vector<double> s(film->states());
+        film->unloaded(still(0.3, -0.4), s);
+        StateResponse r;
+        film->evaluate(still(0.3, -0.4), s, std::vector<double>(s.size(), 0.0), Need::force, r);
+        const double theta = 90.0 * kDegree + 7 * 9.0 * kDegree;  // node 7 of 40
+        const double exact = 0.5 * kSpeed * cylinder().clearance * (0.3 * std::sin(theta) + 0.4 * std::cos(theta));
+        const std::size_t line = kind == Options::Kind::compliant_finite ? film->line() : 1;
+        error[k] = std::abs(r.residual[(7 << k) * line] - exact);
+      }
+      EXPECT_NEAR(std::log2(error[0] / error[1]), order, 0.3);
+    }
+}
+
 TEST(CompliantLimits, StaticForceIsOfSecondOrder) {
   using enum Options::Kind;
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {

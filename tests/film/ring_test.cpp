@@ -62,6 +62,9 @@ TEST(RingPreconditioner, RateDoesNotDependOnTheMesh) {
     EXPECT_LT(rate(cells, dt, central), 0.25) << cells[0] << " x " << cells[1];
   EXPECT_LT(rate({96, 20}, 10.0 * dt, central), 0.2);
   EXPECT_LT(rate({96, 20}, dt, upwind), 0.3);
+  for (const auto cells : {std::array{48, 10}, std::array{96, 20}, std::array{192, 40}, std::array{45, 40}})
+    EXPECT_LT(rate(cells, dt, third_order), 0.15) << cells[0] << " x " << cells[1];
+  EXPECT_LT(rate({96, 20}, 10.0 * dt, third_order), 0.15);
 }
 
 }  // namespace

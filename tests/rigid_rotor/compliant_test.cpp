@@ -63,4 +63,51 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"long_b1", "long.yaml", 320, 1, 0.9, 1.25, 40, {{Type::neimark_sacker, 1.1602, 1e-3}}}),
     [](const auto& which) { return which.param.name; });
 
+// A resonance that bends to higher speeds: the folds of figure_5_13.yaml, whose 120 cells these values come from; none
+// where the liner does not stiffen.
+TEST(RubberLiner, BendsTheResonance) {
+  const std::string film = "bearings.rubber.film.";
+  const auto run = [&](const std::string& rubber, const std::string& to, const std::string& name) {
+    study::Deck deck =
+        study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_13.yaml",
+                    {film + "cells=[60, 4]", film + "rubber_thickness=" + rubber,
+                     "studies.1.cycle_branch.range={from: 300 rad/s, to: " + to + "}"});
+    return test::run_deck(deck, name).at(0);
+  };
+  const io::StudySummary bent = run("0.2 mm", "556 rad/s", "rubber_bent");
+  EXPECT_EQ(bent.status, "completed");
+  ASSERT_EQ(bent.bifurcations.size(), 2U);
+  for (const auto& [k, speed] : {std::pair{0U, 544.26}, {1U, 540.27}}) {
+    EXPECT_EQ(bent.bifurcations[k].type, Type::cyclic_fold);
+    EXPECT_NEAR(bent.bifurcations[k].value, speed, 0.4);
+  }
+  const io::StudySummary straight = run("", "480 rad/s", "rubber_straight");
+  EXPECT_EQ(straight.status, "completed");
+  EXPECT_TRUE(straight.bifurcations.empty());
+}
+
+// The whirl of figure_5_7.yaml touches at 458.8 rad/s and ends there; with asperities that carry it goes on.
+TEST(Contact, ABranchGoesOnWhereItTouched) {
+  study::Deck deck =
+      study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_7.yaml",
+                  {"studies.2.cycle_branch.range={from: 240 rad/s, to: 470 rad/s}",
+                   "bearings.half.film.contact={roughness: 0.5 um, pressure: 1 MPa}"});
+  deck.studies.erase(deck.studies.begin());
+  EXPECT_EQ(test::run_deck(deck, "contact").at(0).status, "completed");
+}
+
+// Films of finite length on a rigid bore: the limit of fine meshes is 2.5262, and 2.5265 that of compliant films as B
+// vanishes (meshes 40 x 8 and 60 x 12 with B = 0.03 and 0.01, extrapolated).
+TEST(ClosedFilm, HopfPointOfARigidRotor) {
+  const std::string film = "={type: reynolds, turbulence: laminar, cells: [60, 12]}";
+  study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/rigid_rotor/short_f1.yaml",
+                                 {"bearings.left.film" + film, "bearings.right.film" + film,
+                                  "studies.1.equilibrium_branch.range={from: 320 rad/s, to: 480 rad/s}"});
+  deck.studies.resize(1);
+  const io::StudySummary s = test::run_deck(deck, "closed_film").at(0);
+  ASSERT_EQ(s.bifurcations.size(), 1U);
+  EXPECT_EQ(s.bifurcations[0].type, Type::hopf);
+  EXPECT_NEAR(s.bifurcations[0].value / 160, 2.5262, 2e-3);
+}
+
 }  // namespace
