@@ -35,12 +35,12 @@ public:
   [[nodiscard]] const std::vector<FlipSeed>& seeds() const { return seeds_; }
 
 private:
-  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
+  [[nodiscard]] std::unique_ptr<system::Plant> make_system(bool half_film) const;
   /// Who shares a system: its states are distributed by solvers that are parallel in space.
   [[nodiscard]] MPI_Comm space() const;
   /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with time steps
   /// half as long if `doubled`.
-  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::RotorSystem& system, int turns,
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::Plant& system, int turns,
                                                                      std::vector<double> mesh, bool doubled) const;
   /// A change of the root mean square state by half a clearance counts as one longest step.
   [[nodiscard]] double state_weight() const { return std::pow(continuation_.max_step / 0.5, 2); }
@@ -69,6 +69,7 @@ private:
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
   [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
                              bool half_film) const;
+  void renew_phase(Vec u, Vec tangent);
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
@@ -79,7 +80,7 @@ private:
   double scale_;  // SI value of one unit of the range
   solve::NewtonOptions newton_;
   solve::ContinuationOptions continuation_;
-  std::unique_ptr<system::RotorSystem> system_;
+  std::unique_ptr<system::Plant> system_;
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   std::optional<solve::Cycle> last_;

@@ -44,7 +44,7 @@ MPI_Comm CycleFollower::space() const {
   return options_.method == Method::newton_picard && states >= shared_from ? context_.comm : PETSC_COMM_SELF;
 }
 
-std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::RotorSystem& system, int turns,
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,
                                                                     std::vector<double> mesh, bool doubled) const {
   const int laps = turns / options_.period;
   int steps = steps_of(options_);
@@ -65,7 +65,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Roto
     o.parameter_scale = scale_;
     o.state_weight = state_weight();
     o.radius = options_.radius;
-    o.constant_rates = true;  // masses, and own states of films as ds/dt with the factor one
+    o.constant_rates = system.constant_rates();
     return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
   }
   solve::CycleOptions o;
