@@ -5,6 +5,7 @@
 #include "whirl/study/locus.hpp"
 #include "whirl/study/modes.hpp"
 #include "whirl/study/motion.hpp"
+#include "whirl/study/run_up.hpp"
 #include "whirl/study/static.hpp"
 #include "whirl/study/unbalance_response.hpp"
 
@@ -30,6 +31,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
       kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
+      kind<RunUp>("a rotor whose speed rises or falls evenly: amplitude in every revolution on the way"),
       kind<Locus>("curve of one bifurcation of a branch in two parameters, with points of codimension two"),
   };
   return all;

@@ -54,6 +54,7 @@ transient::Evidence MotionRecord::evidence() const {
   e.size = std::sqrt(std::max(0.0, squares_ / count - mean));
   e.return_tolerance = options_.return_tolerance;
   if (e.size >= e.rest) e.returns = transient::return_distances(points_, options_.max_period, e.size);
+  e.fading = transient::fading_of_returns(points_, options_.max_period);
   if (options_.exponents > 0) {
     e.exponents = exponents_.values();
     e.uncertainties = exponents_.uncertainties();
