@@ -13,7 +13,7 @@ PICTURES = {
     "modes": [campbell.draw, shapes.draw_modes],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
-    "cycle_branch": [bifurcation.draw_cycles, orbits.draw, multipliers.draw],
+    "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
     "motion": [motion.draw],
 }
 

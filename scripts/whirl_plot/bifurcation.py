@@ -103,6 +103,26 @@ def draw_cycles(study):
     return files
 
 
+def draw_frequency(study):
+    """Of self-excited cycles over the running speed: how far from half the speed the whirl is."""
+    if not study.has("branch/parameter", "branch/period") or study.attribute("unbalance", "") or study.attribute("parameter") != "speed":
+        return []
+    parameter, stable, _ = branch_of(study)
+    to_si = {"rpm": np.pi / 30, "Hz": 2 * np.pi, "rad/s": 1}.get(study.attribute("parameter_unit"))
+    if to_si is None:
+        return []
+    ratio = 2 * np.pi / (study.get("branch/period") * parameter * to_si)
+    figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
+    draw_branch(axis, parameter, ratio, stable, COLOURS[0])
+    mark_events(axis, study, [ratio], 1)
+    axis.axhline(0.5, color=INK, linewidth=0.8, linestyle=":")
+    axis.set_title("whirl frequency")
+    axis.set_ylabel("whirl frequency / running speed")
+    axis.set_xlabel(parameter_label(study))
+    axis.margins(y=0.22)
+    return [save(figure, study, "frequency", "self-excited cycles; dotted: half the running speed", branch_legend([k for k, _ in events_of(study)]))]
+
+
 def draw_together(results):
     """All branches of a run over the same parameter in one picture: the vertical motion of each journal."""
     studies = [s for s in results.studies
