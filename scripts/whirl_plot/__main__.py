@@ -1,7 +1,7 @@
 """Draws every picture that a results folder has data for."""
 import sys
 
-from . import bearing_map, bifurcation, campbell, eccentricity, film, locus, motion, multipliers, orbits, response, shapes
+from . import bearing_map, bifurcation, campbell, eccentricity, film, locus, motion, multipliers, orbits, response, run_up, shapes
 from .data import open_results, results_directory
 from .style import use_style
 
@@ -13,7 +13,7 @@ PICTURES = {
     "modes": [campbell.draw, shapes.draw_modes],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
-    "cycle_branch": [bifurcation.draw_cycles, orbits.draw, multipliers.draw],
+    "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
     "motion": [motion.draw],
 }
 
@@ -36,7 +36,7 @@ def main(argv):
                     for file in files:
                         print(file)
         for file in [*bifurcation.draw_together(results), *eccentricity.draw(results), *bearing_map.draw_together(results),
-                     *locus.draw_together(results)]:
+                     *locus.draw_together(results), *run_up.draw_together(results)]:
             print(file)
     return 1 if failed else 0
 

@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, length_unit, levels, mark, parameter_label,
+from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, levels, mark, parameter_label,
                     place_on_branch, save)
 
 
@@ -46,13 +46,13 @@ def draw_equilibria(study):
     names = study.bearings(x.shape[1])
     growth = study.get("branch/leading_real")
     figure, axes, _ = grid_of(len(names) + (growth is not None))
-    scale, unit = length_unit(np.concatenate([x, y]))
+    scale, unit = study.measure(np.concatenate([x, y]))
     for b, (axis, name) in enumerate(zip(axes, names)):
         draw_branch(axis, parameter, y[:, b] * scale, stable, COLOURS[0])
         draw_branch(axis, parameter, x[:, b] * scale, stable, COLOURS[1])
         mark_events(axis, study, [y[:, b], x[:, b]], scale)
         axis.set_title(name)
-        axis.set_ylabel(f"journal position [{unit}]")
+        axis.set_ylabel(f"position [{unit}]")
         axis.set_xlabel(parameter_label(study))
         axis.margins(y=0.12)
     if growth is not None:
@@ -65,7 +65,7 @@ def draw_equilibria(study):
         axis.set_xlabel(parameter_label(study))
         axis.margins(y=0.12)
     directions = [Line2D([], [], color=COLOURS[0], label="y, vertical"), Line2D([], [], color=COLOURS[1], label="x, horizontal")]
-    return [save(figure, study, "equilibria", "journal relative to the bearing centre",
+    return [save(figure, study, "equilibria", study.shown,
                  branch_legend([k for k, _ in events_of(study)], directions))]
 
 
@@ -89,18 +89,38 @@ def draw_cycles(study):
         if not study.has(f"branch/{direction}_max"):
             continue
         figure, axes, _ = grid_of(count)
-        scale, unit = length_unit(np.concatenate([study.get(f"branch/{direction}_max"), study.get(f"branch/{direction}_min")]))
+        scale, unit = study.measure(np.concatenate([study.get(f"branch/{direction}_max"), study.get(f"branch/{direction}_min")]))
         for b, (axis, name) in enumerate(zip(axes, names)):
             draw_cycle_panel(axis, study, direction, b, scale, COLOURS[0] if direction == "y" else COLOURS[1])
             axis.set_title(name)
             axis.set_ylabel(f"{direction}, max and min [{unit}]")
             axis.set_xlabel(parameter_label(study))
             axis.margins(y=0.12)
-        note = f"largest and smallest {words} position of the journal over one cycle, relative to the bearing centre"
+        note = f"largest and smallest {direction} ({words}) over one cycle: {study.shown}"
         unbalance = study.attribute("unbalance")
         files.append(save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note,
                           branch_legend([k for k, _ in events_of(study)])))
     return files
+
+
+def draw_frequency(study):
+    """Of self-excited cycles over the running speed: how far from half the speed the whirl is."""
+    if not study.has("branch/parameter", "branch/period") or study.attribute("unbalance", "") or study.attribute("parameter") != "speed":
+        return []
+    parameter, stable, _ = branch_of(study)
+    to_si = {"rpm": np.pi / 30, "Hz": 2 * np.pi, "rad/s": 1}.get(study.attribute("parameter_unit"))
+    if to_si is None:
+        return []
+    ratio = 2 * np.pi / (study.get("branch/period") * parameter * to_si)
+    figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
+    draw_branch(axis, parameter, ratio, stable, COLOURS[0])
+    mark_events(axis, study, [ratio], 1)
+    axis.axhline(0.5, color=INK, linewidth=0.8, linestyle=":")
+    axis.set_title("whirl frequency")
+    axis.set_ylabel("whirl frequency / running speed")
+    axis.set_xlabel(parameter_label(study))
+    axis.margins(y=0.22)
+    return [save(figure, study, "frequency", "self-excited cycles; dotted: half the running speed", branch_legend([k for k, _ in events_of(study)]))]
 
 
 def draw_together(results):
@@ -116,7 +136,7 @@ def draw_together(results):
     tables = [s.get(field[s.kind]).reshape(len(s.get("branch/parameter")), -1) for s in studies]
     count = min(t.shape[1] for t in tables)
     names = studies[0].bearings(count)
-    scale, unit = length_unit(np.concatenate([t[:, :count].ravel() for t in tables]))
+    scale, unit = studies[0].measure(np.concatenate([t[:, :count].ravel() for t in tables]))
     figure, axes, _ = grid_of(count)
     handles = []
     for s, study in enumerate(studies):
@@ -134,5 +154,5 @@ def draw_together(results):
         axis.set_ylabel(f"y, max and min [{unit}]")
         axis.set_xlabel(label)
         axis.margins(y=0.12)
-    return [save(figure, results.whole("all branches"), "bifurcations", "vertical position of the journal relative to the bearing centre",
+    return [save(figure, results.whole("all branches"), "bifurcations", f"y (vertical): {studies[0].shown}",
                  branch_legend([k for s in studies for k, _ in events_of(s)], handles))]

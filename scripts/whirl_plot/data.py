@@ -8,6 +8,8 @@ import sys
 import h5py
 import numpy as np
 
+from .style import length_unit
+
 
 def text(value):
     return value.decode("utf-8") if isinstance(value, bytes) else str(value)
@@ -44,9 +46,23 @@ class Study:
         return np.array([text(v) for v in data.ravel()]).reshape(data.shape) if data.dtype.kind in "OS" else data
 
     def bearings(self, count):
-        """Names of the bearings; numbered if the study gave none."""
-        names = self.get("bearings/name")
+        """Names of the bearings, or of what another system shows; numbered if the study gave none."""
+        names = self.get("bearings/name", self.get("places/name"))
         return list(names) if names is not None and len(names) == count else [f"bearing {i + 1}" for i in range(count)]
+
+    @property
+    def shown(self):
+        """What the positions of branches and motions are."""
+        return text(self.group["places/name"].attrs["description"]) if "places/name" in self.group else "journal relative to the bearing centre"
+
+    @property
+    def micro(self):
+        """Factor and unit of orbits: micrometres, or as they are where another system than a rotor shows them."""
+        return (1, "1") if "places/name" in self.group else (1e6, "\u00b5m")
+
+    def measure(self, values):
+        """Factor and unit in which positions read best; another system than a rotor need not show lengths."""
+        return (1, "1") if "places/name" in self.group else length_unit(values)
 
     def file(self, what):
         """Where a picture of this study goes."""

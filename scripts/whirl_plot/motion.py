@@ -14,33 +14,34 @@ def distinct(study, names):
     return [int(i) for i in np.sort(np.unique(np.atleast_1d(nodes), return_index=True)[1])]
 
 
-def draw_orbit(axis, study, b, x, y, px, py):
-    if not draw_clearance(axis, study, b, (x, y)):
+def draw_orbit(axis, study, b, x, y, px, py, unit):
+    if draw_clearance(axis, study, b, (x, y)):
+        turn_arrow(axis)
+    else:
         square(axis, x, y)
-    turn_arrow(axis)
     axis.plot(x, y, color=COLOURS[0], linewidth=0.7, alpha=0.9)
     axis.plot(px, py, ".", color=COLOURS[1], markersize=4, zorder=4)
-    finish(axis)
+    finish(axis, unit=unit)
 
 
-def draw_points(axis, px, py):
+def draw_points(axis, px, py, unit):
     axis.plot(px, py, ".", color=COLOURS[1], markersize=3)
     if max(np.ptp(px), np.ptp(py)) < 1e-6:  # um: one point
         axis.set_xlim(px.mean() - 1, px.mean() + 1)
         axis.set_ylim(py.mean() - 1, py.mean() + 1)
     else:
         square(axis, px, py)
-    finish(axis)
+    finish(axis, unit=unit)
 
 
-def draw_spectrum(axis, order, x, y, top=6.0):
+def draw_spectrum(axis, order, x, y, unit, top=6.0):
     shown = order <= top
     floor = max(1e-9, 1e-8 * max(x[shown].max(), y[shown].max()))
     for values, colour, label in ((x, COLOURS[0], "x"), (y, COLOURS[2], "y")):
         axis.semilogy(order[shown], np.maximum(values[shown], floor), color=colour, linewidth=0.8, label=label)
     axis.set_xlim(0, top)
     axis.set_xlabel("frequency / running speed")
-    axis.set_ylabel("amplitude, 0-peak [\u00b5m]")
+    axis.set_ylabel(f"amplitude, 0-peak [{unit}]")
     axis.legend(loc="upper right")
 
 
@@ -59,7 +60,7 @@ def draw_exponents(axis, running, speed, value, uncertainty):
 def draw(study):
     if not study.has("orbit/x", "poincare/x", "spectrum/x"):
         return []
-    scale = 1e6
+    scale, unit = study.micro
     x, y, px, py = (study.get(p) * scale for p in ("orbit/x", "orbit/y", "poincare/x", "poincare/y"))
     order, sx, sy = study.get("spectrum/order"), study.get("spectrum/x") * scale, study.get("spectrum/y") * scale
     names = study.bearings(x.shape[1])
@@ -68,11 +69,11 @@ def draw(study):
     columns = 4 if exponents else 3
     figure, axes = plt.subplots(len(rows), columns, figsize=(3.5 * columns, 3.3 * len(rows) + 1.0), squeeze=False)
     for row, b in zip(axes, rows):
-        draw_orbit(row[0], study, b, x[:, b], y[:, b], px[:, b], py[:, b])
+        draw_orbit(row[0], study, b, x[:, b], y[:, b], px[:, b], py[:, b], unit)
         row[0].set_title("orbit" if len(rows) == 1 else f"orbit, {names[b]}")
-        draw_points(row[1], px[:, b], py[:, b])
+        draw_points(row[1], px[:, b], py[:, b], unit)
         row[1].set_title("once per revolution")
-        draw_spectrum(row[2], order, sx[:, b], sy[:, b])
+        draw_spectrum(row[2], order, sx[:, b], sy[:, b], unit)
         row[2].set_title("spectrum")
         if exponents and b == rows[0]:
             draw_exponents(row[3], study.get("exponents/running"), study.attribute("speed"),

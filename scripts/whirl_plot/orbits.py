@@ -75,10 +75,10 @@ def turn_arrow(axis):
                   arrowprops={"arrowstyle": "->", "connectionstyle": "arc3,rad=0.45", "color": GREY, "linewidth": 1.0})
 
 
-def finish(axis, name=None):
+def finish(axis, name=None, unit="\u00b5m"):
     axis.set_aspect("equal", adjustable="box")
-    axis.set_xlabel("x [\u00b5m]")
-    axis.set_ylabel("y [\u00b5m]")
+    axis.set_xlabel(f"x [{unit}]")
+    axis.set_ylabel(f"y [{unit}]")
     if name:
         axis.set_title(name)
 
@@ -93,7 +93,8 @@ def square(axis, x, y):
 def draw(study, shown=9):
     if not study.has("orbits/x", "orbits/y"):
         return []
-    x, y, parameter = study.get("orbits/x") * 1e6, study.get("orbits/y") * 1e6, np.atleast_1d(study.get("orbits/parameter"))
+    scale, unit = study.micro
+    x, y, parameter = study.get("orbits/x") * scale, study.get("orbits/y") * scale, np.atleast_1d(study.get("orbits/parameter"))
     order = np.argsort(parameter, kind="stable")
     pick = order[np.unique(np.linspace(0, len(parameter) - 1, shown).round().astype(int))]
     names = study.bearings(x.shape[2])
@@ -112,16 +113,16 @@ def draw(study, shown=9):
                 axis.plot(x[k, closed, b], y[k, closed, b], color=plt.cm.viridis(norm(parameter[k])), linewidth=1.0)
                 if row == rows - 1:
                     axis.plot(x[k, 0, b], y[k, 0, b], "o", markersize=2.6, color=plt.cm.viridis(norm(parameter[k])))
-            finish(axis, name if row == 0 else None)
+            finish(axis, name if row == 0 else None, unit)
         square(axes[-1, b], x[pick][:, :, b].ravel(), y[pick][:, :, b].ravel())
     colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
     figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)
     first = "above in the clearance, pads thick; below enlarged; " if known else ""
-    return [save(figure, study, "orbits", f"{first}dot: shaft angle 0; journal relative to the bearing centre; {ROTATION}")]
+    return [save(figure, study, "orbits", f"{first}dot: shaft angle 0; {study.shown}; {ROTATION}" if known else f"{first}dot: phase 0; {study.shown}")]
 
 
 def draw_locus(study):
-    if not study.has("branch/x", "branch/y"):
+    if not study.has("branch/x", "branch/y") or study.has("places/name"):
         return []
     parameter, stable, unstable = branch_of(study)
     x, y = (study.get(f"branch/{k}").reshape(len(parameter), -1) * 1e6 for k in "xy")

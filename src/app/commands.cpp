@@ -41,8 +41,11 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
 
 std::string check(MPI_Comm comm, const DeckRequest& request) {
   const study::Deck deck = study::load(comm, request.path, request.overrides);
-  std::string text = fmt::format("{}: no errors; {} segments, {} bearings, {} studies\n", request.path,
-                                 deck.machine.rotor.segments.size(), deck.machine.bearings.size(), deck.studies.size());
+  const system::Machine& m = deck.machine;
+  const std::string what = system::is_rotor(m)
+                               ? fmt::format("{} segments, {} bearings", m.rotor.segments.size(), m.bearings.size())
+                               : "system " + m.system.name;
+  std::string text = fmt::format("{}: no errors; {}, {} studies\n", request.path, what, deck.studies.size());
   for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
   return text;
 }

@@ -138,6 +138,7 @@ public:
     if (!read_real(*from, spec_, r, range.from, &range.unit) || !read_real(*to, spec_, r, range.to, &to_unit)) return;
     if (!same_kind(range.unit, to_unit))
       return r.problems.add(to->place, fmt::format("'{}' and '{}' are not of the same kind", from->text, to->text));
+    if (range.unit.empty()) range.unit = "1";
     if (range.from == range.to) r.problems.add(to->place, fmt::format("{} is empty", name_of_value(node)));
   }
   Node write(const void* value) const override {

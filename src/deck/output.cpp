@@ -169,7 +169,11 @@ std::string schema_text(const Structure& structure, std::string_view title) {
   Node part = structure.schema(false);
   Node base = typed_schema("string");
   base.set("description", Node::scalar("deck to start from; maps merge, lists replace", true));
-  part.find("properties")->set("base", std::move(base));
+  // Several alternatives where a choice at the top decides which keys there are.
+  if (Node* alternatives = part.find("anyOf"))
+    for (Node& one : alternatives->items) one.find("properties")->set("base", base);
+  else
+    part.find("properties")->set("base", std::move(base));
   n.set("then", std::move(part));
   n.set("else", structure.schema(true));
   return to_json(n);

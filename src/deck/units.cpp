@@ -149,6 +149,7 @@ Unit parse_unit(std::string_view text) {
 constexpr std::string_view difference = "delta K";
 
 std::string_view plain(std::string_view si) {
+  if (si == "1") return {};
   return si == difference ? std::string_view("K") : si;
 }
 
@@ -244,7 +245,7 @@ bool same_kind(std::string_view unit, std::string_view other) {
 }
 
 void check_kind(std::string_view unit, std::string_view si) {
-  require_kind(parse_unit(unit), unit, si);
+  require_kind(parse_unit(plain(unit)), unit, si);
 }
 
 std::string write_number(double value) {

@@ -8,8 +8,7 @@
 namespace whirl::study {
 namespace {
 
-void put_groups(io::Bifurcation& b, const system::Train& train, double speed) {
-  const auto groups = system::groups_of(train);
+void put_groups(io::Bifurcation& b, const std::optional<system::Groups>& groups, double speed) {
   if (!groups) return;
   b.more["nondimensional_speed"] = speed / groups->speed_scale;
   b.more["nondimensional_load"] = groups->load;
@@ -60,7 +59,7 @@ bool wanted(solve::Event event, const std::vector<Event>& detect) {
 
 io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std::string& path, const std::string& unit,
                                const system::Machine& machine, const std::vector<std::string>& unbalance,
-                               const system::RotorSystem& system) {
+                               const system::Plant& system) {
   io::Bifurcation b;
   b.type = type;
   b.parameter = path;
@@ -68,9 +67,9 @@ io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std
   b.unit = unit;
   const double si = value * deck::number_to_si(1, unit);
   if (path == "speed")
-    put_groups(b, system.train(), si);
-  else
-    put_groups(b, system::train_of(with_parameter(machine, path, si), unbalance), system.speed());
+    put_groups(b, system.groups(), si);
+  else if (system::is_rotor(machine))
+    put_groups(b, system::groups_of(system::train_of(with_parameter(machine, path, si), unbalance)), system.speed());
   return b;
 }
 

@@ -8,7 +8,8 @@
 #include "whirl/io/summary.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/study/parameter.hpp"
-#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/options.hpp"
+#include "whirl/system/plant.hpp"
 
 namespace whirl::study {
 
@@ -21,8 +22,7 @@ namespace whirl::study {
 /// nondimensional groups of the machine there. `system` is the one that is followed.
 [[nodiscard]] io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std::string& path,
                                              const std::string& unit, const system::Machine& machine,
-                                             const std::vector<std::string>& unbalance,
-                                             const system::RotorSystem& system);
+                                             const std::vector<std::string>& unbalance, const system::Plant& system);
 
 /// A table of bifurcations: type, parameter, uncertainty, angle.
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);

@@ -9,8 +9,6 @@
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
-#include "whirl/system/groups.hpp"
-#include "whirl/system/start.hpp"
 
 namespace whirl::study {
 
@@ -35,14 +33,14 @@ bool Walker::attempt(double speed) {
 Vec Walker::at(double speed) {
   if (!x_) {
     system_.set_parameter(speed);
-    x_ = system::static_guess(system_);
+    x_ = system_.guess();
     // A thick film is easier to hit than a thin one: start at a higher speed if need be and come down.
     double start = speed;
     for (int k = 0; !attempt(start); ++k) {
       if (k == 12) throw core::NotConverged(fmt::format("no equilibrium near {:.6g} rad/s: {}", speed, reason_));
       start *= 1.4;
       system_.set_parameter(start);
-      x_ = system::static_guess(system_);
+      x_ = system_.guess();
     }
   }
   double step = speed - last_;
@@ -58,7 +56,7 @@ Vec Walker::at(double speed) {
   return x_.get();
 }
 
-solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x) {
+solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   spectral::EigenOptions options;
   options.count = 60;
   options.shapes = false;
@@ -76,12 +74,6 @@ solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x) {
 
 std::vector<std::string> names_of_bearings(const system::Machine& machine) {
   return system::bearing_names(machine);
-}
-
-std::vector<double> clearances_of_bearings(const system::Machine& machine) {
-  std::vector<double> out;
-  for (const auto& b : machine.bearings) out.push_back(b.geometry ? b.geometry->clearance : 0.0);
-  return out;
 }
 
 void put_bearings(io::Group& group, const system::Machine& machine) {
@@ -105,12 +97,20 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
   bearings.put("arc", arc, "rad", "angular extent of each pad");
 }
 
+void put_places(io::Group& group, const system::Machine& machine, const system::Plant& plant) {
+  if (system::is_rotor(machine)) return put_bearings(group, machine);
+  group.child("places").put("name", plant.places().names, plant.places().text);
+}
+
 std::string number_text(double value_si, const std::string& unit) {
   return fmt::format("{:.6g}", deck::from_si(value_si, unit));
 }
 
 void put_groups(io::StudySummary& summary, const system::Train& train) {
-  const auto groups = system::groups_of(train);
+  put_groups(summary, system::groups_of(train));
+}
+
+void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups) {
   if (!groups) return;
   summary.set("nondimensional.speed_scale", groups->speed_scale, "rad/s");
   summary.set("nondimensional.load", groups->load, "1");
@@ -131,15 +131,6 @@ system::Train with_half_film_mesh(system::Train train) {
       for (int& cells : s.film.cells) cells += cells % 2;
   }
   return train;
-}
-
-bool has_film_mesh(const system::Train& train) {
-  using enum film::Options::Kind;
-  return std::any_of(train.supports.begin(), train.supports.end(), [](const system::Support& s) {
-    const auto kind = s.film.kind;
-    return kind != linear && kind != short_bearing && kind != long_bearing && kind != long_inlet &&
-           kind != finite_approximate;
-  });
 }
 
 }  // namespace whirl::study

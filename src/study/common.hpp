@@ -16,32 +16,33 @@ namespace whirl::study {
 /// approached by halved steps.
 class Walker {
 public:
-  explicit Walker(system::RotorSystem& system) : system_(system) {}
+  explicit Walker(system::Plant& system) : system_(system) {}
   /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
   Vec at(double speed);
 
 private:
   bool attempt(double speed);
-  system::RotorSystem& system_;
+  system::Plant& system_;
   core::Vector x_, trial_;
   double last_ = 0;
   std::string reason_;
 };
 
 /// Eigenvalues of the system at x, as stability facts with distance Re(lambda).
-[[nodiscard]] solve::Stability equilibrium_stability(system::RotorSystem& system, Vec x);
+[[nodiscard]] solve::Stability equilibrium_stability(system::Plant& system, Vec x);
 
 /// Names and clearances of the bearings, into `group`/bearings.
 void put_bearings(io::Group& group, const system::Machine& machine);
+/// What the outputs of a plant are: the bearings of a rotor, or names into `group`/places.
+void put_places(io::Group& group, const system::Machine& machine, const system::Plant& plant);
 [[nodiscard]] std::vector<std::string> names_of_bearings(const system::Machine& machine);
-/// Radial clearances [m]; zero for a film without geometry.
-[[nodiscard]] std::vector<double> clearances_of_bearings(const system::Machine& machine);
 
 /// "3600" for 376.99 rad/s in rpm: the shortest text with six digits, for dotted names.
 [[nodiscard]] std::string number_text(double value_si, const std::string& unit);
 
 /// The nondimensional groups of a rigid rotor in equal bearings, as nondimensional.*; nothing for other machines.
 void put_groups(io::StudySummary& summary, const system::Train& train);
+void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups);
 
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);
@@ -50,7 +51,5 @@ void put_groups(io::StudySummary& summary, const system::Train& train);
 /// the uncertainty d: a mesh of second order errs by d/3, and two meshes that cannot show the order call for a safety
 /// factor of 3 (Roache 1994).
 [[nodiscard]] system::Train with_half_film_mesh(system::Train train);
-/// Whether any film is computed on a mesh.
-[[nodiscard]] bool has_film_mesh(const system::Train& train);
 
 }  // namespace whirl::study

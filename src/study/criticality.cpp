@@ -62,7 +62,7 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, const solve::Re
   io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
   b.period_s = 2 * std::numbers::pi / omega;
   b.more["whirl_frequency_rad_s"] = omega;
-  if (!has_film_mesh(system_->train())) b.uncertainty = hopf.bracket;
+  if (!system_->has_film_mesh()) b.uncertainty = hopf.bracket;
   set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity);
   context_.results.summary().bifurcations.push_back(b);
   // The equilibrium has no cycle for a locus to start from; its place in the list is kept.

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "cycle_follower.hpp"
+#include "whirl/solve/newton.hpp"
 
 namespace whirl::study {
 
@@ -24,9 +25,21 @@ std::vector<FlipSeed> read_seeds(const io::Group& group) {
   return seeds;
 }
 
+// The next phase is measured against this cycle, in a resumed branch as in this one. The tangent obeyed the condition
+// before: where few points of the cycle are unknowns it slides along the cycle by no small angle.
+void CycleFollower::renew_phase(Vec u, Vec tangent) {
+  problem_->set_phase_reference(problem_->gather(u));
+  core::Vector row = core::duplicate(u), rhs = core::duplicate(u);
+  solve::weighted_row(*problem_, tangent, row.get());
+  problem_->linearise(u, row.get());
+  core::check(VecSet(rhs.get(), 0.0));
+  solve::set_last_entry(problem_->comm(), rhs.get(), 1);
+  (void)solve::solve_linear(*problem_, rhs.get(), tangent, "tangent_");
+  core::check(VecScale(tangent, 1 / std::sqrt(solve::inner(*problem_, tangent, tangent))));
+}
+
 void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step) {
-  // The next phase is measured against this cycle, in a resumed branch as in this one.
-  if (autonomous()) problem_->set_phase_reference(problem_->gather(u));
+  if (autonomous()) renew_phase(u, tangent);
   if (!options_.checkpoint) return;
   // At least once a second of work, so that a kill costs no more than that; the decision is rank 0's, for all.
   int due = context_.results.seconds() - last_saved_ >= 1;

@@ -18,7 +18,7 @@ using core::check;
 double CycleFollower::shift(const solve::LocatedEvent& found, const solve::Cycle& given, bool doubled_mesh,
                             bool half_film) const {
   const auto other = half_film ? make_system(true) : nullptr;
-  system::RotorSystem& system = other ? *other : *system_;
+  system::Plant& system = other ? *other : *system_;
   const solve::Cycle cycle = on_film_of(system, given);
   const auto made = make_problem(system, options_.period, cycle.mesh, doubled_mesh);
   solve::PeriodicProblem& problem = *made;
@@ -108,7 +108,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
       }
     };
     const double time = estimate(true, false);
-    const double film = has_film_mesh(system_->train()) ? estimate(false, true) : 0;
+    const double film = system_->has_film_mesh() ? estimate(false, true) : 0;
     // Twice the change to the doubled time mesh: the rest that a yet finer one would bring is smaller than that change.
     b.more["uncertainty_time_mesh"] = 2 * time;
     b.more["uncertainty_film_mesh"] = film;

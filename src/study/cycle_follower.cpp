@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bifurcation.hpp"
+#include "make_plant.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 
@@ -22,7 +23,8 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       seed_(std::move(seed)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
-      record_(names_of_bearings(context.machine), clearances_of_bearings(context.machine), unit_, options_.multipliers),
+      system_(make_system(false)),
+      record_(system_->places(), unit_, options_.multipliers),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
@@ -39,24 +41,14 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;
-  system_ = make_system(false);
 }
 
-std::unique_ptr<system::RotorSystem> CycleFollower::make_system(bool half_film) const {
-  const double value = options_.start ? options_.start->value : options_.parameter.range.from;
-  const auto train_at = [this, half_film](const system::Machine& machine) {
-    system::Train t = system::train_of(machine, options_.unbalance);
-    return half_film ? with_half_film_mesh(std::move(t)) : t;
-  };
-  if (options_.parameter.path == "speed")
-    return std::make_unique<system::RotorSystem>(space(), train_at(context_.machine), value);
-  system::Varying varying;
-  varying.train = [this, train_at](double p) {
-    return train_at(with_parameter(context_.machine, options_.parameter.path, p));
-  };
-  varying.value = value;
-  varying.magnitude = std::max(std::abs(options_.parameter.range.from), std::abs(options_.parameter.range.to));
-  return std::make_unique<system::RotorSystem>(space(), std::move(varying), options_.speed->value);
+std::unique_ptr<system::Plant> CycleFollower::make_system(bool half_film) const {
+  PlantRequest wanted{options_.unbalance, &options_.parameter};
+  wanted.value = options_.start ? options_.start->value : options_.parameter.range.from;
+  wanted.speed = options_.speed ? options_.speed->value : 0;
+  wanted.half_film = half_film;
+  return make_plant(space(), context_.machine, wanted);
 }
 
 solve::Stability CycleFollower::stability() {
@@ -115,7 +107,7 @@ void CycleFollower::run() {
     else
       u = start(*problem_);
   }
-  put_groups(context_.results.summary(), system_->train());
+  put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
   callbacks.stability = [this](Vec) { return stability(); };
@@ -141,7 +133,7 @@ void CycleFollower::run() {
   auto& group = results.group();
   record_.write(group, false);
   record_.write_orbits(group.child("orbits"), options_.orbits);
-  put_bearings(group, context_.machine);
+  put_places(group, context_.machine, *system_);
   put_bifurcations(group, results.summary().bifurcations);
   group.set("parameter", options_.parameter.path);
   group.set("parameter_unit", unit_);

@@ -40,19 +40,19 @@ public:
   void run();
   /// The flips located on the way.
   [[nodiscard]] const std::vector<FlipSeed>& seeds() const { return seeds_; }
-  [[nodiscard]] const system::RotorSystem& system() const { return *system_; }
+  [[nodiscard]] const system::Plant& system() const { return *system_; }
   /// Finds the bifurcation that `other` found on another film mesh. Throws core::NotConverged or core::DomainError.
   [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other);
   /// How far the steps in time leave the bifurcation uncertain, scaled; NaN if that cannot be told.
   [[nodiscard]] double time_error(const Located& at);
 
 private:
-  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(bool half_film) const;
+  [[nodiscard]] std::unique_ptr<system::Plant> make_system(bool half_film) const;
   /// Who shares a system: its states are distributed by solvers that are parallel in space.
   [[nodiscard]] MPI_Comm space() const;
   /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with time steps
   /// half as long if `doubled`.
-  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::RotorSystem& system, int turns,
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::Plant& system, int turns,
                                                                      std::vector<double> mesh, bool doubled) const;
   /// A change of the root mean square state by half a clearance counts as one longest step.
   [[nodiscard]] double state_weight() const { return std::pow(continuation_.max_step / 0.5, 2); }
@@ -82,10 +82,11 @@ private:
   [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
                              bool half_film) const;
   /// The cycle with the own states of its films on the meshes of `to`.
-  [[nodiscard]] solve::Cycle on_film_of(const system::RotorSystem& to, solve::Cycle cycle) const;
+  [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
   void correct(Vec u, Vec row, double offset, Relocated& out);
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
+  void renew_phase(Vec u, Vec tangent);
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
@@ -96,7 +97,7 @@ private:
   double scale_;  // SI value of one unit of the range
   solve::NewtonOptions newton_;
   solve::ContinuationOptions continuation_;
-  std::unique_ptr<system::RotorSystem> system_;
+  std::unique_ptr<system::Plant> system_;
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   std::optional<solve::Cycle> last_;

@@ -44,7 +44,7 @@ MPI_Comm CycleFollower::space() const {
   return options_.method == Method::newton_picard && states >= shared_from ? context_.comm : PETSC_COMM_SELF;
 }
 
-std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::RotorSystem& system, int turns,
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,
                                                                     std::vector<double> mesh, bool doubled) const {
   const int laps = turns / options_.period;
   int steps = steps_of(options_);

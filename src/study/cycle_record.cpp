@@ -14,15 +14,13 @@ struct Extremes {
   std::vector<double> x_max, x_min, y_max, y_min, radius;
 };
 
-// Journal motion of all bearings at `count` equidistant times: [time][bearing][x, y].
-std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::RotorSystem& system,
+// What is shown of all places at `count` equidistant times: [time][place][x, y].
+std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
                            int count) {
-  const auto n = static_cast<std::size_t>(system.n_bearings());
   std::vector<double> out;
-  out.reserve(2 * n * static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     const Eigen::VectorXd x = cycle.at(scheme, static_cast<double>(k) / count);
-    for (const auto& j : system.journals(x.data())) {
+    for (const auto& j : system.shown(x.data())) {
       out.push_back(j.position[0]);
       out.push_back(j.position[1]);
     }
@@ -56,8 +54,9 @@ Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
   return e;
 }
 
-std::vector<io::Table::Column> columns(std::size_t bearings, const std::string& unit, std::size_t multipliers) {
-  const io::Shape b{bearings}, m{multipliers};
+std::vector<io::Table::Column> columns(const system::Places& places, const std::string& unit, std::size_t multipliers) {
+  const io::Shape b{places.names.size()}, m{multipliers};
+  const std::string& length = places.unit;
   return {{"parameter", unit, "parameter of the branch"},
           {"period", "s", "period of the cycle"},
           {"stable", "1", "1 if no multiplier is outside the unit circle"},
@@ -65,32 +64,30 @@ std::vector<io::Table::Column> columns(std::size_t bearings, const std::string& 
           {"step", unit, "arclength from the previous point"},
           {"newton_iterations", "1", "of the accepted step"},
           {"intervals", "1", "of the time mesh"},
-          {"x_max", "m", "largest horizontal journal position relative to the bearing centre", b},
-          {"x_min", "m", "smallest", b},
-          {"y_max", "m", "largest vertical journal position relative to the bearing centre", b},
-          {"y_min", "m", "smallest", b},
-          {"eccentricity_max", "1", "largest eccentricity per clearance; zero for a bearing without clearance", b},
+          {"x_max", length, "largest x of " + places.text, b},
+          {"x_min", length, "smallest", b},
+          {"y_max", length, "largest y of " + places.text, b},
+          {"y_min", length, "smallest", b},
+          {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
           {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
           {"multipliers_imag", "1", "their imaginary parts", m}};
 }
 
 }  // namespace
 
-CycleRecord::CycleRecord(std::vector<std::string> bearings, std::vector<double> clearances, std::string unit,
-                         int multipliers)
-    : bearings_(std::move(bearings)),
-      clearances_(std::move(clearances)),
+CycleRecord::CycleRecord(system::Places places, std::string unit, int multipliers)
+    : places_(std::move(places)),
       unit_(std::move(unit)),
       multipliers_(multipliers),
-      table_(columns(bearings_.size(), unit_, static_cast<std::size_t>(multipliers))) {}
+      table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))) {}
 
 void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                         const system::RotorSystem& system, double scale) {
+                         const system::Plant& system, double scale) {
   std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
-  const Extremes e = extremes(motion, bearings_.size());
-  std::vector<double> eccentricity(bearings_.size(), 0.0);
+  const Extremes e = extremes(motion, places_.names.size());
+  std::vector<double> eccentricity(places_.names.size(), 0.0);
   for (std::size_t i = 0; i < eccentricity.size(); ++i)
-    if (clearances_[i] > 0) eccentricity[i] = e.radius[i] / clearances_[i];
+    if (places_.clearances[i] > 0) eccentricity[i] = e.radius[i] / places_.clearances[i];
   std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
   for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
     re[k] = point.stability.values[k].real();
@@ -116,17 +113,16 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
 
 double CycleRecord::eccentricity() const {
   const auto& all = table_.column("eccentricity_max");
-  return *std::max_element(all.end() - static_cast<std::ptrdiff_t>(bearings_.size()), all.end());
+  return *std::max_element(all.end() - static_cast<std::ptrdiff_t>(places_.names.size()), all.end());
 }
 
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                         const system::RotorSystem& system, const solve::Stability& stability,
-                         io::StudySummary& summary) {
-  const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), bearings_.size());
+                         const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
+  const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());
   const std::string head = "at." + key + ".";
-  for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    summary.set(head + "peak_to_peak." + bearings_[i] + ".x", e.x_max[i] - e.x_min[i], "m");
-    summary.set(head + "peak_to_peak." + bearings_[i] + ".y", e.y_max[i] - e.y_min[i], "m");
+  for (std::size_t i = 0; i < places_.names.size(); ++i) {
+    summary.set(head + "peak_to_peak." + places_.names[i] + ".x", e.x_max[i] - e.x_min[i], places_.unit);
+    summary.set(head + "peak_to_peak." + places_.names[i] + ".y", e.y_max[i] - e.y_min[i], places_.unit);
   }
   if (!stability.values.empty()) {
     summary.set(head + "multiplier.modulus", std::abs(stability.values.front()), "1");
@@ -141,15 +137,15 @@ void CycleRecord::write(io::Group& group, bool everything) const {
   if (!everything) return;
   std::vector<double> flat;
   for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
-  group.put("orbits", {orbits_.size(), samples_per_orbit, bearings_.size(), 2}, std::move(flat), "m",
-            "journal motion of every point");
+  group.put("orbits", {orbits_.size(), samples_per_orbit, places_.names.size(), 2}, std::move(flat), places_.unit,
+            "what is shown of every point");
   group.put("reported", std::vector<std::string>(reported_.begin(), reported_.end()), "parameters already reported");
 }
 
 void CycleRecord::read(const io::Group& group) {
   table_.read(group.group("branch"));
   const auto& flat = group.reals("orbits");
-  const std::size_t width = samples_per_orbit * bearings_.size() * 2;
+  const std::size_t width = samples_per_orbit * places_.names.size() * 2;
   orbits_.clear();
   for (std::size_t k = 0; k + width <= flat.size(); k += width)
     orbits_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(k),
@@ -169,10 +165,10 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
       y.push_back(orbits_[i][v + 1]);
     }
   }
-  const io::Shape shape{n, samples_per_orbit, bearings_.size()};
+  const io::Shape shape{n, samples_per_orbit, places_.names.size()};
   group.put("parameter", parameter, unit_, "where on the branch");
-  group.put("x", shape, x, "m", "horizontal journal position relative to the bearing centre [orbit][time][bearing]");
-  group.put("y", shape, y, "m", "vertical journal position relative to the bearing centre [orbit][time][bearing]");
+  group.put("x", shape, x, places_.unit, "x of " + places_.text + " [orbit][time][bearing]");
+  group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
 }
 
 void write_cycle(io::Group& group, const solve::Cycle& cycle) {

@@ -10,25 +10,24 @@
 #include "whirl/io/table.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/cycle.hpp"
-#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/plant.hpp"
 
 namespace whirl::study {
 
-/// Rows of a branch of cycles: extremes of the journals' motion in their bearings, multipliers, orbits. Replicated on
-/// all ranks.
+/// Rows of a branch of cycles: extremes of what is shown (journals in their bearings), multipliers, orbits. Replicated
+/// on all ranks.
 class CycleRecord {
 public:
-  /// `clearances` [m] of the bearings; zero where there is none.
-  CycleRecord(std::vector<std::string> bearings, std::vector<double> clearances, std::string unit, int multipliers);
+  CycleRecord(system::Places places, std::string unit, int multipliers);
 
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
   void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
-              const system::RotorSystem& system, double scale);
+              const system::Plant& system, double scale);
   /// Largest eccentricity per clearance of any journal on the last point.
   [[nodiscard]] double eccentricity() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
   void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
-              const system::RotorSystem& system, const solve::Stability& stability, io::StudySummary& summary);
+              const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary);
   [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
 
   /// Tables into `group`; with `everything`, also what a restart needs.
@@ -38,12 +37,11 @@ public:
   void write_orbits(io::Group& group, int count) const;
 
 private:
-  std::vector<std::string> bearings_;
-  std::vector<double> clearances_;
+  system::Places places_;
   std::string unit_;
   int multipliers_;
   io::Table table_;
-  std::vector<std::vector<double>> orbits_;  // per point: [time][bearing][x, y]
+  std::vector<std::vector<double>> orbits_;  // per point: [time][place][x, y]
   std::set<std::string> reported_;
 };
 

@@ -24,7 +24,7 @@ constexpr int most_solves = 40;
 
 }  // namespace
 
-solve::Cycle CycleFollower::on_film_of(const system::RotorSystem& to, solve::Cycle c) const {
+solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) const {
   if (to.size() == system_->size()) return c;
   const Eigen::MatrixXd x = c.x;
   c.x.resize(to.size(), x.cols());

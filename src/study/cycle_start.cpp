@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "cycle_follower.hpp"
+#include "make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
-#include "whirl/system/start.hpp"
 
 namespace whirl::study {
 namespace {
@@ -31,22 +31,8 @@ std::vector<double> two_laps(const std::vector<double>& mesh) {
 
 // The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
 core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
-  core::Vector x = system::static_guess(*system_);
-  Walker walker(*system_);
-  std::vector<double> whole;
-  const double parameter = system_->parameter();
-  if (system_->parameter_is_speed()) {
-    whole = system_->gather(walker.at(parameter));
-  } else {
-    solve::NewtonOptions newton;
-    newton.max_iterations = 40;
-    system_->set_forcing(false);
-    const auto result = solve::find_equilibrium(*system_, x.get(), newton);
-    system_->set_forcing(true);
-    if (!result.converged) throw core::NotConverged("no equilibrium to start from: " + result.reason);
-    whole = system_->gather(x.get());
-  }
-  solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), parameter};
+  const std::vector<double> whole = system_->gather(find_rest(*system_).get());
+  solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), system_->parameter()};
   guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
                 .replicate(1, guess.intervals() * problem.scheme().degree);
   return problem.scatter(guess);
@@ -63,7 +49,7 @@ solve::Restart CycleFollower::start_at_hopf() {
     Walker walker(*system_);
     check(VecCopy(walker.at(system_->parameter()), x.get()));
   } else {
-    x = system::static_guess(*system_);
+    x = system_->guess();
   }
   equilibria.from_state(x.get(), system_->parameter(), u.get());
   double parameter = 0;

@@ -15,6 +15,11 @@ void describe(deck::Description<Deck>& d) {
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());
+      if (s.needs_rotor() && !system::is_rotor(deck.machine)) {
+        r.fail(path, fmt::format("'{}' asks about a rotor in bearings, and the system of this deck is a {}", s.kind(),
+                                 deck.machine.system.name));
+        continue;
+      }
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
       for (std::size_t j = 0; j < i; ++j)

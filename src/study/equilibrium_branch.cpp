@@ -9,6 +9,7 @@
 #include "common.hpp"
 #include "groups.hpp"
 #include "located.hpp"
+#include "make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -16,34 +17,22 @@
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/solve/normal_form.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
-#include "whirl/system/start.hpp"
 
 namespace whirl::study {
 namespace {
 
 using core::check;
 
-std::unique_ptr<system::RotorSystem> make_system(const Context& context, const EquilibriumBranchOptions& o,
-                                                 bool half_film) {
-  const auto train_at = [half_film](const system::Machine& machine) {
-    system::Train t = system::train_of(machine);
-    return half_film ? with_half_film_mesh(std::move(t)) : t;
-  };
-  if (o.parameter.path == "speed")
-    return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space,
-                                                 train_at(context.machine), o.parameter.range.from);
-  system::Varying varying;
-  varying.train = [&context, &o, train_at](double p) {
-    return train_at(with_parameter(context.machine, o.parameter.path, p));
-  };
-  varying.value = o.parameter.range.from;
-  varying.magnitude = std::max(std::abs(o.parameter.range.from), std::abs(o.parameter.range.to));
-  return std::make_unique<system::RotorSystem>(Groups::split(context.comm, context.machine).space, std::move(varying),
-                                               o.speed->value);
+std::unique_ptr<system::Plant> make_system(const Context& context, const EquilibriumBranchOptions& o, bool half_film) {
+  PlantRequest wanted{{}, &o.parameter};
+  wanted.value = o.parameter.range.from;
+  wanted.speed = o.speed ? o.speed->value : 0;
+  wanted.half_film = half_film;
+  return make_plant(Groups::split(context.comm, context.machine).space, context.machine, wanted);
 }
 
 // The differences behind the coefficient must not decide its sign: a film with kinks has no third derivative.
-void set_lyapunov(io::Bifurcation& b, system::RotorSystem& system, Vec x, double omega) {
+void set_lyapunov(io::Bifurcation& b, system::Plant& system, Vec x, double omega) {
   b.criticality_by = "undetermined: the first Lyapunov coefficient depends on the step of its differences";
   const double fine = solve::hopf_coefficient(system, x, omega, 1),
                coarse = solve::hopf_coefficient(system, x, omega, 8);
@@ -79,22 +68,22 @@ void EquilibriumBranch::run(Context& context) {
     Walker walker(*system);
     check(VecCopy(walker.at(range.from), x.get()));
   } else {
-    x = system::static_guess(*system);
+    x = system->guess();
   }
   problem.from_state(x.get(), range.from, u.get());
 
-  const auto names = names_of_bearings(context.machine);
+  const system::Places places = system->places();
   io::Table table({{"parameter", unit, "parameter of the branch"},
                    {"stable", "1", "1 if no eigenvalue has a positive real part"},
                    {"unstable_count", "1", "eigenvalues with positive real part"},
                    {"step", unit, "arclength from the previous point"},
                    {"leading_real", "1/s", "real part of the least stable eigenvalue"},
                    {"leading_imag", "rad/s", "its imaginary part"},
-                   {"x", "m", "journal relative to the bearing centre", {names.size()}},
-                   {"y", "m", "journal relative to the bearing centre", {names.size()}}});
+                   {"x", places.unit, places.text, {places.names.size()}},
+                   {"y", places.unit, places.text, {places.names.size()}}});
   std::vector<Located> located;  // one for each bifurcation of the summary
   auto& results = context.results;
-  put_groups(results.summary(), system->train());
+  put_groups(results.summary(), system->groups());
   solve::BranchCallbacks callbacks;
   callbacks.stability = [&](Vec v) {
     problem.to_state(v, x.get());
@@ -103,7 +92,7 @@ void EquilibriumBranch::run(Context& context) {
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
     problem.to_state(v, x.get());
     std::vector<double> px, py;
-    for (const auto& j : system->journals(system->gather(x.get()).data())) {
+    for (const auto& j : system->shown(system->gather(x.get()).data())) {
       px.push_back(j.position[0]);
       py.push_back(j.position[1]);
     }
@@ -134,7 +123,7 @@ void EquilibriumBranch::run(Context& context) {
       b.more["whirl_frequency_rpm"] = omega * 30 / std::numbers::pi;
     }
     // The same equilibrium on the halved film mesh: how far the border of stability moves.
-    if (found.located && found.sensitivity != 0 && has_film_mesh(system->train())) {
+    if (found.located && found.sensitivity != 0 && system->has_film_mesh()) {
       const auto coarse = make_system(context, options, true);
       coarse->set_parameter(found.parameter * scale);
       core::Vector xc = core::make_vector(coarse->comm(), coarse->local_size(), PETSC_DETERMINE);
@@ -192,7 +181,7 @@ void EquilibriumBranch::run(Context& context) {
   auto& group = results.group();
   if (is_followed(context, name())) write_located(group.child("located"), located);
   table.write(group.child("branch"));
-  put_bearings(group, context.machine);
+  put_places(group, context.machine, *system);
   put_bifurcations(group, results.summary().bifurcations);
   group.set("parameter", options.parameter.path);
   group.set("parameter_unit", unit);

@@ -6,6 +6,7 @@
 #include "whirl/study/mesh_convergence.hpp"
 #include "whirl/study/modes.hpp"
 #include "whirl/study/motion.hpp"
+#include "whirl/study/run_up.hpp"
 #include "whirl/study/static.hpp"
 #include "whirl/study/unbalance_response.hpp"
 
@@ -31,6 +32,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
       kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
+      kind<RunUp>("a rotor whose speed rises or falls evenly: amplitude in every revolution on the way"),
       kind<Locus>("curve of one bifurcation of a branch in two parameters, with points of codimension two"),
       kind<MeshConvergence>("bifurcations of a branch of cycles on finer and finer film meshes: order, limit, error"),
   };

@@ -10,6 +10,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "make_plant.hpp"
 #include "motion_record.hpp"
 #include "motion_start.hpp"
 #include "whirl/transient/integrator.hpp"
@@ -20,7 +21,7 @@ namespace {
 using core::check;
 
 // There are as many exponents as states.
-MotionOptions limited(MotionOptions options, const system::RotorSystem& system) {
+MotionOptions limited(MotionOptions options, const system::Plant& system) {
   options.exponents = std::min(options.exponents, static_cast<int>(system.size()));
   return options;
 }
@@ -31,12 +32,13 @@ class Player {
 public:
   Player(Context& context, const MotionOptions& given)
       : context_(context),
-        system_(Groups::split(context.comm, context.machine).space, system::train_of(context.machine, given.unbalance),
-                given.speed.value),
+        plant_(make_plant(Groups::split(context.comm, context.machine).space, context.machine,
+                          {.unbalance = given.unbalance, .value = given.speed.value})),
+        system_(*plant_),
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
         integrator_(system_, {options_.speed.value}, start_.x.get(), {.tolerance = options_.tolerance}),
-        record_(options_, names_of_bearings(context.machine), clearances_of_bearings(context.machine)) {
+        record_(options_, system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
 
@@ -65,7 +67,7 @@ private:
       }
       if (!record) continue;
       integrator_.state(start_.x.get());
-      record_.sample(system_.journals(system_.gather(start_.x.get()).data()), system_.gather(integrator_.scaled()));
+      record_.sample(system_.shown(system_.gather(start_.x.get()).data()), system_.gather(integrator_.scaled()));
     }
     if (record) record_.close(growth, period);
     integrator_.restart(0, integrator_.step());
@@ -116,7 +118,7 @@ private:
   void report() {
     auto& results = context_.results;
     auto& summary = results.summary();
-    put_groups(summary, system_.train());
+    put_groups(summary, system_.groups());
     summary.set("speed", options_.speed.value, "rad/s");
     const double period = 2 * std::numbers::pi / options_.speed.value;
     for (std::size_t k = 0; k < start_.multipliers.size() && k < static_cast<std::size_t>(options_.exponents); ++k) {
@@ -128,14 +130,15 @@ private:
     auto& group = results.group();
     group.set("speed", options_.speed.value);
     group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
-    put_bearings(group, context_.machine);
+    put_places(group, context_.machine, system_);
     record_.write(group, summary);
     summary.points = record_.revolutions();
     results.finish("completed", true);
   }
 
   Context& context_;
-  system::RotorSystem system_;
+  std::unique_ptr<system::Plant> plant_;
+  system::Plant& system_;
   MotionOptions options_;
   StartState start_;
   transient::Integrator integrator_;

@@ -18,17 +18,15 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, std::vector<std::string> bearings,
-                           std::vector<double> clearances)
+MotionRecord::MotionRecord(const MotionOptions& options, system::Places places)
     : options_(options),
-      bearings_(std::move(bearings)),
-      clearances_(std::move(clearances)),
+      places_(std::move(places)),
       period_(2 * std::numbers::pi / options.speed.value),
       exponents_(options.exponents) {}
 
-void MotionRecord::sample(const std::vector<system::JournalState>& journals, const std::vector<double>& scaled) {
+void MotionRecord::sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled) {
   last_.clear();
-  for (const auto& j : journals) {
+  for (const auto& j : shown) {
     samples_.insert(samples_.end(), j.position.begin(), j.position.end());
     last_.insert(last_.end(), j.position.begin(), j.position.end());
     last_.insert(last_.end(), j.velocity.begin(), j.velocity.end());
@@ -56,6 +54,7 @@ transient::Evidence MotionRecord::evidence() const {
   e.size = std::sqrt(std::max(0.0, squares_ / count - mean));
   e.return_tolerance = options_.return_tolerance;
   if (e.size >= e.rest) e.returns = transient::return_distances(points_, options_.max_period, e.size);
+  e.fading = transient::fading_of_returns(points_, options_.max_period);
   if (options_.exponents > 0) {
     e.exponents = exponents_.values();
     e.uncertainties = exponents_.uncertainties();
@@ -71,27 +70,27 @@ transient::Verdict MotionRecord::verdict() const {
 
 std::vector<double> MotionRecord::signal(std::size_t bearing, std::size_t direction) const {
   std::vector<double> out;
-  for (std::size_t k = 2 * bearing + direction; k < samples_.size(); k += 2 * bearings_.size())
+  for (std::size_t k = 2 * bearing + direction; k < samples_.size(); k += 2 * places_.names.size())
     out.push_back(samples_[k]);
   return out;
 }
 
 void MotionRecord::write_orbit(io::Group& group) const {
-  const std::size_t n = bearings_.size(), all = samples_.size() / (2 * n),
+  const std::size_t n = places_.names.size(), all = samples_.size() / (2 * n),
                     kept = std::min(all, static_cast<std::size_t>(options_.orbit * options_.samples));
   const io::Shape row{n};
   io::Table table({{"revolutions", "1", "shaft angle over 2 pi since the record began"},
                    {"time", "s", "since the record began"},
-                   {"x", "m", "journal relative to the bearing centre", row},
-                   {"y", "m", "journal relative to the bearing centre", row},
-                   {"x_relative", "1", "x per clearance; zero for a bearing without clearance", row},
+                   {"x", places_.unit, places_.text, row},
+                   {"y", places_.unit, places_.text, row},
+                   {"x_relative", "1", "x per clearance; zero where there is no clearance", row},
                    {"y_relative", "1", "y per clearance", row}});
   for (std::size_t k = all - kept; k < all; ++k) {
     std::vector<std::vector<double>> p(4, std::vector<double>(n));
     for (std::size_t b = 0; b < n; ++b)
       for (std::size_t d = 0; d < 2; ++d) {
         p[d][b] = samples_[2 * (k * n + b) + d];
-        p[2 + d][b] = clearances_[b] > 0 ? p[d][b] / clearances_[b] : 0.0;
+        p[2 + d][b] = places_.clearances[b] > 0 ? p[d][b] / places_.clearances[b] : 0.0;
       }
     const double turns = static_cast<double>(k + 1) / options_.samples;
     table.append({{turns}, {turns * period_}, p[0], p[1], p[2], p[3]});
@@ -100,20 +99,21 @@ void MotionRecord::write_orbit(io::Group& group) const {
 }
 
 void MotionRecord::write_points(io::Group& group) const {
-  const std::size_t n = bearings_.size();
+  const std::size_t n = places_.names.size();
   const io::Shape row{n};
   io::Table table({{"revolution", "1", "at whose end, shaft angle zero"},
-                   {"x", "m", "journal relative to the bearing centre", row},
-                   {"y", "m", "journal relative to the bearing centre", row},
-                   {"velocity_x", "m/s", "of the journal", row},
-                   {"velocity_y", "m/s", "of the journal", row},
-                   {"x_relative", "1", "x per clearance; zero for a bearing without clearance", row},
+                   {"x", places_.unit, places_.text, row},
+                   {"y", places_.unit, places_.text, row},
+                   {"velocity_x", places_.rate_unit, "rate of x", row},
+                   {"velocity_y", places_.rate_unit, "rate of y", row},
+                   {"x_relative", "1", "x per clearance; zero where there is no clearance", row},
                    {"y_relative", "1", "y per clearance", row}});
   for (std::size_t k = 0; k < points_.size(); ++k) {
     std::vector<std::vector<double>> p(6, std::vector<double>(n));
     for (std::size_t b = 0; b < n; ++b) {
       for (std::size_t i = 0; i < 4; ++i) p[i][b] = ends_[4 * (k * n + b) + i];
-      for (std::size_t d = 0; d < 2; ++d) p[4 + d][b] = clearances_[b] > 0 ? p[d][b] / clearances_[b] : 0.0;
+      for (std::size_t d = 0; d < 2; ++d)
+        p[4 + d][b] = places_.clearances[b] > 0 ? p[d][b] / places_.clearances[b] : 0.0;
     }
     table.append({{static_cast<double>(k + 1)}, p[0], p[1], p[2], p[3], p[4], p[5]});
   }
@@ -121,7 +121,7 @@ void MotionRecord::write_points(io::Group& group) const {
 }
 
 void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) const {
-  const std::size_t n = bearings_.size();
+  const std::size_t n = places_.names.size();
   const auto e = evidence();
   const int named = e.size < e.rest ? 0 : tones_named;
   const auto window =
@@ -133,13 +133,13 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
       const std::vector<double> s = signal(b, d);
       all.back().push_back(transient::amplitude_spectrum(s, period_ / options_.samples, window));
       const auto [low, high] = std::minmax_element(s.begin(), s.end());
-      summary.set(fmt::format("peak_to_peak.{}.{}", bearings_[b], axis[d]), *high - *low, "m");
+      summary.set(fmt::format("peak_to_peak.{}.{}", places_.names[b], axis[d]), *high - *low, places_.unit);
       int k = 0;
       for (const auto& tone : transient::tones(all.back().back(), named)) {
-        const std::string head = fmt::format("tone.{}.{}.{}.", bearings_[b], axis[d], ++k);
+        const std::string head = fmt::format("tone.{}.{}.{}.", places_.names[b], axis[d], ++k);
         summary.set(head + "frequency", tone.frequency, "Hz");
         summary.set(head + "order", tone.frequency * period_, "1");
-        summary.set(head + "amplitude", tone.amplitude, "m");
+        summary.set(head + "amplitude", tone.amplitude, places_.unit);
       }
     }
   }
@@ -156,8 +156,8 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
   const io::Shape shape{frequency.size(), n};
   g.put("frequency", frequency, "Hz", "of the lines");
   g.put("order", order, "1", "frequency per running speed");
-  g.put("x", shape, x, "m", "amplitude 0-peak of the horizontal motion [line][bearing]");
-  g.put("y", shape, y, "m", "amplitude 0-peak of the vertical motion [line][bearing]");
+  g.put("x", shape, x, places_.unit, "amplitude 0-peak of x [line][bearing]");
+  g.put("y", shape, y, places_.unit, "amplitude 0-peak of y [line][bearing]");
 }
 
 void MotionRecord::write_exponents(io::Group& group, io::StudySummary& summary) const {
@@ -199,8 +199,8 @@ void MotionRecord::write(io::Group& group, io::StudySummary& summary) const {
 }
 
 void MotionRecord::save(io::Group& group) const {
-  group.put("samples", samples_, "m", "journals");
-  group.put("ends", ends_, "SI", "journals at the ends of revolutions");
+  group.put("samples", samples_, places_.unit, "what is shown");
+  group.put("ends", ends_, "SI", "what is shown at the ends of revolutions");
   group.put("sum", sum_, "1", "of scaled states");
   group.set("squares", squares_);
   std::vector<double> flat;

@@ -7,19 +7,20 @@
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/motion.hpp"
-#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/plant.hpp"
 #include "whirl/transient/classify.hpp"
 #include "whirl/transient/exponents.hpp"
 
 namespace whirl::study {
 
-/// Samples of the journals, states at the end of each revolution, growth of deviations. Replicated on all ranks.
+/// Samples of what is shown (journals), states at the end of each revolution, growth of deviations. Replicated on all
+/// ranks.
 class MotionRecord {
 public:
-  MotionRecord(const MotionOptions& options, std::vector<std::string> bearings, std::vector<double> clearances);
+  MotionRecord(const MotionOptions& options, system::Places places);
 
   /// A sample at a whole state [size of the system] in SI; `scaled` is the same over its scales.
-  void sample(const std::vector<system::JournalState>& journals, const std::vector<double>& scaled);
+  void sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled);
   /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried.
   void close(const std::vector<double>& growth, double duration);
   [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
@@ -41,11 +42,10 @@ private:
   void write_exponents(io::Group& group, io::StudySummary& summary) const;
 
   const MotionOptions& options_;
-  std::vector<std::string> bearings_;
-  std::vector<double> clearances_;
+  system::Places places_;
   double period_;                            // of a revolution [s]
-  std::vector<double> samples_;              // [sample][bearing][x, y] in m
-  std::vector<double> ends_;                 // [revolution][bearing][x, y, vx, vy] in m and m/s
+  std::vector<double> samples_;              // [sample][place][x, y]
+  std::vector<double> ends_;                 // [revolution][place][x, y, vx, vy]
   std::vector<double> last_;                 // the same of the last sample
   std::vector<double> sum_;                  // of the scaled states of all samples
   double squares_ = 0;                       // of their norms

@@ -1,11 +1,11 @@
 #include "motion_start.hpp"
 
 #include <numbers>
-#include <set>
 
-#include "common.hpp"
+#include "make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle_problem.hpp"
+#include "whirl/solve/newton.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::study {
@@ -14,7 +14,7 @@ namespace {
 using core::check;
 
 // The synchronous cycle, from the equilibrium held for the whole turn; x becomes its state at angle zero.
-std::vector<std::complex<double>> to_cycle(system::RotorSystem& system, Vec x) {
+std::vector<std::complex<double>> to_cycle(system::Plant& system, Vec x) {
   if (core::size_of(system.comm()) > 1)
     throw core::NotConverged("cycles are for systems that fit one rank; start from the equilibrium");
   // Gauss points: multipliers of order eight.
@@ -41,29 +41,11 @@ std::vector<std::complex<double>> to_cycle(system::RotorSystem& system, Vec x) {
 
 }  // namespace
 
-StartState start_state(system::RotorSystem& system, const MotionStart& start) {
+StartState start_state(system::Plant& system, const MotionStart& start) {
   StartState state;
-  Walker walker(system);
-  Vec equilibrium = walker.at(system.speed());
-  state.x = core::duplicate(equilibrium);
-  check(VecCopy(equilibrium, state.x.get()));
+  state.x = find_rest(system);
   if (start.from == MotionStart::From::cycle) state.multipliers = to_cycle(system, state.x.get());
-  // Journals of one node share their coordinates.
-  std::set<PetscInt> moved;
-  for (int b = 0; b < system.n_bearings(); ++b)
-    for (int d = 0; d < 2; ++d) {
-      const PetscInt q = system.journal(b, d);
-      const auto k = static_cast<std::size_t>(d);
-      const double by = start.offset[k] * system.train().supports[static_cast<std::size_t>(b)].geometry.clearance;
-      if (by != 0 && moved.insert(q).second) {
-        PetscInt begin = 0, end = 0;
-        check(VecGetOwnershipRange(state.x.get(), &begin, &end));
-        if (2 * q >= begin && 2 * q < end) check(VecSetValue(state.x.get(), 2 * q, by, ADD_VALUES));
-      }
-    }
-  check(VecAssemblyBegin(state.x.get()));
-  check(VecAssemblyEnd(state.x.get()));
-  if (system.own_states() > 0 && !moved.empty()) system.relax_films(state.x.get());
+  system.displace(state.x.get(), start.offset);
   return state;
 }
 

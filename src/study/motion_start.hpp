@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "whirl/study/motion.hpp"
-#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/plant.hpp"
 
 namespace whirl::study {
 
@@ -15,6 +15,6 @@ struct StartState {
 };
 
 /// The state at shaft angle zero. Collective on the system's communicator; throws core::NotConverged.
-[[nodiscard]] StartState start_state(system::RotorSystem& system, const MotionStart& start);
+[[nodiscard]] StartState start_state(system::Plant& system, const MotionStart& start);
 
 }  // namespace whirl::study

@@ -54,7 +54,12 @@ void describe(deck::Description<Parameter>& d) {
 }
 
 std::string parameter_unit(const system::Machine& machine, std::string_view path) {
-  if (path == "speed") return "rad/s";
+  if (path == "speed") {
+    if (!system::is_rotor(machine))
+      throw core::InputError(
+          fmt::format("a {} has no 'speed'; give the path of one of its options", machine.system.name));
+    return "rad/s";
+  }
   system::Machine copy = machine;
   return access(copy, path).unit;
 }
@@ -88,7 +93,7 @@ void check_parameter(const Parameter& p, const std::optional<deck::Quantity>& sp
   }
   auto fits = [&](const std::string& path, const std::string& unit, double value, const deck::Check& c) {
     try {
-      if (unit.empty() && si != "1")
+      if ((unit.empty() || unit == "1") && si != "1")
         throw core::InputError(fmt::format("{} needs a unit such as {}", p.path, si == "rad/s" ? "rpm" : si));
       deck::check_kind(unit, si);
       if (!c.holds(value)) throw core::InputError(fmt::format("'{}' must be {}", p.path, c.text()));
@@ -105,6 +110,10 @@ void check_parameter(const Parameter& p, const std::optional<deck::Quantity>& sp
   }
   if (p.path == "speed" && speed)
     report.fail("speed", "'speed' is the parameter of this branch and has no fixed value");
+  if (!system::is_rotor(machine)) {
+    if (speed) report.fail("speed", fmt::format("a {} has no shaft speed", machine.system.name));
+    return;
+  }
   if (p.path != "speed" && !speed) report.fail("", "'speed' is missing (shaft speed of the branch)");
 }
 

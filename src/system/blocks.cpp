@@ -86,8 +86,7 @@ const Eigen::MatrixXd& RotorSystem::Blocks::l0() {
 }
 
 void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load) {
-  const double omega = system_.forcing_ ? system_.speed_ : 0.0, c = omega * omega * std::cos(angle),
-               s = omega * omega * std::sin(angle);
+  const auto [c, s] = system_.unbalance_factors(angle);
   load.setZero(size());
   for (Eigen::Index i = 0; i < size() / 2; ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -157,13 +157,20 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
 }  // namespace
 
 void describe(deck::Description<Machine>& d) {
+  const std::initializer_list<SystemName> rotor{{"rotor"}};
   d.add("title", &Machine::title, "what the deck is about, for the report");
-  d.add("rotor", &Machine::rotor, "the shaft, or a rigid mass").required();
-  d.add("gravity", &Machine::gravity, "m/s^2", non_negative, "acceleration of gravity, along -y").continuable();
-  d.add("lubricants", &Machine::lubricants, "lubricants by name");
-  d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").required();
-  d.named("unbalance", &Machine::unbalance, &Unbalance::name, "unbalances by name, for studies to choose from");
+  d.add("system", &Machine::system, "what the equations are those of");
+  d.add("rotor", &Machine::rotor, "the shaft, or a rigid mass").only(&Machine::system, rotor).required();
+  d.add("gravity", &Machine::gravity, "m/s^2", non_negative, "acceleration of gravity, along -y")
+      .only(&Machine::system, rotor)
+      .continuable();
+  d.add("lubricants", &Machine::lubricants, "lubricants by name").only(&Machine::system, rotor);
+  d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").only(&Machine::system, rotor).required();
+  d.named("unbalance", &Machine::unbalance, &Unbalance::name, "unbalances by name, for studies to choose from")
+      .only(&Machine::system, rotor);
+  describe_others(d);
   d.check([](const Machine& m, const deck::Report& r) {
+    if (!is_rotor(m)) return;
     const int n_nodes = static_cast<int>(m.rotor.segments.size()) + 1;
     check_bearings(m, n_nodes, r);
     check_unbalance(m, n_nodes, r);

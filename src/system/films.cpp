@@ -251,7 +251,8 @@ void RotorSystem::relax_films(Vec x) {
   });
 }
 
-std::vector<double> RotorSystem::resampled(const RotorSystem& other, const double* x) const {
+std::vector<double> RotorSystem::resampled(const Plant& of, const double* x) const {
+  const auto& other = dynamic_cast<const RotorSystem&>(of);
   core::require(other.n_ == n_, "systems that differ in more than film meshes");
   std::vector<double> out(x, x + 2 * n_);
   out.resize(static_cast<std::size_t>(size()));

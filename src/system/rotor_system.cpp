@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "blocks.hpp"
 #include "frozen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
+#include "whirl/system/start.hpp"
 
 namespace whirl::system {
 
@@ -55,6 +57,14 @@ void RotorSystem::set_parameter(double p) {
   set_train(std::move(train));
 }
 
+// The centre of unbalance moves along (cos, sin)(angle): its acceleration has a part towards the axis and one along the
+// turn.
+std::array<double, 2> RotorSystem::unbalance_factors(double angle) const {
+  if (!forcing_) return {};
+  const double c = std::cos(angle), s = std::sin(angle), inward = speed_ * speed_;
+  return {inward * c + acceleration_ * s, inward * s - acceleration_ * c};
+}
+
 void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   const Films all = films_at(x, xdot, film::Need::force);
   const std::vector<film::Response>& films = all.journal;
@@ -77,7 +87,7 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
   check(VecAXPY(sum.get(), speed_, a.get()));
   const core::ReadArray xa(x), da(xdot), sa(sum.get());
   const core::WriteArray fa(f);
-  const double force = forcing_ ? speed_ * speed_ : 0.0, c = force * std::cos(angle), s = force * std::sin(angle);
+  const auto [c, s] = unbalance_factors(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
     fa[2 * i + 1] = da[2 * i] - xa[2 * i + 1];
@@ -191,8 +201,40 @@ std::unique_ptr<problem::Frozen> RotorSystem::freeze(double /*angle*/, Vec x, Ve
   return film_solver_ ? film_solver_->freeze(x, xdot, alpha, sigma, similar) : nullptr;
 }
 
-std::vector<double> RotorSystem::gather(Vec x) const {
-  return core::gather(x);
+Places RotorSystem::places() const {
+  Places p{{}, {}, "m", "m/s", "journal relative to the bearing centre"};
+  for (const Support& s : train_.supports) {
+    p.names.push_back(s.name);
+    p.clearances.push_back(s.geometry.clearance);
+  }
+  return p;
+}
+
+core::Vector RotorSystem::guess() {
+  return static_guess(*this);
+}
+
+// Journals of one node share their coordinates.
+void RotorSystem::displace(Vec x, const std::array<double, 2>& offset) {
+  std::set<PetscInt> moved;
+  for (std::size_t b = 0; b < bearings_.size(); ++b)
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt q = bearings_[b].journal[d];
+      const double by = offset[d] * train_.supports[b].geometry.clearance;
+      if (by != 0 && moved.insert(q).second && owns(q)) check(VecSetValue(x, 2 * q, by, ADD_VALUES));
+    }
+  check(VecAssemblyBegin(x));
+  check(VecAssemblyEnd(x));
+  if (own_states() > 0 && !moved.empty()) relax_films(x);
+}
+
+bool RotorSystem::has_film_mesh() const {
+  using enum film::Options::Kind;
+  return std::any_of(train_.supports.begin(), train_.supports.end(), [](const Support& s) {
+    const auto kind = s.film.kind;
+    return kind != linear && kind != short_bearing && kind != long_bearing && kind != long_inlet &&
+           kind != finite_approximate;
+  });
 }
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {

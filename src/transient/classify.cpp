@@ -26,6 +26,15 @@ std::string largest(const Evidence& e) {
 
 Verdict forced(const Evidence& e, int period) {
   const Sign first = known(e) ? sign_of(e, 0) : Sign::negative;
+  // A multiplier near -1 lets a motion of period one look like one of period two for long.
+  constexpr double lasting = 0.95;
+  for (int k = 1; k < period && static_cast<std::size_t>(k) <= e.fading.size(); ++k)
+    if (const double left = e.fading[static_cast<std::size_t>(k - 1)]; left < lasting)
+      return {
+          Kind::unsettled, 0, "unsettled",
+          fmt::format("returns after {} revolutions, but its distance after {} dies out, by a factor of {:.2g} over "
+                      "half the record",
+                      period, k, left)};
   if (period > 0) {
     if (first == Sign::positive)
       return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
@@ -61,6 +70,16 @@ std::vector<double> return_distances(const std::vector<std::vector<double>>& poi
       for (std::size_t j = 0; j < points[i].size(); ++j) sum += std::pow(points[i + k][j] - points[i][j], 2);
     out.push_back(std::sqrt(sum / static_cast<double>(points.size() - k)) / size);
   }
+  return out;
+}
+
+std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest) {
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  const auto early = return_distances({points.begin(), middle}, longest, 1),
+             late = return_distances({middle, points.end()}, longest, 1);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < std::min(early.size(), late.size()); ++k)
+    out.push_back(early[k] > 0 ? late[k] / early[k] : 1);
   return out;
 }
 

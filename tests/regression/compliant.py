@@ -43,7 +43,7 @@ CASES = {
                     "a2 flip 1": [("cyclic_fold", 2.6097, CYCLE)]}),
     ("5_9", "0"): ([f"{HALF}={{type: long_inlet}}"], {"balanced": [("hopf", 0.403868, STATIC)]}),
     ("5_9", "0.01"): ([f"{HALF}.compliance=0.01"], {"balanced": [("hopf", 0.41280, 5 * STATIC)]}),
-    ("5_9", "0.1"): ([], {"balanced": [("hopf", 0.49409, 2 * STATIC)]}),
+    ("5_9", "0.1"): ([], {"balanced": [("hopf", 0.49409, 2 * STATIC)], "whirl": [("hopf", 0.49409, 2 * STATIC)]}),
     ("5_9", "1"): ([f"{HALF}.compliance=1"], {"balanced": [("hopf", 1.09544, STATIC)]}),
     ("5_10", "0.01"): ([f"{HALF}.compliance=0.01"], {"a2": [("neimark_sacker", 0.4198, WIDE)]}),
     ("5_10", "0.1"): ([], {"a2": [("neimark_sacker", 0.5070, CYCLE)]}),
@@ -84,7 +84,11 @@ def case(h, figure, compliance):
     if (figure, compliance) == ("5_7", "0.1"):
         error = nearest(whirl, "cyclic_fold", 2.7188)["uncertainty_film_mesh"]
         h.true("the film mesh's part in the error of a fold is known", error is not None and 0 < error < 0.02 * 435, f"{error}")
-    if whirl and compliance not in ("0", "0.01"):
+    if whirl and (figure, compliance) == ("5_9", "0.1"):
+        # Born where the eigenvalues jump over the axis, see the deck.
+        h.true("the whirl is followed to the end of the range", whirl["status"] == "completed" and whirl["points"] > 40,
+               whirl["status"])
+    elif whirl and compliance not in ("0", "0.01"):
         h.true("the whirl ends in contact", "touches the liner" in whirl["status"], whirl["status"])
     for name, study in run.items():
         if "flip" in name:

@@ -119,6 +119,42 @@ def floquet(h):
             sum(exponents(two, 2)) / 2 if pairs else exponents(two)[0], rate, 1e-3 * abs(rate))
 
 
+def compliant(h):
+    """A film with states of its own: exponents of the synchronous motion are log|mu|/T, where the force has no kinks."""
+    path = h.work / "compliant.yaml"
+    path.write_text(f"base: {h.source / 'inputs/compliant_rotor/figure_5_8.yaml'}\n"
+                    "bearings: {half: {film: {cells: [24, 4], quadrature: sub_cell, differences: central}}}\n"
+                    "studies:\n"
+                    "  - motion: {name: synchronous, unbalance: [a], speed: 400 rad/s, start: {from: cycle}, discard: 120,\n"
+                    "      revolutions: 20, samples: 16, exponents: 2, tolerance: 1e-6}\n")
+    s = h.run(path, "compliant")["synchronous"]
+    h.true("it is synchronous", kind(s) == "period-1", kind(s))
+    for k in (1, 2):
+        rate = value(s, f"cycle.exponent.{k}")
+        h.close(f"exponent {k} is log|mu|/T [1/s]", value(s, f"lyapunov.{k}"), rate, 2e-3 * abs(rate))
+
+
+def train(h):
+    """Five bearings: the synchronous motion; the four largest exponents together, because pairs of multipliers lie close."""
+    path = h.work / "train.yaml"
+    path.write_text(f"base: {h.train / 'unbalance.yaml'}\nstudies:\n"
+                    "  - motion: {name: forced, unbalance: [gen_pair], speed: 3000 rpm, start: {from: cycle}, discard: 200,\n"
+                    "      revolutions: 60, samples: 8, exponents: 4, tolerance: 1e-4}\n"
+                    "  - cycle_branch: {name: branch, unbalance: [gen_pair], range: {from: 3000 rpm, to: 3010 rpm}, at: [3000 rpm]}\n")
+    run = h.run(path, "train")
+    s = run["forced"]
+    h.true("it is synchronous", kind(s) == "period-1", kind(s))
+    rates = [value(s, f"cycle.exponent.{k}") for k in (1, 2, 3, 4)]
+    h.close("sum of four exponents [1/s]", sum(exponents(s, 4)), sum(rates), 0.05 * abs(sum(rates)))
+    h.close("largest multiplier by the study's own cycle and along the branch", value(s, "cycle.multiplier.1.modulus"),
+            value(run["branch"], "at.3000.multiplier.modulus"), 1e-5)
+    for b in range(1, 6):
+        for axis in "xy":
+            wanted = value(run["branch"], f"at.3000.peak_to_peak.B{b}.{axis}")
+            # Eight samples a turn miss a peak by up to (pi/8)^2/2 of its amplitude.
+            h.close(f"B{b}: peak to peak {axis} [m]", value(s, f"peak_to_peak.B{b}.{axis}"), wanted, 0.08 * wanted)
+
+
 SHORT = """
   - motion: {name: short, unbalance: [a3], speed: 1920 rad/s, discard: 10, revolutions: 30, samples: 32, exponents: 2, tolerance: 1e-6}
 """
@@ -153,5 +189,5 @@ def resume(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"figure": figure, "chaos": chaos, "floquet": floquet, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
+    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
     harness.finish()

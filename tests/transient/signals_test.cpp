@@ -78,6 +78,25 @@ TEST(Returns, FindThePeriod) {
   EXPECT_TRUE(return_distances({{1}}, 3, 1).empty());
 }
 
+// A multiplier of -0.97: after two revolutions the motion is back within 6 % of what parts it from its cycle.
+TEST(Verdicts, ASlowTransientIsNoPeriodTwo) {
+  const auto evidence = [](double multiplier) {
+    std::vector<std::vector<double>> points;
+    double deviation = 1e-3;
+    for (int k = 0; k < 24; ++k, deviation *= multiplier) points.push_back({1 + deviation, 2});
+    Evidence e;
+    e.size = 1;
+    e.returns = return_distances(points, 4, e.size);
+    e.fading = fading_of_returns(points, 4);
+    return e;
+  };
+  const auto transient = evidence(-0.97);
+  EXPECT_GT(transient.returns[0], transient.return_tolerance);
+  EXPECT_LT(transient.returns[1], transient.return_tolerance);
+  EXPECT_EQ(classify(transient).kind, Kind::unsettled);
+  EXPECT_EQ(classify(evidence(-1)).name, "period-2");
+}
+
 TEST(Verdicts, FollowFromTheEvidence) {
   Evidence e;
   e.size = 0.3;

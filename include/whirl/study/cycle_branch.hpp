@@ -58,6 +58,7 @@ class CycleBranch final : public StudyWith<CycleBranchOptions> {
 public:
   static constexpr std::string_view key = "cycle_branch";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] bool resumes_itself() const override { return true; }
   void run(Context& context) override;

@@ -19,6 +19,7 @@ class EquilibriumBranch final : public StudyWith<EquilibriumBranchOptions> {
 public:
   static constexpr std::string_view key = "equilibrium_branch";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void run(Context& context) override;
 };

@@ -40,6 +40,7 @@ class Motion final : public StudyWith<MotionOptions> {
 public:
   static constexpr std::string_view key = "motion";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void run(Context& context) override;
 };

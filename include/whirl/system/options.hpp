@@ -12,6 +12,7 @@
 #include "whirl/deck/description.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/rotor/options.hpp"
+#include "whirl/system/others.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::system {
@@ -59,8 +60,10 @@ struct Unbalance {
   std::vector<Plane> planes;
 };
 
-struct Machine {
+/// A rotor in its bearings, or the options of another system.
+struct Machine : Others {
   std::string title;
+  SystemName system;
   rotor::Options rotor;
   double gravity = 9.81;  ///< along -y [m/s^2]
   std::map<std::string, film::Lubricant> lubricants;
@@ -73,6 +76,12 @@ void describe(deck::Description<Bearing>& d);
 void describe(deck::Description<Plane>& d);
 void describe(deck::Description<Unbalance>& d);
 void describe(deck::Description<Machine>& d);
+/// The options of all systems beside the rotor; after `system`, which selects one.
+void describe_others(deck::Description<Machine>& d);
+
+[[nodiscard]] inline bool is_rotor(const Machine& machine) {
+  return machine.system.name == "rotor";
+}
 
 /// Position of the bearing or unbalance `name`; empty if there is none.
 [[nodiscard]] std::optional<std::size_t> find_bearing(const Machine& machine, std::string_view name);

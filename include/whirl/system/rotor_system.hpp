@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "whirl/film/state_model.hpp"
-#include "whirl/problem/system.hpp"
 #include "whirl/rotor/rotor.hpp"
+#include "whirl/system/plant.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::system {
@@ -21,24 +21,24 @@ struct Varying {
   double magnitude = 1;  ///< typical size, for the step of the difference quotient dF/dp
 };
 
-/// State of a journal in its bearing, journal minus pedestal minus elevation.
-struct JournalState {
-  std::array<double, 2> position{}, velocity{};  ///< [m], [m/s]
-};
+/// State of a journal in its bearing, journal minus pedestal minus elevation [m], [m/s].
+using JournalState = PlaceState;
 
 /// F(angle, x, xdot; p) = 0 of a train. With q = (rotor coordinates, pedestals) the state is x = (q_1, v_1, q_2, v_2,
 /// ...) and
 ///
-///     row 2i:     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle) - f_film = 0
+///     row 2i:     M v' + (C + Omega G) v + K q - g - Omega^2 (u_c cos angle + u_s sin angle)
+///                                                  - alpha (u_c sin angle - u_s cos angle) - f_film = 0
 ///     row 2i + 1: q' - v = 0
 ///
-/// in this order, so that no diagonal entry of dF/dx is zero. f_film acts on the journal and with the opposite sign on
+/// in this order, so that no diagonal entry of dF/dx is zero. alpha is the shaft's angular acceleration, whose torque
+/// follows the bent axis and adds no moment of its own. f_film acts on the journal and with the opposite sign on
 /// the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
 /// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
 /// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks in whole
 /// lines if the rotor is rigid, which then stands with the pedestals on the first rank; otherwise they are on the last
 /// one. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
-class RotorSystem : public problem::System {
+class RotorSystem : public Plant {
 public:
   /// The speed [rad/s] is the parameter.
   RotorSystem(MPI_Comm comm, Train train, double speed);
@@ -67,8 +67,18 @@ public:
   /// speed stay. Collective.
   void set_train(Train train);
 
-  /// Switches the unbalance forces off (and on again): an equilibrium is that of the balanced machine. On at the start.
-  void set_forcing(bool on) { forcing_ = on; }
+  /// The forces of unbalance.
+  void set_forcing(bool on) override { forcing_ = on; }
+  /// The angular acceleration alpha [rad/s^2] of a shaft whose speed follows from outside; 0 at the start.
+  void set_acceleration(double alpha) { acceleration_ = alpha; }
+
+  [[nodiscard]] Places places() const override;
+  [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override { return journals(x); }
+  [[nodiscard]] core::Vector guess() override;
+  void displace(Vec x, const std::array<double, 2>& offset) override;
+  [[nodiscard]] bool has_film_mesh() const override;
+  [[nodiscard]] std::optional<Groups> groups() const override { return groups_of(train_); }
+  [[nodiscard]] std::vector<double> resampled(const Plant& other, const double* x) const override;
 
   // Facts about the machine, for studies.
   [[nodiscard]] const Train& train() const { return train_; }
@@ -90,8 +100,8 @@ public:
   [[nodiscard]] std::vector<film::Response> film_responses(const std::vector<JournalState>& journals, film::Need need);
   /// The same at a whole state [size()] of a train whose films may have own states; these are held constant.
   [[nodiscard]] std::vector<film::Response> film_responses(const double* x, film::Need need);
-  /// True if dF/d(dx/dt) depends on nothing but the parameter.
-  [[nodiscard]] bool constant_rates() const;
+  /// False where a film has a damped liner.
+  [[nodiscard]] bool constant_rates() const override;
   /// Number of own states of all films, which stand at the end of a whole state.
   [[nodiscard]] PetscInt own_states() const { return n_own_; }
   /// Report quantities and fields of film b at a whole state [size()]. Not collective.
@@ -102,10 +112,6 @@ public:
   [[nodiscard]] film::Coefficients film_coefficients(int b, const double* x, double omega);
   /// Gives every film the own states at which it rests with the journals where x has them. Collective.
   void relax_films(Vec x);
-  /// A whole state of `other`, which differs in film meshes only, on the meshes of this system. Not collective.
-  [[nodiscard]] std::vector<double> resampled(const RotorSystem& other, const double* x) const;
-  /// Whole state on every rank [size()]. Collective.
-  [[nodiscard]] std::vector<double> gather(Vec x) const;
   /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes
   /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
@@ -150,6 +156,8 @@ private:
   [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, std::span<const double> own,
                                std::span<const double> rates, film::Need need);
   void sum_over_ranks(std::vector<film::Response>& films) const;
+  /// Factors of the cosine and the sine parts of the unbalance at a shaft angle [1/s^2].
+  [[nodiscard]] std::array<double, 2> unbalance_factors(double angle) const;
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
   /// This rank evaluates film `bearing`, or a part of it.
   [[nodiscard]] bool evaluates(std::size_t bearing) const;
@@ -165,6 +173,7 @@ private:
   Varying varying_;
   double speed_;
   bool forcing_ = true;
+  double acceleration_ = 0;
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range

@@ -15,6 +15,7 @@ struct Evidence {
   double rest = 1e-6;                 ///< size below which nothing moves
   std::vector<double> returns;        ///< d_k, k = 1, 2, ...: see return_distances()
   double return_tolerance = 1e-4;     ///< d_k below which the motion repeats itself after k revolutions
+  std::vector<double> fading;         ///< d_k of the record's second half over that of its first; may be empty
   std::vector<double> exponents;      ///< Lyapunov exponents, the largest first; may be empty
   std::vector<double> uncertainties;  ///< of each
 };
@@ -31,10 +32,14 @@ struct Verdict {
 [[nodiscard]] std::vector<double> return_distances(const std::vector<std::vector<double>>& points, int longest,
                                                    double size);
 
+/// d_k of the second half of the points over that of the first, for k = 1 to `longest`; empty if there are too few.
+[[nodiscard]] std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest);
+
 /// A forced motion is periodic if it returns and its largest exponent is not positive, chaotic if that is positive,
 /// quasi-periodic if it is zero within its uncertainty and nothing returns. Without forcing the number of zero
 /// exponents counts the frequencies. Whatever contradicts itself - no return although all deviations die out, a return
-/// although they grow - is unsettled: not enough revolutions, or an unstable orbit that the motion has not left yet.
+/// although they grow, a return after k revolutions while what keeps it from a shorter one dies out - is unsettled: not
+/// enough revolutions, or an unstable orbit that the motion has not left yet.
 [[nodiscard]] Verdict classify(const Evidence& evidence);
 
 }  // namespace whirl::transient

@@ -1,0 +1,57 @@
+#pragma once
+// What studies of branches and motions need of a system beside its equations.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/system/groups.hpp"
+
+namespace whirl::system {
+
+/// Two outputs that are shown against each other, and their rates: a journal in its bearing, in x and y.
+struct PlaceState {
+  std::array<double, 2> position{}, velocity{};  ///< in Places::unit, and the same per second
+};
+
+/// The pairs of outputs that results show.
+struct Places {
+  std::vector<std::string> names;
+  std::vector<double> clearances;  ///< a length to measure them in, in `unit`; zero where there is none
+  std::string unit;                ///< of positions: "m"
+  std::string rate_unit;           ///< of velocities: "m/s"
+  std::string text;                ///< what a position is: "journal relative to the bearing centre"
+};
+
+/// A system that branches of equilibria and cycles and motions can be computed of, whatever it is made of. All members
+/// are collective on comm() unless they say not.
+class Plant : public problem::System {
+public:
+  /// Not collective.
+  [[nodiscard]] virtual Places places() const = 0;
+  /// The outputs at a state held as a whole [size()]. Not collective.
+  [[nodiscard]] virtual std::vector<PlaceState> shown(const double* x) const = 0;
+  /// A state from which Newton's method finds an equilibrium at the present parameter.
+  [[nodiscard]] virtual core::Vector guess() = 0;
+  /// Moves x away from an equilibrium by `offset` in both directions, per clearance; own states follow.
+  virtual void displace(Vec x, const std::array<double, 2>& offset) = 0;
+  /// Switches periodic forcing off (and on again): an equilibrium is that of the system without. On at the start. Not
+  /// collective.
+  virtual void set_forcing(bool /*on*/) {}
+  /// dF/d(dx/dt) depends on nothing but the parameter. Not collective.
+  [[nodiscard]] virtual bool constant_rates() const = 0;
+  /// Whether it has meshes of films that may be halved for an estimate of their error. Not collective.
+  [[nodiscard]] virtual bool has_film_mesh() const { return false; }
+  /// A whole state of `other`, which differs in film meshes only, on the meshes of this system. Not collective.
+  [[nodiscard]] virtual std::vector<double> resampled(const Plant& /*other*/, const double* x) const {
+    return {x, x + size()};
+  }
+  /// Nondimensional groups of a rigid rotor in equal bearings; empty for all else. Not collective.
+  [[nodiscard]] virtual std::optional<Groups> groups() const { return {}; }
+  /// Whole state on every rank [size()].
+  [[nodiscard]] std::vector<double> gather(Vec x) const { return core::gather(x); }
+};
+
+}  // namespace whirl::system

@@ -1,0 +1,75 @@
+"""Amplitude over speed on the way up and down, the run-ups of a run together; linear steady response of the same nodes beside it."""
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .style import COLOURS, GREY, grid_of, length_unit, save
+
+RESPONSE_COLUMN = {"bearings": "bearings/semi_major", "node": "response/semi_major"}
+
+
+def places(study):
+    """(title, key, index, amplitude in m) of every bearing and node of a study."""
+    rows = len(study.get("run_up/speed"))
+    amplitude = study.get("run_up/amplitude").reshape(rows, -1)
+    for b, name in enumerate(study.bearings(amplitude.shape[1])):
+        yield f"{name}, journal", ("bearings", name), amplitude[:, b]
+    nodes = study.get("node")
+    if nodes is not None and np.size(nodes):
+        amplitude = study.get("run_up/node_amplitude").reshape(rows, -1)
+        for k, node in enumerate(np.atleast_1d(nodes)):
+            yield f"node {node}, shaft", ("node", int(node)), amplitude[:, k]
+
+
+def distinct(found):
+    """Without bearings that move exactly like one before: those at one node of a rigid rotor."""
+    kept = []
+    for entry in found:
+        if not any(entry[1][0] == other[1][0] and np.array_equal(entry[2], other[2]) for other in kept):
+            kept.append(entry)
+    return kept
+
+
+def steady(results, key):
+    """(speed in rad/s, semi-major axis in m) of the linear response at the same place, for the run-ups' unbalance."""
+    for study in results.studies:
+        if study.kind != "unbalance_response" or not study.has("response/speed", RESPONSE_COLUMN[key[0]]):
+            continue
+        speed = study.get("response/speed")
+        values = study.get(RESPONSE_COLUMN[key[0]]).reshape(len(speed), -1)
+        names = study.bearings(values.shape[1]) if key[0] == "bearings" else [int(n) for n in np.atleast_1d(study.get("response/node"))]
+        if key[1] in names:
+            yield speed, values[:, list(names).index(key[1])]
+
+
+def draw_together(results):
+    studies = [s for s in results.studies if s.kind == "run_up" and s.has("run_up/speed", "run_up/amplitude")]
+    if not studies:
+        return []
+    unit = studies[0].attribute("speed_unit", "rad/s")
+    studies = [s for s in studies if s.attribute("speed_unit", "rad/s") == unit]
+    panels = distinct(list(places(studies[0])))
+    figure, axes, _ = grid_of(len(panels), width=4.2 if len(panels) < 3 else 3.4, height=2.9)
+    scale, length = length_unit(np.concatenate([amplitude for s in studies for _, _, amplitude in places(s)]))
+    per_unit = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi}.get(unit, 1)
+    handles = [Line2D([], [], color=COLOURS[k % len(COLOURS)],
+                      label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s" + "\u00b2" * unit.endswith("/s")) for k, s in enumerate(studies)]
+    linear = False
+    for axis, (title, key, _) in zip(axes, panels):
+        for speed, major in steady(results, key):
+            axis.plot(speed * per_unit, major * scale, color=GREY, linewidth=2.6, alpha=0.45, zorder=1)
+            linear = True
+        for k, study in enumerate(studies):
+            for _, other, amplitude in places(study):
+                if other == key:
+                    axis.plot(study.get("run_up/speed"), amplitude * scale, color=COLOURS[k % len(COLOURS)], linewidth=1.2)
+        ends = np.concatenate([study.get("run_up/speed") for study in studies])
+        axis.set_xlim(ends.min(), ends.max())
+        axis.set_ylim(bottom=0)
+        axis.set_title(title)
+        axis.set_xlabel(f"speed [{unit}]")
+        axis.set_ylabel(f"amplitude, 0-peak [{length}]")
+    if linear:
+        handles.append(Line2D([], [], color=GREY, linewidth=2.6, alpha=0.45, label="steady, linear"))
+    unbalance = studies[0].attribute("unbalance", "")
+    return [save(figure, results.whole("run-up"), "run-up",
+                 f"largest distance from the mean position in each revolution; unbalance {unbalance}", handles, columns=4)]

@@ -1,0 +1,47 @@
+#include "make_plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/equilibrium.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+std::unique_ptr<system::Plant> make_plant(MPI_Comm comm, const system::Machine& machine, const PlantRequest& request) {
+  const Parameter* varied = request.parameter && request.parameter->path != "speed" ? request.parameter : nullptr;
+  const auto machine_at = [&machine, varied](double p) {
+    return varied ? with_parameter(machine, varied->path, p) : machine;
+  };
+  const double magnitude = varied ? std::max(std::abs(varied->range.from), std::abs(varied->range.to)) : 1;
+  if (!system::is_rotor(machine)) return system::make_other(comm, {machine_at, request.value, magnitude});
+  const auto train_at = [machine_at, unbalance = request.unbalance, half = request.half_film](double p) {
+    system::Train t = system::train_of(machine_at(p), unbalance);
+    return half ? with_half_film_mesh(std::move(t)) : t;
+  };
+  if (!varied) return std::make_unique<system::RotorSystem>(comm, train_at(0), request.value);
+  return std::make_unique<system::RotorSystem>(comm, system::Varying{train_at, request.value, magnitude},
+                                               request.speed);
+}
+
+core::Vector find_rest(system::Plant& plant) {
+  if (plant.parameter_is_speed()) {
+    Walker walker(plant);
+    Vec there = walker.at(plant.parameter());
+    core::Vector x = core::duplicate(there);
+    core::check(VecCopy(there, x.get()));
+    return x;
+  }
+  core::Vector x = plant.guess();
+  solve::NewtonOptions newton;
+  newton.max_iterations = 40;
+  plant.set_forcing(false);
+  const auto result = solve::find_equilibrium(plant, x.get(), newton);
+  plant.set_forcing(true);
+  if (!result.converged) throw core::NotConverged("no equilibrium to start from: " + result.reason);
+  return x;
+}
+
+}  // namespace whirl::study

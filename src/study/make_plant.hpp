@@ -1,0 +1,29 @@
+#pragma once
+// The system of a deck, for studies that follow branches and motions of any kind of system.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "whirl/study/parameter.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// Which system is wanted.
+struct PlantRequest {
+  std::vector<std::string> unbalance;    ///< of a rotor, applied together
+  const Parameter* parameter = nullptr;  ///< that of a branch; null: a rotor's speed, and none of another system
+  double value = 0;                      ///< of the parameter, SI
+  double speed = 0;                      ///< of a rotor, where the parameter is another one [rad/s]
+  bool half_film = false;                ///< film meshes halved in both directions
+};
+
+/// The system that `machine` describes. It refers to `machine` and to the parameter, which outlive it. Collective.
+[[nodiscard]] std::unique_ptr<system::Plant> make_plant(MPI_Comm comm, const system::Machine& machine,
+                                                        const PlantRequest& request);
+
+/// The equilibrium at the present parameter, without forcing. Collective; throws core::NotConverged.
+[[nodiscard]] core::Vector find_rest(system::Plant& plant);
+
+}  // namespace whirl::study

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""The Brusselator through decks: Hopf point, cycles by every method, a motion, and what a deck of it must not ask.
+
+systems.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
+"""
+import math
+import subprocess
+import sys
+
+import h5py
+
+from harness import Harness, value
+
+# Period and largest multipliers at L = 1 over the number of cells, from an independent computation in Python with fixed
+# steps of order 4 and tolerances of 1e-11 (the same numbers as in tests/reference/brusselator.hpp).
+CYCLES = {8: (3.432149541959533, [0.7752320798755273, 0.1970272023592422 + 0.2842442412930182j, 0.1689496242126161]),
+          16: (3.434425873566731, [0.7567033019584792, 0.1708552330295754 + 0.26365708085106615j, 0.2154539186414105])}
+
+METHODS = {
+    "collocation": "method: collocation, intervals: 40, degree: 4",
+    "shooting": "method: shooting, scheme: radau_iia_3, steps: 120",
+    "multiple_shooting": "method: multiple_shooting, scheme: classical, intervals: 12, steps: 40",
+    "finite_difference": "method: finite_difference, scheme: radau_iia_3, intervals: 120",
+    "newton_picard": "method: newton_picard, scheme: sdirk_4, intervals: 1, steps: 240, radius: 0.1",
+}
+
+
+def hopf_length(cells, a=2, b=5.45, diffusion=0.012):
+    """Where the trace of the linearised equations of one half wave in the tube vanishes."""
+    wave = 2 * cells * math.sin(math.pi / (2 * cells))
+    return wave * math.sqrt(diffusion / (b - 1 - a * a))
+
+
+def deck(h, name, studies):
+    path = h.work / f"{name}.yaml"
+    path.write_text(f"base: {h.source / 'inputs/other_systems/brusselator.yaml'}\nstudies:\n{studies}")
+    return path
+
+
+def cycles(h, methods, cells):
+    """Cycles from the Hopf point to L = 1."""
+    period, multipliers = CYCLES[cells]
+    studies = "".join(f"  - cycle_branch: {{name: {name}, origin: hopf, parameter: brusselator.length,"
+                      f" range: {{from: 0.45, to: 1}}, step: {{initial: 0.01, min: 1e-6, max: 0.1}},"
+                      f" {METHODS[name]}, tolerance: 1e-11, at: [1], detect: []}}\n" for name in methods)
+    run = h.run(deck(h, "cycles", studies), "cycles", [f"brusselator.cells={cells}"])
+    with h5py.File(h.work / "cycles/results.h5") as results:
+        for name in methods:
+            study = run[name]
+            h.true(f"{name}: completed", study["status"] == "completed", study["status"])
+            h.close(f"{name}: Hopf point", value(study, "hopf"), hopf_length(cells), 2e-6)
+            h.close(f"{name}: period", value(study, "at.1.period"), period, 1e-6)
+            branch = results[f"studies/{name}/branch"]
+            found = [complex(*mu) for mu in zip(branch["multipliers_real"][-1], branch["multipliers_imag"][-1])]
+            h.close(f"{name}: the branch ends at L", branch["parameter"][-1], 1, 1e-12)
+            for mu in multipliers:
+                nearest = min(found, key=lambda z: abs(z - mu))
+                h.close(f"{name}: multiplier {mu:.4f}", abs(nearest - mu), 0, 1e-6)
+
+
+def whole(h):
+    """The deck as it is."""
+    run = h.run(h.source / "inputs/other_systems/brusselator.yaml", "whole")
+    first, second = run["uniform"]["bifurcations"]
+    h.true("two Hopf points", first["type"] == second["type"] == "hopf")
+    h.close("Hopf point of one half wave", first["value"], hopf_length(16), 1e-6)
+    wave = 32 * math.sin(2 * math.pi / 32)
+    h.close("Hopf point of two half waves", second["value"], wave * math.sqrt(0.012 / 0.45), 2e-6)
+    # The determinant of the same matrix is the square of the frequency.
+    mu = (32 * math.sin(math.pi / 32) / hopf_length(16)) ** 2
+    omega = math.sqrt(4 * 5.45 - (4 + 0.004 * mu) ** 2)
+    h.close("its frequency [rad/s]", value(run["uniform"], "whirl_frequency"), omega, 1e-6)
+    h.true("supercritical, by equilibrium and by cycle branch",
+           first["criticality"] == run["oscillation"]["bifurcations"][0]["criticality"] == "supercritical")
+    motion = run["from the uniform state"]
+    h.true("the motion ends on a limit cycle", "motion.limit_cycle" in motion["values"], str(list(motion["values"])[:3]))
+    h.close("its size at L = 1 is that of the cycle", value(motion, "peak_to_peak.middle.x"),
+            value(run["oscillation"], "at.1.peak_to_peak.middle.x"), 2e-3)
+    h.close("its frequency times the period of the cycle", value(motion, "tone.middle.x.1.frequency")
+            * value(run["oscillation"], "at.1.period"), 1, 1e-4)
+    h.close("one exponent is zero", value(motion, "lyapunov.1"), 0, value(motion, "lyapunov.1.uncertainty"))
+    h.close("the other is that of the cycle [1/s]", value(motion, "lyapunov.2"),
+            math.log(value(run["oscillation"], "at.1.multiplier.modulus"))
+            / value(run["oscillation"], "at.1.period"), value(motion, "lyapunov.2.uncertainty"))
+    h.true("and not zero", value(motion, "lyapunov.2.uncertainty") < 0.3 * 0.0812)
+
+
+def refused(h):
+    """Each wrong deck gets a place, a reason and where possible the right key."""
+    rest = "equilibrium_branch: {parameter: brusselator.length, range: {from: 0.4, to: 1.2}}"
+    cases = [
+        ("  - static: {speed: 1 rad/s}\n", 3, 13, "'static' asks about a rotor in bearings"),
+        ("  - modes: {range: {from: 1 rpm, to: 2 rpm}}\n", 3, 12, "'modes' asks about a rotor in bearings"),
+        (f"  - {rest}\nbearings: {{}}\n", 4, 1, "'bearings' does not apply where system is brusselator"),
+        (f"  - {rest}\nbrusselator: {{lenght: 1}}\n", 4, 15, "unknown key 'lenght' (did you mean 'length'?)"),
+        (f"  - {rest}\nsystem: brusselater\n", 4, 9, "did you mean 'brusselator'?"),
+        ("  - equilibrium_branch: {parameter: brusselator.lenght, range: {from: 0.4, to: 1.2}}\n", 3, 37,
+         "did you mean 'length'?"),
+        ("  - equilibrium_branch: {range: {from: 1 rpm, to: 2 rpm}}\n", 3, 25, "a brusselator has no 'speed'"),
+        ("  - cycle_branch: {parameter: brusselator.length, range: {from: 0.4, to: 1.2}}\n", 3, 19,
+         "'unbalance' is missing"),
+    ]
+    for k, (studies, line, column, text) in enumerate(cases):
+        path = deck(h, f"wrong_{k}", studies)
+        done = subprocess.run([h.program, "check", str(path)], capture_output=True, text=True)
+        said = done.stdout + done.stderr
+        h.true(f"refused: {text}", done.returncode == 2 and f"{path}:{line}:{column}" in said and text in said, said.strip())
+
+
+def main():
+    h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    {"whole": lambda: whole(h), "refused": lambda: refused(h),
+     "direct": lambda: cycles(h, ["collocation", "shooting"], 16),
+     "others": lambda: cycles(h, ["multiple_shooting", "finite_difference", "newton_picard"], 8)}[sys.argv[3]]()
+    h.finish()
+
+
+if __name__ == "__main__":
+    main()
