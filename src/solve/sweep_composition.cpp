@@ -27,6 +27,9 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// Up to here all multipliers can be had from the dense matrix where a search for the dominant ones fails.
+constexpr Index whole_up_to = 1000;
+
 class SweepComposition final : public Composition {
 public:
   void compose(const Run& run) override;
@@ -63,7 +66,8 @@ private:
   MatrixXd basis_, image_, basis_added_;  // V, M V [n x p], K V [nb x p]
   MatrixXd ends_, ends_added_;            // Theta [n x nb], D + corner [nb x nb]
   Eigen::PartialPivLU<MatrixXd> small_;
-  bool found_ = false;  // the last search for multipliers left its basis
+  double radius_ = 0.2;  // multipliers above it are found
+  bool found_ = false;   // the last search for multipliers left its basis
   core::Matrix shell_;
   core::Vector right_, answer_;
   core::LinearSolver solver_;
@@ -240,11 +244,6 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
     for (PetscInt k = 0; k < a.size(); ++k)
       a[k] = basis_.cols() > 0 ? basis_.row(k).sum() : 1 + std::sin(0.7 * static_cast<double>(k));
   }
-  SubspaceOptions options;
-  options.radius = 0.2;
-  options.tolerance = 1e-9;
-  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
-  options.most = 24;
   const auto times_m = [this](Vec v) {
     MatrixXd state = MatrixXd::Zero(run_->n, 1), added;
     {
@@ -255,13 +254,30 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
     const core::WriteArray a(v);
     if (last()) Map<VectorXd>(a.data(), run_->n) = state.col(0);
   };
+  SubspaceOptions options;
+  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
+  options.most = 24;
+  options.restarts = 20;
+  // From the last point's subspace a few vectors do: what is left of M falls by orders of magnitude.
+  if (basis_.cols() > 0) options.spare = 4;
   DominantSubspace found;
-  try {
-    found = dominant_subspace(times_m, first.get(), options);
-  } catch (const core::NotConverged&) {
-    // Many multipliers of nearly the same modulus (soft liners at high speed): all of them then, by the dense matrix.
-    found_ = false;
-    return spectral::eigenvalues(monodromy());
+  for (bool done = false; !done;) {
+    options.radius = radius_;
+    try {
+      found = dominant_subspace(times_m, first.get(), options);
+      done = true;
+    } catch (const core::NotConverged&) {
+      // Films on soft liners at high speed have a dense band of multipliers, as have stiff films at Gauss points: it
+      // takes no part in what the cycle does, and is left below a larger radius from here on.
+      if (radius_ < 0.5) {
+        radius_ = 0.5;
+      } else if (n > whole_up_to) {
+        throw;
+      } else {
+        found_ = false;
+        return spectral::eigenvalues(monodromy());
+      }
+    }
   }
   found_ = true;
   basis_ = std::move(found.basis);
