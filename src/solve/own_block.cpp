@@ -1,6 +1,5 @@
 #include "solve/own_block.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 #include "small_blocks.hpp"
@@ -34,9 +33,9 @@ public:
   void start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const override;
   void add_inputs(double factor, const double* eta, double* y) const override;
   void multiply(const double* start, const double* s, double* rows, VectorXd& force) const override;
-  void solve_transposed(double* y) const override;
+  void substitute_transposed(const double* y, VectorXd& border) const override;
+  void eliminate_transposed(double* y, const double* force) const override;
   void inputs_transposed(const double* y, double* eta) const override;
-  void forces_transposed(const double* force, double* y) const override;
   void start_transposed(const double* y, const double* force, double* s) const override;
   [[nodiscard]] MatrixXd inputs_of(Index state) const override {
     MatrixXd out(m(), static_cast<Index>(active_.size()));
@@ -324,17 +323,20 @@ void Blocks<M>::multiply(const double* start, const double* s, double* rows, Vec
     }
 }
 
-// s_S by the transposed Sigma, then T_II^T = U^T L^T.
 template <int M>
-void Blocks<M>::solve_transposed(double* y) const {
-  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m(),
-              separators = m() * shape_.separators, inputs = border_ - separators;
-  VectorXd right = Map<const VectorXd>(y + n * size, separators);
-  for (Index e = 0; e < separators; ++e)
-    for (Index a = 0; a < n; ++a)
-      for (Index l = 0; l < size; ++l) right(e) -= z(a)[(inputs + e) * size + l] * y[a * size + l];
-  Map<VectorXd>(y + n * size, separators) = sigma.transpose().partialPivLu().solve(right);
-  std::vector<double> square(static_cast<std::size_t>(size * size));
+void Blocks<M>::substitute_transposed(const double* y, VectorXd& border) const {
+  const Index n = shape_.interior(), separators = m() * shape_.separators;
+  border = VectorXd::Zero(border_);
+  border.tail(separators) = Map<const VectorXd>(y + n * m(), separators);
+  for (Index a = 0; a < n; ++a)
+    border.noalias() -= Map<const MatrixXd>(z(a), m(), border_).transpose() * Map<const VectorXd>(y + a * m(), m());
+}
+
+// T_II^T = U^T L^T.
+template <int M>
+void Blocks<M>::eliminate_transposed(double* y, const double* force) const {
+  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m();
+  std::vector<double> square(static_cast<std::size_t>(size * size)), row(static_cast<std::size_t>(size));
   for (Index a = n; a < shape_.count; ++a)
     for (Index slot = 0; slot < shape_.width(); ++slot) {
       const Index to = shape_.column(a, slot);
@@ -342,10 +344,15 @@ void Blocks<M>::solve_transposed(double* y) const {
       block(a, slot, square.data());
       subtract_transposed<M>(size, square.data(), y + a * size, y + to * size);
     }
-  for (Index a = 0; a < n; ++a)
+  for (Index a = 0; a < n; ++a) {
+    for (Index d = 0; d < forces_; ++d)
+      for (Index j = 0; j < size; ++j) {
+        const double v = force_of(a)[d * size + j] * force[j * forces_ + d];
+        for (Index l = 0; l < size; ++l) y[a * size + l] += value_(j, l) * v;
+      }
     for (Index c = std::max<Index>(0, a - above); c < a; ++c)
       subtract_transposed<M>(size, factor(c, a - c + below), y + c * size, y + a * size);
-  std::vector<double> row(static_cast<std::size_t>(size));
+  }
   for (Index a = n - 1; a >= 0; --a) {
     for (Index c = a + 1; c <= std::min(n - 1, a + below); ++c)
       subtract_transposed<M>(size, factor(c, a - c + below), y + c * size, y + a * size);
@@ -363,16 +370,6 @@ void Blocks<M>::inputs_transposed(const double* y, double* eta) const {
       for (Index a = 0; a < shape_.count; ++a) sum += input(a, active_[c])[j] * y[a * m() + j];
       eta[static_cast<Index>(c) * m() + j] = sum;
     }
-}
-
-template <int M>
-void Blocks<M>::forces_transposed(const double* force, double* y) const {
-  for (Index a = 0; a < shape_.count; ++a)
-    for (Index d = 0; d < forces_; ++d)
-      for (Index j = 0; j < m(); ++j) {
-        const double v = force_of(a)[d * m() + j] * force[j * forces_ + d];
-        for (Index l = 0; l < m(); ++l) y[a * m() + l] += value_(j, l) * v;
-      }
 }
 
 template <int M>

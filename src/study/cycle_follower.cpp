@@ -24,7 +24,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
       record_(names_of_bearings(context.machine), clearances_of_bearings(context.machine), unit_, options_.multipliers),
-      keeps_located_(!seed_ && is_followed(context, context.results.summary().name)) {
+      keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
   continuation_.from = (options_.start ? options_.start->value : range.from) / scale_;
