@@ -29,6 +29,10 @@ bool has_states(Options::Kind kind) {
   return kind == compliant_short || kind == compliant_long || kind == compliant_finite;
 }
 
+bool has_mesh(Options::Kind kind) {
+  return kind == Options::Kind::reynolds || has_states(kind);
+}
+
 std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,
                                              const Lubricant& lubricant) {
   if (!has_states(options.kind)) throw core::Bug("this kind of film has no states");

@@ -95,6 +95,11 @@ VectorXd AugmentedProblem::inner(Vec whole) const {
   return z;
 }
 
+void AugmentedProblem::set_second(double q) {
+  second_->set(q * second_->scale);
+  branch_.equations_changed();
+}
+
 // The branch problem linearised at U, and g there; nothing to do if that is the present state.
 void AugmentedProblem::evaluate(Vec whole) {
   PetscBool same = PETSC_FALSE;
@@ -104,7 +109,7 @@ void AugmentedProblem::evaluate(Vec whole) {
   split(whole, u_.get(), inner_, q_);
   if (second_ && (!q_set_ || set_q_ != q_)) {
     q_set_ = false;
-    second_->set(q_ * second_->scale);
+    set_second(q_);
     set_q_ = q_;
     q_set_ = true;
   }
@@ -138,14 +143,14 @@ void AugmentedProblem::linearise(Vec whole, Vec row) {
     const double h = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1.0, std::abs(q_));
     core::Vector r = core::duplicate(u_.get());
     for (const double sign : {1.0, -1.0}) {
-      second_->set((q_ + sign * h) * second_->scale);
+      set_second(q_ + sign * h);
       branch_.residual(u_.get(), r.get());
       check(VecAXPY(by_q_.get(), sign / (2 * h), r.get()));
       branch_.linearise(u_.get(), row_.get());
       g_q_ += sign / (2 * h) * condition_.values(u_.get(), inner_);
     }
     set_last_entry(comm(), by_q_.get(), 0);
-    second_->set(q_ * second_->scale);
+    set_second(q_);
     branch_.linearise(u_.get(), row_.get());
     g_ = condition_.values(u_.get(), inner_);
     q_set_ = true;
@@ -298,7 +303,6 @@ core::Vector any_tangent(ExtendedProblem& branch, Vec u) {
 }
 
 std::unique_ptr<Condition> condition_of(CycleProblem& problem, Event event, std::complex<double> critical) {
-  if (!problem.has_adjoint()) return nullptr;
   switch (event) {
     case Event::cyclic_fold:
       return make_cyclic_fold(problem);

@@ -28,4 +28,21 @@ VectorXd Run::drive(const double* rhs, const VectorXd& start, const VectorXd* bo
   return state;
 }
 
+VectorXd Run::drive_back(const double* rhs, const VectorXd& lambda, const VectorXd& sigma, double* z,
+                         VectorXd& seen) const {
+  VectorXd state = lambda;
+  MatrixXd part;
+  for (std::size_t i = intervals.size(); i-- > 0;) {
+    const Index size = rows[i].cols(), offset = static_cast<Index>(i) * size;
+    part = -rows[i].transpose() * sigma;
+    if (rhs) part += Map<const VectorXd>(rhs + offset, size);
+    part.bottomRows(n) += state;
+    intervals[i]->solve_transposed(part);
+    if (z) Map<VectorXd>(z + offset, size) = part.col(0);
+    seen.noalias() += columns[i].transpose() * part.col(0);
+    state = -intervals[i]->start_transposed(part);
+  }
+  return state;
+}
+
 }  // namespace whirl::solve

@@ -36,29 +36,48 @@ void CycleProblem::interval_transposed(Index i, const double* own, const VectorX
                                        const VectorXd& y, Eigen::Ref<VectorXd> to_own, VectorXd& to_start,
                                        VectorXd& to_border) {
   const double length = interval_length(i) * period;
-  VectorXd value(n_), slope(n_), d_parameter;
+  VectorXd value(n_), slope(n_), d_parameter(n_), rate(n_), by_value, by_slope;
   MatrixXd jx, jxdot;
+  PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
-    point_.linearise(angle_at(i, scheme_.c(j)), value, slope, jx, jxdot, &d_parameter);
     const auto part = y.segment(j * n_, n_);
-    const VectorXd by_value = jx.transpose() * part, by_slope = jxdot.transpose() * part / length;
+    const double angle = angle_at(i, scheme_.c(j));
+    if (structure_) {
+      point_.residual(angle, value, slope, rate, at);
+      point_.parameter_derivative(angle, at, d_parameter);
+      point_.times_rates(at, slope, rate);
+      point_.times_transposed(at, part, by_value, by_slope);
+    } else {
+      point_.linearise(angle, value, slope, jx, jxdot, &d_parameter);
+      rate.noalias() = jxdot * slope;
+      by_value.noalias() = jx.transpose() * part;
+      by_slope.noalias() = jxdot.transpose() * part;
+    }
+    to_border += border_columns(d_parameter, rate, period).transpose() * part;
+    by_slope /= length;
     to_start += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
     for (Index l = 1; l <= scheme_.degree; ++l)
       to_own.segment((l - 1) * n_, n_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
-    to_border += border_columns(d_parameter, jxdot * slope, period).transpose() * part;
   }
 }
 
 VectorXd CycleProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
                                         const double* d_own, const VectorXd& d_start) {
-  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), out(scheme_.degree * n_);
+  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), out(scheme_.degree * n_), unused(n_);
   MatrixXd jx, jxdot;
+  PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
     interpolate(i, j, d_own, d_start, period, d_value, d_slope);
-    point_.linearise(angle_at(i, scheme_.c(j)), value, slope, jx, jxdot, nullptr);
-    out.segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
+    const double angle = angle_at(i, scheme_.c(j));
+    if (structure_) {
+      point_.residual(angle, value, slope, unused, at);
+      point_.times(at, d_value, d_slope, out.segment(j * n_, n_));
+    } else {
+      point_.linearise(angle, value, slope, jx, jxdot, nullptr);
+      out.segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
+    }
   }
   return out;
 }
@@ -145,61 +164,33 @@ MatrixXd CycleProblem::tangent(Vec u, double step, const Path& a, const Path& b)
 }
 
 CycleProblem::Path CycleProblem::forward(const VectorXd& v) const {
-  const Index m = scheme_.degree;
-  Path path{composition_->entering(v), MatrixXd(n_, count_ * m), {}};
-  VectorXd state = path.start;
-  for (Index i = 0; i < count_; ++i) {
-    MatrixXd z = -run_.intervals[static_cast<std::size_t>(i)]->start(state);
-    run_.intervals[static_cast<std::size_t>(i)]->solve(z);
-    path.nodes.middleCols(i * m, m) = Map<const MatrixXd>(z.data(), n_, m);
-    state = z.col(0).tail(n_);
-  }
+  Path path{composition_->entering(v), MatrixXd(n_, count_ * scheme_.degree), {}};
+  VectorXd added = VectorXd::Zero(borders_);
+  (void)run_.drive(nullptr, path.start, nullptr, path.nodes.data(), added);
   return path;
 }
 
 CycleProblem::Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
-  const Index m = scheme_.degree;
-  Path path;
-  const auto run = [&](const VectorXd& start) {
-    path = {start, MatrixXd(n_, count_ * m), {}};
-    VectorXd state = start;
-    for (Index i = 0; i < count_; ++i) {
-      MatrixXd z = -y.col(i) - run_.intervals[static_cast<std::size_t>(i)]->start(state);
-      run_.intervals[static_cast<std::size_t>(i)]->solve(z);
-      path.nodes.middleCols(i * m, m) = Map<const MatrixXd>(z.data(), n_, m);
-      state = z.col(0).tail(n_);
-    }
-    return state;
-  };
   // Ranks follow one another: what leaves one enters the next.
-  VectorXd entering = VectorXd::Zero(n_);
+  Path path{VectorXd::Zero(n_), MatrixXd(n_, count_ * scheme_.degree), {}};
   const int n = static_cast<int>(n_);
-  if (rank_ > 0) MPI_Recv(entering.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_, MPI_STATUS_IGNORE);
-  end = run(entering);
+  if (rank_ > 0) MPI_Recv(path.start.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_, MPI_STATUS_IGNORE);
+  const MatrixXd rhs = -y;
+  VectorXd added = VectorXd::Zero(borders_);
+  end = run_.drive(rhs.data(), path.start, nullptr, path.nodes.data(), added);
   if (rank_ < size_ - 1) MPI_Send(end.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_);
   MPI_Bcast(end.data(), n, MPI_DOUBLE, size_ - 1, comm_);
   return path;
 }
 
 MatrixXd CycleProblem::backward(const VectorXd& w) const {
-  const Index block = scheme_.degree * n_;
-  VectorXd lambda = w;
+  VectorXd lambda = w, seen = VectorXd::Zero(borders_);
   const int n = static_cast<int>(n_);
   if (rank_ < size_ - 1) MPI_Recv(lambda.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_, MPI_STATUS_IGNORE);
-  MatrixXd weights(block, count_);
-  for (Index i = count_ - 1; i >= 0; --i) {
-    MatrixXd z = MatrixXd::Zero(block, 1);
-    z.bottomRows(n_) = lambda;
-    run_.intervals[static_cast<std::size_t>(i)]->solve_transposed(z);
-    weights.col(i) = z;
-    lambda = -run_.intervals[static_cast<std::size_t>(i)]->start_transposed(z);
-  }
+  MatrixXd weights(scheme_.degree * n_, count_);
+  lambda = run_.drive_back(nullptr, lambda, VectorXd::Zero(borders_), weights.data(), seen);
   if (rank_ > 0) MPI_Send(lambda.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_);
   return weights;
-}
-
-bool CycleProblem::has_adjoint() const {
-  return composition_->has_transpose();
 }
 
 void CycleProblem::solve_transposed(Vec rhs, Vec x) {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "bordered.hpp"
+#include "bordered_monodromy.hpp"
 #include "condition_fold.hpp"
 
 namespace whirl::solve {
@@ -14,56 +14,54 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A multiplier of -1 beside others at +1 or -1 shows in w . v of its null vectors and in the corner for the other sign.
-double corner(const CycleProblem& problem, double sign, Bordered& bordered) {
-  const Index n = problem.monodromy().rows();
-  bordered.solve(problem.monodromy() - sign * MatrixXd::Identity(n, n));
+// The corner for M - sign I.
+double corner(double sign, BorderedMonodromy& bordered) {
+  bordered.solve({-sign, 1});
   return bordered.g(0, 0);
 }
 
+// A multiplier of -1 beside others at +1 or -1 shows in w . v of its null vectors and in the corner for the other sign.
 class FlipCondition : public Condition {
 public:
-  explicit FlipCondition(CycleProblem& problem) : problem_(problem), bordered_(problem.monodromy().rows(), 1) {
-    (void)corner(problem, -1, bordered_);
+  explicit FlipCondition(CycleProblem& problem) : problem_(problem), bordered_(problem, 1) {
+    (void)corner(-1, bordered_);
     bordered_.update();
   }
-  VectorXd values(Vec, const VectorXd&) override { return VectorXd::Constant(1, corner(problem_, -1, bordered_)); }
+  VectorXd values(Vec, const VectorXd&) override { return VectorXd::Constant(1, corner(-1, bordered_)); }
   void derivatives(Vec u, const VectorXd&, MatrixXd& d_inner, std::vector<core::Vector>& gradients) override {
     d_inner.resize(1, 0);
-    gradients = problem_.gradients(u, problem_.forward(bordered_.v.col(0)), {problem_.backward(bordered_.w.col(0))});
+    gradients =
+        problem_.gradients(u, problem_.forward(bordered_.v.col(0)), {problem_.backward(bordered_.left().col(0))});
   }
   void update() override { bordered_.update(); }
   std::vector<CodimensionTest> tests(const VectorXd&, Vec along) override {
-    return {{"resonance_1_2", bordered_.w.col(0).dot(bordered_.v.col(0))},
+    return {{"resonance_1_2", bordered_.left().col(0).dot(bordered_.v.col(0))},
             {"fold_flip", last_entry(problem_.comm(), along)}};
   }
 
 private:
   CycleProblem& problem_;
-  Bordered bordered_;
+  BorderedMonodromy bordered_;
 };
 
 class CyclicFoldCondition : public FoldCondition {
 public:
   explicit CyclicFoldCondition(CycleProblem& problem)
-      : FoldCondition(problem, problem),
-        cycles_(problem),
-        one_(problem.monodromy().rows(), 1),
-        flip_(problem.monodromy().rows(), 1) {}
+      : FoldCondition(problem, problem), cycles_(problem), one_(problem, 1), flip_(problem, 1) {}
   std::vector<CodimensionTest> tests(const VectorXd& inner, Vec along) override {
     std::vector<CodimensionTest> all = FoldCondition::tests(inner, along);
-    all.push_back({"fold_flip", corner(cycles_, -1, flip_)});
+    all.push_back({"fold_flip", corner(-1, flip_)});
     // The trivial multiplier of a self-excited cycle makes +1 double at every fold.
     if (!cycles_.options().autonomous) {
-      (void)corner(cycles_, 1, one_);
-      all.push_back({"resonance_1_1", one_.w.col(0).dot(one_.v.col(0))});
+      (void)corner(1, one_);
+      all.push_back({"resonance_1_1", one_.left().col(0).dot(one_.v.col(0))});
     }
     return all;
   }
 
 private:
   CycleProblem& cycles_;
-  Bordered one_, flip_;
+  BorderedMonodromy one_, flip_;
 };
 
 // With k = (w^T v, w^T M v) made orthonormal as the two combinations n_k of the corner: near the bifurcation the corner
@@ -71,30 +69,31 @@ private:
 class NeimarkSackerCondition : public Condition {
 public:
   NeimarkSackerCondition(CycleProblem& problem, std::complex<double> multiplier)
-      : problem_(problem), kappa_(multiplier.real() / std::abs(multiplier)), bordered_(problem.monodromy().rows(), 2) {
-    bordered_.solve(matrix(kappa_));
+      : problem_(problem), kappa_(multiplier.real() / std::abs(multiplier)), bordered_(problem, 2) {
+    bordered_.solve({1, -2 * kappa_, 1});
     bordered_.update();
-    bordered_.solve(matrix(kappa_));
+    bordered_.solve({1, -2 * kappa_, 1});
     choose();
   }
   VectorXd start() const override { return VectorXd::Constant(1, kappa_); }
   VectorXd values(Vec, const VectorXd& inner) override {
-    bordered_.solve(matrix(inner(0)));
+    bordered_.solve({1, -2 * inner(0), 1});
     return VectorXd{{(n_[0].array() * bordered_.g.array()).sum(), (n_[1].array() * bordered_.g.array()).sum()}};
   }
   void derivatives(Vec u, const VectorXd& inner, MatrixXd& d_inner, std::vector<core::Vector>& gradients) override {
-    const MatrixXd &m = problem_.monodromy(), &v = bordered_.v;
+    Composition& m = problem_.composition();
+    const MatrixXd &v = bordered_.v, &w = bordered_.left(), mv = m.times(v);
     d_inner.resize(2, 1);
     gradients.clear();
     // d(n : g) = -sum_j y_j . (M' (M - 2 kappa) + M M') v_j + 2 dkappa y_j . M v_j, y = w n
-    const MatrixXd y[2] = {bordered_.w * n_[0], bordered_.w * n_[1]};
-    for (int k = 0; k < 2; ++k) d_inner(k, 0) = 2 * (y[k].array() * (m * v).array()).sum();
+    const MatrixXd y[2] = {w * n_[0], w * n_[1]};
+    for (int k = 0; k < 2; ++k) d_inner(k, 0) = 2 * (y[k].array() * mv.array()).sum();
     for (Index j = 0; j < 2; ++j) {
-      const VectorXd other = m * v.col(j) - 2 * inner(0) * v.col(j);
+      const VectorXd other = mv.col(j) - 2 * inner(0) * v.col(j);
       std::vector<MatrixXd> direct, through;
       for (int k = 0; k < 2; ++k) {
         direct.push_back(problem_.backward(y[k].col(j)));
-        through.push_back(problem_.backward(m.transpose() * y[k].col(j)));
+        through.push_back(problem_.backward(m.times_transposed(y[k].col(j))));
       }
       add(problem_.gradients(u, problem_.forward(other), direct), gradients);
       add(problem_.gradients(u, problem_.forward(v.col(j)), through), gradients);
@@ -114,13 +113,10 @@ public:
   }
 
 private:
-  MatrixXd matrix(double kappa) const {
-    const MatrixXd& m = problem_.monodromy();
-    return m * m - 2 * kappa * m + MatrixXd::Identity(m.rows(), m.rows());
-  }
   void choose() {
-    n_[0] = bordered_.w.transpose() * bordered_.v;
-    n_[1] = bordered_.w.transpose() * problem_.monodromy() * bordered_.v;
+    const MatrixXd& w = bordered_.left();
+    n_[0] = w.transpose() * bordered_.v;
+    n_[1] = w.transpose() * problem_.composition().times(bordered_.v);
     n_[0] /= n_[0].norm();
     n_[1] -= (n_[0].array() * n_[1].array()).sum() * n_[0];
     n_[1] /= n_[1].norm();
@@ -135,7 +131,7 @@ private:
 
   CycleProblem& problem_;
   double kappa_;
-  Bordered bordered_;
+  BorderedMonodromy bordered_;
   MatrixXd n_[2];
 };
 

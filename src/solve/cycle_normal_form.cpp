@@ -18,16 +18,16 @@ using Eigen::VectorXd;
 class Map {
 public:
   using Path = CycleProblem::Path;
-  Map(CycleProblem& problem, Vec u) : problem_(problem), u_(u) {}
+  Map(CycleProblem& problem, Vec u, double step = 1) : problem_(problem), u_(u), step_(step) {}
 
   // D^2 R[a, b] at the collocation points.
   MatrixXd second(const Path& a, const Path& b) {
-    const double h = difference_step(size(a));
+    const double h = step_ * difference_step(size(a));
     return (problem_.tangent(u_, h, a, b) - problem_.tangent(u_, -h, a, b)) / (2 * h);
   }
   // D^3 R[a, a, b].
   MatrixXd third(const Path& a, const Path& b) {
-    const double h = std::pow(std::numeric_limits<double>::epsilon(), 0.25) / size(a);
+    const double h = step_ * std::pow(std::numeric_limits<double>::epsilon(), 0.25) / size(a);
     return (problem_.tangent(u_, h, a, b) - 2 * problem_.tangent(u_, 0, a, b) + problem_.tangent(u_, -h, a, b)) /
            (h * h);
   }
@@ -57,6 +57,7 @@ private:
   }
   CycleProblem& problem_;
   Vec u_;
+  double step_;
 };
 
 // Right and left eigenvectors for a simple eigenvalue, p^* q = 1 and |q|^2 = n.
@@ -102,7 +103,7 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   return (c1 / multiplier * std::abs(multiplier)).real();
 }
 
-double flip_coefficient(CycleProblem& problem, Vec u) {
+double flip_coefficient(CycleProblem& problem, Vec u, double step) {
   const MatrixXd m = problem.monodromy();
   VectorXcd q, p;
   eigenvectors(m, -1, q, p);
@@ -112,7 +113,7 @@ double flip_coefficient(CycleProblem& problem, Vec u) {
   const Complex factor = std::abs(q(largest)) / q(largest);
   const VectorXd v = (factor * q).real();
   const VectorXd w = (p / std::conj(factor) / std::norm(factor)).real();
-  Map map(problem, u);
+  Map map(problem, u, step);
   const auto a = map.path(v);
   const VectorXd h = (MatrixXd::Identity(m.rows(), m.rows()) - m).partialPivLu().solve(map.bilinear(a, a));
   return w.dot(map.trilinear(a, a) + 3 * map.bilinear(a, map.path(h))) / (6 * w.dot(v));

@@ -23,10 +23,6 @@ constexpr double two_pi = 2 * std::numbers::pi;
 // time, where the dense way carries eight at once. Measured: 1.5 times faster at 56 states, 3 to 4 times at 206.
 constexpr Index dense_below = 40;
 
-double length(const std::vector<double>& mesh, Index i) {
-  return mesh[static_cast<std::size_t>(i) + 1] - mesh[static_cast<std::size_t>(i)];
-}
-
 }  // namespace
 
 CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, const problem::Structure* structure) {
@@ -75,7 +71,7 @@ void CycleProblem::layout(std::vector<double> mesh) {
     for (Index l = 0; l < m; ++l)
       for (Index k = 0; k < n_; ++k)
         w[static_cast<PetscInt>((i * m + l) * n_ + k)] =
-            options_.state_weight * length(mesh_, first_ + i) * scheme_.node_weight(l) / static_cast<double>(n_);
+            options_.state_weight * interval_length(i) * scheme_.node_weight(l) / static_cast<double>(n_);
   if (rank_ == size_ - 1) w[w.size() - 1] = 1;
 }
 
@@ -144,12 +140,13 @@ void CycleProblem::residual(Vec u, Vec r) {
 }
 
 double CycleProblem::interval_length(Index i) const {
-  return length(mesh_, first_ + i);
+  const auto k = static_cast<std::size_t>(first_ + i);
+  return mesh_[k + 1] - mesh_[k];
 }
 
 double CycleProblem::angle_at(Index i, double t) const {
   const auto k = static_cast<std::size_t>(first_ + i);
-  return options_.autonomous ? 0.0 : two_pi * options_.turns * (mesh_[k] + length(mesh_, first_ + i) * t);
+  return options_.autonomous ? 0.0 : two_pi * options_.turns * (mesh_[k] + interval_length(i) * t);
 }
 
 // State and rate at point j of interval i.
@@ -162,7 +159,7 @@ void CycleProblem::interpolate(Index i, Index j, const double* own, const Vector
     value += scheme_.value(j, l) * node;
     slope += scheme_.slope(j, l) * node;
   }
-  slope /= length(mesh_, first_ + i) * period;
+  slope /= interval_length(i) * period;
 }
 
 void CycleProblem::interval_residual(Index i, const double* own, const VectorXd& start, double period, double* out) {
@@ -314,93 +311,6 @@ MatrixXd CycleProblem::propagate(const VectorXd& v) const {
   (void)run_.drive(nullptr, composition_->entering(v), nullptr, whole.col(first_ * m).data(), added);
   MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return whole;
-}
-
-Cycle CycleProblem::gather(Vec u) const {
-  const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
-  const VectorXd border = border_of(u);
-  Cycle cycle{mesh_, MatrixXd(n_, total * m), 0, border(borders_ - 1) * options_.parameter_scale};
-  std::vector<int> counts(static_cast<std::size_t>(size_)), offsets(static_cast<std::size_t>(size_));
-  for (int p = 0; p < size_; ++p) {
-    const Index begin = total * p / size_, end = total * (p + 1) / size_;
-    offsets[static_cast<std::size_t>(p)] = static_cast<int>(begin * m * n_);
-    counts[static_cast<std::size_t>(p)] = static_cast<int>((end - begin) * m * n_);
-  }
-  const core::ReadArray ua(u);
-  MPI_Allgatherv(ua.data(), static_cast<int>(count_ * m * n_), MPI_DOUBLE, cycle.x.data(), counts.data(),
-                 offsets.data(), MPI_DOUBLE, comm_);
-  cycle.x = state_scale().asDiagonal() * cycle.x;
-  if (options_.autonomous)
-    cycle.period = border(0) * period_scale_;
-  else
-    cycle.period = two_pi * options_.turns / (system_.parameter_is_speed() ? cycle.parameter : system_.speed());
-  return cycle;
-}
-
-core::Vector CycleProblem::scatter(const Cycle& cycle) const {
-  core::require(!options_.autonomous || period_scale_ > 0, "an autonomous cycle wants its phase reference first");
-  const Cycle here = cycle.on(scheme_, mesh_);
-  const Index m = scheme_.degree;
-  core::Vector u = make_unknown();
-  core::WriteArray ua(u.get());
-  Map<MatrixXd>(ua.data(), n_, count_ * m) =
-      state_scale().cwiseInverse().asDiagonal() * here.x.middleCols(first_ * m, count_ * m);
-  if (rank_ == size_ - 1) {
-    if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
-    ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
-  }
-  return u;
-}
-
-VectorXd CycleProblem::reference_rate(const Cycle& reference, Index g, Index l) {
-  const Index m = scheme_.degree;
-  const VectorXd w = lagrange_slope(scheme_, scheme_.node(l)) / length(mesh_, g);
-  VectorXd rate = w(0) * reference.x.col(g == 0 ? reference.x.cols() - 1 : g * m - 1);
-  for (Index q = 1; q <= m; ++q) rate += w(q) * reference.x.col(g * m + q - 1);
-  return rate;
-}
-
-void CycleProblem::set_phase_reference(const Cycle& reference) {
-  core::require(options_.autonomous, "only an autonomous cycle has a phase condition");
-  if (period_scale_ == 0) period_scale_ = reference.period;
-  const Cycle here = reference.on(scheme_, mesh_);
-  const Index m = scheme_.degree;
-  phase_row_.resize(n_, count_ * m);
-  double values[2] = {0, 0};  // squared norm of the rate, and integral of <x, x'>
-  for (Index i = 0; i < count_; ++i) {
-    const Index g = first_ + i;
-    const double h = length(mesh_, g);
-    for (Index l = 1; l <= m; ++l) {
-      VectorXd rate = reference_rate(here, g, l);
-      rate = rate.cwiseQuotient(state_scale());
-      const VectorXd value = here.x.col(g * m + l - 1).cwiseQuotient(state_scale());
-      const double weight = h * scheme_.node_weight(l - 1);
-      phase_row_.col(i * m + l - 1) = weight * rate;
-      values[0] += weight * rate.squaredNorm();
-      values[1] += weight * rate.dot(value);
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, values, 2, MPI_DOUBLE, MPI_SUM, comm_);
-  const double norm = std::sqrt(values[0]);
-  core::require(norm > 0, "the phase reference does not move");
-  phase_row_ /= norm;
-  phase_offset_ = values[1] / norm;
-}
-
-bool CycleProblem::adapt(core::Vector& u, core::Vector& tangent) {
-  if (options_.mesh_tolerance <= 0) return false;
-  const Cycle cycle = gather(u.get()), direction = gather(tangent.get());
-  double longest = 0;
-  for (Index i = 0; i < cycle.intervals(); ++i) longest = std::max(longest, length(mesh_, i));
-  const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
-  std::vector<double> mesh =
-      adapted_mesh(scheme_, cycle, state_scale(), options_.mesh_tolerance, base, options_.max_intervals);
-  if (mesh == mesh_ || static_cast<int>(mesh.size()) - 1 < size_) return false;
-  layout(std::move(mesh));
-  u = scatter(cycle);
-  tangent = scatter(direction);
-  if (options_.autonomous) set_phase_reference(cycle);
-  return true;
 }
 
 }  // namespace whirl::solve

@@ -21,11 +21,14 @@ class DenseComposition final : public Composition {
 public:
   void compose(const Run& run) override;
   void solve(const double* rhs, VectorXd& border, double* x) override;
-  bool has_transpose() const override { return true; }
   void solve_transposed(const double* rhs, VectorXd& border, double* x) override;
   std::vector<std::complex<double>> multipliers() override { return spectral::eigenvalues(monodromy_); }
   VectorXd critical_start(double mu) override;
   MatrixXd monodromy() override { return monodromy_; }
+  bool has_monodromy() const override { return true; }
+  MatrixXd times(const MatrixXd& v) override { return monodromy_ * v; }
+  MatrixXd times_transposed(const MatrixXd& w) override { return monodromy_.transpose() * w; }
+  void dominant(MatrixXd& v, MatrixXd& image) override { v = image = MatrixXd(run_->n, 0); }
   VectorXd entering(const VectorXd& v) override {
     return to_rank_[static_cast<std::size_t>(rank_)].leftCols(run_->n) * v;
   }
@@ -117,27 +120,13 @@ void DenseComposition::solve(const double* rhs, VectorXd& border, double* x) {
   (void)run_->drive(rhs, entering, &border, x, s);
 }
 
-// With z_i the adjoint of interval i, lambda_i that of its end state and sigma those of the added rows:
-//     A_i^T z_i = s_i + E^T lambda_i - rows_i^T sigma,    lambda_(i-1) = -A0_i^T z_i,    lambda_N = lambda_0
-// which closes by the transpose of the small system of the forward solve.
+// Closes by the transpose of the small system of the forward solve, lambda_N = lambda_0.
 void DenseComposition::solve_transposed(const double* rhs, VectorXd& border, double* x) {
-  const Index n = run_->n, nb = run_->borders, all = n + nb, count = static_cast<Index>(run_->intervals.size()),
-              block = count > 0 ? run_->columns.front().rows() : 0;
-  VectorXd part(all);  // of this rank: adjoint of the state before it, and what its columns see
-  const auto sweep = [&](VectorXd lambda, const VectorXd& sigma, bool keep) {
-    part.tail(nb).setZero();
-    for (Index i = count - 1; i >= 0; --i) {
-      const auto k = static_cast<std::size_t>(i);
-      MatrixXd z = Map<const VectorXd>(rhs + i * block, block) - run_->rows[k].transpose() * sigma;
-      z.bottomRows(n) += lambda;
-      run_->intervals[k]->solve_transposed(z);
-      if (keep) Map<VectorXd>(x + i * block, block) = z.col(0);
-      part.tail(nb) += run_->columns[k].transpose() * z.col(0);
-      lambda = -run_->intervals[k]->start_transposed(z);
-    }
-    part.head(n) = lambda;
-  };
-  sweep(VectorXd::Zero(n), VectorXd::Zero(nb), false);
+  const Index n = run_->n, nb = run_->borders, all = n + nb;
+  // Of this rank: adjoint of the state before it, and what its columns see.
+  VectorXd part(all), sum = VectorXd::Zero(nb);
+  part.head(n) = run_->drive_back(rhs, VectorXd::Zero(n), VectorXd::Zero(nb), nullptr, sum);
+  part.tail(nb) = sum;
   VectorXd gathered(all * size_);
   MPI_Allgather(part.data(), static_cast<int>(all), MPI_DOUBLE, gathered.data(), static_cast<int>(all), MPI_DOUBLE,
                 run_->comm);
@@ -158,7 +147,7 @@ void DenseComposition::solve_transposed(const double* rhs, VectorXd& border, dou
               q.bottomLeftCorner(nb, n).transpose() * sigma)
                  .eval();
   }
-  sweep(lambda, sigma, true);
+  (void)run_->drive_back(rhs, lambda, sigma, x, sum);
   border = sigma;
 }
 

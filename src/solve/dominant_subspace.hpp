@@ -19,8 +19,10 @@ struct DominantSubspace {
 
 struct SubspaceOptions {
   double radius = 0.3;
-  double tolerance = 1e-9;  ///< relative residual of an eigenpair
+  double tolerance = 1e-9;  ///< residual of an eigenpair above the radius, in its eigenvalue
   int most = 1 << 20;       ///< of them, although more may be above the radius
+  int spare = 0;            ///< vectors of the search beside those asked for, at least half as many; 0: as many and six
+  int restarts = 200;       ///< after which the search is given up
   int guess = 4;            ///< eigenvalues asked for first; more are found until one is below the radius
 };
 

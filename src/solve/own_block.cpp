@@ -1,8 +1,8 @@
 #include "solve/own_block.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
+
+#include "small_blocks.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -11,98 +11,6 @@ using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// Kernels on m x m blocks, column by column in memory, with m known to the compiler as M, or M = 0. Outputs do not
-// overlap inputs.
-
-// y += sign a x for x, y [m x columns].
-template <int M>
-void accumulate(Index degree, const double* __restrict a, const double* __restrict x, Index columns,
-                double* __restrict y, double sign) {
-  if constexpr (M > 0) {
-    for (Index c = 0; c < columns; ++c) {
-      double sum[M];
-      for (Index l = 0; l < M; ++l) sum[l] = y[c * M + l];
-      for (Index q = 0; q < M; ++q) {
-        const double v = sign * x[c * M + q];
-        for (Index l = 0; l < M; ++l) sum[l] += a[q * M + l] * v;
-      }
-      for (Index l = 0; l < M; ++l) y[c * M + l] = sum[l];
-    }
-  } else {
-    const Index m = degree;
-    for (Index c = 0; c < columns; ++c)
-      for (Index q = 0; q < m; ++q)
-        for (Index l = 0; l < m; ++l) y[c * m + l] += a[q * m + l] * sign * x[c * m + q];
-  }
-}
-template <int M>
-void subtract(Index degree, const double* a, const double* x, Index columns, double* y) {
-  accumulate<M>(degree, a, x, columns, y, -1);
-}
-template <int M>
-void multiply_by(Index degree, const double* a, const double* x, Index columns, double* y) {
-  std::fill(y, y + degree * columns, 0.0);
-  accumulate<M>(degree, a, x, columns, y, 1);
-}
-
-// y += a x for a [m x count], x [count] and one column y [m].
-template <int M>
-void accumulate_column(Index degree, const double* __restrict a, const double* __restrict x, Index count,
-                       double* __restrict y) {
-  if constexpr (M > 0) {
-    double even[M], odd[M];
-    for (Index l = 0; l < M; ++l) even[l] = y[l], odd[l] = 0;
-    Index e = 0;
-    for (; e + 1 < count; e += 2)  // two sums at once hide the latency of each
-      for (Index l = 0; l < M; ++l) {
-        even[l] += a[e * M + l] * x[e];
-        odd[l] += a[(e + 1) * M + l] * x[e + 1];
-      }
-    for (; e < count; ++e)
-      for (Index l = 0; l < M; ++l) even[l] += a[e * M + l] * x[e];
-    for (Index l = 0; l < M; ++l) y[l] = even[l] + odd[l];
-  } else {
-    for (Index e = 0; e < count; ++e)
-      for (Index l = 0; l < degree; ++l) y[l] += a[e * degree + l] * x[e];
-  }
-}
-
-// y -= a^T x, one column.
-template <int M>
-void subtract_transposed(Index degree, const double* a, const double* x, double* y) {
-  const Index m = M > 0 ? M : degree;
-  for (Index q = 0; q < m; ++q)
-    for (Index l = 0; l < m; ++l) y[q] -= a[q * m + l] * x[l];
-}
-
-// out = a^-1 by Gauss-Jordan elimination with row exchanges; `a` is used up.
-template <int M>
-void invert(Index degree, double* a, double* out) {
-  const Index m = M > 0 ? M : degree;
-  std::fill(out, out + m * m, 0.0);
-  for (Index k = 0; k < m; ++k) out[k * m + k] = 1;
-  for (Index k = 0; k < m; ++k) {
-    Index pivot = k;
-    for (Index l = k + 1; l < m; ++l)
-      if (std::abs(a[k * m + l]) > std::abs(a[k * m + pivot])) pivot = l;
-    const double scale = 1 / a[k * m + pivot];
-    for (Index c = 0; c < m; ++c) {
-      std::swap(a[c * m + k], a[c * m + pivot]);
-      std::swap(out[c * m + k], out[c * m + pivot]);
-      a[c * m + k] *= scale;
-      out[c * m + k] *= scale;
-    }
-    for (Index l = 0; l < m; ++l) {
-      if (l == k) continue;
-      const double v = a[k * m + l];
-      for (Index c = 0; c < m; ++c) {
-        a[c * m + l] -= v * a[c * m + k];
-        out[c * m + l] -= v * out[c * m + k];
-      }
-    }
-  }
-}
 
 template <int M>
 class Blocks final : public OwnBlock {
@@ -125,9 +33,9 @@ public:
   void start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const override;
   void add_inputs(double factor, const double* eta, double* y) const override;
   void multiply(const double* start, const double* s, double* rows, VectorXd& force) const override;
-  void solve_transposed(double* y) const override;
+  void substitute_transposed(const double* y, VectorXd& border) const override;
+  void eliminate_transposed(double* y, const double* force) const override;
   void inputs_transposed(const double* y, double* eta) const override;
-  void forces_transposed(const double* force, double* y) const override;
   void start_transposed(const double* y, const double* force, double* s) const override;
   [[nodiscard]] MatrixXd inputs_of(Index state) const override {
     MatrixXd out(m(), static_cast<Index>(active_.size()));
@@ -279,7 +187,7 @@ void Blocks<M>::find_border() {
   const Index n = shape_.interior(), below = shape_.below, above = shape_.above, width = shape_.width();
   const auto active = static_cast<Index>(active_.size());
   border_ = m() * (active + shape_.separators);
-  z_.assign(static_cast<std::size_t>(n * m() * border_), 0.0);
+  z_.resize(static_cast<std::size_t>(n * m() * border_));
   std::vector<double> row(static_cast<std::size_t>(m() * border_)), square(static_cast<std::size_t>(m() * m()));
   const auto put_inputs = [&](Index a, double* out, Index stride) {
     for (Index c = 0; c < active; ++c)
@@ -439,19 +347,20 @@ void Blocks<M>::multiply(const double* start, const double* s, double* rows, Vec
     }
 }
 
-// s_S by the transposed Sigma, then T_II^T = U^T L^T.
 template <int M>
-void Blocks<M>::solve_transposed(double* y) const {
-  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m(),
-              separators = m() * shape_.separators, inputs = border_ - separators;
-  VectorXd right = Map<const VectorXd>(y + n * size, separators);
-  for (Index e = 0; e < separators; ++e)
-    for (Index a = 0; a < n; ++a)
-      for (Index l = 0; l < size; ++l) right(e) -= z(a)[(inputs + e) * size + l] * y[a * size + l];
-  MatrixXd copy = sigma, inverse(separators, separators);
-  invert<0>(separators, copy.data(), inverse.data());
-  Map<VectorXd>(y + n * size, separators) = inverse.transpose() * right;
-  std::vector<double> square(static_cast<std::size_t>(size * size));
+void Blocks<M>::substitute_transposed(const double* y, VectorXd& border) const {
+  const Index n = shape_.interior(), separators = m() * shape_.separators;
+  border = VectorXd::Zero(border_);
+  border.tail(separators) = Map<const VectorXd>(y + n * m(), separators);
+  for (Index a = 0; a < n; ++a)
+    border.noalias() -= Map<const MatrixXd>(z(a), m(), border_).transpose() * Map<const VectorXd>(y + a * m(), m());
+}
+
+// T_II^T = U^T L^T.
+template <int M>
+void Blocks<M>::eliminate_transposed(double* y, const double* force) const {
+  const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m();
+  std::vector<double> square(static_cast<std::size_t>(size * size)), row(static_cast<std::size_t>(size));
   for (Index a = n; a < shape_.count; ++a)
     for (Index slot = 0; slot < shape_.width(); ++slot) {
       const Index to = shape_.column(a, slot);
@@ -459,10 +368,18 @@ void Blocks<M>::solve_transposed(double* y) const {
       block(a, slot, square.data());
       subtract_transposed<M>(size, square.data(), y + a * size, y + to * size);
     }
-  for (Index a = 0; a < n; ++a)
+  for (Index a = 0; a < n; ++a) {
+    for (Index d = 0; d < forces_; ++d)
+      for (Index j = 0; j < size; ++j) {
+        const double v = force_of(a)[d * size + j] * force[j * forces_ + d];
+        for (Index l = 0; l < size; ++l) y[a * size + l] += value_(j, l) * v;
+        if (!rated()) continue;
+        const double w = force_rate_of(a)[d * size + j] * force[j * forces_ + d];
+        for (Index l = 0; l < size; ++l) y[a * size + l] += slope_(j, l) * w;
+      }
     for (Index c = std::max<Index>(0, a - above); c < a; ++c)
       subtract_transposed<M>(size, factor(c, a - c + below), y + c * size, y + a * size);
-  std::vector<double> row(static_cast<std::size_t>(size));
+  }
   for (Index a = n - 1; a >= 0; --a) {
     for (Index c = a + 1; c <= std::min(n - 1, a + below); ++c)
       subtract_transposed<M>(size, factor(c, a - c + below), y + c * size, y + a * size);
@@ -483,19 +400,6 @@ void Blocks<M>::inputs_transposed(const double* y, double* eta) const {
 }
 
 template <int M>
-void Blocks<M>::forces_transposed(const double* force, double* y) const {
-  for (Index a = 0; a < shape_.count; ++a)
-    for (Index d = 0; d < forces_; ++d)
-      for (Index j = 0; j < m(); ++j) {
-        const double v = force_of(a)[d * m() + j] * force[j * forces_ + d];
-        for (Index l = 0; l < m(); ++l) y[a * m() + l] += value_(j, l) * v;
-        if (!rated()) continue;
-        const double w = force_rate_of(a)[d * m() + j] * force[j * forces_ + d];
-        for (Index l = 0; l < m(); ++l) y[a * m() + l] += slope_(j, l) * w;
-      }
-}
-
-template <int M>
 void Blocks<M>::start_transposed(const double* y, const double* force, double* s) const {
   for (Index a = 0; a < shape_.count; ++a)
     for (Index j = 0; j < m(); ++j) {
@@ -506,34 +410,6 @@ void Blocks<M>::start_transposed(const double* y, const double* force, double* s
 }
 
 }  // namespace
-
-OwnShape::OwnShape(const problem::OwnStates& film) : count(film.count) {
-  const auto around = [&](Index d) { return d > count / 2 ? d - count : d < -(count / 2) ? d + count : d; };
-  Index plain = 0, closed = 0;
-  for (const auto* places : {&film.states, &film.rates})
-    for (const problem::Place& p : *places) {
-      plain = std::max<Index>(plain, std::abs(p.column - p.row));
-      closed = std::max<Index>(closed, std::abs(around(p.column - p.row)));
-    }
-  const bool periodic = closed < plain;
-  const auto distance = [&](const problem::Place& p) {
-    return periodic ? around(p.column - p.row) : static_cast<Index>(p.column - p.row);
-  };
-  for (const auto* places : {&film.states, &film.rates})
-    for (const problem::Place& p : *places) {
-      below = std::max(below, -distance(p));
-      above = std::max(above, distance(p));
-    }
-  if (periodic) separators = std::max(below, above);
-  for (Index row = 0; row < count; ++row)
-    for (Index slot = 0; slot < width(); ++slot) columns.push_back((row + slot - below + count) % count);
-  const auto slots = [&](const std::vector<problem::Place>& places, std::vector<std::size_t>& out) {
-    for (const problem::Place& p : places)
-      out.push_back(static_cast<std::size_t>(p.row * width() + distance(p) + below));
-  };
-  slots(film.states, states);
-  slots(film.rates, rates);
-}
 
 std::unique_ptr<OwnBlock> make_own_block(const Scheme& scheme, const problem::OwnStates& film) {
   switch (scheme.degree) {

@@ -69,13 +69,14 @@ public:
   virtual void add_inputs(double factor, const double* eta, double* y) const = 0;
   /// rows [count m] = (A s)(state, point) and force [m forces] from s [count m] and its start [count].
   virtual void multiply(const double* start, const double* s, double* rows, Eigen::VectorXd& force) const = 0;
-  // The transposed equations, one right-hand side.
-  /// y := T^-T y [count m].
-  virtual void solve_transposed(double* y) const = 0;
+  // The same transposed, for one right-hand side each.
+  /// border [m active + m separators] = (0, y_S) - Z^T y_I.
+  virtual void substitute_transposed(const double* y, Eigen::VectorXd& border) const = 0;
+  /// y_I := T_II^-T (y_I - T_SI^T y_S + (F value + F' slope)^T force), y_S stays.
+  virtual void eliminate_transposed(double* y, const double* force) const = 0;
   /// eta [m active] = G^T y.
   virtual void inputs_transposed(const double* y, double* eta) const = 0;
-  /// y += (F value + F' slope/H)^T force, and s += A0^T y - (F value_0 + F' slope_0/H)^T force [count].
-  virtual void forces_transposed(const double* force, double* y) const = 0;
+  /// s += A0^T y - (F value_0 + F' slope_0/H)^T force [count].
   virtual void start_transposed(const double* y, const double* force, double* s) const = 0;
 
   /// dg/dw [m x active] of a state.

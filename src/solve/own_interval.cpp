@@ -241,50 +241,41 @@ VectorXd OwnInterval::multiply(const VectorXd& x_start, const VectorXd& x) const
   return y;
 }
 
-// With phi = (I x B)^T a, S the film law with the separators eliminated as well, and g = G^T T^-T y_s:
-//     (I - S VY)^T phi = Y^T (y_c - V^T g),  a = W0^-T (y_c - V^T (g - S^T phi)),  b = T^-T (y_s + (F value)^T phi)
+// The steps of the solution backwards, each transposed.
 void OwnInterval::solve_transposed(MatrixXd& y) const {
   const LinearPart& p = *part_;
-  const Index m = degree(), n = p.n, r = m * p.r;
-  MatrixXd law = by_inputs_.topRows(r);
-  for (std::size_t i = 0; i < films_.size(); ++i) {
-    const Index at = separators_[i], size = blocks_[i]->sigma.rows();
-    MatrixXd p_i = MatrixXd::Zero(r, size);
-    for (Index q = 0; q < m; ++q)
-      for (Index d = 0; d < films_[i].forces; ++d)
-        p_i.row(force_row(i, q, d)) = blocks_[i]->f_own.row(q * films_[i].forces + d);
-    if (size > 0) law += p_i * Eigen::PartialPivLU<MatrixXd>(blocks_[i]->sigma).solve(by_inputs_.middleRows(at, size));
-  }
-  const Eigen::PartialPivLU<MatrixXd> k((MatrixXd::Identity(r, r) - law * p.vy).transpose());
-  MatrixXd s(m, own_), g, core(m * n, 1);
+  const Index m = degree(), n = p.n;
+  MatrixXd s(m, own_), core(m * n, 1), eta(m * p.w, 1);
+  VectorXd answer(last_), border, force;
   for (Index c = 0; c < y.cols(); ++c) {
     Map<MatrixXd> nodes(y.col(c).data(), n_, m);
-    const MatrixXd right = nodes.bottomRows(own_).transpose();
-    s = right;
-    g = MatrixXd::Zero(m * p.w, 1);
-    VectorXd mine;
-    for (std::size_t i = 0; i < films_.size(); ++i) {
-      double* own = s.data() + films_[i].first * m;
-      blocks_[i]->solve_transposed(own);
-      const auto active = static_cast<Index>(blocks_[i]->active().size());
-      mine.resize(m * active);
-      blocks_[i]->inputs_transposed(own, mine.data());
-      for (Index e = 0; e < active; ++e)
-        for (Index j = 0; j < m; ++j) g(input_row(i, j, e), 0) += mine(e * m + j);
-    }
+    s = nodes.bottomRows(own_).transpose();
     Map<MatrixXd>(core.data(), n, m) = nodes.topRows(n);
-    core -= p.inputs_transposed(g);
-    const MatrixXd phi = k.solve(p.y.transpose() * core);
-    core += p.inputs_transposed(law.transpose() * phi);
-    p.solve_transposed(core);
-    s = right;
+    // x = z + Y f, s_I = ... - Z (eta, s_S), eta = V z + V Y f
+    answer.setZero();
+    eta.setZero();
     for (std::size_t i = 0; i < films_.size(); ++i) {
+      const OwnBlock& b = *blocks_[i];
+      const auto active = static_cast<Index>(b.active().size());
+      b.substitute_transposed(s.data() + films_[i].first * m, border);
+      for (Index e = 0; e < active; ++e)
+        for (Index j = 0; j < m; ++j) eta(input_row(i, j, e), 0) += border(e * m + j);
+      answer.segment(separators_[i], m * b.shape().separators) = border.tail(m * b.shape().separators);
+    }
+    answer.head(m * p.r).noalias() += p.y.transpose() * core.col(0) + p.vy.transpose() * eta.col(0);
+    answer = small_.transpose().solve(answer).eval();
+    eta.noalias() += by_inputs_.transpose() * answer;
+    core += p.inputs_transposed(eta);
+    p.solve_transposed(core);
+    for (std::size_t i = 0; i < films_.size(); ++i) {
+      const OwnShape& shape = blocks_[i]->shape();
       double* own = s.data() + films_[i].first * m;
-      mine.resize(m * films_[i].forces);
+      Map<VectorXd>(own + m * shape.interior(), m * shape.separators) =
+          answer.segment(separators_[i], m * shape.separators);
+      force.resize(m * films_[i].forces);
       for (Index j = 0; j < m; ++j)
-        for (Index d = 0; d < films_[i].forces; ++d) mine(j * films_[i].forces + d) = phi(force_row(i, j, d), 0);
-      blocks_[i]->forces_transposed(mine.data(), own);
-      blocks_[i]->solve_transposed(own);
+        for (Index d = 0; d < films_[i].forces; ++d) force(j * films_[i].forces + d) = answer(force_row(i, j, d));
+      blocks_[i]->eliminate_transposed(own, force.data());
     }
     nodes.topRows(n) = Map<const MatrixXd>(core.data(), n, m);
     nodes.bottomRows(own_) = s.transpose();

@@ -120,6 +120,49 @@ void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Re
   }
 }
 
+void ScaledPoint::times(const PointState& at, const VectorXd& a, const VectorXd& b, Eigen::Ref<VectorXd> out) const {
+  const Index n = structure_->size();
+  times_rates(at, b, out);
+  const VectorXd inputs = c_ * a.head(n);
+  VectorXd forces = at.films.d_inputs * inputs;
+  out.head(n).noalias() += l0_ * a.head(n);
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const problem::OwnTangents& t = at.films.own[i];
+    const Index first = n + film.first;
+    const VectorXd s = a.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count));
+    forces.segment(film.first_force, film.forces) += t.forces * s;
+    VectorXd rows = t.inputs.transpose() * inputs.segment(film.first_input, film.inputs);
+    for (std::size_t e = 0; e < t.states.size(); ++e)
+      rows(film.states[e].row) += t.states[e] * s(film.states[e].column);
+    out.segment(first, film.count) += rows.cwiseQuotient(residual_scale_.segment(first, film.count));
+  }
+  out.head(n).noalias() -= b_ * forces;
+}
+
+void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const VectorXd>& y, VectorXd& by_state,
+                                   VectorXd& by_rate) const {
+  const Index n = structure_->size();
+  by_state = by_rate = VectorXd::Zero(size());
+  by_rate.head(n) = l1_.transpose() * y.head(n);
+  const VectorXd forces = -(b_.transpose() * y.head(n));
+  VectorXd inputs = at.films.d_inputs.transpose() * forces;
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const problem::OwnTangents& t = at.films.own[i];
+    const Index first = n + film.first;
+    const VectorXd rows = y.segment(first, film.count).cwiseQuotient(residual_scale_.segment(first, film.count));
+    inputs.segment(film.first_input, film.inputs) += t.inputs * rows;
+    VectorXd s = t.forces.transpose() * forces.segment(film.first_force, film.forces), r = VectorXd::Zero(film.count);
+    for (std::size_t e = 0; e < t.states.size(); ++e)
+      s(film.states[e].column) += t.states[e] * rows(film.states[e].row);
+    for (std::size_t e = 0; e < t.rates.size(); ++e) r(film.rates[e].column) += t.rates[e] * rows(film.rates[e].row);
+    by_state.segment(first, film.count) = s.cwiseProduct(state_scale_.segment(first, film.count));
+    by_rate.segment(first, film.count) = r.cwiseProduct(state_scale_.segment(first, film.count));
+  }
+  by_state.head(n) = l0_.transpose() * y.head(n) + c_.transpose() * inputs;
+}
+
 void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) const {
   const Index n = structure_->size();
   jx.setZero(size(), size());

@@ -48,6 +48,7 @@ void CycleFollower::set_normal_form(io::Bifurcation& b, const solve::LocatedEven
   }
   auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
   if (found.event != solve::Event::neimark_sacker || !found.refined || !cycles || autonomous()) return;
+  if (system_->size() > 1000) return;  // it takes the whole monodromy matrix
   core::Vector row = core::duplicate(u);
   solve::parameter_row(*cycles, row.get());
   cycles->linearise(u, row.get());

@@ -22,11 +22,38 @@ void CycleBranch::run(Context& context) {
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const auto& chosen = options.flips;
     if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k) + 1) == chosen.end()) continue;
-    const std::string born = fmt::format("{} flip {}", name(), k + 1);
+    const std::string born = name_of_doubled(name(), k + 1);
     if (context.resume && context.results.finished(born)) continue;
     context.results.begin(born, std::string(kind()));
-    CycleFollower(context, twice_the_period(options), seeds[k]).run();
+    CycleFollower(context, of_twice_the_period(options), seeds[k]).run();
   }
+}
+
+CycleBranchOptions of_twice_the_period(const CycleBranchOptions& options) {
+  CycleBranchOptions twice = options;
+  twice.period *= 2;
+  const int steps = steps_of(options);
+  const bool whole = options.method == CycleBranchOptions::Method::shooting;
+  twice.steps = whole ? 2 * steps : steps;
+  twice.intervals *= whole ? 1 : 2;
+  twice.follow_flips = false;
+  return twice;
+}
+
+std::string name_of_doubled(const std::string& name, std::size_t k) {
+  return fmt::format("{} flip {}", name, k);
+}
+
+std::optional<CycleBranchOptions> branch_called(const Study& study, const std::string& name) {
+  const auto* branch = dynamic_cast<const CycleBranch*>(&study);
+  if (!branch) return std::nullopt;
+  if (branch->name() == name) return branch->options;
+  const std::string born = name_of_doubled(branch->name(), 1);
+  const std::string stem = born.substr(0, born.size() - 1);
+  const bool is_born = branch->options.follow_flips && name.starts_with(stem) && name.size() > stem.size() &&
+                       name.find_first_not_of("0123456789", stem.size()) == std::string::npos;
+  if (!is_born) return std::nullopt;
+  return of_twice_the_period(branch->options);
 }
 
 }  // namespace whirl::study

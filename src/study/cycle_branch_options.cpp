@@ -14,16 +14,6 @@ int steps_of(const CycleBranchOptions& o) {
   return o.method == shooting ? per_period : (per_period + o.intervals - 1) / o.intervals;
 }
 
-CycleBranchOptions twice_the_period(CycleBranchOptions o) {
-  o.period *= 2;
-  // The same steps over twice the time.
-  const bool whole = o.method == CycleBranchOptions::Method::shooting;
-  o.steps = whole ? 2 * steps_of(o) : steps_of(o);
-  o.intervals *= whole ? 1 : 2;
-  o.follow_flips = false;
-  return o;
-}
-
 std::span<const deck::Name<CycleBranchOptions::Method>> names(CycleBranchOptions::Method) {
   using enum CycleBranchOptions::Method;
   static constexpr deck::Name<CycleBranchOptions::Method> table[] = {

@@ -45,14 +45,14 @@ private:
   void make_system(const std::optional<deck::Quantity>& speed);
   [[nodiscard]] system::Train train_at(double first) const;
   [[nodiscard]] Row row_at(Vec whole, double second) const;
-  [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec tangent);
+  [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
   void record(const std::string& type, double second, double bracket, Vec whole);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
 
   Context& context_;
   const LocusOptions& options_;
-  const CycleBranchOptions* of_cycles_ = nullptr;
+  std::optional<CycleBranchOptions> of_cycles_;
   const EquilibriumBranchOptions* of_rest_ = nullptr;
   Located seed_;
   Parameter first_;
@@ -76,11 +76,13 @@ double width(const deck::Range& range) {
 }
 
 LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : context_(context), options_(options) {
-  const Study* of = nullptr;
-  for (const auto& s : context.studies)
-    if (s->name() == options.of) of = s.get();
-  if (const auto* cycles = dynamic_cast<const CycleBranch*>(of)) of_cycles_ = &cycles->options;
-  if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(of)) of_rest_ = &rest->options;
+  for (const auto& s : context.studies) {
+    if (auto cycles = branch_called(*s, options.of)) of_cycles_ = std::move(cycles);
+    if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest && s->name() == options.of)
+      of_rest_ = &rest->options;
+  }
+  if (!context.results.root().child("studies").has_group(io::safe_name(options.of)))
+    throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
   const io::Group& group = context.results.group_of(options.of);
   if (!group.has_group("located"))
     throw core::NotConverged(
@@ -150,8 +152,6 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   c.state_weight = std::pow(continuation_.max_step / 0.5, 2);
   c.base_intervals = o.intervals;
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
-  // With structure a problem keeps what its last residual computed, which the second parameter would make stale.
-  c.use_structure = false;
   continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
   continuation_.newton.tolerance = o.tolerance;
   cycles_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, c, seed_.cycle.mesh);
@@ -182,10 +182,16 @@ Row LocusFollower::row_at(Vec whole, double second) const {
   return row;
 }
 
-std::vector<solve::CodimensionTest> LocusFollower::tests(Vec tangent) {
+std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent) {
   std::vector<solve::CodimensionTest> all = problem_->tests();
   // Where the curve has an extremum in one parameter, two bifurcations of the other meet.
   all.push_back({meeting_over_second, problem_->first_parameter(tangent)});
+  if (seed_.event == solve::Event::hopf) {
+    // Where the first Lyapunov coefficient changes its sign the cycles turn from supercritical to subcritical.
+    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
+    rest_->to_state(problem_->branch_part(whole).get(), x.get());
+    all.push_back({"generalised_hopf", solve::hopf_coefficient(*system_, x.get(), problem_->inner(whole)(0))});
+  }
   return all;
 }
 
@@ -240,10 +246,10 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   double inner_sign = 0;
   left_ = ended_ = false;
   solve::BranchCallbacks callbacks;
-  callbacks.monitors = [&](Vec, Vec tangent) {
+  callbacks.monitors = [&](Vec whole, Vec tangent) {
     std::vector<double> values;
     names.clear();
-    for (const auto& test : tests(tangent)) {
+    for (const auto& test : tests(whole, tangent)) {
       names.push_back(test.name);
       values.push_back(test.value);
     }

@@ -11,7 +11,10 @@ namespace whirl::study {
 void describe(deck::Description<LocusOptions>& d) {
   using O = LocusOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("of", &O::of, "name of an earlier cycle_branch or equilibrium_branch, one of whose bifurcations is followed")
+  d.add(
+       "of", &O::of,
+       "name of an earlier cycle_branch or equilibrium_branch, one of whose bifurcations is followed; 'NAME flip 1' is "
+       "the branch of twice the period born at the first flip of a branch NAME with follow_flips")
       .required();
   d.add("bifurcation", &O::bifurcation, deck::positive, "which one: 1 is the first that its summary lists");
   d.embed(&O::second);
@@ -41,11 +44,12 @@ void Locus::validate_among(std::span<const std::unique_ptr<Study>> before, const
   std::vector<std::string> names;
   for (const auto& s : before) {
     const Parameter* first = nullptr;
+    const bool called = s->name() == options.of || branch_called(*s, options.of);
     if (const auto* cycles = dynamic_cast<const CycleBranch*>(s.get()); cycles) first = &cycles->options.parameter;
     if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest) first = &rest->options.parameter;
     if (!first) continue;
     names.push_back(s->name());
-    if (s->name() != options.of) continue;
+    if (!called) continue;
     if (first->path == options.second.path)
       report.fail("parameter", fmt::format("'{}' is the first parameter already", first->path));
     if (options.first_range && !deck::same_kind(options.first_range->unit, first->range.unit))

@@ -48,12 +48,8 @@ io::Table table(const std::string& unit) {
 
 // The options of a branch by its name in the results.
 CycleBranchOptions options_of(const Context& context, const std::string& name) {
-  for (const auto& s : context.studies) {
-    const auto* branch = dynamic_cast<const CycleBranch*>(s.get());
-    if (!branch) continue;
-    if (branch->name() == name) return branch->options;
-    if (name.starts_with(branch->name() + " flip ")) return twice_the_period(branch->options);
-  }
+  for (const auto& s : context.studies)
+    if (auto branch = branch_called(*s, name)) return *branch;
   throw core::Bug("validate_among lets no other name pass");
 }
 
@@ -76,6 +72,8 @@ MeshLimit mesh_limit(const std::vector<double>& values) {
 
 void MeshConvergence::run(Context& context) {
   const CycleBranchOptions branch = options_of(context, options.of);
+  if (!context.results.root().child("studies").has_group(io::safe_name(options.of)))
+    throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
   const io::Group& of = context.results.group_of(options.of);
   if (!of.has_group("located"))
     throw core::NotConverged(

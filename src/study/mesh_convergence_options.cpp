@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "common.hpp"
+#include "whirl/film/state_model.hpp"
 #include "whirl/study/cycle_branch.hpp"
 #include "whirl/study/mesh_convergence.hpp"
 
@@ -19,21 +22,18 @@ void describe(deck::Description<MeshConvergenceOptions>& d) {
 }
 
 void MeshConvergence::validate(const system::Machine& machine, const deck::Report& report) const {
-  if (!has_film_mesh(system::train_of(machine, {})))
+  const bool meshed = std::any_of(machine.bearings.begin(), machine.bearings.end(),
+                                  [](const auto& b) { return film::has_mesh(b.film.kind); });
+  if (!meshed)
     report.fail("", "no film of this machine is computed on a mesh: there is nothing to refine");
 }
 
 void MeshConvergence::validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const {
   std::vector<std::string> names;
   for (const auto& s : before) {
-    const auto* branch = dynamic_cast<const CycleBranch*>(s.get());
-    if (!branch) continue;
+    if (!dynamic_cast<const CycleBranch*>(s.get())) continue;
     names.push_back(s->name());
-    if (options.of == s->name()) return;
-    if (!options.of.starts_with(s->name() + " flip ")) continue;
-    if (!branch->options.follow_flips)
-      report.fail("of", fmt::format("'{}' does not follow the branches born at its flips (follow_flips)", s->name()));
-    return;
+    if (branch_called(*s, options.of)) return;
   }
   report.fail("of", fmt::format("there is no cycle_branch '{}' before this study{}", options.of,
                                 deck::did_you_mean(options.of, names)));

@@ -229,12 +229,8 @@ void RotorSystem::displace(Vec x, const std::array<double, 2>& offset) {
 }
 
 bool RotorSystem::has_film_mesh() const {
-  using enum film::Options::Kind;
-  return std::any_of(train_.supports.begin(), train_.supports.end(), [](const Support& s) {
-    const auto kind = s.film.kind;
-    return kind != linear && kind != short_bearing && kind != long_bearing && kind != long_inlet &&
-           kind != finite_approximate;
-  });
+  return std::any_of(train_.supports.begin(), train_.supports.end(),
+                     [](const Support& s) { return film::has_mesh(s.film.kind); });
 }
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {

@@ -1,10 +1,19 @@
-// Processor time per point of branches of synchronous cycles, multipliers included: a rigid rotor in short bearings
-// (period 1 with its flips) and in compliant short bearings of growing film meshes; 40 Gauss intervals of degree 4.
-// bench_branch [--quick] [--alone]: least of several runs; --alone leaves out the comparison with dense intervals.
+// Time per point of branches of synchronous cycles, multipliers included: a rigid rotor in short bearings (period 1
+// with its flips) and in compliant short bearings of growing film meshes; 40 intervals of degree 4. bench_branch
+// [--quick] [--alone] [--cells=N]: least of several runs; --alone leaves out the comparison with dense intervals,
+// --cells=N does one mesh only (0: the short bearings).
+//
+// The last table follows the same points from 56 to 5000 states, with the power of the number of states by which the
+// time grows from row to row. The first point, found from rest, does not count there. It takes Radau points: Gauss
+// points hardly damp modes of the film that are stiff for the time step, which then show as a dense band of
+// multipliers.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <vector>
 
 #include "bench/timing.hpp"
 #include "whirl/core/session.hpp"
@@ -48,13 +57,15 @@ system::Train train(int cells) {
 
 struct Branch {
   int points = 0, iterations = 0, unstable = 0;
-  double last = 0;  // modulus of the leading multiplier at the end
+  double last = 0;         // modulus of the leading multiplier at the end
+  double after_start = 0;  // processor time from the first point to the end [s]
 };
 
 // Follows the branch from `from` to `to` (in Omega_0) with steps of at most 0.2.
 using Joining = solve::CycleOptions::Joining;
 
-Branch follow(MPI_Comm comm, int cells, bool structure, Joining joining, double from, double to, int max_points) {
+Branch follow(MPI_Comm comm, int cells, bool structure, Joining joining, solve::Points points, double from, double to,
+              int max_points) {
   system::RotorSystem s(PETSC_COMM_SELF, train(cells), from * kOmega0);
   s.set_forcing(false);
   core::Vector x = system::static_guess(s);
@@ -65,7 +76,7 @@ Branch follow(MPI_Comm comm, int cells, bool structure, Joining joining, double 
   const auto rest = s.gather(x.get());
   solve::CycleOptions options;
   options.degree = 4;
-  options.points = solve::Points::gauss;
+  options.points = points;
   options.use_structure = structure;
   options.joining = joining;
   options.state_weight = std::pow(32 / 0.5, 2);
@@ -90,22 +101,59 @@ Branch follow(MPI_Comm comm, int cells, bool structure, Joining joining, double 
     b.iterations += point.newton_iterations;
     b.unstable += point.stability.unstable() > 0;
     b.last = std::abs(point.stability.values.front());
+    if (point.index == 0) b.after_start = -bench::clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   };
   const auto end = solve::follow_branch(p, p.scatter(guess), c, callbacks);
   b.points = end.points;
+  b.after_start += bench::clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
   return b;
 }
 
-bench::Timing measure(const char* name, int cells, bool structure, Joining joining, double from, double to,
-                      int max_points, int runs) {
-  Branch b;
-  const auto t = bench::least(MPI_COMM_WORLD, runs,
-                              [&] { b = follow(MPI_COMM_WORLD, cells, structure, joining, from, to, max_points); });
+void head(const char* title, const char* before, const char* last) {
   if (core::rank_of(MPI_COMM_WORLD) == 0)
-    fmt::print("{:<34} {:6d} {:7d} {:10.2f} {:10d} {:12.8f} {:10.3f} {:10.3f}\n", name, b.points, cells + 4,
+    fmt::print("{:<30} {:>6} {:>7} {:>10} {:>9} {:>12} {:>10} {:>10}\n", title, "points", "states", "iterations",
+               "unstable", "last |mu|", before, last);
+}
+
+struct Row {
+  const char* name;
+  int cells;
+  bool structure = true;
+  Joining joining = Joining::cheapest;
+};
+
+void measure(const Row& row, int runs) {
+  Branch b;
+  const double from = row.cells == 0 ? 2 : 3, to = row.cells == 0 ? 20 : 6.5;
+  const auto t = bench::least(MPI_COMM_WORLD, runs, [&] {
+    b = follow(MPI_COMM_WORLD, row.cells, row.structure, row.joining, solve::Points::gauss, from, to, 400);
+  });
+  if (core::rank_of(MPI_COMM_WORLD) == 0)
+    fmt::print("{:<30} {:6d} {:7d} {:10.2f} {:9d} {:12.8f} {:10.3f} {:10.3f}\n", row.name, b.points, row.cells + 4,
                static_cast<double>(b.iterations) / b.points, b.unstable, b.last, 1e3 * t.wall / b.points,
                1e3 * t.processor / b.points);
-  return t;
+}
+
+void growth(const std::vector<int>& meshes, int runs) {
+  double before = 0;
+  int states_before = 0;
+  for (const int cells : meshes) {
+    Branch b;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < (cells > 500 ? 1 : runs); ++k) {
+      b = follow(MPI_COMM_WORLD, cells, true, Joining::cheapest, solve::Points::radau, 3, 4, 400);
+      least = std::min(least, b.after_start);
+    }
+    const int states = cells + 4;
+    const double each = 1e3 * least / (b.points - 1);
+    if (core::rank_of(MPI_COMM_WORLD) == 0)
+      fmt::print(
+          "{:<30} {:6d} {:7d} {:10.2f} {:9d} {:12.8f} {:10.3f} {:>10}\n", "compliant, Radau points", b.points, states,
+          static_cast<double>(b.iterations) / b.points, b.unstable, b.last, each,
+          before > 0 ? fmt::format("n^{:.2f}", std::log(each / before) / std::log(1.0 * states / states_before)) : "");
+    before = each;
+    states_before = states;
+  }
 }
 
 }  // namespace
@@ -120,21 +168,17 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[k], "--alone") == 0) alone = true;
     if (std::strncmp(argv[k], "--cells=", 8) == 0) only = std::atoi(argv[k] + 8);
   }
-  if (core::rank_of(MPI_COMM_WORLD) == 0)
-    fmt::print("{:<34} {:>6} {:>7} {:>10} {:>10} {:>12} {:>10} {:>10}\n", "milliseconds per point", "points", "states",
-               "iterations", "unstable", "last |mu|", "wall", "processor");
-  for (const int cells : {0, 52, 202, 802, 2402, 4996}) {
+  head("milliseconds per point", "wall", "processor");
+  for (const int cells : {0, 52, 202}) {
     if (only >= 0 && cells != only) continue;
-    const int points = cells > 1000 ? 4 : 400, few = cells > 500 ? 1 : runs;
-    const double from = cells == 0 ? 2 : 3, to = cells == 0 ? 20 : cells > 500 ? 4 : 6.5;
-    const auto row = [&](const char* name, bool structure, Joining joining, int times) {
-      measure(name, cells, structure, joining, from, to, points, times);
-    };
-    row(cells == 0 ? "short bearings" : "compliant bearings", true, Joining::cheapest, few);
+    measure({cells == 0 ? "short bearings" : "compliant bearings", cells}, runs);
     if (alone) continue;
-    if (cells > 0 && cells < 500) row("  joined by one dense matrix", true, Joining::dense, few);
-    if (cells > 0 && cells < 500) row("  joined by sweeps", true, Joining::sweeps, few);
-    if (cells < 100) row("  dense intervals", false, Joining::dense, 1);
+    if (cells > 0) measure({"  joined by one dense matrix", cells, true, Joining::dense}, runs);
+    if (cells > 0) measure({"  joined by sweeps", cells, true, Joining::sweeps}, runs);
+    if (cells < 100) measure({"  dense intervals", cells, false, Joining::dense}, 1);
   }
+  if (only == 0) return 0;
+  head("ms per point after the first", "processor", "growth");
+  growth(only > 0 ? std::vector<int>{only} : std::vector<int>{52, 202, 802, 2402, 4996}, runs);
   return 0;
 }

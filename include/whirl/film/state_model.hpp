@@ -87,6 +87,8 @@ public:
 
 /// True for the kinds that make_state_model() makes; the others belong to make_model().
 [[nodiscard]] bool has_states(Options::Kind kind);
+/// True for the kinds that are computed on a mesh (Options::cells), not in closed form.
+[[nodiscard]] bool has_mesh(Options::Kind kind);
 
 /// The film described by the options; throws core::InputError on values outside their range.
 std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,

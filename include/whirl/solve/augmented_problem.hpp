@@ -69,6 +69,7 @@ public:
 private:
   /// Takes the branch problem's present layout; `along` is a tangent of the branch there.
   void lay_out(Vec along);
+  void set_second(double q);
   void evaluate(Vec whole);
 
   ExtendedProblem& branch_;

@@ -29,6 +29,14 @@ struct Run {
   /// minus the columns times `border` where that is not null. Returns the end state; added += rows X.
   [[nodiscard]] Eigen::VectorXd drive(const double* rhs, const Eigen::VectorXd& start, const Eigen::VectorXd* border,
                                       double* x, Eigen::VectorXd& added) const;
+  /// The transposed equations backwards over this rank's intervals: from lambda [n] at their end, with right-hand sides
+  /// `rhs` at the nodes if that is not null and sigma [nb] at the added rows,
+  ///
+  ///     A_i^T z_i = rhs_i + E^T lambda_i - rows_i^T sigma,    lambda_(i-1) = -A0_i^T z_i
+  ///
+  /// returns lambda before the first of them; `z` (if not null) takes the z_i, seen += columns^T z [nb].
+  [[nodiscard]] Eigen::VectorXd drive_back(const double* rhs, const Eigen::VectorXd& lambda,
+                                           const Eigen::VectorXd& sigma, double* z, Eigen::VectorXd& seen) const;
 };
 
 /// Solves them with the intervals eliminated. Collective throughout.
@@ -43,8 +51,6 @@ public:
   virtual void compose(const Run& run) = 0;
   /// All intervals and the border from their right-hand sides; `border` takes y_c and returns d.
   virtual void solve(const double* rhs, Eigen::VectorXd& border, double* x) = 0;
-  /// True if solve_transposed() exists.
-  [[nodiscard]] virtual bool has_transpose() const = 0;
   /// The transposed system: right-hand sides at the nodes and, in `border`, of the border unknowns; answers at the
   /// equations of all intervals and, in `border`, of the added rows.
   virtual void solve_transposed(const double* rhs, Eigen::VectorXd& border, double* x) = 0;
@@ -52,8 +58,15 @@ public:
   [[nodiscard]] virtual std::vector<std::complex<double>> multipliers() = 0;
   /// The start v [n], of norm one, of the motion of the real multiplier nearest to `mu`.
   [[nodiscard]] virtual Eigen::VectorXd critical_start(double mu) = 0;
-  /// M [n x n], on every rank.
+  /// M [n x n], on every rank, and true if it is at hand.
   [[nodiscard]] virtual Eigen::MatrixXd monodromy() = 0;
+  [[nodiscard]] virtual bool has_monodromy() const = 0;
+  /// M v and M^T w [n x k], on every rank.
+  [[nodiscard]] virtual Eigen::MatrixXd times(const Eigen::MatrixXd& v) = 0;
+  [[nodiscard]] virtual Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) = 0;
+  /// V [n x p] and M V on every rank: an orthonormal basis that once belonged to the largest multipliers, so that
+  /// M ~ (M V) V^T. Empty if none is known.
+  virtual void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) = 0;
   /// The state in which a homogeneous motion from x_0 = v enters this rank's run.
   [[nodiscard]] virtual Eigen::VectorXd entering(const Eigen::VectorXd& v) = 0;
 };

@@ -57,6 +57,7 @@ public:
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
   bool adapt(core::Vector& u, core::Vector& tangent) override;
+  void equations_changed() override { kept_valid_ = false; }
 
   [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
   [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
@@ -65,12 +66,16 @@ public:
   [[nodiscard]] Cycle gather(Vec u) const override;
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
   void set_phase_reference(const Cycle& reference) override;
-  /// All of them, or where sweeps join the intervals those above 0.2 and one below, at most 24.
+  /// All of them, or where sweeps join the intervals those above 0.2 and one below, at most 24; where a dense band of
+  /// them lies above 0.2, those above 0.5.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
   /// Large with own states of films, where nothing else forms it. Collective.
   [[nodiscard]] Eigen::MatrixXd monodromy() const;
+
+  /// What joins the intervals, which knows products of monodromy(). Collective.
+  [[nodiscard]] Composition& composition() { return *composition_; }
 
   /// Solution of the linearised equations over one period from the scaled start v [n], at the nodes like Cycle::x but
   /// scaled [n x N m]; its last column is monodromy() v. Collective.
@@ -78,8 +83,6 @@ public:
 
   // Adjoint equations and second derivatives along the cycle.
 
-  /// False where sweeps join the intervals: solve_transposed() and curvature() are then not to be called.
-  [[nodiscard]] bool has_adjoint() const;
   void solve_transposed(Vec rhs, Vec x) override;
   void curvature(Vec u, Vec v, Vec w, Vec out) override;
   /// A motion over this rank's intervals, scaled: the state before them [n] and those at their nodes [n x local nodes],

@@ -38,6 +38,9 @@ public:
   /// x = matrix^-1 rhs up to rounding; used as a preconditioner, so that lost digits come back by iteration.
   virtual void solve(Vec rhs, Vec x) = 0;
 
+  /// To be called when the equations have changed otherwise than by u: what is kept of them is then stale.
+  virtual void equations_changed() {}
+
   /// Relative residual to which Newton's linear systems are to be solved.
   [[nodiscard]] virtual double linear_tolerance() const { return 1e-9; }
 

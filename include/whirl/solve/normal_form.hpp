@@ -19,8 +19,9 @@ namespace whirl::solve {
 [[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier);
 
 /// c of the map y -> -y + c y^3 at a flip of a forced cycle: positive where the cycle of twice the period is stable
-/// within the centre manifold (supercritical). Source: Kuznetsov (2004), (5.68). Else as above.
-[[nodiscard]] double flip_coefficient(CycleProblem& problem, Vec u);
+/// within the centre manifold (supercritical). Source: Kuznetsov (2004), (5.68). Else as above; `step` times the usual
+/// length of the differences looks over kinks of F that are narrower than that.
+[[nodiscard]] double flip_coefficient(CycleProblem& problem, Vec u, double step = 1);
 
 /// Re c_1 of y' = i omega y + c_1 y |y|^2 at a Hopf point x (SI) of F(0, x, dx/dt): omega times the first Lyapunov
 /// coefficient, negative where the cycles are stable (supercritical). F may depend on dx/dt and x together; derivatives

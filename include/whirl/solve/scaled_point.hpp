@@ -42,6 +42,12 @@ public:
   void parameter_derivative(double angle, const PointState& at, Eigen::Ref<Eigen::VectorXd> out);
   /// out = dF/d(dx/dt) v [n] there, v in scaled states.
   void times_rates(const PointState& at, const Eigen::VectorXd& v, Eigen::Ref<Eigen::VectorXd> out) const;
+  /// out = dF/dx a + dF/d(dx/dt) b [n] there.
+  void times(const PointState& at, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+             Eigen::Ref<Eigen::VectorXd> out) const;
+  /// by_state = (dF/dx)^T y and by_rate = (dF/d(dx/dt))^T y [n] there.
+  void times_transposed(const PointState& at, const Eigen::Ref<const Eigen::VectorXd>& y, Eigen::VectorXd& by_state,
+                        Eigen::VectorXd& by_rate) const;
   /// dF/dx and dF/d(dx/dt) [n x n] and, if not null, dF/dp [n] per SI unit of the parameter.
   void linearise(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::MatrixXd& jx,
                  Eigen::MatrixXd& jxdot, Eigen::VectorXd* d_parameter);

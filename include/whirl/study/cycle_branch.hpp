@@ -46,8 +46,8 @@ struct CycleBranchOptions {
 };
 /// Steps in each interval (in the whole period for single shooting): those asked for, or as many as make 120 a period.
 [[nodiscard]] int steps_of(const CycleBranchOptions& options);
-/// Those of a branch born at one of its flips.
-[[nodiscard]] CycleBranchOptions twice_the_period(CycleBranchOptions options);
+/// Those of the branches of twice the period born at the flips of that branch: the same steps over twice the time.
+[[nodiscard]] CycleBranchOptions of_twice_the_period(const CycleBranchOptions& options);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Method>> names(CycleBranchOptions::Method);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Stepping>> names(CycleBranchOptions::Stepping);
 [[nodiscard]] std::span<const deck::Name<CycleBranchOptions::Points>> names(CycleBranchOptions::Points);
@@ -63,5 +63,10 @@ public:
   [[nodiscard]] bool resumes_itself() const override { return true; }
   void run(Context& context) override;
 };
+
+/// Name of the branch born at the k-th flip (1-based) of the study `name` with `follow_flips`, in the results.
+[[nodiscard]] std::string name_of_doubled(const std::string& name, std::size_t k);
+/// The options of the branch called `name` if that is `study` itself or one born at its flips; nothing otherwise.
+[[nodiscard]] std::optional<CycleBranchOptions> branch_called(const Study& study, const std::string& name);
 
 }  // namespace whirl::study
