@@ -241,10 +241,11 @@ void FiniteFilm::derivatives(Lines part, double speed, StateResponse& response) 
     const int line = part.begin + i;
     const std::array<double, 3> cosine = {ring_.cosine(line - 1), ring_.cosine(line), ring_.cosine(line + 1)},
                                 sine = {ring_.sine(line - 1), ring_.sine(line), ring_.sine(line + 1)};
+    const bool held = fixed(line);
     for (int j = 0; j < inner(); ++j) {
       const std::size_t k = at(i * inner() + j), x = node(i + reach(), j + 1);
       auto &position = response.d_position[k], &velocity = response.d_velocity[k];
-      if (fixed(line)) {
+      if (held) {
         s.at[Stencil::centre][k] = release();
         position = {release() * cosine[1], release() * sine[1], 0.0, 0.0};
         velocity = {cosine[1], sine[1], 0.0, 0.0};
@@ -263,20 +264,22 @@ void FiniteFilm::derivatives(Lines part, double speed, StateResponse& response) 
       s.at[Stencil::below][k] = first ? 0.0 : below.q - u[-1] * below.k;
       s.at[Stencil::above][k] = last ? 0.0 : -above.q - u[1] * above.k;
       // Of the P that `slope` moves with the journal.
-      const auto through = [&](const double* slope, const std::array<double, 3>& n) {
-        return (sum * slope[0] - below.k * slope[-1] - above.k * slope[1]) * n[1] -
-               before.k * *(slope - stride) * n[0] - after.k * slope[stride] * n[2];
+      const auto through = [&](const double* slope) {
+        return std::array{-before.k * *(slope - stride), sum * slope[0] - below.k * slope[-1] - above.k * slope[1],
+                          -after.k * slope[stride]};
       };
+      const auto [pb, pc, pa] = through(u);
       const double edge = (first ? below.q : 0.0) - (last ? above.q : 0.0);
-      position[0] = through(u, cosine) - edge * cosine[1];
-      position[1] = through(u, sine) - edge * sine[1];
+      position[0] = pb * cosine[0] + (pc - edge) * cosine[1] + pa * cosine[2];
+      position[1] = pb * sine[0] + (pc - edge) * sine[1] + pa * sine[2];
       response.d_speed[k] =
           0.5 * g_.clearance / ring_.step() *
           (w1 * *(h - stride) + w2 * h[0] + w3 * h[stride] + (reach() == 2 ? w0 * *(h - 2 * stride) : 0.0));
       if (!liner_.damped()) continue;
       const double* d = &by_rate_[x];
-      velocity[0] = through(d, cosine);
-      velocity[1] = through(d, sine);
+      const auto [vb, vc, va] = through(d);
+      velocity[0] = vb * cosine[0] + vc * cosine[1] + va * cosine[2];
+      velocity[1] = vb * sine[0] + vc * sine[1] + va * sine[2];
       r.at[Stencil::centre][k] = 1.0 + d[0] * sum;
       r.at[Stencil::before][k] = -*(d - stride) * before.k;
       r.at[Stencil::after][k] = -d[stride] * after.k;

@@ -35,7 +35,8 @@ struct OwnShape {
 ///     [ T_SI  T_SS ] [ s_S ] + G eta = [ y_S ]     T_II banded, G(a) = dg_a/dw, diagonal in the points
 ///
 /// s_I is eliminated by an LU of T_II without row exchanges between states (rounding that this costs comes back by
-/// GMRES): s_I = T_II^-1 y_I - Z (eta, s_S). What is left are the separators and the forces f = F value s + F' slope/H s:
+/// GMRES): s_I = T_II^-1 y_I - Z (eta, s_S). What is left are the separators and the forces f = F value s + F' slope/H
+/// s:
 ///
 ///     Sigma s_S + Q eta = y_S - T_SI T_II^-1 y_I,    f = f_eta eta + f_s s_S + (F value + F' slope/H) T_II^-1 y_I
 ///

@@ -67,11 +67,11 @@ struct Options {
   std::array<double, 4> damping = {0.0, 0.0, 0.0, 0.0};    // N s/m, xx xy yx yy
   // Compliant films: the liner, or B = 6 mu Omega_0 U R^2/(p c^3) with the speed Omega_0 that scales it.
   std::optional<Liner> liner;
-  std::optional<double> compliance;                // -, B
-  double reference_speed = 0.0;                    // rad/s, Omega_0 of B
-  double liner_damping = 0.0;                      // s, tau: p = (p of the deflection at rest) + tau dU/dt/k
-  std::optional<double> rubber_thickness;          // m, of a liner that stiffens as it is compressed
-  std::optional<Contact> contact;                  // absent: a film that touches is an error
+  std::optional<double> compliance;        // -, B
+  double reference_speed = 0.0;            // rad/s, Omega_0 of B
+  double liner_damping = 0.0;              // s, tau: p = (p of the deflection at rest) + tau dU/dt/k
+  std::optional<double> rubber_thickness;  // m, of a liner that stiffens as it is compressed
+  std::optional<Contact> contact;          // absent: a film that touches is an error
   std::vector<Groove> grooves;
   Quadrature quadrature = Quadrature::sub_cell;    // of the force
   Differences differences = Differences::central;  // of dh/dtheta
