@@ -204,7 +204,9 @@ void LocusFollower::record(const std::string& type, double second, double bracke
   c.value = {deck::from_si(row.first, first_range_.unit), first_range_.unit};
   c.second_parameter = options_.second.path;
   c.second_value = {deck::from_si(row.second, options_.second.range.unit), options_.second.range.unit};
-  c.uncertainty = bracket * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
+  // The rounding of a Lyapunov coefficient is more than its location leaves, and not known.
+  if (type != "generalised_hopf")
+    c.uncertainty = bracket * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
   const double speed = first_.path == "speed" ? row.first : system_->speed();
   if (const auto groups = system::groups_of(system_->train())) {
     c.more["nondimensional_speed"] = speed / groups->speed_scale;
