@@ -4,7 +4,8 @@
 loci.py PROGRAM SOURCE [LAUNCHER WORDS...]
 
 The reference is that of the rigid rotor's diagrams: flips at a* = 0.1 and 0.2, the Neimark-Sacker point at a* = 0.3, all
-over Omega*; the 1:2 resonance near (8.6537, 0.27277) and the point near (10.28, 0.2900) where two flips meet.
+over Omega*; the 1:2 resonance near (8.6537, 0.27277) and the point near (10.28, 0.2900) where two flips meet. Curves of
+Hopf points and of folds of cycles of twice the period must end at points that branches with the option's last value find.
 """
 import sys
 
@@ -13,6 +14,59 @@ import numpy as np
 from harness import Harness
 
 SPEED, CLEARANCE = 160.0, 25.0  # rad/s, um: one unit of Omega* and of a*
+
+
+HOPF = """
+title: Hopf points of the balanced rotor over its load
+base: {base}
+studies:
+  - equilibrium_branch: {{name: branch, parameter: speed, range: {{from: 320 rad/s, to: 720 rad/s}}}}
+  - locus:
+      name: curve
+      of: branch
+      parameter: rotor.load
+      range: {{from: 0.6 N, to: 1.28 N}}
+      first_range: {{from: 80 rad/s, to: 1600 rad/s}}
+"""
+
+DOUBLED = """
+title: Folds of the cycles of twice the period over the unbalance
+base: {base}
+studies:
+  - cycle_branch:
+      name: branch
+      unbalance: [a]
+      parameter: speed
+      range: {{from: 360 rad/s, to: 440 rad/s}}
+      step: {{initial: 4 rad/s, min: 0.001 rad/s, max: 16 rad/s}}
+      intervals: 40
+      degree: 4
+      points: gauss
+      adapt_mesh: false
+      follow_flips: true
+  - locus:
+      name: curve
+      of: branch flip 1
+      parameter: unbalance.a.planes.1.eccentricity
+      range: {{from: 2.45 um, to: 2.6 um}}
+      first_range: {{from: 160 rad/s, to: 1600 rad/s}}
+"""
+
+
+def ends(h, name, text, study, kind, option, last):
+    """The curve of that deck, whose end must be the bifurcation found with the option's last value."""
+    deck = h.work / f"{name}.yaml"
+    deck.write_text(text.format(base=(h.source / "inputs/rigid_rotor/short_f1.yaml").resolve()))
+    run = h.run(deck, name)
+    there = h.run(deck, f"{name}_there", overrides=[f"{option}={last}"])
+    found = [b["value"] for b in there[study]["bifurcations"] if b["type"] == kind]
+    with h5py.File(h.work / name / "results.h5") as f:
+        speed = f["studies/curve/locus/parameter"][-1]
+    h.true(f"{name}: reaches its ends", run["curve"]["status"] == "completed", run["curve"]["status"])
+    h.true(f"{name}: a {kind} at {last}", len(found) == 1, found)
+    for value in found[:1]:
+        h.close(f"{name}: speed at {last}", speed, value, 1e-7 * value)
+    return run["curve"]
 
 
 def crossings(speed, unbalance, at):
@@ -65,6 +119,21 @@ def main():
         curve = f["studies/flips/locus"]
         h.close("the curve ends at a* =", curve["second"][-1] / CLEARANCE, 0.2, 1e-9)
         h.close("flip at a* = 0.2, Omega*", curve["parameter"][-1] / SPEED, 2.874299, 1e-5)
+    # The first Lyapunov coefficient changes its sign on the way to F0* = 2: single points are subcritical at a load of
+    # 0.99 N and supercritical at 1.025 N.
+    curve = ends(h, "hopf", HOPF, "branch", "hopf", "rotor.load", "1.28 N")
+    turned = [c["second_value"] for c in curve["codimension_two"] if c["type"] == "generalised_hopf"]
+    h.true("hopf: turns supercritical once", len(turned) == 1 and 0.99 < turned[0] < 1.025, turned)
+    ends(h, "doubled", DOUBLED, "branch flip 1", "cyclic_fold", "unbalance.a.planes.1.eccentricity", "2.6 um")
+    # A film with states, by sweeps; the reference was computed with dense intervals.
+    compliant = h.run((h.source / "inputs/compliant_rotor/loci.yaml").resolve(), "compliant",
+                      overrides=["studies.2.locus.range={from: 3 um, to: 5.1 um}"])["flips"]
+    h.true("compliant: reaches its ends", compliant["status"] == "completed", compliant["status"])
+    turns = [(c["value"], c["second_value"]) for c in compliant["codimension_two"] if c["type"] == "meeting_over_second"]
+    # Kinks of the truncated force may bend the curve elsewhere, too.
+    speed, unbalance = min(turns, key=lambda t: abs(t[0] - 386.91217311))
+    h.close("compliant: the curve turns, speed", speed, 386.91217311, 1e-4)
+    h.close("compliant: the curve turns, eccentricity", unbalance, 3.62789436, 1e-5)
     h.finish()
 
 
