@@ -37,7 +37,7 @@ CASES = {
                        "a2 flip 1": [("cyclic_fold", 9.051, CYCLE)]}),
     ("5_8", "0.1"): ([],
                      {"a2": [("flip", 4.286, CYCLE), ("flip", 5.963, CYCLE)],
-                      "a2 flip 1": [("cyclic_fold", 6.8707, CYCLE)]}),
+                      "a2 flip 2": [("cyclic_fold", 6.8707, CYCLE)]}),
     ("5_8", "1"): ([f"{HALF}.compliance=1"],
                    {"a2": [("flip", 2.366, CYCLE), ("flip", 3.080, CYCLE)],
                     "a2 flip 1": [("cyclic_fold", 2.6097, CYCLE)]}),
