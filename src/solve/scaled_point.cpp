@@ -153,7 +153,9 @@ void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const 
     const Index first = n + film.first;
     const VectorXd rows = y.segment(first, film.count).cwiseQuotient(residual_scale_.segment(first, film.count));
     inputs.segment(film.first_input, film.inputs) += t.inputs * rows;
-    VectorXd s = t.forces.transpose() * forces.segment(film.first_force, film.forces), r = VectorXd::Zero(film.count);
+    const auto own = forces.segment(film.first_force, film.forces);
+    VectorXd s = t.forces.transpose() * own, r = VectorXd::Zero(film.count);
+    if (t.force_rates.rows() > 0) r = t.force_rates.transpose() * own;
     for (std::size_t e = 0; e < t.states.size(); ++e)
       s(film.states[e].column) += t.states[e] * rows(film.states[e].row);
     for (std::size_t e = 0; e < t.rates.size(); ++e) r(film.rates[e].column) += t.rates[e] * rows(film.rates[e].row);

@@ -19,7 +19,7 @@ namespace {
 constexpr double clearance = 25e-6, omega_0 = 160;
 
 // Half a rotor on one compliant short bearing, F0* = 1, a* = 0.2 (van de Vrande 2001, sec. 5.3).
-system::Train train(int cells) {
+system::Train train(int cells, double liner_damping) {
   system::Support s;
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
@@ -28,6 +28,7 @@ system::Train train(int cells) {
   s.film.compliance = 0.1;
   s.film.reference_speed = omega_0;
   s.film.cells = {cells, 4};
+  s.film.liner_damping = liner_damping;
   system::Train t;
   t.gravity = 0;
   t.rotor.type = rotor::Options::Type::rigid;
@@ -39,7 +40,8 @@ system::Train train(int cells) {
 }
 
 struct Cycles {
-  Cycles(int cells, Joining joining, double at) : system(PETSC_COMM_SELF, train(cells), at) {
+  Cycles(int cells, Joining joining, double at, double liner_damping = 0)
+      : system(PETSC_COMM_SELF, train(cells, liner_damping), at) {
     solve::CycleOptions o;
     o.degree = 3;
     o.joining = joining;
@@ -82,8 +84,9 @@ double dot(Vec a, Vec b) {
 }  // namespace
 
 TEST(OwnAdjoint, TransposedProductsAndSolutions) {
-  for (const auto joining : {Joining::sweeps, Joining::dense}) {
-    Cycles c(20, joining, 4 * omega_0);
+  for (const auto& [joining, liner_damping] :
+       {std::pair{Joining::sweeps, 0.0}, {Joining::dense, 0.0}, {Joining::sweeps, 0.3 / omega_0}}) {
+    Cycles c(20, joining, 4 * omega_0, liner_damping);
     (void)c.problem->multipliers();
     const Eigen::Index n = c.system.size();
     MatrixXd v(n, 3), w(n, 3);
