@@ -215,8 +215,8 @@ void RingPreconditioner::Level::coarsen(Rows& coarse) {
   const auto row_sum = [&](const Block& b, Columns& out) {
     for (int z = 0; z < line_; ++z)
       for (int i = 0; i < b.centre.count; ++i)
-        out.row(z)[i] =
-            -(b.centre.row(z)[i] + (z > 0 ? b.below.row(z)[i] : Real{0}) + (z + 1 < line_ ? b.above.row(z)[i] : Real{0}));
+        out.row(z)[i] = -(b.centre.row(z)[i] + (z > 0 ? b.below.row(z)[i] : Real{0}) +
+                          (z + 1 < line_ ? b.above.row(z)[i] : Real{0}));
   };
   const auto column_sum = [&](const Block& b, Columns& out) {
     for (int z = 0; z < line_; ++z)

@@ -67,7 +67,7 @@ MatrixXd gmres(Operator& o, Index n, Index k) {
   check(KSPSetType(solver.get(), KSPGMRES));
   check(KSPSetPCSide(solver.get(), PC_RIGHT));
   check(KSPGMRESSetRestart(solver.get(), 100));
-  check(KSPSetTolerances(solver.get(), 1e-13, 1e-300, PETSC_DEFAULT, 300));
+  check(KSPSetTolerances(solver.get(), 1e-12, 1e-300, PETSC_DEFAULT, 300));
   PC pc = nullptr;
   check(KSPGetPC(solver.get(), &pc));
   check(PCSetType(pc, PCSHELL));

@@ -156,6 +156,7 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
       return {"stopped on request", false, 1, options_.from};
+    here.point.slope = last_entry(problem_.comm(), here.tangent.get());  // a checkpoint may renew the tangent
   }
 
   const auto ended = [&](std::string reason, bool completed) {
@@ -215,6 +216,7 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     }
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
       return ended("stopped on request", false);
+    here.point.slope = last_entry(problem_.comm(), here.tangent.get());
   }
   if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
   return ended("reached the largest number of points", false);

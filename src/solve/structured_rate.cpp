@@ -180,6 +180,8 @@ void StructuredRate::times(const RateMatrix& a, const double* v, double* y) cons
     std::copy(s, s + count, ring);
     for (Index k = 1; k <= film.reach; ++k) ring[-k] = s[count - k];
     for (Index k = 0; k < film.reach; ++k) ring[count + k] = s[k];
+    // Padded entries of the matrix are zero, but a longer film may have left an infinity here.
+    if (count + film.reach < stride) std::fill(ring + count + film.reach, ring + stride, 0.0);
     for (Index e = 0; e < film.at.forces; ++e) {
       const double* row = a.data() + film.forces + e * stride;
       Pack sum = Pack::Zero();

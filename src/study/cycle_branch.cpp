@@ -53,6 +53,10 @@ std::optional<CycleBranchOptions> branch_called(const Study& study, const std::s
   const bool is_born = branch->options.follow_flips && name.starts_with(stem) && name.size() > stem.size() &&
                        name.find_first_not_of("0123456789", stem.size()) == std::string::npos;
   if (!is_born) return std::nullopt;
+  const auto& flips = branch->options.flips;
+  const auto wanted = [&](int k) { return name == name_of_doubled(branch->name(), static_cast<std::size_t>(k)); };
+  if (name[stem.size()] == '0' || (!flips.empty() && std::none_of(flips.begin(), flips.end(), wanted)))
+    return std::nullopt;
   return of_twice_the_period(branch->options);
 }
 

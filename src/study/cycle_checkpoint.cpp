@@ -34,7 +34,13 @@ void CycleFollower::renew_phase(Vec u, Vec tangent) {
   problem_->linearise(u, row.get());
   core::check(VecSet(rhs.get(), 0.0));
   solve::set_last_entry(problem_->comm(), rhs.get(), 1);
-  (void)solve::solve_linear(*problem_, rhs.get(), tangent, "tangent_");
+  core::Vector renewed = core::duplicate(tangent);
+  try {
+    (void)solve::solve_linear(*problem_, rhs.get(), renewed.get(), "tangent_");
+  } catch (const core::NotConverged&) {  // singular, at a branch point for one: the old one serves
+    return;
+  }
+  core::check(VecCopy(renewed.get(), tangent));
   core::check(VecScale(tangent, 1 / std::sqrt(solve::inner(*problem_, tangent, tangent))));
 }
 
@@ -50,7 +56,9 @@ void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, do
   record_.write(state.child("record"), true);
   write_cycle(state.child("cycle"), cycle);
   write_cycle(state.child("tangent"), direction);
-  write_point(state.child("point"), point);
+  solve::BranchPoint now = point;
+  now.slope = solve::last_entry(problem_->comm(), tangent);
+  write_point(state.child("point"), now);
   state.set("next_step", next_step);
   state.set("largest_difference", largest_difference_);
   state.set("seconds", context_.results.seconds());

@@ -105,6 +105,8 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
         return std::numeric_limits<double>::quiet_NaN();
       } catch (const core::NotConverged&) {
         return std::numeric_limits<double>::quiet_NaN();
+      } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+        return std::numeric_limits<double>::quiet_NaN();
       }
     };
     const double time = estimate(true, false);
@@ -120,7 +122,9 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   }
   set_normal_form(b, found, u);
   context_.results.summary().bifurcations.push_back(b);
-  if (keeps_located_) located_.push_back({found.event, found.critical, cycle, found.sensitivity});
+  if (keeps_located_)
+    located_.push_back(
+        {found.located ? found.event : solve::Event::branch_point, found.critical, cycle, found.sensitivity});
 }
 
 }  // namespace whirl::study

@@ -89,8 +89,8 @@ void CycleFollower::relocate_crossing(core::Vector& u, Relocated& out) {
   }
 }
 
-// Secant on the slope dp/ds along the branch, by steps short enough to stay on it: on a coarse mesh the fold may lie far
-// away. A step that leaves the validity of a film, or does not converge, is halved.
+// Secant on the slope dp/ds along the branch, by steps short enough to stay on it: on a coarse mesh the fold may lie
+// far away. A step that leaves the validity of a film, or does not converge, is halved.
 void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
   core::Vector tangent = solve::any_tangent(*problem_, u.get()), row = core::duplicate(u.get()),
                rhs = core::duplicate(u.get());
@@ -140,7 +140,13 @@ double CycleFollower::time_error(const Located& at) {
   found.parameter = at.cycle.parameter / scale_;
   found.sensitivity = at.sensitivity;
   found.critical = at.critical;
-  return 2 * shift(found, at.cycle, true, false);
+  try {
+    return 2 * shift(found, at.cycle, true, false);
+  } catch (const core::DomainError&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  } catch (const core::NotConverged&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 }  // namespace whirl::study

@@ -20,8 +20,8 @@ namespace {
 // Machine and solver at one level: film meshes doubled `level` times.
 struct Level {
   Level(Context& context, const CycleBranchOptions& options, int level)
-      : machine(context.machine),
-        here{context.comm, machine, context.directory, context.results, context.resume, context.studies} {
+      : machine(context.machine), here{context.comm,    machine,        context.directory,
+                                       context.results, context.resume, context.studies} {
     for (auto& b : machine.bearings)
       for (int& cells : b.film.cells) cells <<= level;
     follower = std::make_unique<CycleFollower>(here, options);
@@ -87,8 +87,7 @@ void MeshConvergence::run(Context& context) {
   if (chosen.empty()) throw core::NotConverged(fmt::format("'{}' has no bifurcations", options.of));
   for (const int k : chosen)
     if (static_cast<std::size_t>(k) > all.size())
-      throw core::NotConverged(
-          fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), k));
+      throw core::NotConverged(fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), k));
 
   auto& results = context.results;
   const std::string& unit = branch.parameter.range.unit;
@@ -96,6 +95,8 @@ void MeshConvergence::run(Context& context) {
   io::Table rows = table(unit);
   History now;
   std::size_t first = 0;
+  std::string trouble;
+  const auto note = [&](const std::string& text) { trouble += (trouble.empty() ? "" : "; ") + text; };
   if (context.resume && results.has_checkpoint()) {
     const io::Group state = results.load_checkpoint();
     rows.read(state.group("rows"));
@@ -104,24 +105,33 @@ void MeshConvergence::run(Context& context) {
            state.reals("seconds"), state.real("time_error")};
     read_summary(state.group("summary"), results.summary());
     results.add_earlier_seconds(state.real("total_seconds"));
+    trouble = state.text("trouble");
   }
-  std::string status = "completed";
   for (std::size_t i = first; i < chosen.size(); ++i) {
     const Located& origin = all[static_cast<std::size_t>(chosen[i]) - 1];
-    if (origin.cycle.x.size() == 0) continue;  // a Hopf point, where there is no cycle yet
+    if (origin.event == solve::Event::branch_point) {  // for one a Hopf point, where there is no cycle yet
+      note(fmt::format("bifurcation {} is none of cycles, or was not located", chosen[i]));
+      continue;
+    }
     if (now.value.empty()) now = {origin, {origin.cycle.parameter / scale}, {0}, {0}, io::no_value};
     auto coarse = std::make_unique<Level>(context, branch, static_cast<int>(now.value.size()) - 1);
     if (now.value.size() == 1) now.time_error = coarse->follower->time_error(origin);
     for (int level = static_cast<int>(now.value.size()); level <= options.doublings; ++level) {
       const double begin = results.seconds();
       auto fine = std::make_unique<Level>(context, branch, level);
+      const auto stopped = [&](const core::Error& e) {
+        note(fmt::format("bifurcation {} stopped at {} times the cells of the deck: {}", chosen[i], 1 << level,
+                         e.what()));
+      };
       try {
         const Relocated found = fine->follower->relocate(now.last, *coarse->follower);
         now.last = found.found;
         now.bracket.push_back(found.bracket);
-      } catch (const core::Error& e) {
-        status = fmt::format("bifurcation {} stopped at {} times the cells of the deck: {}", chosen[i], 1 << level,
-                             e.what());
+      } catch (const core::NotConverged& e) {
+        stopped(e);
+        break;
+      } catch (const core::DomainError& e) {
+        stopped(e);
         break;
       }
       now.value.push_back(now.last.cycle.parameter / scale);
@@ -137,6 +147,7 @@ void MeshConvergence::run(Context& context) {
       state.set("time_error", now.time_error);
       write_summary(state.child("summary"), results.summary());
       state.set("total_seconds", results.seconds());
+      state.set("trouble", trouble);
       results.save_checkpoint(state);
     }
     const MeshLimit limit = mesh_limit(now.value);
@@ -162,7 +173,7 @@ void MeshConvergence::run(Context& context) {
   group.set("parameter", branch.parameter.path);
   group.set("parameter_unit", unit);
   results.summary().points = static_cast<long>(rows.rows());
-  results.finish(status, !results.summary().bifurcations.empty());
+  results.finish(trouble.empty() ? "completed" : trouble, !results.summary().bifurcations.empty());
 }
 
 }  // namespace whirl::study

@@ -12,20 +12,22 @@ namespace whirl::study {
 void describe(deck::Description<MeshConvergenceOptions>& d) {
   using O = MeshConvergenceOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("of", &O::of,
-        "name of an earlier cycle_branch, or 'NAME flip K' for the branch born at its K-th flip, whose bifurcations are "
-        "located anew on finer films")
+  d.add(
+       "of", &O::of,
+       "name of an earlier cycle_branch, or 'NAME flip K' for the branch born at its K-th flip, whose bifurcations are "
+       "located anew on finer films")
       .required();
   d.add("bifurcations", &O::bifurcations, deck::positive,
         "which ones: 1 is the first that the summary of the branch lists; all if not given");
-  d.add("doublings", &O::doublings, deck::in(1, 6), "how many times the cells of all films are doubled, both ways");
+  d.add("doublings", &O::doublings, deck::in(1, 6),
+        "how many times the cells of all films are doubled, both ways; edges of grooves lie on nodes, and should "
+        "do so on the deck's own mesh");
 }
 
 void MeshConvergence::validate(const system::Machine& machine, const deck::Report& report) const {
   const bool meshed = std::any_of(machine.bearings.begin(), machine.bearings.end(),
                                   [](const auto& b) { return film::has_mesh(b.film.kind); });
-  if (!meshed)
-    report.fail("", "no film of this machine is computed on a mesh: there is nothing to refine");
+  if (!meshed) report.fail("", "no film of this machine is computed on a mesh: there is nothing to refine");
 }
 
 void MeshConvergence::validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const {

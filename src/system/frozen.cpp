@@ -41,7 +41,7 @@ void multiply(const film::Stencil& a, int lines, int line, int reach, const doub
   for (int begin = 0; begin < n; begin += run)
     for (const auto place : {centre, before, after, below, above, second_before}) {
       if (a.at[place].empty()) continue;
-      const double *__restrict value = a.at[place].data(), *__restrict from = x + reach * line + offset[place];
+      const double* __restrict value = a.at[place].data(), * __restrict from = x + reach * line + offset[place];
       for (int k = begin; k < std::min(n, begin + run); ++k) y[k] += value[k] * from[k];
     }
 }

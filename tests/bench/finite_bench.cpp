@@ -1,6 +1,6 @@
-// Newton-Picard on the film of finite length: processor time of a point of a branch (Newton from the neighbouring cycle,
-// multipliers) over the number of film states, and what a second rank gains. Each mesh starts from the cycle of the one
-// before, resampled.
+// Newton-Picard on the film of finite length: processor time of a point of a branch (Newton from the neighbouring
+// cycle, multipliers) over the number of film states, and what a second rank gains. Each mesh starts from the cycle of
+// the one before, resampled.
 //
 //     bench_finite                    points on 50 x 10 to 200 x 40 cells, one rank; --all: to 400 x 80 (minutes)
 //     mpirun -n 2 bench_finite        400 x 80: the parts of a Newton iteration by one rank and by all, in the same run
@@ -63,9 +63,9 @@ void points(bool all) {
     auto mesh = std::make_unique<Mesh>(PETSC_COMM_SELF, refinement);
     cycle = mesh->solve(coarse ? mesh->from(*coarse, *cycle) : test::finite_rotor_at_rest(mesh->system, speed), speed);
     const long before = mesh->problem.products();
-    const double seconds =
-        bench::least(PETSC_COMM_SELF, refinement < 4 ? 3 : 1, [&] { (void)mesh->solve(*cycle, speed + step); })
-            .processor;
+    const double seconds = bench::least(PETSC_COMM_SELF, refinement < 4 ? 3 : 1, [&] {
+                             (void)mesh->solve(*cycle, speed + step);
+                           }).processor;
     const auto states = static_cast<double>(mesh->system.own_states());
     fmt::print("{:>4} x {:<3} {:>8.0f} {:>12.3f} {:>14.1f} {:>10}\n", 50 * refinement, 10 * refinement, states, seconds,
                1e6 * seconds / states, (mesh->problem.products() - before) / (refinement < 4 ? 3 : 1));

@@ -24,7 +24,8 @@ TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShooting) {
   constexpr int steps = 16;
   solve::NewtonOptions newton;
   newton.tolerance = 1e-10;
-  system::RotorSystem s(MPI_COMM_WORLD, test::finite_rotor(12, 4), speed), alone(PETSC_COMM_SELF, test::finite_rotor(12, 4), speed);
+  system::RotorSystem s(MPI_COMM_WORLD, test::finite_rotor(12, 4), speed),
+      alone(PETSC_COMM_SELF, test::finite_rotor(12, 4), speed);
   const solve::Cycle start = test::finite_rotor_at_rest(alone, speed);
   solve::NewtonPicardOptions options;
   options.parameter_scale = speed_scale;

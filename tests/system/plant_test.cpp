@@ -99,9 +99,9 @@ TEST(Plant, RatesSaidToBeConstantAreSo) {
     film::Options::Kind kind;
     double liner_damping = 0;  // [s]
   };
-  for (const Case& c : {Case{short_bearing}, Case{long_bearing}, Case{finite_approximate}, Case{compliant_short},
-                        Case{compliant_long}, Case{compliant_finite}, Case{compliant_short, 1e-3},
-                        Case{compliant_finite, 1e-3}}) {
+  for (const Case& c :
+       {Case{short_bearing}, Case{long_bearing}, Case{finite_approximate}, Case{compliant_short}, Case{compliant_long},
+        Case{compliant_finite}, Case{compliant_short, 1e-3}, Case{compliant_finite, 1e-3}}) {
     const int kind = static_cast<int>(c.kind);
     system::RotorSystem s(MPI_COMM_WORLD, rotor_in(c.kind, c.liner_damping), 300);
     EXPECT_EQ(s.constant_rates(), c.liner_damping == 0) << kind;
