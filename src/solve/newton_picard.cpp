@@ -51,6 +51,10 @@ NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPi
 
 NewtonPicardProblem::~NewtonPicardProblem() = default;
 
+bool NewtonPicardProblem::structured() const {
+  return stepper_->product_is_free();
+}
+
 double NewtonPicardProblem::length(Index i) const {
   return mesh_[at(i) + 1] - mesh_[at(i)];
 }

@@ -96,6 +96,7 @@ using Quadrature = film::Options::Quadrature;
 const Case cases[] = {{"short", Kind::compliant_short, Differences::upwind, Quadrature::simpson, false},
                       {"short_central", Kind::compliant_short, Differences::central, Quadrature::sub_cell, false},
                       {"long", Kind::compliant_long, Differences::upwind, Quadrature::sub_cell, false},
+                      {"short_third", Kind::compliant_short, Differences::third_order, Quadrature::sub_cell, false},
                       {"two", Kind::compliant_short, Differences::upwind, Quadrature::sub_cell, true},
                       {"rigid", Kind::short_bearing, Differences::upwind, Quadrature::sub_cell, false}};
 
@@ -117,6 +118,7 @@ TEST_P(StructuredSteps, ResidualAndProductsAreThoseOfTheSparsePath) {
       // Explicit steps of a length at which these films are stable; long ones are stiff.
       const int steps = !tableau.is_explicit() ? 4 : GetParam().kind == Kind::compliant_long ? 1000 : 100;
       solve::NewtonPicardProblem problem(s, options, tableau, steps, mesh);
+      EXPECT_EQ(problem.structured(), structured);
       core::Vector u = problem.scatter(c), row = core::duplicate(u.get()), r = core::duplicate(u.get()),
                    v = core::duplicate(u.get());
       solve::parameter_row(problem, row.get());

@@ -81,6 +81,8 @@ public:
   /// Size of the subspace, and products of the monodromy matrix with a vector since the start.
   [[nodiscard]] Eigen::Index subspace() const { return basis_.cols(); }
   [[nodiscard]] long products() const { return products_; }
+  /// Whether steps are taken by the structure of the system.
+  [[nodiscard]] bool structured() const;
 
 private:
   [[nodiscard]] Eigen::Index intervals() const { return static_cast<Eigen::Index>(mesh_.size()) - 1; }
