@@ -121,7 +121,25 @@ def resume(h):
         h.close(f"resumed: {what}", difference, 0, within)
 
 
+def hysteresis(h):
+    """The bent resonance of a stiffening liner: between the folds (540 and 544 rad/s) large on the way up, small on the
+    way down; the same on both sides of them."""
+    h.run((h.source / "inputs/compliant_rotor/figure_5_13_sweep.yaml").resolve(), "sweep")
+    with h5py.File(h.work / "sweep/results.h5") as f:
+        sweep = {name: (f[f"studies/{name}/run_up/speed"][()], f[f"studies/{name}/run_up/amplitude"][:, 0])
+                 for name in ("up", "down")}
+
+    def amplitude(name, speed):
+        at, values = sweep[name]
+        return values[np.argmin(np.abs(at - speed))]
+    for speed in (542, 544):
+        h.true(f"at {speed} rad/s large on the way up, small on the way down",
+               amplitude("up", speed) > 1.4 * amplitude("down", speed), f"{amplitude('up', speed)}, {amplitude('down', speed)}")
+    for speed, within in ((528, 0.005), (552, 0.05)):
+        h.close(f"the same at {speed} rad/s", amplitude("up", speed), amplitude("down", speed), within * amplitude("down", speed))
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"exact": exact, "resume": resume}[sys.argv[3]](harness)
+    {"exact": exact, "resume": resume, "hysteresis": hysteresis}[sys.argv[3]](harness)
     harness.finish()
