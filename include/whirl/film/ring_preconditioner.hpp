@@ -32,7 +32,7 @@ public:
 
   /// Takes the rows of `here`; a second line before is lumped with the first. Collective.
   void set(const Stencil& rows);
-  /// x = approximately A^-1 r, [lines here x line]. Collective.
+  /// x = approximately A^-1 r, [lines here x line], in single precision: good to precondition only. Collective.
   void apply(std::span<const double> r, std::span<double> x);
 
 private:
