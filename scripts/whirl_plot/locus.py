@@ -17,6 +17,12 @@ def last(path):
     return path.rsplit(".", 1)[-1].replace("_", " ")
 
 
+def described(study):
+    """Name of the study and what its curve is of, unless the name says that already."""
+    kind = NAMES.get(study.attribute("bifurcation"), "bifurcations")
+    return study.name if kind.lower() in study.name.lower() else f"{study.name}: {kind}"
+
+
 def label(axis, points):
     """Marks the points; those that lie together share a label."""
     (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
@@ -44,7 +50,7 @@ def draw_together(results):
     points = []
     for k, study in enumerate(studies):
         axis.plot(study.get("locus/parameter"), study.get("locus/second"), color=COLOURS[k % len(COLOURS)],
-                  label=NAMES.get(study.attribute("bifurcation"), "bifurcations"))
+                  label=described(study))
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),

@@ -59,7 +59,9 @@ def parameter_label(study):
 def save(figure, study, what, note="", handles=(), columns=6):
     """Adds whose picture it is, the legend below and the conventions, and writes it."""
     height = figure.get_figheight()
-    columns = min(columns, max(2, int(figure.get_figwidth() / 1.7)))  # inches of one entry
+    longest = max((len(h.get_label()) for h in handles), default=0)
+    entry = max(1.7, 0.5 + 0.07 * longest)  # inches
+    columns = min(columns, max(2, int(figure.get_figwidth() / entry)))
     head, foot = 0.58, 0.10 + 0.19 * bool(note) + 0.215 * -(-len(handles) // columns)  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
     figure.text(0.01, 1 - 0.2 / height, study.run_title, va="center", fontsize=11.5, fontweight="bold", color=INK)

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Runs a stability chart and compares where its curves begin, pass and end with values found one by one.
+
+charts.py PROGRAM SOURCE rigid|compliant [LAUNCHER WORDS...]
+
+rigid: independent reference values at F0* = 0.5, 1 and 2 (0.16, 0.64 and 2.56 N; Omega_0 = 80, 160 and 320 rad/s); the
+curve of upper folds must end at the generalised Hopf point, which is found from the Lyapunov coefficient alone.
+compliant: Hopf point and flip at B = 1 as branches of short.yaml with that compliance find them, on the same mesh.
+"""
+import sys
+
+import h5py
+import numpy as np
+from harness import Harness
+from loci import crossings
+
+
+def curve(h, run, name):
+    with h5py.File(h.work / run / "results.h5") as f:
+        table = f[f"studies/{name}/locus"]
+        return table["parameter"][()], table["second"][()]
+
+
+def at_end(speed, load, wanted):
+    return [s for s, w in zip(speed, load) if abs(w - wanted) < 1e-9 * wanted]
+
+
+def rigid(h):
+    run = h.run((h.source / "inputs/rigid_rotor/stability_chart.yaml").resolve(), "chart")
+    hopf, flips = curve(h, "chart", "whirl begins"), curve(h, "chart", "half-speed whirl begins")
+    last = curve(h, "chart", "half-speed whirl ends")
+    jump, large = curve(h, "chart", "small whirl jumps"), curve(h, "chart", "large whirl ends")
+    for name in ("whirl begins", "large whirl ends", "half-speed whirl begins", "half-speed whirl ends"):
+        h.true(f"{name}: reaches its ends", run[name]["status"] == "completed", run[name]["status"])
+    # Exact at the ends of a curve; between its points it is read by cubics.
+    for what, (speed, load), at, wanted, within in (
+            ("Hopf point, F0* = 2", hopf, 2.56, 2.67117718 * 320, 1e-5), ("Hopf point, F0* = 0.5", hopf, 0.16, 2.75634869 * 80, 1e-5),
+            ("upper fold, F0* = 2", jump, 2.56, 2.70964 * 320, 1e-4), ("lower fold, F0* = 2", large, 2.56, 2.67728 * 320, 1e-4),
+            ("lower fold, F0* = 0.5", large, 0.16, 2.57874 * 80, 1e-4), ("flip, F0* = 2", flips, 2.56, 2.396433 * 320, 1e-5),
+            ("flip, F0* = 0.5", flips, 0.16, 8.882138 * 80, 1e-5),
+            ("upper flip, F0* = 2", last, 2.56, 3.959917 * 320, 1e-5), ("upper flip, F0* = 0.5", last, 0.16, 10.054424 * 80, 1e-5)):
+        found = at_end(speed, load, at)
+        h.true(f"{what}: an end there", found != [], found)
+        for s in found[:1]:
+            h.close(f"{what} [rad/s]", s, wanted, within * wanted)
+    for what, table, wanted in (("Hopf point", hopf, 2.73526314), ("lower fold", large, 2.61397), ("flip", flips, 2.874299),
+                                ("upper flip", last, 5.760622)):
+        found = crossings(*table, 0.64)
+        h.true(f"{what}s at F0* = 1", len(found) == 1, found)
+        for s in found[:1]:
+            h.close(f"{what}, F0* = 1 [rad/s]", s, wanted * 160, 3e-4 * wanted * 160)
+    points = [c for c in run["whirl begins"]["codimension_two"] if c["type"] == "generalised_hopf"]
+    h.true("one generalised Hopf point", len(points) == 1, points)
+    for c in points[:1]:
+        h.close("upper folds end there, speed [rad/s]", jump[0][np.argmin(jump[1])], c["value"], 2e-4 * c["value"])
+        h.close("upper folds end there, load [N]", jump[1].min(), c["second_value"], 5e-4 * c["second_value"])
+
+
+def compliant(h):
+    run = h.run((h.source / "inputs/compliant_rotor/stability_chart.yaml").resolve(), "chart")
+    there = h.run((h.source / "inputs/compliant_rotor/short.yaml").resolve(), "there", overrides=[
+        "bearings.half.film.compliance=1", "studies.1.equilibrium_branch.range={from: 320 rad/s, to: 400 rad/s}",
+        "studies.2.cycle_branch.range={from: 340 rad/s, to: 400 rad/s}"])
+    for name, study, kind in (("whirl begins", "balanced", "hopf"), ("half-speed whirl", "unbalanced", "flip")):
+        h.true(f"{name}: reaches its ends", run[name]["status"] == "completed", run[name]["status"])
+        wanted = [b["value"] for b in there[study]["bifurcations"] if b["type"] == kind]
+        found = crossings(*curve(h, "chart", name), 1.0)
+        h.true(f"{name}: one {kind} at B = 1", len(wanted) == len(found) == 1, f"{wanted} {found}")
+        for s, w in zip(found, wanted):
+            h.close(f"{kind} at B = 1 [rad/s]", s, w, 3e-4 * w)
+
+
+def main():
+    h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    {"rigid": rigid, "compliant": compliant}[sys.argv[3]](h)
+    h.finish()
+
+
+if __name__ == "__main__":
+    main()
