@@ -83,7 +83,7 @@ private:
                              bool half_film) const;
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
-  void correct(Vec u, Vec row, double offset, Relocated& out);
+  void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(Vec u, Vec tangent);

@@ -17,6 +17,7 @@ using core::check;
 namespace {
 
 constexpr int most_solves = 40;
+constexpr int few_iterations = 6;  // of Newton: a step that needs more was too long, and may never arrive
 
 [[noreturn]] void not_found(const std::string& why) {
   throw core::NotConverged("the bifurcation was not found on this film mesh: " + why);
@@ -50,8 +51,8 @@ Relocated CycleFollower::relocate(const Located& from, const CycleFollower& othe
   return out;
 }
 
-void CycleFollower::correct(Vec u, Vec row, double offset, Relocated& out) {
-  const auto result = solve::newton(*problem_, u, row, offset, newton_);
+void CycleFollower::correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out) {
+  const auto result = solve::newton(*problem_, u, row, offset, newton);
   if (!result.converged) not_found(result.reason);
   if (++out.solves > most_solves) not_found("the iteration does not settle");
   problem_->linearise(u, row);
@@ -65,7 +66,7 @@ void CycleFollower::relocate_crossing(core::Vector& u, Relocated& out) {
   double& slope = out.found.sensitivity;
   if (slope == 0) not_found("the multiplier does not move with the parameter");
   for (;;) {
-    correct(u.get(), row.get(), p, out);
+    correct(u.get(), row.get(), p, newton_, out);
     const auto values = problem_->multipliers();
     double nearest = std::numeric_limits<double>::infinity();
     std::complex<double> critical;
@@ -95,7 +96,12 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
   core::Vector tangent = solve::any_tangent(*problem_, u.get()), row = core::duplicate(u.get()),
                rhs = core::duplicate(u.get());
   solve::parameter_row(*problem_, rhs.get());
-  const double longest = 0.3 * continuation_.max_step;
+  solve::NewtonOptions impatient = newton_;
+  impatient.max_iterations = few_iterations;
+  double longest = 0.3 * continuation_.max_step;
+  // That of the fold on the other mesh; where none is known a first step of a hundredth of a clearance (see
+  // state_weight()) shows it.
+  double& curvature = out.found.sensitivity;
   double last_f = 0, step = 0;
   core::Vector last = core::duplicate(u.get());
   for (;;) {
@@ -104,20 +110,21 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
       double offset = 0;
       check(VecDot(row.get(), u.get(), &offset));
       try {
-        correct(u.get(), row.get(), offset, out);
+        correct(u.get(), row.get(), offset, step == 0 ? newton_ : impatient, out);
         break;
       } catch (const core::NotConverged&) {
         if (step == 0 || halvings == 6) throw;
       }
       step /= 2;
+      longest = std::abs(step);
       check(VecWAXPY(u.get(), step, tangent.get(), last.get()));
     }
     (void)solve::solve_linear(*problem_, rhs.get(), tangent.get(), "tangent_");
     check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
     const double f = solve::last_entry(problem_->comm(), tangent.get());
-    // A first step of a hundredth of a clearance (see state_weight()) shows the curvature.
-    const double secant = out.solves == 1 || f == last_f ? 0.02 * continuation_.max_step : -f * step / (f - last_f);
-    const double next = std::clamp(secant, -longest, longest);
+    if (out.solves > 1 && f != last_f) curvature = (f - last_f) / step;
+    const double next =
+        curvature != 0 ? std::clamp(-f / curvature, -longest, longest) : 0.02 * continuation_.max_step;
     const double p = solve::last_entry(problem_->comm(), u.get());
     // The slope is linear in s near the fold, the parameter quadratic.
     out.bracket = std::abs(f * next / 2);

@@ -16,7 +16,9 @@ struct Located {
   solve::Event event = solve::Event::branch_point;
   std::complex<double> critical;  ///< multiplier, or eigenvalue [1/s]
   solve::Cycle cycle;
-  double sensitivity = 0;  ///< d(distance from the border of stability)/d(parameter in the unit of the range)
+  /// d(distance from the border of stability)/d(parameter in the unit of the range); of a fold found again on another
+  /// film mesh, the second derivative of the parameter over the arclength, else 0
+  double sensitivity = 0;
 };
 
 /// Whether a study of the deck goes on from the bifurcations of the study `name`, which then keeps them.
