@@ -234,8 +234,18 @@ void Follower::crossings(const State& a, const State& b, int depth) {
   const bool at_fold = std::any_of(folds_.begin(), folds_.end(), [&](const auto& fold) {
     return std::abs(found.parameter - fold.first) <= 0.01 * fold.second;
   });
-  if (found.event == Event::branch_point && (a.point.slope * b.point.slope < 0 || at_fold)) return;
+  if (found.event == Event::branch_point && (a.point.slope * b.point.slope < 0 || at_fold || turns_beside(a, at)))
+    return;
   callbacks_.on_event(found, at.u.get());
+}
+
+// Whether the branch turns right beside `at`, in the step before or after it: a multiplier passes +1 at the fold itself
+// only as exactly as the discretisation conserves it. The slope is linear there, the parameter quadratic.
+bool Follower::turns_beside(const State& a, const State& at) const {
+  const double change = at.point.slope - a.point.slope;
+  if (change == 0) return false;
+  const double to_turn = -at.point.slope * arclength(problem_, a, at.u.get()) / change;
+  return std::abs(at.point.slope * to_turn / 2) <= 0.01 * std::abs(at.point.parameter - a.point.parameter);
 }
 
 void Follower::zeros(const State& a, const State& b) {

@@ -52,6 +52,7 @@ private:
   void pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
                 LocatedEvent& found, State& at);
   void folds(const State& a, const State& b, int depth);
+  [[nodiscard]] bool turns_beside(const State& a, const State& at) const;
   void crossings(const State& a, const State& b, int depth);
   void zeros(const State& a, const State& b);
   void visits(const State& before, const State& a, const State& b, bool seen);
