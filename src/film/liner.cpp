@@ -87,16 +87,12 @@ void LinerLaw::carry(std::span<const double> h, std::span<const double> u, std::
 LinerLaw::Edge LinerLaw::edge(double rigid) const {
   if (!touches() || rigid >= reach_) return {rigid};
   double low = 0.0, high = rubber_ ? std::min(reach_ - rigid, thickness_) : reach_ - rigid, u = 0.0;
-  bool close = false;
   for (int iteration = 0; iteration < 200; ++iteration) {
     const Value elastic = this->elastic(u), touch = contact(rigid + u);
-    const double excess = elastic.pressure - touch.pressure, slope = elastic.slope - touch.slope;
-    if (close) return {rigid + u, elastic.slope / slope, touch};
+    const double excess = elastic.pressure - touch.pressure, slope = elastic.slope - touch.slope, step = excess / slope;
+    if (std::abs(step) <= 1e-14 * (reach_ + u)) return {rigid + u, elastic.slope / slope, touch};
     (excess > 0.0 ? high : low) = u;
-    double next = u - excess / slope;
-    if (!(next >= low && next < high)) next = 0.5 * (low + high);
-    close = std::abs(next - u) <= 1e-9 * reach_;  // of which the square is left
-    u = next;
+    u = u - step > low && u - step < high ? u - step : 0.5 * (low + high);
   }
   throw core::NotConverged("the liner at an edge of the bearing");
 }

@@ -167,7 +167,7 @@ Options compliant(Options::Kind kind, bool as_source) {
 Options general(Options o) {
   o.liner_damping = 1e-3;
   o.rubber_thickness = 1e-4;
-  if (o.kind != Options::Kind::compliant_finite) o.contact = Contact{4e-6, 2e8};
+  o.contact = Contact{4e-6, 1e6};
   return o;
 }
 
