@@ -1,14 +1,12 @@
 // Short and long films of a full cylindrical bore with an elastic liner: the film thickness around the bearing is the
 // state.
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "film/compliant.hpp"
 #include "film/groove.hpp"
 #include "film/kinds.hpp"
-#include "film/liner.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -16,33 +14,59 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+using Array = Eigen::Map<const Eigen::ArrayXd>;
+
+// Arrays around the bearing hold the last two nodes again in front of node 0, and node 0 behind the last one.
+constexpr std::size_t kFront = 2, kBehind = 1;
+
+const double* around(const std::vector<double>& values) {
+  return values.data() + kFront;
+}
+double* around(std::vector<double>& values) {
+  return values.data() + kFront;
+}
+void close(std::vector<double>& values) {
+  const std::size_t n = values.size() - kFront - kBehind;
+  std::copy_n(values.data() + n, kFront, values.data());
+  std::copy_n(values.data() + kFront, kBehind, values.data() + kFront + n);
+}
+
 // Nodes k = 0 .. N - 1 at theta = 90 deg + k d. With thickness h, eccentricity e in clearances and P = p (c/R)^2/(6 mu)
 // in 1/s the liner gives P of its deflection u = h - 1 + e_x cos + e_y sin. Nodes in grooves have P = u = 0 and are no
-// states; a long film has a groove at the top if none is given.
-class CompliantFilm final : public StateModel {
+// states; a long film has a groove at the top if none is given. Steps in time spend their time here: loops run over
+// arrays of all nodes, or of those between grooves, without asking where a node lies or what its liner is made of.
+class CompliantFilm final : public CompliantModel {
 public:
   CompliantFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : g_(geometry),
-        viscosity_(lubricant.viscosity),
+      : CompliantModel(geometry, options, lubricant),
         long_(options.kind == Options::Kind::compliant_long),
-        n_(options.cells[0]),
-        scales_(geometry, options, lubricant),
-        liner_(geometry, options, scales_.liner, scales_.pressure),
-        neighbours_(options.differences),
-        ring_(n_, options.quadrature),
+        n_(ring_.nodes()),
         step_(ring_.step()) {
     const double ld = 0.5 * g_.length / g_.radius;
     side_ = 1.5 / (ld * ld);
     const bool top = long_ && options.grooves.empty();
-    const std::vector<bool> fixed = grooved(n_, top ? std::vector{Groove{0.5 * kPi, 0.0}} : options.grooves);
-    for (int k = 0; k < n_; ++k) state_.push_back(fixed[at(k)] ? -1 : states_++);
-    nodes_.resize(at(n_));
+    place(grooved(n_, top ? std::vector{Groove{0.5 * kPi, 0.0}} : options.grooves));
+    for (auto* values : {&u_, &moved_, &full_[0], &full_[1], &left_[0], &left_[1], &slope_[0], &slope_[1]})
+      values->resize(at(n_));
+    for (auto* values : {&h_, &cos_, &sin_}) values->resize(at(n_) + kFront + kBehind);
+    for (int k = 0; k < n_; ++k) {
+      around(cos_)[k] = ring_.cosine(k);
+      around(sin_)[k] = ring_.sine(k);
+      for (std::size_t i = 0; i < 2; ++i) {
+        full_[i][at(k)] = ring_.node(k)[i];
+        left_[i][at(k)] = ring_.full(k).left[i];
+      }
+    }
+    close(cos_);
+    close(sin_);
+    carried_.resize(h_.size());
+    for (auto* values : {&conductance_, &by_face_, &flux_}) values->resize(at(n_ + 1));
+    by_h_.resize(at(4 * n_));
+    by_p_.resize(at(3 * n_));
   }
 
   [[nodiscard]] std::size_t states() const override { return at(states_); }
-  [[nodiscard]] int row_entries() const override { return 8; }
-  [[nodiscard]] bool constant_rates() const override { return !liner_.damped(); }
-  [[nodiscard]] double state_scale() const override { return g_.clearance; }
+  [[nodiscard]] int row_entries() const override { return 4 + (liner_.damped() && long_ ? 3 : 1); }
   void unloaded(const Motion& motion, std::span<double> states) const override {
     for (int k = 0; k < n_; ++k)
       if (!fixed(k)) states[index(k)] = rigid(motion, k) * g_.clearance;
@@ -55,180 +79,288 @@ public:
   std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
 
 private:
-  struct Node {
-    double h = 0.0, p = 0.0;             // thickness in clearances, P of the film in 1/s
-    double by_h = 0.0, by_u = 0.0;       // dP/dh in all, and its part by the deflection
-    double contact = 0.0, stiff = 0.0;   // P of asperities, its slope in h
-    std::array<double, 2> force{};       // d force*/dP
-    std::array<double, 2> on_contact{};  // d force*/d contact
+  // Neighbouring nodes that are neighbouring states.
+  struct Run {
+    int node, state, count;
   };
+  // A node in a groove, `place` - 2 nodes away from the row of a state.
+  struct Bank {
+    int state, row, place, node;
+  };
+  [[nodiscard]] static std::size_t at(int k) { return static_cast<std::size_t>(k); }
   [[nodiscard]] int wrap(int k) const { return (k + n_) % n_; }
   [[nodiscard]] bool fixed(int k) const { return state_[at(k)] < 0; }
   [[nodiscard]] std::size_t index(int k) const { return at(state_[at(k)]); }
-  [[nodiscard]] static std::size_t at(int k) { return static_cast<std::size_t>(k); }
-  [[nodiscard]] const Node& node(int k) const { return nodes_[at(k)]; }
-  [[nodiscard]] std::array<double, 2> normal(int k) const { return {ring_.cosine(k), ring_.sine(k)}; }
-  [[nodiscard]] double rigid(const Motion& m, int k) const {
-    return 1.0 - (m.position[0] * ring_.cosine(k) + m.position[1] * ring_.sine(k)) / g_.clearance;
-  }
-  [[nodiscard]] double least() const {
-    const auto thinner = [](const Node& a, const Node& b) { return a.h < b.h; };
-    return g_.clearance * std::min_element(nodes_.begin(), nodes_.end(), thinner)->h;
-  }
+  void place(const std::vector<bool>& fixed);
   void set(const Motion& motion, std::span<const double> states, std::span<const double> rates);
-  void set_settled(const Motion& motion, std::span<const double> states);
+  void slopes();
   void integrate(Need need, StateResponse& response);
-  void row(int k, double speed, Need need, StateResponse& response);
-  // dg_k/dh_j and dg_k/dP_j to the derivatives in states, rates and the motion of the journal; without `flow` the
-  // latter is always zero.
-  void chain(int k, int j, double by_h, double by_p, bool flow, StateResponse& response) const;
+  void faces();
+  void residual(double speed, std::span<const double> rates, std::span<double> g) const;
+  void tangents(double speed, StateResponse& response);
+  void by_journal(StateResponse& response) const;
 
-  Geometry g_;
-  double viscosity_;
   bool long_;
   int n_, states_ = 0;
-  CompliantScales scales_;
-  LinerLaw liner_;
-  Neighbours neighbours_;
-  RingQuadrature ring_;
   double step_, side_ = 0.0;  // -; 1.5/(L/D)^2
-  std::vector<int> state_;    // of every node, or -1
-  std::vector<Node> nodes_;
+  // Where things are.
+  std::vector<int> state_;  // of every node, or -1
+  std::vector<Run> runs_;
+  std::vector<int> fixed_;  // nodes in grooves
+  std::vector<Bank> banks_;
+  std::vector<Entry> d_states_, d_rates_;       // pattern, with what is constant
+  std::vector<std::size_t> by_h_at_, by_p_at_;  // of their entries in by_h_ and by_p_
+  // At all nodes.
+  std::vector<double> h_, cos_, sin_;                 // around; h in clearances
+  std::vector<double> u_, moved_;                     // deflection and its rate, in clearances
+  Carried carried_;                                   // around
+  std::array<std::vector<double>, 2> full_, left_;    // weights of a node and of its side of the cell behind, all P > 0
+  std::array<std::vector<double>, 2> slope_;          // d force*/dP
+  std::vector<double> conductance_, by_face_, flux_;  // of the faces before nodes 0 .. n: of dP, by h there, and itself
+  std::vector<double> by_h_, by_p_;                   // dg/c by h at k - 2 .. k + 1 in all, and by P at k - 1 .. k + 1
+  double least_ = 0.0;                                // of h
 };
 
-void CompliantFilm::set(const Motion& motion, std::span<const double> states, std::span<const double> rates) {
+void CompliantFilm::place(const std::vector<bool>& fixed) {
   for (int k = 0; k < n_; ++k) {
-    Node& x = nodes_[at(k)];
-    const double r = rigid(motion, k);
-    x = {};
-    x.h = fixed(k) ? r : states[index(k)] / g_.clearance;
-    if (!(x.h > 0.0)) throw core::DomainError("the journal touches the liner: the film thickness is not positive");
-    if (fixed(k)) continue;
-    const LinerLaw::Value elastic = liner_.elastic(x.h - r), contact = liner_.contact(x.h);
-    const double rate =
-        (rates[index(k)] + motion.velocity[0] * ring_.cosine(k) + motion.velocity[1] * ring_.sine(k)) / g_.clearance;
-    x.by_u = elastic.slope;
-    x.contact = contact.pressure;
-    x.stiff = contact.slope;
-    x.by_h = x.by_u - x.stiff;
-    x.p = elastic.pressure + liner_.damping() * rate - x.contact;
+    state_.push_back(fixed[at(k)] ? -1 : states_++);
+    if (fixed[at(k)])
+      fixed_.push_back(k);
+    else if (k == 0 || fixed[at(k - 1)])
+      runs_.push_back({k, state_.back(), 1});
+    else
+      ++runs_.back().count;
+  }
+  for (int k = 0; k < n_; ++k) {
+    if (fixed[at(k)]) continue;
+    for (int i = 0; i < 4; ++i) {
+      const int other = wrap(k + i - 2);
+      const bool flow = long_ ? i > 0 : i == 2;  // by its P
+      if (!flow && neighbours_.slope[at(i)] == 0.0) continue;
+      if (fixed[at(other)]) {
+        banks_.push_back({state_[at(k)], k, i, other});
+        continue;
+      }
+      d_states_.push_back({state_[at(k)], state_[at(other)], 0.0});
+      by_h_at_.push_back(at(i * n_ + k));
+      if (i != 2 && !(flow && liner_.damped())) continue;
+      d_rates_.push_back({state_[at(k)], state_[at(other)], i == 2 ? 1.0 : 0.0});
+      by_p_at_.push_back(at((i - 1) * n_ + k));
+    }
   }
 }
 
-// For reports, which know no rates.
-void CompliantFilm::set_settled(const Motion& motion, std::span<const double> states) {
-  set(motion, states, liner_.damped() ? settled_rates(*this, motion, states) : std::vector<double>(states.size(), 0.0));
+void CompliantFilm::set(const Motion& motion, std::span<const double> states, std::span<const double> rates) {
+  const double per_clearance = 1.0 / g_.clearance, x = motion.position[0] * per_clearance,
+               y = motion.position[1] * per_clearance;
+  double* h = around(h_);
+  const double *c = around(cos_), *s = around(sin_);
+  for (const Run& r : runs_) {
+    const double* from = states.data() + r.state;
+    double* __restrict to = h + r.node;
+    for (int j = 0; j < r.count; ++j) to[j] = from[j] * per_clearance;
+  }
+  for (const int k : fixed_) h[k] = 1.0 - x * c[k] - y * s[k];
+  close(h_);
+  least_ = Array(h, n_).minCoeff<Eigen::PropagateNaN>();
+  if (!(least_ > 0.0)) throw core::DomainError("the journal touches the liner: the film thickness is not positive");
+  double* __restrict u = u_.data();
+  for (int k = 0; k < n_; ++k) u[k] = h[k] - (1.0 - x * c[k] - y * s[k]);
+  for (const Run& r : runs_) {
+    const std::size_t count = at(r.count);
+    double* __restrict moved = moved_.data() + r.node;
+    if (liner_.damped()) {
+      const double *rate = rates.data() + r.state, *rc = c + r.node, *rs = s + r.node;
+      const double vx = motion.velocity[0], vy = motion.velocity[1];
+      for (int j = 0; j < r.count; ++j) moved[j] = (rate[j] + vx * rc[j] + vy * rs[j]) * per_clearance;
+    }
+    liner_.carry({h + r.node, count}, {u + r.node, count}, {moved, count}, at(r.node) + kFront, carried_);
+  }
+  for (auto* values : {&carried_.p, &carried_.by_h, &carried_.by_u}) close(*values);
+  if (liner_.damped()) close(carried_.by_rate);
+}
+
+// dF*/dP at every node; F* = -int max(P, 0) (cos, sin) is homogeneous in P.
+void CompliantFilm::slopes() {
+  const double* p = around(carried_.p);
+  double* __restrict sx = slope_[0].data(), * __restrict sy = slope_[1].data();
+  if (ring_.nodal()) {
+    const double *wx = full_[0].data(), *wy = full_[1].data();
+    for (int k = 0; k < n_; ++k) {
+      sx[k] = p[k] > 0.0 ? wx[k] : 0.0;
+      sy[k] = p[k] > 0.0 ? wy[k] : 0.0;
+    }
+    return;
+  }
+  // Weights of a node are those of its sides, right = full - left; a cell with P < 0 at one end counts by itself.
+  const double *fx = full_[0].data(), *fy = full_[1].data(), *lx = left_[0].data(), *ly = left_[1].data();
+  for (int k = 0; k < n_; ++k) {
+    const double a = p[k - 1], b = p[k], c = p[k + 1];
+    const bool before = a >= 0.0 && b >= 0.0 && a + b > 0.0, after = b >= 0.0 && c >= 0.0 && b + c > 0.0;
+    sx[k] = (before ? fx[k] - lx[k] : 0.0) + (after ? lx[k] : 0.0);
+    sy[k] = (before ? fy[k] - ly[k] : 0.0) + (after ? ly[k] : 0.0);
+  }
+  for (int k = 0; k < n_; ++k) {
+    if (p[k] * p[k + 1] >= 0.0) continue;
+    const RingQuadrature::Weights w = ring_.part(k, p[k], p[k + 1]);
+    const std::size_t here = at(k), next = at(wrap(k + 1));
+    for (std::size_t i = 0; i < 2; ++i) {
+      slope_[i][here] += w.left[i];
+      slope_[i][next] += w.right[i];
+    }
+  }
 }
 
 // F* = -int (max(P, 0) + contact) (cos, sin) with its derivatives in both.
 void CompliantFilm::integrate(Need need, StateResponse& response) {
-  std::array<double, 2> sum{};
-  for (int k = 0; k < n_; ++k) {
-    Node &a = nodes_[at(k)], &b = nodes_[at(wrap(k + 1))];
-    const RingQuadrature::Weights w = ring_.weights(k, a.p, b.p),
-                                  full = liner_.touches() ? ring_.weights(k, 1.0, 1.0) : RingQuadrature::Weights{};
-    for (std::size_t i = 0; i < 2; ++i) {
-      sum[i] += w.left[i] * a.p + w.right[i] * b.p + full.left[i] * a.contact + full.right[i] * b.contact;
-      a.force[i] += w.left[i];
-      b.force[i] += w.right[i];
-      a.on_contact[i] += full.left[i];
-      b.on_contact[i] += full.right[i];
-    }
-  }
+  slopes();
   Response& out = response.journal;
-  for (std::size_t i = 0; i < 2; ++i) out.force[i] = scales_.force * sum[i];
+  const auto nodes = [&](const double* values) { return Array(values, n_); };
+  const auto p = nodes(around(carried_.p)), contact = nodes(around(carried_.contact));
+  for (std::size_t i = 0; i < 2; ++i) {
+    double sum = (nodes(slope_[i].data()) * p).sum();
+    if (liner_.touches()) sum += (nodes(full_[i].data()) * contact).sum();
+    out.force[i] = scales_.force * sum;
+  }
   if (need == Need::force) return;
   const double scale = scales_.force / g_.clearance;
-  for (int k = 0; k < n_; ++k) {
-    if (fixed(k)) continue;
-    const Node& x = node(k);
-    for (std::size_t i = 0; i < 2; ++i) {
-      response.force_d_states[index(k)][i] = scale * (x.force[i] * x.by_h + x.on_contact[i] * x.stiff);
-      const double rate = scale * x.force[i] * liner_.damping();
-      if (liner_.damped()) response.force_d_rates[index(k)][i] = rate;
-      for (std::size_t j = 0; j < 2; ++j) {
-        out.d_position[i][j] += scale * x.force[i] * x.by_u * normal(k)[j];
-        out.d_velocity[i][j] += rate * normal(k)[j];
-      }
+  const double *by_h = around(carried_.by_h), *by_u = around(carried_.by_u), *by_rate = around(carried_.by_rate),
+               *stiff = around(carried_.stiff);
+  const std::array<const double*, 2> normal = {around(cos_), around(sin_)};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      const auto weight = nodes(slope_[i].data()) * nodes(normal[j]);
+      out.d_position[i][j] = scale * (weight * nodes(by_u)).sum();
+      if (liner_.damped()) out.d_velocity[i][j] = scale * (weight * nodes(by_rate)).sum();
     }
-  }
+  const double *sx = slope_[0].data(), *sy = slope_[1].data(), *fx = full_[0].data(), *fy = full_[1].data();
+  for (const Run& r : runs_)
+    for (int k = r.node; k < r.node + r.count; ++k) {
+      const std::size_t to = at(r.state + k - r.node);
+      response.force_d_states[to] = {scale * (sx[k] * by_h[k] + fx[k] * stiff[k]),
+                                     scale * (sy[k] * by_h[k] + fy[k] * stiff[k]), 0.0, 0.0};
+      if (liner_.damped())
+        response.force_d_rates[to] = {scale * sx[k] * by_rate[k], scale * sy[k] * by_rate[k], 0.0, 0.0};
+    }
 }
 
-void CompliantFilm::chain(int k, int j, double by_h, double by_p, bool flow, StateResponse& response) const {
-  const std::array<double, 2> n = normal(j);
-  const std::size_t to = index(k);
-  if (fixed(j)) {  // h = 1 - e_x cos - e_y sin in a groove
-    for (std::size_t i = 0; i < 2; ++i) response.d_position[to][i] -= by_h * n[i];
-    return;
+// Through the face before node k, with h there from nodes k - 2 .. k, goes h^3 (P_k - P_(k-1))/(2 d^2).
+void CompliantFilm::faces() {
+  const double scale = 0.5 / (step_ * step_);
+  const auto [w0, w1, w2, unused] = neighbours_.face;
+  const double *h = around(h_), *p = around(carried_.p);
+  double* __restrict k = conductance_.data(), * __restrict q = by_face_.data(), * __restrict f = flux_.data();
+  for (int i = 0; i <= n_; ++i) {
+    const double face = w0 * h[i - 2] + w1 * h[i - 1] + w2 * h[i], square = scale * face * face, rise = p[i] - p[i - 1];
+    k[i] = square * face;
+    q[i] = 3.0 * square * rise;
+    f[i] = square * face * rise;
   }
-  const int row = state_[at(k)], column = state_[at(j)];
-  response.d_states.push_back({row, column, by_h + by_p * node(j).by_h});
-  for (std::size_t i = 0; i < 2; ++i) response.d_position[to][i] += by_p * node(j).by_u * n[i];
-  if (!flow || !liner_.damped()) return;
-  const double rate = by_p * liner_.damping();
-  response.d_rates.push_back({row, column, rate});
-  for (std::size_t i = 0; i < 2; ++i) response.d_velocity[to][i] += rate * n[i];
 }
 
 // (4.27): dh/dt = -(1/2) (3 h^3 P/(L/D)^2 + Omega dh/dtheta); (4.29): dh/dt = (1/2) (d/dtheta (h^3 dP/dtheta) - Omega
 // dh/dtheta).
-void CompliantFilm::row(int k, double speed, Need need, StateResponse& response) {
-  const std::array<int, 4> place = {wrap(k - 2), wrap(k - 1), k, wrap(k + 1)};
-  const auto h = [&](std::size_t i) { return node(place[i]).h; };
-  const auto p = [&](std::size_t i) { return node(place[i]).p; };
-  const std::array<double, 4>&weights = neighbours_.slope, &face = neighbours_.face;
-  double slope = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) slope += weights[i] / step_ * h(i);
-  double g = 0.5 * speed * slope;
-  // Thickness at the faces k - 1/2 and k + 1/2.
-  const double left = face[0] * h(0) + face[1] * h(1) + face[2] * h(2),
-               right = face[0] * h(1) + face[1] * h(2) + face[2] * h(3);
-  const double dl = (p(2) - p(1)) / (step_ * step_), dr = (p(3) - p(2)) / (step_ * step_);
-  if (long_)
-    g -= 0.5 * (right * right * right * dr - left * left * left * dl);
-  else
-    g += side_ * h(2) * h(2) * h(2) * p(2);
-  response.residual[index(k)] += g_.clearance * g;
-  if (need == Need::force) return;
-  std::array<double, 4> by_h{}, by_p{};
-  for (std::size_t i = 0; i < 4; ++i) by_h[i] = 0.5 * speed * weights[i] / step_;
-  response.d_speed[index(k)] = 0.5 * g_.clearance * slope;
-  if (long_) {
-    const double r2 = 1.5 * right * right * dr, l2 = 1.5 * left * left * dl;
-    for (std::size_t i = 0; i < 3; ++i) {
-      by_h[i + 1] -= r2 * face[i];
-      by_h[i] += l2 * face[i];
+void CompliantFilm::residual(double speed, std::span<const double> rates, std::span<double> g) const {
+  const double c = g_.clearance, wedge = 0.5 * c * speed / step_, side = c * side_;
+  const double w0 = wedge * neighbours_.slope[0], w1 = wedge * neighbours_.slope[1], w2 = wedge * neighbours_.slope[2],
+               w3 = wedge * neighbours_.slope[3];
+  for (const Run& r : runs_) {
+    const double *h = around(h_) + r.node, *p = around(carried_.p) + r.node, *flux = flux_.data() + r.node,
+                 *rate = rates.data() + r.state;
+    double* __restrict to = g.data() + r.state;
+    for (int j = 0; j < r.count; ++j) {
+      const double slope = w0 * h[j - 2] + w1 * h[j - 1] + w2 * h[j] + w3 * h[j + 1];
+      const double out = long_ ? c * (flux[j] - flux[j + 1]) : side * h[j] * h[j] * h[j] * p[j];
+      to[j] = rate[j] + slope + out;
     }
-    const double r3 = 0.5 * right * right * right / (step_ * step_), l3 = 0.5 * left * left * left / (step_ * step_);
-    by_p = {0.0, -l3, r3 + l3, -r3};
-  } else {
-    by_h[2] += 3.0 * side_ * h(2) * h(2) * p(2);
-    by_p[2] = side_ * h(2) * h(2) * h(2);
   }
-  for (std::size_t i = neighbours_.reach == 2 ? 0 : 1; i < 4; ++i)
-    chain(k, place[i], by_h[i], by_p[i], long_ ? i > 0 : i == 2, response);
+}
+
+// by_h_ and by_p_, and the derivatives in states and rates.
+void CompliantFilm::tangents(double speed, StateResponse& response) {
+  const double wedge = 0.5 * speed / step_;
+  const auto [s0, s1, s2, s3] = neighbours_.slope;
+  const auto [f0, f1, f2, unused] = neighbours_.face;
+  const double *h = around(h_), *p = around(carried_.p), *by_h = around(carried_.by_h),
+               *conductance = conductance_.data(), *face = by_face_.data();
+  double *__restrict a0 = by_h_.data(), *__restrict a1 = a0 + n_, *__restrict a2 = a1 + n_, *__restrict a3 = a2 + n_,
+                     *__restrict b0 = by_p_.data(), *__restrict b1 = b0 + n_, *__restrict b2 = b1 + n_;
+  if (long_) {
+    for (int k = 0; k < n_; ++k) {
+      const double l3 = conductance[k], r3 = conductance[k + 1], l2 = face[k], r2 = face[k + 1];
+      a0[k] = wedge * s0 + l2 * f0;
+      a1[k] = wedge * s1 + l2 * f1 - r2 * f0 - l3 * by_h[k - 1];
+      a2[k] = wedge * s2 + l2 * f2 - r2 * f1 + (l3 + r3) * by_h[k];
+      a3[k] = wedge * s3 - r2 * f2 - r3 * by_h[k + 1];
+      b0[k] = -l3;
+      b1[k] = l3 + r3;
+      b2[k] = -r3;
+    }
+  } else {
+    for (int k = 0; k < n_; ++k) {
+      const double square = side_ * h[k] * h[k];
+      a0[k] = wedge * s0;
+      a1[k] = wedge * s1;
+      a2[k] = wedge * s2 + 3.0 * square * p[k] + square * h[k] * by_h[k];
+      a3[k] = wedge * s3;
+      b1[k] = square * h[k];
+    }
+  }
+  response.d_states = d_states_;
+  for (std::size_t e = 0; e < by_h_at_.size(); ++e) response.d_states[e].value = by_h_[by_h_at_[e]];
+  response.d_rates = d_rates_;
+  if (liner_.damped())
+    for (std::size_t e = 0; e < by_p_at_.size(); ++e)
+      response.d_rates[e].value += liner_.damping() * by_p_[by_p_at_[e]];
+}
+
+void CompliantFilm::by_journal(StateResponse& response) const {
+  const auto [s0, s1, s2, s3] = neighbours_.slope;
+  const double wedge = 0.5 * g_.clearance / step_;
+  const double *h = around(h_), *c = around(cos_), *s = around(sin_), *b0 = by_p_.data(), *b1 = b0 + n_, *b2 = b1 + n_;
+  const auto through = [&](const double* by, const double* normal, int k) {
+    const double here = b1[k] * by[k] * normal[k];
+    if (!long_) return here;
+    return here + b0[k] * by[k - 1] * normal[k - 1] + b2[k] * by[k + 1] * normal[k + 1];
+  };
+  const double *by_u = around(carried_.by_u), *by_rate = around(carried_.by_rate);
+  for (const Run& r : runs_)
+    for (int k = r.node; k < r.node + r.count; ++k) {
+      const std::size_t to = at(r.state + k - r.node);
+      response.d_speed[to] = wedge * (s0 * h[k - 2] + s1 * h[k - 1] + s2 * h[k] + s3 * h[k + 1]);
+      response.d_position[to] = {through(by_u, c, k), through(by_u, s, k), 0.0, 0.0};
+      if (liner_.damped()) response.d_velocity[to] = {through(by_rate, c, k), through(by_rate, s, k), 0.0, 0.0};
+    }
+  // h = 1 - e_x cos - e_y sin in a groove.
+  for (const Bank& b : banks_) {
+    const double by = by_h_[at(b.place * n_ + b.row)];
+    response.d_position[at(b.state)][0] -= by * c[b.node];
+    response.d_position[at(b.state)][1] -= by * s[b.node];
+  }
 }
 
 void CompliantFilm::evaluate_lines(const Motion& motion, Lines /*part*/, std::span<const double> states,
                                    std::span<const double> rates, Need need, StateResponse& response) {
   set(motion, states, rates);
-  response.journal = {};
-  response.residual.assign(rates.begin(), rates.end());
-  response.d_states.clear();
-  response.d_rates.clear();
   const std::size_t n = need == Need::tangents ? states.size() : 0;
-  response.d_position.assign(n, {});
+  response.journal = {};
+  response.journal.min_thickness = g_.clearance * least_;
+  response.residual.resize(states.size());
+  response.d_position.resize(n);
+  response.d_speed.resize(n);
+  response.force_d_states.resize(n);
+  response.force_d_rates.resize(liner_.damped() ? n : 0);
   response.d_velocity.assign(n, {});
-  response.d_speed.assign(n, 0.0);
-  response.force_d_states.assign(n, {});
-  response.force_d_rates.assign(liner_.damped() ? n : 0, {});
-  response.journal.min_thickness = least();
   integrate(need, response);
-  for (int k = 0; k < n_; ++k) {
-    if (fixed(k)) continue;
-    row(k, motion.speed, need, response);
-    if (need == Need::tangents) response.d_rates.push_back({state_[at(k)], state_[at(k)], 1.0});
+  if (long_) faces();
+  residual(motion.speed, rates, response.residual);
+  if (need == Need::force) {
+    response.d_states.clear();
+    response.d_rates.clear();
+    return;
   }
+  tangents(motion.speed, response);
+  by_journal(response);
 }
 
 // Deflections, which are periodic and zero in grooves, are interpolated linearly.
@@ -251,43 +383,35 @@ void CompliantFilm::resample(const Motion& motion, const StateModel& other, std:
 // Side flow of a short film from its parabola, (H^3/12 mu) 6 p/L out of each side; friction mu U/H on the whole
 // circumference and half the pressure flow, -U/(2 R) int p dH/dtheta.
 Summary CompliantFilm::summary(const Motion& motion, std::span<const double> states) {
-  set_settled(motion, states);
+  set(motion, states, settled_rates(motion, states));
   Summary s;
-  s.min_thickness = least();
-  const double U = motion.speed * g_.radius;
+  s.min_thickness = g_.clearance * least_;
+  const double U = motion.speed * g_.radius, *P = around(carried_.p), *H = around(h_);
   for (int k = 0; k < n_; ++k) {
-    const double p = scales_.pressure * std::max(node(k).p, 0.0), h = g_.clearance * node(k).h;
+    const double p = scales_.pressure * std::max(P[k], 0.0), h = g_.clearance * H[k];
     s.max_pressure = std::max(s.max_pressure, (long_ ? 1.0 : 1.5) * p);
     if (!long_) s.side_flow += step_ * g_.radius * h * h * h * p / (viscosity_ * g_.length);
-    const double slope = g_.clearance * (node(wrap(k + 1)).h - node(wrap(k - 1)).h) / 2.0;
+    const double slope = g_.clearance * (H[k + 1] - H[k - 1]) / 2.0;
     s.power_loss += U * g_.length * (viscosity_ * U * g_.radius * step_ / h - 0.5 * p * slope);
   }
   return s;
 }
 
 std::vector<Field> CompliantFilm::fields(const Motion& motion, std::span<const double> states) {
-  set_settled(motion, states);
-  const std::size_t around = nodes_.size() + 1, along = long_ ? 2 : 17;
-  Field theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
-  Field pressure{0, "pressure", "Pa", {around, along}, {}}, h{0, "thickness", "m", {around, along}, {}};
-  for (std::size_t j = 0; j < along; ++j)
-    z.values.push_back(g_.length * (static_cast<double>(j) / static_cast<double>(along - 1) - 0.5));
-  for (int k = 0; k <= n_; ++k) {
-    theta.values.push_back(ring_.angle(k));
-    const Node& x = node(wrap(k));
-    for (std::size_t j = 0; j < along; ++j) {
-      const double from_middle = 2.0 * z.values[j] / g_.length;
-      pressure.values.push_back(scales_.pressure * x.p * (long_ ? 1.0 : 1.5 * (1.0 - from_middle * from_middle)));
-      h.values.push_back(g_.clearance * x.h);
+  set(motion, states, settled_rates(motion, states));
+  auto [theta, z, pressure, h] = empty_fields(long_ ? 2 : 17);
+  for (int k = 0; k <= n_; ++k)
+    for (const double place : z.values) {
+      const double from_middle = 2.0 * place / g_.length, profile = 1.5 * (1.0 - from_middle * from_middle);
+      pressure.values.push_back(scales_.pressure * around(carried_.p)[k] * (long_ ? 1.0 : profile));
+      h.values.push_back(g_.clearance * around(h_)[k]);
     }
-  }
   return {theta, z, pressure, h};
 }
 
 }  // namespace
 
 std::unique_ptr<StateModel> make_compliant(const Geometry& g, const Options& options, const Lubricant& lubricant) {
-  check_compliant(g, options, lubricant);
   return std::make_unique<CompliantFilm>(g, options, lubricant);
 }
 

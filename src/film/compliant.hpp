@@ -1,10 +1,11 @@
 #pragma once
-// What all compliant films share: scales, differences, and the integral of the positive pressure around the
+// What all compliant films share: scales, differences, liner, and the integral of the positive pressure around the
 // bearing.
 
 #include <array>
 #include <vector>
 
+#include "film/liner.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
@@ -18,9 +19,6 @@ struct CompliantScales {
   double liner;     // s, b
 };
 
-/// Throws core::InputError unless bore, lubricant and liner make a compliant film.
-void check_compliant(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
-
 /// Weights of the nodes k - 2 ... k + 1 around the bearing. `third_order` is the difference of third order that is
 /// biased against the flow (kappa = 1/3), exact for cubics; the speed must not be negative for both upwind kinds.
 struct Neighbours {
@@ -30,11 +28,9 @@ struct Neighbours {
   int reach = 1;                  // lines before k that enter the slope
 };
 
-/// The rates s' at which g(motion, s, s') = 0, which is linear in them.
-[[nodiscard]] std::vector<double> settled_rates(StateModel& film, const Motion& motion, std::span<const double> states);
-
 /// -int max(P, 0) (cos, sin) d theta over the cells between nodes k = 0 .. n - 1 at 90 deg + k 2 pi/n, by its weights:
-/// exact for a P that is linear between the nodes, or Simpson's rule over nodal values.
+/// exact for a P that is linear between the nodes, or Simpson's rule over nodal values. Nodes and cells may be counted
+/// on by one turn on either side, -n <= k < 2 n.
 class RingQuadrature {
 public:
   RingQuadrature(int n, Options::Quadrature rule);
@@ -42,33 +38,63 @@ public:
   [[nodiscard]] int nodes() const { return n_; }
   [[nodiscard]] double step() const { return step_; }
   [[nodiscard]] double angle(int k) const;
+  /// Of the node within the first turn.
+  [[nodiscard]] std::size_t index(int k) const {
+    return static_cast<std::size_t>(k < 0 ? k + n_ : k < n_ ? k : k - n_);
+  }
   [[nodiscard]] double cosine(int k) const { return cos_[index(k)]; }
   [[nodiscard]] double sine(int k) const { return sin_[index(k)]; }
+  /// True if every node counts by itself, with its own weight where its P is positive.
+  [[nodiscard]] bool nodal() const { return simpson_; }
 
   /// Integral over cell k, from node k to k + 1, is `left` a + `right` b (x and y), if P is a and b at its ends. The
   /// weights are its derivatives.
   struct Weights {
     std::array<double, 2> left{}, right{};
   };
-  [[nodiscard]] Weights weights(int k, double a, double b) const {
-    if (a <= 0.0 && b <= 0.0) return {};
-    if (simpson_ || (a >= 0.0 && b >= 0.0)) {
-      Weights w = full_[index(k)];
-      if (a <= 0.0 && simpson_) w.left = {};
-      if (b <= 0.0 && simpson_) w.right = {};
-      return w;
-    }
-    return part(k, a, b);
+  /// Of a cell without negative pressure.
+  [[nodiscard]] const Weights& full(int k) const { return full_[index(k)]; }
+  /// Of a cell with P < 0 at one end and P > 0 at the other; not for a nodal rule.
+  [[nodiscard]] Weights part(int k, double a, double b) const;
+  /// Of node k between two cells without negative pressure.
+  [[nodiscard]] std::array<double, 2> node(int k) const {
+    const Weights &before = full(k - 1), &after = full(k);
+    return {before.right[0] + after.left[0], before.right[1] + after.left[1]};
   }
 
 private:
-  [[nodiscard]] std::size_t index(int k) const { return static_cast<std::size_t>((k % n_ + n_) % n_); }
-  [[nodiscard]] Weights part(int k, double a, double b) const;
   int n_;
   bool simpson_;
   double step_;
   std::vector<double> cos_, sin_;
-  std::vector<Weights> full_;  // of a cell without negative pressure
+  std::vector<Weights> full_;
+};
+
+/// What all compliant films are made of.
+class CompliantModel : public StateModel {
+public:
+  /// Throws core::InputError unless bore, lubricant and liner make a compliant film.
+  CompliantModel(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+  [[nodiscard]] bool constant_rates() const final { return !liner_.damped(); }
+  [[nodiscard]] double state_scale() const final { return g_.clearance; }
+
+protected:
+  /// Thickness over an undeflected liner at node k around the bearing, in clearances.
+  [[nodiscard]] double rigid(const Motion& m, int k) const {
+    return 1.0 - (m.position[0] * ring_.cosine(k) + m.position[1] * ring_.sine(k)) / g_.clearance;
+  }
+  /// For reports, which know no rates: those at which g(motion, s, s') = 0, which is linear in them, if the force
+  /// depends on them.
+  [[nodiscard]] std::vector<double> settled_rates(const Motion& motion, std::span<const double> states);
+  /// Of an empty film on a mesh of `along` nodes along it: theta, z, pressure and thickness.
+  [[nodiscard]] std::array<Field, 4> empty_fields(std::size_t along) const;
+
+  Geometry g_;
+  double viscosity_;
+  CompliantScales scales_;
+  LinerLaw liner_;
+  Neighbours neighbours_;
+  RingQuadrature ring_;
 };
 
 }  // namespace whirl::film

@@ -21,16 +21,8 @@ double flexibility(const Geometry& g, const Options& o, const Lubricant& lubrica
          (6.0 * lubricant.viscosity * o.reference_speed * g.radius * g.radius);
 }
 
-}  // namespace
-
-CompliantScales::CompliantScales(const Geometry& g, const Options& options, const Lubricant& lubricant) {
-  const double ratio = g.radius / g.clearance;
-  pressure = 6.0 * lubricant.viscosity * ratio * ratio;
-  force = pressure * g.length * g.radius;
-  liner = flexibility(g, options, lubricant) * pressure / g.clearance;
-}
-
-void check_compliant(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+// Throws core::InputError unless bore, lubricant and liner make a compliant film.
+const Geometry& checked(const Geometry& g, const Options& options, const Lubricant& lubricant) {
   if (g.type != Geometry::Bore::cylindrical) throw core::InputError("film: a compliant film needs a cylindrical bore");
   if (!(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0))
     throw core::InputError("film: radius, length and clearance must be positive");
@@ -53,6 +45,16 @@ void check_compliant(const Geometry& g, const Options& options, const Lubricant&
   if (options.quadrature == Options::Quadrature::simpson &&
       (options.cells[0] % 2 != 0 || (finite && options.cells[1] % 2 != 0)))
     throw core::InputError("film: Simpson's rule needs even numbers of cells");
+  return g;
+}
+
+}  // namespace
+
+CompliantScales::CompliantScales(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+  const double ratio = g.radius / g.clearance;
+  pressure = 6.0 * lubricant.viscosity * ratio * ratio;
+  force = pressure * g.length * g.radius;
+  liner = flexibility(g, options, lubricant) * pressure / g.clearance;
 }
 
 Neighbours::Neighbours(Options::Differences which) {
@@ -75,11 +77,20 @@ Neighbours::Neighbours(Options::Differences which) {
   throw core::Bug("differences without weights");
 }
 
-std::vector<double> settled_rates(StateModel& film, const Motion& motion, std::span<const double> states) {
+CompliantModel::CompliantModel(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
+    : g_(checked(geometry, options, lubricant)),
+      viscosity_(lubricant.viscosity),
+      scales_(geometry, options, lubricant),
+      liner_(geometry, options, scales_.liner, scales_.pressure),
+      neighbours_(options.differences),
+      ring_(options.cells[0], options.quadrature) {}
+
+std::vector<double> CompliantModel::settled_rates(const Motion& motion, std::span<const double> states) {
   const auto n = static_cast<Eigen::Index>(states.size());
   std::vector<double> rates(states.size(), 0.0);
+  if (constant_rates()) return rates;
   StateResponse at;
-  film.evaluate(motion, states, rates, Need::tangents, at);
+  evaluate(motion, states, rates, Need::tangents, at);
   std::vector<Eigen::Triplet<double>> entries;
   for (const Entry& e : at.d_rates) entries.emplace_back(e.row, e.column, e.value);
   Eigen::SparseMatrix<double> matrix(n, n);
@@ -88,6 +99,15 @@ std::vector<double> settled_rates(StateModel& film, const Motion& motion, std::s
   if (lu.info() != Eigen::Success) throw core::NotConverged("the rates of the film are singular");
   Eigen::Map<Eigen::VectorXd>(rates.data(), n) = -lu.solve(Eigen::Map<const Eigen::VectorXd>(at.residual.data(), n));
   return rates;
+}
+
+std::array<Field, 4> CompliantModel::empty_fields(std::size_t along) const {
+  const std::size_t around = static_cast<std::size_t>(ring_.nodes()) + 1;
+  Field theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
+  for (int k = 0; k <= ring_.nodes(); ++k) theta.values.push_back(ring_.angle(k));
+  for (std::size_t j = 0; j < along; ++j)
+    z.values.push_back(g_.length * (static_cast<double>(j) / static_cast<double>(along - 1) - 0.5));
+  return {theta, z, Field{0, "pressure", "Pa", {around, along}, {}}, Field{0, "thickness", "m", {around, along}, {}}};
 }
 
 RingQuadrature::RingQuadrature(int n, Options::Quadrature rule)
@@ -111,19 +131,23 @@ double RingQuadrature::angle(int k) const {
   return 0.5 * kPi + step_ * k;
 }
 
-// Gauss's rule of three points on the positive part of the cell.
+// Gauss's rule of three points on the positive part of the cell, about its middle.
 RingQuadrature::Weights RingQuadrature::part(int k, double a, double b) const {
   constexpr double root = 0.7745966692414834;  // sqrt(3/5)
   constexpr std::array<double, 3> place = {0.5 - 0.5 * root, 0.5, 0.5 + 0.5 * root},
                                   weight = {5. / 18, 4. / 9, 5. / 18};
   const double from = a < 0.0 ? a / (a - b) : 0.0, to = b < 0.0 ? a / (a - b) : 1.0;
+  const double middle = 0.5 * (from + to), turn = step_ * (to - from) * root * 0.5, theta = angle(k) + step_ * middle,
+               c = std::cos(theta), s = std::sin(theta), ct = std::cos(turn), st = std::sin(turn);
+  const std::array<double, 3> cosine = {c * ct + s * st, c, c * ct - s * st},
+                              sine = {s * ct - c * st, s, s * ct + c * st};
   Weights out;
   for (std::size_t q = 0; q < 3; ++q) {
-    const double s = from + (to - from) * place[q], w = step_ * (to - from) * weight[q], theta = angle(k) + step_ * s;
-    const std::array<double, 2> direction = {-w * std::cos(theta), -w * std::sin(theta)};
+    const double x = from + (to - from) * place[q], w = step_ * (to - from) * weight[q];
+    const std::array<double, 2> direction = {-w * cosine[q], -w * sine[q]};
     for (std::size_t i = 0; i < 2; ++i) {
-      out.left[i] += direction[i] * (1.0 - s);
-      out.right[i] += direction[i] * s;
+      out.left[i] += direction[i] * (1.0 - x);
+      out.right[i] += direction[i] * x;
     }
   }
   return out;

@@ -1,54 +1,79 @@
 // Film of finite length in a full cylindrical bore with an elastic liner: the thickness on a mesh around and along the
 // bearing is the state.
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "film/compliant.hpp"
 #include "film/groove.hpp"
 #include "film/kinds.hpp"
-#include "film/liner.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
 namespace {
 
+using Array = Eigen::Map<const Eigen::ArrayXd>;
+
 std::size_t at(int k) {
   return static_cast<std::size_t>(k);
 }
 
-// Line i lies at theta = 90 deg + i d, its states j = 0 .. M - 2 at z = L ((j + 1)/M - 1/2); h = 1 - e_x cos - e_y sin
-// and P = 0 on both edges. With the scales of the other compliant films and s = 1/(4 (L/D)^2 (dz/L)^2), (4.22) reads
+// Between every node and the one `ahead` of it in the work space, a and b, goes f = w ((h_a + h_b)/2)^3 (P_b - P_a)
+// from b to a: df/dh_a = df/dh_b = q, df/dP_b = -df/dP_a = k.
+struct Faces {
+  std::vector<double> f, k, q;
+  void set(double w, std::size_t ahead, const std::vector<double>& h, const std::vector<double>& p, Need need) {
+    for (auto* values : {&f, &k, &q}) values->resize(h.size() - ahead);
+    if (need == Need::tangents)
+      fill<true>(w, f.size(), h.data(), h.data() + ahead, p.data(), p.data() + ahead, f.data(), k.data(), q.data());
+    else
+      fill<false>(w, f.size(), h.data(), h.data() + ahead, p.data(), p.data() + ahead, f.data(), k.data(), q.data());
+  }
+
+private:
+  template <bool tangents>
+  static void fill(double w, std::size_t n, const double* __restrict ha, const double* __restrict hb,
+                   const double* __restrict pa, const double* __restrict pb, double* __restrict to,
+                   double* __restrict by_p, double* __restrict by_h) {
+    for (std::size_t x = 0; x < n; ++x) {
+      const double h = 0.5 * (ha[x] + hb[x]), square = w * h * h, rise = pb[x] - pa[x];
+      to[x] = square * h * rise;
+      if constexpr (tangents) {
+        by_p[x] = square * h;
+        by_h[x] = 1.5 * square * rise;
+      }
+    }
+  }
+};
+
+// Line i lies at theta = 90 deg + i d, its states j = 0 .. M - 2 at z = L ((j + 1)/M - 1/2); P = 0 on both edges,
+// where the liner gives way to the asperities alone, without its damping: h = 1 - e_x cos - e_y sin if there are none.
+// With the scales of the other compliant films and s = 1/(4 (L/D)^2 (dz/L)^2), (4.22) reads
 //
 //     dh/dt = -Omega/2 dh/dtheta + 1/2 (delta_theta (h^3 delta_theta P)/d^2 + s delta_z (h^3 delta_z P))
 //
 // with h at faces midway between nodes from both neighbours. A line in a groove has P = 0 and stays among the states,
 // so that lines form a ring: its deflection u falls by du/dt = -kappa u and is zero if it was, kappa being the rate at
 // which a film of nominal thickness would let a node go.
-class FiniteFilm final : public StateModel {
+class FiniteFilm final : public CompliantModel {
 public:
   FiniteFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : g_(geometry),
-        viscosity_(lubricant.viscosity),
-        simpson_(options.quadrature == Options::Quadrature::simpson),
+      : CompliantModel(geometry, options, lubricant),
         cells_(options.cells[1]),
-        scales_(geometry, options, lubricant),
-        liner_(geometry, options, scales_.liner, scales_.pressure),
-        neighbours_(options.differences),
-        ring_(options.cells[0], options.quadrature),
         fixed_(grooved(options.cells[0], options.grooves)) {
     const double slenderness = g_.length / g_.radius;  // 2 L/D
-    around_ = 0.5 / (ring_.step() * ring_.step());
-    along_ = 0.5 * cells_ * cells_ / (slenderness * slenderness);
+    by_step_ = 0.5 / (ring_.step() * ring_.step());
+    by_length_ = 0.5 * cells_ * cells_ / (slenderness * slenderness);
+    const double per_cell = 1.0 / cells_;
     for (int j = 1; j < cells_; ++j)
-      z_weight_.push_back((simpson_ ? (j % 2 == 0 ? 2.0 : 4.0) / 3.0 : 1.0) / static_cast<double>(cells_));
+      z_weight_.push_back((ring_.nodal() ? (j % 2 == 0 ? 2.0 : 4.0) / 3.0 : 1.0) * per_cell);
+    edge_weight_ = per_cell / (ring_.nodal() ? 3.0 : 2.0);
+    for (auto* values : {&x_, &y_}) values->resize(at(inner()));
   }
 
   [[nodiscard]] std::size_t states() const override { return at(ring_.nodes() * inner()); }
   [[nodiscard]] Ring ring() const override { return {ring_.nodes(), reach()}; }
   [[nodiscard]] int row_entries() const override { return Stencil::n_places + (liner_.damped() ? 5 : 1); }
-  [[nodiscard]] bool constant_rates() const override { return !liner_.damped(); }
-  [[nodiscard]] double state_scale() const override { return g_.clearance; }
   void unloaded(const Motion& motion, std::span<double> states) const override {
     for (int i = 0; i < ring_.nodes(); ++i)
       std::fill_n(states.begin() + i * inner(), inner(), rigid(motion, i) * g_.clearance);
@@ -63,229 +88,309 @@ public:
 private:
   [[nodiscard]] int inner() const { return cells_ - 1; }
   [[nodiscard]] int reach() const { return neighbours_.reach; }
-  [[nodiscard]] double rigid(const Motion& m, int line) const {
-    return 1.0 - (m.position[0] * ring_.cosine(line) + m.position[1] * ring_.sine(line)) / g_.clearance;
+  [[nodiscard]] bool fixed(int line) const { return fixed_[ring_.index(line)]; }
+  [[nodiscard]] std::array<double, 2> normal(int line) const { return {ring_.cosine(line), ring_.sine(line)}; }
+  // Velocity of the journal away from a line.
+  [[nodiscard]] double away(const Motion& m, int line) const {
+    return m.velocity[0] * ring_.cosine(line) + m.velocity[1] * ring_.sine(line);
   }
-  [[nodiscard]] bool fixed(int line) const { return fixed_[at((line + ring_.nodes()) % ring_.nodes())]; }
   // Node j (0 and `cells_` on the edges) of the line at `row` of the work space.
   [[nodiscard]] std::size_t node(int row, int j) const { return at(row * (cells_ + 1) + j); }
   void set(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates);
   void set_settled(const Motion& motion, std::span<const double> states);
+  void slopes(Lines part);
   void integrate(Lines part, Need need, StateResponse& response);
-  void residual(Lines part, const Motion& motion, std::span<const double> rates, StateResponse& response) const;
-  void derivatives(Lines part, double speed, StateResponse& response) const;
+  // x_ and y_ to the states of a line, of which the first one is `begin`.
+  void put(std::size_t begin, std::vector<std::array<double, 4>>& to) const {
+    for (std::size_t j = 0; j < x_.size(); ++j) to[begin + j] = {x_[j], y_[j], 0.0, 0.0};
+  }
+  void add_edges(int line, const LinerLaw::Edge& edge, Need need, Response& out) const;
+  void rows(Lines part, const Motion& motion, std::span<const double> rates, Need need, StateResponse& response);
+  void hold(int i, int line, const Motion& motion, const double* rates, Need need, StateResponse& response) const;
+  void residual(int i, double speed, const double* rates, double* g) const;
+  void by_states(int i, double speed, StateResponse& response) const;
+  void by_journal(int i, int line, StateResponse& response);
   // kappa
-  [[nodiscard]] double release() const { return 2.0 * (around_ + along_) * liner_.stiffness(); }
+  [[nodiscard]] double release() const { return 2.0 * (by_step_ + by_length_) * liner_.stiffness(); }
 
-  Geometry g_;
-  double viscosity_;
-  bool simpson_;
-  int cells_;  // along the bearing
-  CompliantScales scales_;
-  LinerLaw liner_;
-  Neighbours neighbours_;
-  RingQuadrature ring_;
-  std::vector<bool> fixed_;            // lines in grooves
-  double around_ = 0.0, along_ = 0.0;  // 1/(2 d^2), s/2
-  std::vector<double> z_weight_;       // of the mean along z, per inner node
-  // Of the lines at hand and their neighbours, with the edges: h in clearances, P in 1/s, dP/du and dP/du'.
-  std::vector<double> h_, p_, by_u_, by_rate_;
-  std::vector<std::array<double, 2>> forces_;  // d force*/d P of the lines at hand
+  int cells_;                               // along the bearing
+  std::vector<bool> fixed_;                 // lines in grooves
+  double by_step_ = 0.0, by_length_ = 0.0;  // 1/(2 d^2), s/2
+  std::vector<double> z_weight_;            // of the mean along z, per inner node
+  double edge_weight_ = 0.0;                // the same of an edge
+  // Of the lines at hand and their neighbours, with the edges: in clearances thickness, deflection and its rate.
+  std::vector<double> h_, u_, moved_;
+  Carried carried_;
+  std::vector<LinerLaw::Edge> edge_;  // of both edges of a line
+  Faces around_, along_;
+  std::array<std::vector<double>, 2> slope_;  // d force*/d P at the states of the lines at hand
+  std::vector<int> mixed_;                    // those in front of cells in which P changes its sign
+  std::vector<double> x_, y_;                 // of one line
 };
 
 void FiniteFilm::set(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates) {
-  const int rows = part.count() + 2 * reach();
+  const int rows = part.count() + 2 * reach(), first = part.begin - reach();
   core::require(states.size() == at(rows * inner()), "lines of a film with their neighbours");
-  h_.resize(at(rows * (cells_ + 1)));
-  p_.resize(h_.size());
-  by_u_.assign(h_.size(), liner_.stiffness());
-  by_rate_.assign(h_.size(), liner_.damping());
-  const double clearance = 1.0 / g_.clearance, stiffness = liner_.stiffness();
-  double least = 1.0;
-  bool numbers = true;
-  for (int row = 0; row < rows; ++row) {
-    const int line = part.begin - reach() + row;
-    const double r = rigid(motion, line);
-    double *h = &h_[node(row, 0)], *p = &p_[node(row, 0)];
-    const double* s = states.data() + row * inner() - 1;
-    h[0] = h[cells_] = r;
-    p[0] = p[cells_] = 0.0;
-    for (auto* slope : {&by_u_, &by_rate_}) (*slope)[node(row, 0)] = (*slope)[node(row, cells_)] = 0.0;
-    least = std::min(least, r);
-    for (int j = 1; j < cells_; ++j) {
-      h[j] = s[j] * clearance;
-      p[j] = (h[j] - r) * stiffness;
-      least = std::min(least, h[j]);
-      numbers = numbers && !std::isnan(h[j]);
-    }
-    if (fixed(line)) {
-      std::fill_n(p, cells_, 0.0);
-      for (auto* slope : {&by_u_, &by_rate_})
-        std::fill_n(slope->begin() + static_cast<long>(node(row, 0)), cells_, 0.0);
-      continue;
-    }
-    for (int j = 1; j < cells_ && !liner_.linear(); ++j) {
-      const LinerLaw::Value elastic = liner_.elastic(h[j] - r);
-      p[j] = elastic.pressure;
-      by_u_[node(row, j)] = elastic.slope;
-    }
-    if (!liner_.damped()) continue;
-    const double moved = motion.velocity[0] * ring_.cosine(line) + motion.velocity[1] * ring_.sine(line);
-    for (int j = 1; j < cells_; ++j) p[j] += liner_.damping() * clearance * (rates[at(row * inner() + j - 1)] + moved);
+  const std::size_t n = at(inner());
+  if (h_.size() != node(rows, 0)) {
+    for (auto* values : {&h_, &u_, &moved_}) values->assign(node(rows, 0), 0.0);
+    carried_.resize(h_.size());
+    edge_.resize(at(rows));
   }
-  if (!(least > 0.0 && numbers))
+  const double per_clearance = 1.0 / g_.clearance;
+  for (int row = 0; row < rows; ++row) {
+    const int line = first + row;
+    const double r = rigid(motion, line), *s = states.data() + row * inner(), *rate = rates.data() + row * inner();
+    double* __restrict h = &h_[node(row, 1)], * __restrict u = &u_[node(row, 1)], * __restrict v = &moved_[node(row, 1)];
+    edge_[at(row)] = fixed(line) ? LinerLaw::Edge{r} : liner_.edge(r);
+    h_[node(row, 0)] = h_[node(row, cells_)] = edge_[at(row)].h;
+    for (std::size_t j = 0; j < n; ++j) {
+      h[j] = s[j] * per_clearance;
+      u[j] = h[j] - r;
+    }
+    if (fixed(line)) std::fill_n(u, n, 0.0);
+    const double moved = away(motion, line);
+    for (std::size_t j = 0; j < n && liner_.damped(); ++j) v[j] = per_clearance * (rate[j] + moved);
+  }
+  if (!(Array(h_.data(), static_cast<Eigen::Index>(h_.size())).minCoeff<Eigen::PropagateNaN>() > 0.0))
     throw core::DomainError("the journal touches the liner: the film thickness is not positive");
+  liner_.carry(h_, u_, moved_, 0, carried_);
+  for (int row = 0; row < rows; ++row)
+    if (fixed(first + row))
+      carried_.clear(node(row, 0), n + 2);
+    else
+      for (const int j : {0, cells_})
+        for (auto* values : {&carried_.p, &carried_.by_h, &carried_.by_u, &carried_.by_rate})
+          (*values)[node(row, j)] = 0.0;
 }
 
-// For reports, which know no rates.
+// For reports.
 void FiniteFilm::set_settled(const Motion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
-  const std::vector<double> rates =
-      liner_.damped() ? settled_rates(*this, motion, states) : std::vector<double>(states.size(), 0.0);
+  const std::vector<double> rates = settled_rates(motion, states);
   set(motion, all, with_neighbours(*this, all, states), with_neighbours(*this, all, rates));
 }
 
-// F* = -int max(P, 0) (cos, sin), cell by cell around the bearing at every inner node of z, and dF*/dP. A part answers
-// for the cells behind its lines, and needs the one in front for the derivatives.
-void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
-  std::array<double, 2> sum{};
-  const bool tangents = need == Need::tangents;
-  if (tangents) forces_.assign(at(part.count() * inner()), {});
-  for (int i = tangents ? -1 : 0; i < part.count(); ++i) {
-    const RingQuadrature::Weights full = ring_.weights(part.begin + i, 1.0, 1.0);
-    const double *a = &p_[node(i + reach(), 1)], *b = &p_[node(i + reach() + 1, 1)];
-    double whole_a = 0.0, whole_b = 0.0;
-    for (int j = 0; j < inner(); ++j) {
-      if (a[j] <= 0.0 && b[j] <= 0.0) continue;
-      const double w = z_weight_[at(j)];
-      const bool whole = a[j] >= 0.0 && b[j] >= 0.0;
-      const RingQuadrature::Weights weights = whole ? full : ring_.weights(part.begin + i, a[j], b[j]);
-      if (whole) {
-        whole_a += w * a[j];
-        whole_b += w * b[j];
-      }
-      for (std::size_t d = 0; d < 2; ++d) {
-        if (!whole && i >= 0) sum[d] += w * (weights.left[d] * a[j] + weights.right[d] * b[j]);
-        if (!tangents) continue;
-        if (i >= 0) forces_[at(i * inner() + j)][d] += w * weights.left[d];
-        if (i + 1 < part.count()) forces_[at((i + 1) * inner() + j)][d] += w * weights.right[d];
-      }
-    }
-    for (std::size_t d = 0; d < 2 && i >= 0; ++d) sum[d] += full.left[d] * whole_a + full.right[d] * whole_b;
-  }
-  Response& out = response.journal;
-  for (std::size_t d = 0; d < 2; ++d) out.force[d] = scales_.force * sum[d];
-  if (!tangents) return;
-  const double scale = scales_.force / g_.clearance;
-  for (int i = 0; i < part.count(); ++i) {
-    const std::array<double, 2> n = {ring_.cosine(part.begin + i), ring_.sine(part.begin + i)};
-    for (int j = 0; j < inner(); ++j) {
-      const std::size_t k = at(i * inner() + j), x = node(i + reach(), j + 1);
-      for (std::size_t d = 0; d < 2; ++d) {
-        const double slope = scale * forces_[k][d] * by_u_[x], rate = scale * forces_[k][d] * by_rate_[x];
-        response.force_d_states[k][d] = slope;
-        if (liner_.damped()) response.force_d_rates[k][d] = rate;
-        for (std::size_t e = 0; e < 2; ++e) {
-          out.d_position[d][e] += slope * n[e];
-          out.d_velocity[d][e] += rate * n[e];
-        }
-      }
-    }
-  }
-}
-
-void FiniteFilm::residual(Lines part, const Motion& motion, std::span<const double> rates,
-                          StateResponse& response) const {
-  const auto cube = [](double x) { return x * x * x; };
-  const double wedge = 0.5 * motion.speed / ring_.step(), c = g_.clearance;
-  const auto [w0, w1, w2, w3] = neighbours_.slope;
+// dF*/dP at every state; F* = -int max(P, 0) (cos, sin), around the bearing at every inner node of z, is homogeneous in
+// P. A cell around the bearing with P < 0 at one end counts by itself.
+void FiniteFilm::slopes(Lines part) {
+  for (auto& values : slope_) values.resize(at(part.count() * inner()));
   const std::size_t stride = node(1, 0);
+  const double* w = z_weight_.data();
+  const int n = inner();
+  const auto add_part = [&](int i, int j, double a, double b) {
+    const RingQuadrature::Weights of = ring_.part(part.begin + i, a, b);
+    for (std::size_t d = 0; d < 2; ++d) {
+      if (i >= 0) slope_[d][at(i * n + j)] += w[j] * of.left[d];
+      if (i + 1 < part.count()) slope_[d][at((i + 1) * n + j)] += w[j] * of.right[d];
+    }
+  };
+  mixed_.clear();
   for (int i = 0; i < part.count(); ++i) {
-    const double *h = &h_[node(i + reach(), 1)], *p = &p_[node(i + reach(), 1)];
-    const double *hb = h - stride, *hf = h + stride, *pb = p - stride, *pf = p + stride;
-    const double* hs = reach() == 2 ? hb - stride : hb;
-    const double* rate = rates.data() + (i + reach()) * inner();
-    double* g = &response.residual[at(i * inner())];
-    const int line = part.begin + i;
-    if (fixed(line)) {
-      const double moved = motion.velocity[0] * ring_.cosine(line) + motion.velocity[1] * ring_.sine(line);
-      for (int j = 0; j < inner(); ++j) g[j] = rate[j] + moved + release() * c * (h[j] - rigid(motion, line));
+    const double *p = &carried_.p[node(i + reach(), 1)], *pb = p - stride, *pf = p + stride;
+    const auto [bx, by] = ring_.full(part.begin + i - 1).right;
+    const auto [ax, ay] = ring_.full(part.begin + i).left;
+    double* __restrict x = &slope_[0][at(i * n)], * __restrict y = &slope_[1][at(i * n)];
+    if (ring_.nodal()) {
+      for (int j = 0; j < n; ++j) {
+        const double weight = p[j] > 0.0 ? w[j] : 0.0;
+        x[j] = weight * (bx + ax);
+        y[j] = weight * (by + ay);
+      }
       continue;
     }
-    for (int j = 0; j < inner(); ++j) {
-      const double slope = w0 * hs[j] + w1 * hb[j] + w2 * h[j] + w3 * hf[j];
-      const double in =
-          around_ * (cube(0.5 * (h[j] + hf[j])) * (pf[j] - p[j]) - cube(0.5 * (hb[j] + h[j])) * (p[j] - pb[j])) +
-          along_ *
-              (cube(0.5 * (h[j] + h[j + 1])) * (p[j + 1] - p[j]) - cube(0.5 * (h[j - 1] + h[j])) * (p[j] - p[j - 1]));
-      g[j] = rate[j] + c * (wedge * slope - in);
+    long parts_before = 0, parts_after = 0;
+    for (int j = 0; j < n; ++j) {
+      const double a = pb[j], b = p[j], c = pf[j];
+      const double before = a >= 0.0 && b >= 0.0 && a + b > 0.0 ? w[j] : 0.0,
+                   after = b >= 0.0 && c >= 0.0 && b + c > 0.0 ? w[j] : 0.0;
+      x[j] = before * bx + after * ax;
+      y[j] = before * by + after * ay;
+      parts_before |= a * b < 0.0 ? 1 : 0;
+      parts_after |= b * c < 0.0 ? 1 : 0;
     }
+    if (i == 0 && parts_before != 0) mixed_.push_back(-1);
+    if (parts_after != 0) mixed_.push_back(i);
+  }
+  for (const int i : mixed_) {
+    const double *p = &carried_.p[node(i + reach(), 1)], *pf = p + stride;
+    for (int j = 0; j < n; ++j)
+      if (p[j] * pf[j] < 0.0) add_part(i, j, p[j], pf[j]);
   }
 }
 
-// A face between nodes a and b carries f = w ((h_a + h_b)/2)^3 (P_b - P_a) from b to a: df/dh_a = df/dh_b = q,
-// df/dP_b = -df/dP_a = k. The P of a node follows its h and the journal; on an edge P is zero and h follows.
-void FiniteFilm::derivatives(Lines part, double speed, StateResponse& response) const {
-  const double wedge = 0.5 * speed / ring_.step();
-  const auto [w0, w1, w2, w3] = neighbours_.slope;
-  const std::size_t stride = node(1, 0);
-  struct Face {
-    double k, q;
-  };
-  const auto face = [](double w, double ha, double hb, double pa, double pb) {
-    const double h = 0.5 * (ha + hb);
-    return Face{w * h * h * h, 1.5 * w * h * h * (pb - pa)};
-  };
-  Stencil &s = response.by_states, &r = response.by_rates;
+// F* = -int (max(P, 0) + contact) (cos, sin) of the nodes of a part.
+void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
+  slopes(part);
+  Response& out = response.journal;
+  const auto n = static_cast<Eigen::Index>(inner());
+  const Array z(z_weight_.data(), n);
+  for (int i = 0; i < part.count(); ++i) {
+    const std::size_t x = node(i + reach(), 1), k = at(i * inner());
+    const Array sx(&slope_[0][k], n), sy(&slope_[1][k], n), p(&carried_.p[x], n);
+    out.force[0] += scales_.force * (sx * p).sum();
+    out.force[1] += scales_.force * (sy * p).sum();
+    if (!liner_.touches()) continue;
+    const double touched = scales_.force * (z * Array(&carried_.contact[x], n)).sum();
+    for (std::size_t d = 0; d < 2; ++d) out.force[d] += ring_.node(part.begin + i)[d] * touched;
+    add_edges(part.begin + i, edge_[at(i + reach())], need, out);
+  }
+  if (need == Need::force) return;
+  const double scale = scales_.force / g_.clearance;
+  for (int i = 0; i < part.count(); ++i) {
+    const std::size_t x = node(i + reach(), 1), k = at(i * inner());
+    const std::array<double, 2> normal = this->normal(part.begin + i);
+    const Array sx(&slope_[0][k], n), sy(&slope_[1][k], n), by_u(&carried_.by_u[x], n), by_h(&carried_.by_h[x], n),
+        by_rate(&carried_.by_rate[x], n);
+    Eigen::Map<Eigen::ArrayXd> fx(x_.data(), n), fy(y_.data(), n);
+    fx = scale * sx * by_h;
+    fy = scale * sy * by_h;
+    if (liner_.touches()) {
+      const auto [wx, wy] = ring_.node(part.begin + i);
+      const Array stiff(&carried_.stiff[x], n);
+      fx += scale * wx * z * stiff;
+      fy += scale * wy * z * stiff;
+    }
+    put(k, response.force_d_states);
+    const auto add = [&](const Array& by, std::array<std::array<double, 4>, 4>& to) {
+      const std::array<double, 2> slope = {scale * (sx * by).sum(), scale * (sy * by).sum()};
+      for (std::size_t d = 0; d < 2; ++d)
+        for (std::size_t e = 0; e < 2; ++e) to[d][e] += slope[d] * normal[e];
+    };
+    add(by_u, out.d_position);
+    if (!liner_.damped()) continue;
+    fx = scale * sx * by_rate;
+    fy = scale * sy * by_rate;
+    put(k, response.force_d_rates);
+    add(by_rate, out.d_velocity);
+  }
+}
+
+// Asperities on both edges of a line.
+void FiniteFilm::add_edges(int line, const LinerLaw::Edge& edge, Need need, Response& out) const {
+  const std::array<double, 2> full = ring_.node(line), normal = this->normal(line);
+  for (std::size_t d = 0; d < 2; ++d) {
+    const double weight = scales_.force * 2.0 * edge_weight_ * full[d];
+    out.force[d] += weight * edge.contact.pressure;
+    for (std::size_t e = 0; e < 2 && need == Need::tangents; ++e)
+      out.d_position[d][e] -= weight * edge.contact.slope * edge.by_rigid * normal[e] / g_.clearance;
+  }
+}
+
+void FiniteFilm::rows(Lines part, const Motion& motion, std::span<const double> rates, Need need,
+                      StateResponse& response) {
+  around_.set(by_step_, node(1, 0), h_, carried_.p, need);
+  along_.set(by_length_, 1, h_, carried_.p, need);
   for (int i = 0; i < part.count(); ++i) {
     const int line = part.begin + i;
-    const std::array<double, 3> cosine = {ring_.cosine(line - 1), ring_.cosine(line), ring_.cosine(line + 1)},
-                                sine = {ring_.sine(line - 1), ring_.sine(line), ring_.sine(line + 1)};
-    const bool held = fixed(line);
-    for (int j = 0; j < inner(); ++j) {
-      const std::size_t k = at(i * inner() + j), x = node(i + reach(), j + 1);
-      auto &position = response.d_position[k], &velocity = response.d_velocity[k];
-      if (held) {
-        s.at[Stencil::centre][k] = release();
-        position = {release() * cosine[1], release() * sine[1], 0.0, 0.0};
-        velocity = {cosine[1], sine[1], 0.0, 0.0};
-        continue;
-      }
-      const double *h = &h_[x], *p = &p_[x], *u = &by_u_[x];
-      const Face after = face(around_, h[0], h[stride], p[0], p[stride]),
-                 before = face(around_, *(h - stride), h[0], *(p - stride), p[0]),
-                 above = face(along_, h[0], h[1], p[0], p[1]), below = face(along_, h[-1], h[0], p[-1], p[0]);
-      const double sum = after.k + before.k + above.k + below.k;
-      const bool first = j == 0, last = j + 1 == inner();
-      s.at[Stencil::centre][k] = w2 * wedge - (after.q - before.q + above.q - below.q) + u[0] * sum;
-      s.at[Stencil::before][k] = w1 * wedge + before.q - *(u - stride) * before.k;
-      s.at[Stencil::after][k] = w3 * wedge - after.q - u[stride] * after.k;
-      if (reach() == 2) s.at[Stencil::second_before][k] = w0 * wedge;
-      s.at[Stencil::below][k] = first ? 0.0 : below.q - u[-1] * below.k;
-      s.at[Stencil::above][k] = last ? 0.0 : -above.q - u[1] * above.k;
-      // Of the P that `slope` moves with the journal.
-      const auto through = [&](const double* slope) {
-        return std::array{-before.k * *(slope - stride), sum * slope[0] - below.k * slope[-1] - above.k * slope[1],
-                          -after.k * slope[stride]};
-      };
-      const auto [pb, pc, pa] = through(u);
-      const double edge = (first ? below.q : 0.0) - (last ? above.q : 0.0);
-      position[0] = pb * cosine[0] + (pc - edge) * cosine[1] + pa * cosine[2];
-      position[1] = pb * sine[0] + (pc - edge) * sine[1] + pa * sine[2];
-      response.d_speed[k] =
-          0.5 * g_.clearance / ring_.step() *
-          (w1 * *(h - stride) + w2 * h[0] + w3 * h[stride] + (reach() == 2 ? w0 * *(h - 2 * stride) : 0.0));
-      if (!liner_.damped()) continue;
-      const double* d = &by_rate_[x];
-      const auto [vb, vc, va] = through(d);
-      velocity[0] = vb * cosine[0] + vc * cosine[1] + va * cosine[2];
-      velocity[1] = vb * sine[0] + vc * sine[1] + va * sine[2];
-      r.at[Stencil::centre][k] = 1.0 + d[0] * sum;
-      r.at[Stencil::before][k] = -*(d - stride) * before.k;
-      r.at[Stencil::after][k] = -d[stride] * after.k;
-      r.at[Stencil::below][k] = -d[-1] * below.k;
-      r.at[Stencil::above][k] = -d[1] * above.k;
+    const double* rate = rates.data() + (i + reach()) * inner();
+    if (fixed(line)) {
+      hold(i, line, motion, rate, need, response);
+      continue;
     }
+    residual(i, motion.speed, rate, &response.residual[at(i * inner())]);
+    if (need == Need::force) continue;
+    by_states(i, motion.speed, response);
+    by_journal(i, line, response);
+  }
+}
+
+// A line in a groove.
+void FiniteFilm::hold(int i, int line, const Motion& motion, const double* rates, Need need,
+                      StateResponse& response) const {
+  const std::size_t begin = at(i * inner()), n = at(inner());
+  const double moved = away(motion, line), r = rigid(motion, line), *h = &h_[node(i + reach(), 1)];
+  for (std::size_t j = 0; j < n; ++j)
+    response.residual[begin + j] = rates[j] + moved + release() * g_.clearance * (h[j] - r);
+  if (need == Need::force) return;
+  const auto fill = [&](std::vector<double>& values, double value) {
+    if (!values.empty()) std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(begin), n, value);
+  };
+  for (std::size_t place = 0; place < Stencil::n_places; ++place) {
+    fill(response.by_states.at[place], place == Stencil::centre ? release() : 0.0);
+    fill(response.by_rates.at[place], place == Stencil::centre ? 1.0 : 0.0);
+  }
+  fill(response.d_speed, 0.0);
+  const auto [c, s] = normal(line);
+  for (std::size_t k = begin; k < begin + n; ++k) {
+    response.d_position[k] = {release() * c, release() * s, 0.0, 0.0};
+    response.d_velocity[k] = {c, s, 0.0, 0.0};
+  }
+}
+
+void FiniteFilm::residual(int i, double speed, const double* rates, double* __restrict g) const {
+  const double c = g_.clearance, wedge = 0.5 * c * speed / ring_.step();
+  const double w0 = wedge * neighbours_.slope[0], w1 = wedge * neighbours_.slope[1], w2 = wedge * neighbours_.slope[2],
+               w3 = wedge * neighbours_.slope[3];
+  const std::size_t stride = node(1, 0), x = node(i + reach(), 1);
+  const double *h = &h_[x], *hb = h - stride, *hf = h + stride, *hs = reach() == 2 ? hb - stride : hb,
+               *after = &around_.f[x], *before = after - stride, *above = &along_.f[x], *below = above - 1;
+  for (int j = 0; j < inner(); ++j) {
+    const double slope = w0 * hs[j] + w1 * hb[j] + w2 * h[j] + w3 * hf[j],
+                 in = after[j] - before[j] + above[j] - below[j];
+    g[j] = rates[j] + slope - c * in;
+  }
+}
+
+// The P of a node follows its h and the journal; on an edge P is zero and h follows.
+void FiniteFilm::by_states(int i, double speed, StateResponse& response) const {
+  const double wedge = 0.5 * speed / ring_.step();
+  const auto [w0, w1, w2, w3] = neighbours_.slope;
+  const std::size_t stride = node(1, 0), x = node(i + reach(), 1), begin = at(i * inner());
+  const int n = inner();
+  const double *ka = &around_.k[x], *kb = ka - stride, *kz = &along_.k[x], *qa = &around_.q[x], *qb = qa - stride,
+               *qz = &along_.q[x];
+  // Of the P that `by` moves, and of the h at faces (flow = 1) or not.
+  const auto set =
+      [&](const std::vector<double>& by, double flow, std::array<double, 3> wedge_of, Stencil& s) {
+        const auto [before, centre, after] = wedge_of;
+        const double *here = &by[x], *pb = here - stride, *pf = here + stride;
+        double* __restrict to = &s.at[Stencil::centre][begin], * __restrict to_before = &s.at[Stencil::before][begin], * __restrict to_after = &s.at[Stencil::after][begin], * __restrict to_below = &s.at[Stencil::below][begin], * __restrict to_above = &s.at[Stencil::above][begin];
+        for (int j = 0; j < n; ++j) {
+          to[j] = centre - flow * (qa[j] - qb[j] + qz[j] - qz[j - 1]) + here[j] * (ka[j] + kb[j] + kz[j] + kz[j - 1]);
+          to_before[j] = before + flow * qb[j] - pb[j] * kb[j];
+          to_after[j] = after - flow * qa[j] - pf[j] * ka[j];
+          to_below[j] = flow * qz[j - 1] - here[j - 1] * kz[j - 1];
+          to_above[j] = -flow * qz[j] - here[j + 1] * kz[j];
+        }
+        to_below[0] = to_above[n - 1] = 0.0;
+      };
+  set(carried_.by_h, 1.0, {w1 * wedge, w2 * wedge, w3 * wedge}, response.by_states);
+  if (reach() == 2) std::fill_n(&response.by_states.at[Stencil::second_before][begin], n, w0 * wedge);
+  if (liner_.damped()) set(carried_.by_rate, 0.0, {0.0, 1.0, 0.0}, response.by_rates);
+}
+
+void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
+  const std::size_t stride = node(1, 0), x = node(i + reach(), 1), begin = at(i * inner());
+  const int n = inner();
+  const auto [w0, w1, w2, w3] = neighbours_.slope;
+  const double *ka = &around_.k[x], *kb = ka - stride, *kz = &along_.k[x], *h = &h_[x], *hb = h - stride,
+               *hf = h + stride, *hs = reach() == 2 ? hb - stride : hb;
+  const double wedge = 0.5 * g_.clearance / ring_.step();
+  double* __restrict by_speed = &response.d_speed[begin];
+  for (int j = 0; j < n; ++j) by_speed[j] = wedge * (w0 * hs[j] + w1 * hb[j] + w2 * h[j] + w3 * hf[j]);
+  const auto [cb, sb] = normal(line - 1);
+  const auto [c, s] = normal(line);
+  const auto [cf, sf] = normal(line + 1);
+  // Of the P that `by` moves with the journal.
+  const auto through = [&](const std::vector<double>& by, std::vector<std::array<double, 4>>& to) {
+    const double *here = &by[x], *pb = here - stride, *pf = here + stride;
+    double* __restrict to_x = x_.data(), * __restrict to_y = y_.data();
+    for (int j = 0; j < n; ++j) {
+      const double before = kb[j] * pb[j], after = ka[j] * pf[j],
+                   centre =
+                       (ka[j] + kb[j] + kz[j] + kz[j - 1]) * here[j] - kz[j - 1] * here[j - 1] - kz[j] * here[j + 1];
+      to_x[j] = centre * c - before * cb - after * cf;
+      to_y[j] = centre * s - before * sb - after * sf;
+    }
+    put(begin, to);
+  };
+  through(carried_.by_u, response.d_position);
+  if (liner_.damped()) through(carried_.by_rate, response.d_velocity);
+  const double follow = edge_[at(i + reach())].by_rigid;
+  for (const auto& [j, by_edge] : {std::pair{0, along_.q[x - 1]}, std::pair{n - 1, -along_.q[x + at(n - 1)]}}) {
+    response.d_position[begin + at(j)][0] -= by_edge * follow * c;
+    response.d_position[begin + at(j)][1] -= by_edge * follow * s;
   }
 }
 
@@ -295,23 +400,21 @@ void FiniteFilm::evaluate_lines(const Motion& motion, Lines part, std::span<cons
   const std::size_t n = at(part.count() * inner()), m = need == Need::tangents ? n : 0;
   response.journal = {};
   response.residual.resize(n);
-  response.d_position.assign(m, {});
+  response.d_position.resize(m);
+  response.d_speed.resize(m);
+  response.force_d_states.resize(m);
+  response.force_d_rates.resize(liner_.damped() ? m : 0);
   response.d_velocity.assign(m, {});
-  response.d_speed.assign(m, 0.0);
-  response.force_d_states.assign(m, {});
-  response.force_d_rates.assign(liner_.damped() ? m : 0, {});
   for (std::size_t place = 0; place < Stencil::n_places; ++place) {
     const bool second = place == Stencil::second_before;
-    response.by_states.at[place].assign(second && reach() == 1 ? 0 : m, 0.0);
-    response.by_rates.at[place].assign(second || !liner_.damped() ? 0 : m, 0.0);
+    response.by_states.at[place].resize(second && reach() == 1 ? 0 : m);
+    response.by_rates.at[place].resize(second || !liner_.damped() ? 0 : m);
   }
-  response.by_rates.at[Stencil::centre].assign(m, 1.0);
+  if (!liner_.damped()) response.by_rates.at[Stencil::centre].assign(m, 1.0);
   response.journal.min_thickness =
-      g_.clearance * *std::min_element(h_.begin() + static_cast<std::ptrdiff_t>(node(reach(), 0)),
-                                       h_.begin() + static_cast<std::ptrdiff_t>(node(reach() + part.count(), 0)));
+      g_.clearance * Array(&h_[node(reach(), 0)], static_cast<Eigen::Index>(node(part.count(), 0))).minCoeff();
   integrate(part, need, response);
-  residual(part, motion, rates, response);
-  if (need == Need::tangents) derivatives(part, motion.speed, response);
+  rows(part, motion, rates, need, response);
 }
 
 // Deflections, periodic around and zero at the edges, are interpolated linearly in both directions.
@@ -353,13 +456,14 @@ Summary FiniteFilm::summary(const Motion& motion, std::span<const double> states
     for (int j = 0; j <= cells_; ++j) {
       const bool edge = j == 0 || j == cells_;
       const std::size_t k = node(i + reach(), j);
-      const double p = scales_.pressure * std::max(p_[k], 0.0), h = g_.clearance * h_[k];
+      const double p = scales_.pressure * std::max(carried_.p[k], 0.0), h = g_.clearance * h_[k];
       s.max_pressure = std::max(s.max_pressure, p);
       const double slope = g_.clearance * (h_[k + stride] - h_[k - stride]) / (2.0 * ring_.step());
       s.power_loss += (edge ? 0.5 : 1.0) * area * U * (viscosity_ * U / h - 0.5 * p * slope / g_.radius);
       if (!edge) continue;
       const std::size_t first = j == 0 ? k + 1 : k - 1, second = j == 0 ? k + 2 : k - 2;
-      const double rise = scales_.pressure * (4.0 * std::max(p_[first], 0.0) - std::max(p_[second], 0.0)) / 2.0;
+      const double rise =
+          scales_.pressure * (4.0 * std::max(carried_.p[first], 0.0) - std::max(carried_.p[second], 0.0)) / 2.0;
       s.side_flow += ring_.step() * g_.radius * h * h * h / (12.0 * viscosity_) * rise * cells_ / g_.length;
     }
   return s;
@@ -368,17 +472,12 @@ Summary FiniteFilm::summary(const Motion& motion, std::span<const double> states
 std::vector<Field> FiniteFilm::fields(const Motion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
   set_settled(motion, states);
-  const std::size_t around = at(all.end + 1), along = at(cells_ + 1);
-  Field theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
-  Field pressure{0, "pressure", "Pa", {around, along}, {}}, h{0, "thickness", "m", {around, along}, {}};
-  for (int j = 0; j <= cells_; ++j) z.values.push_back(g_.length * (static_cast<double>(j) / cells_ - 0.5));
-  for (int i = 0; i <= all.end; ++i) {
-    theta.values.push_back(ring_.angle(i));
+  auto [theta, z, pressure, h] = empty_fields(at(cells_ + 1));
+  for (int i = 0; i <= all.end; ++i)
     for (int j = 0; j <= cells_; ++j) {
-      pressure.values.push_back(scales_.pressure * p_[node(i + reach(), j)]);
+      pressure.values.push_back(scales_.pressure * carried_.p[node(i + reach(), j)]);
       h.values.push_back(g_.clearance * h_[node(i + reach(), j)]);
     }
-  }
   return {theta, z, pressure, h};
 }
 
@@ -386,7 +485,6 @@ std::vector<Field> FiniteFilm::fields(const Motion& motion, std::span<const doub
 
 std::unique_ptr<StateModel> make_compliant_finite(const Geometry& g, const Options& options,
                                                   const Lubricant& lubricant) {
-  check_compliant(g, options, lubricant);
   return std::make_unique<FiniteFilm>(g, options, lubricant);
 }
 

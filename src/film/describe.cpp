@@ -171,7 +171,7 @@ void describe(deck::Description<Options>& d) {
       .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("contact", &Options::contact, "asperities that carry where the film is thin (Greenwood and Tripp 1971)",
         "000 sec. 6.2")
-      .only(&Options::kind, {compliant_short, compliant_long});
+      .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("grooves", &Options::grooves, "axial grooves at pressure zero; of a long film one at the top if absent",
         "000 sec. 6.2")
       .only(&Options::kind, {reynolds, compliant_short, compliant_long, compliant_finite});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "whirl/film/model.hpp"
+#include "whirl/film/state_model.hpp"
 
 extern "C" {
 void dpbtrf_(const char* uplo, const int* n, const int* kd, double* ab, const int* ldab, int* info);
@@ -124,6 +125,52 @@ void evaluate(benchmark::State& state, Options options, Need need) {
                                                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+// A film with own states around a moving journal, with rates; half of it carries. As solvers do it, who hand their own
+// lines and those of their neighbours to a film in lines.
+void evaluate_states(benchmark::State& state, Options options, Need need) {
+  const Geometry bore{Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0.0, 0.0, 0.0};
+  options.compliance = 0.1;
+  options.reference_speed = 160.0;
+  auto film = make_state_model(bore, options, {0.001, 1000.0});
+  Motion m;
+  m.position = {0.3 * bore.clearance, -0.5 * bore.clearance, 0.0, 0.0};
+  m.velocity = {0.05 * bore.clearance * 320.0, -0.08 * bore.clearance * 320.0, 0.0, 0.0};
+  m.speed = 320.0;
+  std::vector<double> states(film->states());
+  film->unloaded(m, states);
+  relax(*film, m, states);
+  const Lines all{0, film->ring().lines};
+  if (all.end > 1) states = with_neighbours(*film, all, states);
+  const std::vector<double> rates(states.size(), 0.01 * bore.clearance * m.speed);
+  StateResponse r;
+  long count = 0;
+  const double start = m.position[0];
+  for (auto _ : state) {
+    m.position[0] = start * (1.0 + 1e-3 * static_cast<double>(++count % 16));
+    film->evaluate_lines(m, all, states, rates, need, r);
+    benchmark::DoNotOptimize(r);
+  }
+}
+
+Options compliant(Options::Kind kind, bool as_source) {
+  Options o;
+  o.kind = kind;
+  o.cells = {kind == Options::Kind::compliant_finite ? 100 : 50, 20};
+  if (as_source) {
+    o.quadrature = Options::Quadrature::simpson;
+    o.differences = Options::Differences::upwind;
+  }
+  return o;
+}
+
+// A rubber that is damped, and asperities that touch where the film is thinnest.
+Options general(Options o) {
+  o.liner_damping = 1e-3;
+  o.rubber_thickness = 1e-4;
+  o.contact = Contact{4e-6, 1e6};
+  return o;
+}
+
 Options options(Options::Cavitation cavitation, bool tilt,
                 Options::Turbulence turbulence = Options::Turbulence::constantinescu) {
   Options o;
@@ -151,6 +198,18 @@ BENCHMARK_CAPTURE(evaluate, reynolds_warm_tangents, options(C::reynolds, false),
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(evaluate, reynolds_tilted_warm_tangents, options(C::reynolds, true), Need::tangents)
     ->Unit(benchmark::kMicrosecond);
+
+#define WHIRL_STATES(name, options)                                                              \
+  BENCHMARK_CAPTURE(evaluate_states, name, options, Need::force)->Unit(benchmark::kMicrosecond); \
+  BENCHMARK_CAPTURE(evaluate_states, name##_tangents, options, Need::tangents)->Unit(benchmark::kMicrosecond)
+using K = Options::Kind;
+WHIRL_STATES(short_as_source, compliant(K::compliant_short, true));
+WHIRL_STATES(short_sub_cell, compliant(K::compliant_short, false));
+WHIRL_STATES(short_general, general(compliant(K::compliant_short, false)));
+WHIRL_STATES(long_as_source, compliant(K::compliant_long, true));
+WHIRL_STATES(long_general, general(compliant(K::compliant_long, false)));
+WHIRL_STATES(finite_100x20, compliant(K::compliant_finite, false));
+WHIRL_STATES(finite_100x20_general, general(compliant(K::compliant_finite, false)));
 
 }  // namespace
 

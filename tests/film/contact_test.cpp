@@ -47,8 +47,7 @@ TEST(Contact, PressureFallsSmoothlyToZero) {
 }
 
 // At rest the film carries nothing: every place of the liner is pressed by the asperities above it alone, phi(u) =
-// p_c(r
-// + u), and the force points to the centre.
+// p_c(r + u), and the force points to the centre.
 TEST(Contact, JournalAtRestIsCarriedByAsperities) {
   const Geometry g = cylinder();
   constexpr double e = 1.15, pressure_scale = 6.0;
@@ -68,20 +67,76 @@ TEST(Contact, JournalAtRestIsCarriedByAsperities) {
     exact -=
         scale * liner.contact(r + low).pressure * std::cos(theta) * g.length * g.radius * 2.0 * std::numbers::pi / n;
   }
-  auto film = make_state_model(g, o, oil());
-  const Motion m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 0.0);
-  std::vector<double> s(film->states(), 0.2 * g.clearance);
-  for (std::size_t k = 0; k < s.size(); ++k) {
-    const double theta = 0.5 * std::numbers::pi + 2.0 * std::numbers::pi * static_cast<double>(k) / 400.0;
-    s[k] = std::max(0.1, 1.0 - e * std::cos(theta)) * g.clearance;
-  }
-  relax(*film, m, s);
-  StateResponse r;
-  film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
   EXPECT_LT(exact, 0.0);
-  EXPECT_NEAR(r.journal.force[0], exact, 2e-3 * std::abs(exact));
-  EXPECT_NEAR(r.journal.force[1], 0.0, 1e-8 * std::abs(exact));
-  EXPECT_GT(r.journal.min_thickness, 0.0);
+  for (const auto kind : {Options::Kind::compliant_short, Options::Kind::compliant_finite})
+    for (const auto quadrature : {Options::Quadrature::sub_cell, Options::Quadrature::simpson}) {
+      o.kind = kind;
+      o.quadrature = quadrature;
+      auto film = make_state_model(g, o, oil());
+      const Motion m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 0.0);
+      const std::size_t line = kind == Options::Kind::compliant_finite ? film->line() : 1;
+      std::vector<double> s(film->states());
+      for (std::size_t k = 0; k < s.size(); ++k) {
+        const double theta = 0.5 * std::numbers::pi + 2.0 * std::numbers::pi * static_cast<double>(k / line) / 400.0;
+        s[k] = std::max(0.1, 1.0 - e * std::cos(theta)) * g.clearance;
+      }
+      relax(*film, m, s);
+      StateResponse r;
+      film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
+      EXPECT_NEAR(r.journal.force[0], exact, 2e-3 * std::abs(exact));
+      EXPECT_NEAR(r.journal.force[1], 0.0, 1e-8 * std::abs(exact));
+      EXPECT_GT(r.journal.min_thickness, 0.0);
+    }
+}
+
+// A place without film: the layer under the asperities alone, and how it follows.
+TEST(Contact, EdgeOfAFilm) {
+  for (const bool rubber : {false, true}) {
+    Options o;
+    o.contact = kContact;
+    if (rubber) o.rubber_thickness = 0.5 * cylinder().clearance;
+    const LinerLaw liner(cylinder(), o, 1e-3, 2.0);
+    for (const double rigid : {-0.3, -0.05, 0.02, 0.1, 0.159, 0.5}) {
+      const LinerLaw::Edge edge = liner.edge(rigid), ahead = liner.edge(rigid + 1e-6),
+                           behind = liner.edge(rigid - 1e-6);
+      const double elastic = liner.elastic(edge.h - rigid).pressure;
+      EXPECT_GT(edge.h, 0.0);
+      EXPECT_NEAR(elastic, edge.contact.pressure, 1e-12 * liner.stiffness());
+      EXPECT_EQ(edge.contact.pressure, liner.contact(edge.h).pressure);
+      EXPECT_NEAR(edge.by_rigid, (ahead.h - behind.h) / 2e-6, 1e-6) << rigid;
+    }
+    EXPECT_EQ(liner.edge(0.5).h, 0.5);
+  }
+}
+
+// L/D to 0 with asperities that carry a fixed part of the load: the short film with the same, with a difference of
+// order (L/D)^2.
+TEST(Contact, FiniteFilmTendsToTheShortOne) {
+  const auto force = [](double length_to_diameter, Options::Kind kind, bool contact) {
+    Geometry g = cylinder();
+    g.length = 2.0 * g.radius * length_to_diameter;
+    Options o = compliant(kind, 0.1, 120, false);
+    o.cells[1] = 24;
+    if (contact) o.contact = Contact{0.25 * g.clearance, 2e9 * length_to_diameter * length_to_diameter};
+    auto film = make_state_model(g, o, oil());
+    const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
+    StateResponse r;
+    const auto s = relaxed(*film, m);
+    film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
+    return std::array{r.journal.force[0], r.journal.force[1]};
+  };
+  std::array<double, 2> apart{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double ratio = k == 0 ? 0.3 : 0.15;
+    const auto exact = force(ratio, Options::Kind::compliant_short, true),
+               finite = force(ratio, Options::Kind::compliant_finite, true),
+               film_alone = force(ratio, Options::Kind::compliant_short, false);
+    const double size = std::hypot(exact[0], exact[1]);
+    apart[k] = std::hypot(finite[0] - exact[0], finite[1] - exact[1]) / size;
+    EXPECT_GT(std::hypot(film_alone[0] - exact[0], film_alone[1] - exact[1]), 0.2 * size);
+  }
+  EXPECT_LT(apart[1], 0.03);
+  EXPECT_NEAR(std::log2(apart[0] / apart[1]), 2.0, 0.4);
 }
 
 }  // namespace

@@ -86,14 +86,23 @@ TEST(RubberLiner, BendsTheResonance) {
   EXPECT_TRUE(straight.bifurcations.empty());
 }
 
-// The whirl of figure_5_7.yaml touches at 458.8 rad/s and ends there; with asperities that carry it goes on.
+// The whirl of figure_5_7.yaml touches at 458.8 rad/s and ends there, or at 501.1 rad/s in a coarse film of finite
+// length; with asperities that carry it goes on.
 TEST(Contact, ABranchGoesOnWhereItTouched) {
-  study::Deck deck =
-      study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_7.yaml",
-                  {"studies.2.cycle_branch.range={from: 240 rad/s, to: 470 rad/s}",
-                   "bearings.half.film.contact={roughness: 0.5 um, pressure: 1 MPa}"});
-  deck.studies.erase(deck.studies.begin());
-  EXPECT_EQ(test::run_deck(deck, "contact").at(0).status, "completed");
+  const auto run = [](const std::string& to, std::vector<std::string> film, const std::string& name) {
+    film.push_back("studies.2.cycle_branch.range={from: 240 rad/s, to: " + to + "}");
+    film.emplace_back("bearings.half.film.contact={roughness: 0.5 um, pressure: 1 MPa}");
+    study::Deck deck =
+        study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/figure_5_7.yaml", film);
+    deck.studies.erase(deck.studies.begin());
+    return test::run_deck(deck, name).at(0).status;
+  };
+  EXPECT_EQ(run("470 rad/s", {}, "contact"), "completed");
+  EXPECT_EQ(run("510 rad/s",
+                {"bearings.half.film.type=compliant_finite", "bearings.half.film.cells=[16, 4]",
+                 "bearings.half.film.quadrature=sub_cell", "studies.2.cycle_branch.intervals=20"},
+                "finite_contact"),
+            "completed");
 }
 
 // Films of finite length on a rigid bore: the limit of fine meshes is 2.5262, and 2.5265 that of compliant films as B

@@ -70,6 +70,7 @@ system::Train mixed(Mix mix) {
   if (mix == Mix::damped) {
     for (auto* film : {&lines, &first, &on_pedestal}) damp(*film);
     lines.film.grooves = {{2.0, 0.0}};
+    for (auto* film : {&lines, &on_pedestal}) film->film.contact = film::Contact{0.25 * clearance, 1e7};
   }
   return train({first, rigid, on_pedestal, lines});
 }
