@@ -112,9 +112,16 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
 
 double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step) {
   Map map(problem, u, step);
-  const auto a = map.path(v);
-  const VectorXd h = solve_polynomial(problem, {1, -1}, map.bilinear(a, a));
-  return w.dot(map.trilinear(a, a) + 3 * map.bilinear(a, map.path(h))) / 6;
+  const Map::Path a = map.path(v);
+  // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
+  Map::Path b;
+  const VectorXd h = solve_polynomial(problem, {1, -1}, map.bilinear(a, a, &b));
+  const Map::Path more = map.path(h);
+  b.start += more.start;
+  b.nodes += more.nodes;
+  VectorXd end;
+  (void)problem.forced(map.third(a, a) + 3 * map.second(a, b), end);
+  return w.dot(end) / 6;
 }
 
 double flip_coefficient(CycleProblem& problem, Vec u, double step) {

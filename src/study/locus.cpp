@@ -62,6 +62,13 @@ private:
   void record(const std::string& type, double second, double error, Vec whole);
   void record_flip(double second, double bracket, Vec whole);
   [[nodiscard]] FlipsBeside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
+  // Whether the zero of the coefficient at `whole` is one on the doubled mesh too: its error in scaled second parameter,
+  // or not a number; and whether that mesh has another one near.
+  struct Verdict {
+    double error = unknown;
+    bool unclear = false;
+  };
+  [[nodiscard]] Verdict judge_flip(Vec whole, double reach);
   void suspect(double from, double to, const std::string& reason);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
@@ -268,34 +275,43 @@ FlipsBeside LocusFollower::flips_beside(Vec whole, const std::vector<double>& me
 }
 
 // Where the journal stands still in its oil for a moment the force of a closed-form film has a kink, and the
-// coefficient a peak as narrow as the time mesh allows: on its flanks it vanishes, too. Only a zero where the doubled
-// mesh repeats the coefficient, as a straight line through it, is one of the equations.
+// coefficient a peak as narrow as the time mesh allows: on its flanks it vanishes, too. Only a zero through which the
+// doubled mesh repeats the same straight line is one of the equations.
+LocusFollower::Verdict LocusFollower::judge_flip(Vec whole, double reach) {
+  Verdict verdict;
+  const auto mesh = cycles_->mesh();
+  const FlipsBeside coarse = flips_beside(whole, mesh, reach);
+  const double tolerance = std::abs(coarse.ahead - coarse.behind) / 4, width = std::abs(coarse.moved(1));
+  const auto alike = [&](double a, double b) { return std::abs(a - b) < tolerance; };
+  if (!alike(coarse.ahead, -coarse.behind)) return verdict;
+  FlipsBeside fine = flips_beside(whole, solve::doubled(mesh), reach);
+  if (coarse.moved.dot(fine.moved) < 0) std::swap(fine.behind, fine.ahead);
+  verdict.unclear = fine.behind * fine.ahead < 0;
+  // Twice the move to the doubled mesh, as for all errors of the time mesh.
+  if (alike(fine.behind, coarse.behind) && alike(fine.ahead, coarse.ahead))
+    verdict.error = std::abs((fine.ahead + fine.behind) / (fine.ahead - fine.behind)) * width;
+  return verdict;
+}
+
 void LocusFollower::record_flip(double second_here, double bracket, Vec whole) {
-  const double reach = continuation_.max_step / 100, first_here = row_at(whole, second_here).first;
-  double error = unknown, width = 2 * reach;
-  bool unclear = false;
+  const double first_here = row_at(whole, second_here).first;
+  Verdict verdict;
+  double reach = continuation_.max_step / 100;
   try {
-    const FlipsBeside coarse = flips_beside(whole, cycles_->mesh(), reach);
-    FlipsBeside fine = flips_beside(whole, solve::doubled(cycles_->mesh()), reach);
-    if (coarse.moved.dot(fine.moved) < 0) std::swap(fine.behind, fine.ahead);
-    width = std::abs(coarse.moved(1));
-    const double tolerance = std::abs(coarse.ahead - coarse.behind) / 4;
-    const auto alike = [&](double a, double b) { return std::abs(a - b) < tolerance; };
-    // Twice the move to the doubled mesh, as for all errors of the time mesh.
-    if (alike(coarse.ahead, -coarse.behind) && alike(fine.behind, coarse.behind) && alike(fine.ahead, coarse.ahead))
-      error = std::abs((fine.ahead + fine.behind) / (fine.ahead - fine.behind)) * width + bracket;
-    else
-      unclear = fine.behind * fine.ahead < 0;
+    verdict = judge_flip(whole, reach);
+    // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
+    if (std::isnan(verdict.error)) verdict = judge_flip(whole, reach *= 10);
   } catch (const core::NotConverged&) {
-    unclear = true;
+    verdict.unclear = true;
   } catch (const core::DomainError&) {
-    unclear = true;
+    verdict.unclear = true;
   }
   system_->set_parameter(first_here);
   second().set(second_here * second_scale_);
-  if (!std::isnan(error)) record(solve::generalised_flip, second_here, error, whole);
-  if (unclear)
-    suspect(second_here - width / 2, second_here + width / 2,
+  if (!std::isnan(verdict.error))
+    record(solve::generalised_flip, second_here, verdict.error + bracket, whole);
+  else if (verdict.unclear)
+    suspect(second_here - reach, second_here + reach,
             "the coefficient of the flip changes its sign, but not alike on the doubled time mesh");
 }
 
