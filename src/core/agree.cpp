@@ -83,6 +83,42 @@ void agree(MPI_Comm comm, const std::function<void()>& local) {
   }
 }
 
+void lead(MPI_Comm comm, int leader, const std::function<void(const std::function<void()>& together)>& work,
+          const std::function<void()>& part) {
+  int rank = 0, more = 1;
+  MPI_Comm_rank(comm, &rank);
+  const auto next = [&](int value) {
+    more = value;
+    MPI_Bcast(&more, 1, MPI_INT, leader, comm);
+  };
+  std::exception_ptr caught;
+  if (rank == leader) {
+    try {
+      work([&] {
+        next(1);
+        part();
+      });
+    } catch (...) {
+      caught = std::current_exception();
+    }
+    next(0);
+  } else {
+    for (next(1); more; next(1)) try {
+        part();
+      } catch (...) {
+        // What the leader makes of it on its side ends the work.
+        caught = std::current_exception();
+      }
+  }
+  agree(comm, [&] {
+    if (caught) std::rethrow_exception(caught);
+  });
+}
+
+void share(MPI_Comm comm, double* values, std::size_t count) {
+  MPI_Bcast(values, static_cast<int>(count), MPI_DOUBLE, 0, comm);
+}
+
 bool is_agreed(const std::exception_ptr& e) {
   try {
     std::rethrow_exception(e);

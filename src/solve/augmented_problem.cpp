@@ -248,7 +248,7 @@ void AugmentedProblem::update() {
 }
 
 std::vector<CodimensionTest> AugmentedProblem::tests() {
-  return condition_.tests(inner_, tangent_.get());
+  return condition_.tests(u_.get(), inner_, tangent_.get());
 }
 
 std::optional<Refined> locate(ExtendedProblem& branch, Condition& condition, Vec u, Vec along,

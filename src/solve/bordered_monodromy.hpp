@@ -17,7 +17,8 @@ namespace whirl::solve {
 ///     [ a_0 I + V^T U   V^T b ] [ z ]   [ V^T r         ]
 ///     [ c^T U           c^T b ] [ g ] = [ c^T r - a_0 s ]      v = (r - U z - b g)/a_0
 ///
-/// Collective on the problem's communicator; every rank takes the same steps.
+/// Collective on the problem's communicator. The iteration is rank 0's: it alone decides, the others take part in the
+/// products.
 class BorderedMonodromy {
 public:
   /// Borders that are generic and the same everywhere. `problem` outlives this and is linearised.
@@ -32,12 +33,17 @@ public:
   Eigen::MatrixXd v, g;
 
 private:
-  [[nodiscard]] Eigen::MatrixXd iterate(bool transposed) const;
+  [[nodiscard]] Eigen::MatrixXd null_vectors(bool transposed) const;
 
   CycleProblem& problem_;
   Eigen::MatrixXd b_, c_, w_;
   std::vector<double> polynomial_;
   Eigen::MatrixXd basis_, image_;  // V, U
 };
+
+/// A^-1 r [n x columns] for A = a_0 I + a_1 M + ..., regular, at the problem's present linearisation: the above without
+/// a border. Throws core::NotConverged. Collective.
+[[nodiscard]] Eigen::MatrixXd solve_polynomial(CycleProblem& problem, const std::vector<double>& polynomial,
+                                               const Eigen::MatrixXd& rhs);
 
 }  // namespace whirl::solve

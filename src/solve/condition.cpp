@@ -35,7 +35,7 @@ void FoldCondition::derivatives(Vec u, const Eigen::VectorXd&, Eigen::MatrixXd& 
   check(VecDot(gradients.front().get(), z_.get(), &quadratic_));
 }
 
-std::vector<CodimensionTest> FoldCondition::tests(const Eigen::VectorXd&, Vec) {
+std::vector<CodimensionTest> FoldCondition::tests(Vec, const Eigen::VectorXd&, Vec) {
   return {{"cusp", quadratic_}};
 }
 

@@ -12,7 +12,7 @@ public:
   void derivatives(Vec u, const Eigen::VectorXd& inner, Eigen::MatrixXd& d_inner,
                    std::vector<core::Vector>& gradients) override;
   void update() override {}
-  std::vector<CodimensionTest> tests(const Eigen::VectorXd& inner, Vec along) override;
+  std::vector<CodimensionTest> tests(Vec u, const Eigen::VectorXd& inner, Vec along) override;
 
 private:
   ExtendedProblem& problem_;

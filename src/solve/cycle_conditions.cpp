@@ -2,9 +2,12 @@
 // w . M v as the sum of second derivatives of all collocation equations along the cycle.
 
 #include <cmath>
+#include <limits>
 
 #include "bordered_monodromy.hpp"
 #include "condition_fold.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/normal_form.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -20,7 +23,8 @@ double corner(double sign, BorderedMonodromy& bordered) {
   return bordered.g(0, 0);
 }
 
-// A multiplier of -1 beside others at +1 or -1 shows in w . v of its null vectors and in the corner for the other sign.
+// A multiplier of -1 beside another at -1 shows in w . v of its null vectors, beside one at +1 in the slope dp/ds of the
+// branch; the cycles of twice the period turn round where the cubic coefficient of the normal form vanishes.
 class FlipCondition : public Condition {
 public:
   explicit FlipCondition(CycleProblem& problem) : problem_(problem), bordered_(problem, 1) {
@@ -34,12 +38,27 @@ public:
         problem_.gradients(u, problem_.forward(bordered_.v.col(0)), {problem_.backward(bordered_.left().col(0))});
   }
   void update() override { bordered_.update(); }
-  std::vector<CodimensionTest> tests(const VectorXd&, Vec along) override {
-    return {{"resonance_1_2", bordered_.left().col(0).dot(bordered_.v.col(0))},
-            {"fold_flip", last_entry(problem_.comm(), along)}};
+  std::vector<CodimensionTest> tests(Vec u, const VectorXd&, Vec along) override {
+    const double slope = last_entry(problem_.comm(), along);
+    std::vector<CodimensionTest> all = {{"resonance_1_2", bordered_.left().col(0).dot(bordered_.v.col(0))},
+                                        {"fold_flip", slope}};
+    if (!problem_.options().autonomous) all.push_back({generalised_flip, slope * cubic(u)});
+    return all;
   }
 
 private:
+  // Smooth along the curve: neither normalised by w . v, which vanishes at a resonance 1:2, nor by I - M, which is
+  // singular where the slope of the branch vanishes.
+  double cubic(Vec u) {
+    VectorXd v = bordered_.v.col(0).normalized();
+    v *= std::sqrt(static_cast<double>(v.size()));
+    try {
+      return flip_cubic(problem_, u, v, bordered_.left().col(0).normalized());
+    } catch (const core::NotConverged&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
   CycleProblem& problem_;
   BorderedMonodromy bordered_;
 };
@@ -48,8 +67,8 @@ class CyclicFoldCondition : public FoldCondition {
 public:
   explicit CyclicFoldCondition(CycleProblem& problem)
       : FoldCondition(problem, problem), cycles_(problem), one_(problem, 1), flip_(problem, 1) {}
-  std::vector<CodimensionTest> tests(const VectorXd& inner, Vec along) override {
-    std::vector<CodimensionTest> all = FoldCondition::tests(inner, along);
+  std::vector<CodimensionTest> tests(Vec u, const VectorXd& inner, Vec along) override {
+    std::vector<CodimensionTest> all = FoldCondition::tests(u, inner, along);
     all.push_back({"fold_flip", corner(-1, flip_)});
     // The trivial multiplier of a self-excited cycle makes +1 double at every fold.
     if (!cycles_.options().autonomous) {
@@ -104,7 +123,7 @@ public:
     // In the new bases, which span the same spaces.
     choose();
   }
-  std::vector<CodimensionTest> tests(const VectorXd& inner, Vec along) override {
+  std::vector<CodimensionTest> tests(Vec, const VectorXd& inner, Vec along) override {
     return {{"resonance_1_1", inner(0) - 1},
             {"resonance_1_2", inner(0) + 1},
             {"resonance_1_3", inner(0) + 0.5},

@@ -1,7 +1,8 @@
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
+#include "bordered_monodromy.hpp"
 #include "whirl/solve/normal_form.hpp"
 
 namespace whirl::solve {
@@ -9,7 +10,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
@@ -60,38 +60,45 @@ private:
   double step_;
 };
 
-// Right and left eigenvectors for a simple eigenvalue, p^* q = 1 and |q|^2 = n.
-void eigenvectors(const MatrixXd& m, Complex mu, VectorXcd& q, VectorXcd& p) {
-  const Index n = m.rows();
-  const MatrixXcd shifted = m.cast<Complex>() - mu * (1 + 1e-10) * MatrixXcd::Identity(n, n);
-  const Eigen::PartialPivLU<MatrixXcd> lu(shifted), adjoint(shifted.adjoint());
-  q.resize(n);
-  for (Index k = 0; k < n; ++k) q(k) = {std::sin(1.0 + static_cast<double>(k)), std::cos(2.0 * static_cast<double>(k))};
-  p = q;
-  for (int k = 0; k < 4; ++k) {
-    q = lu.solve(q).normalized();
-    p = adjoint.solve(p).normalized();
-  }
-  q *= std::sqrt(static_cast<double>(n));
-  p /= std::conj(p.dot(q));
+// The null vectors of a polynomial of M that loses rank by k; the first borders are generic, the second ones the null
+// vectors themselves.
+void find_null_vectors(BorderedMonodromy& bordered, const std::vector<double>& polynomial) {
+  bordered.solve(polynomial);
+  bordered.update();
+  bordered.solve(polynomial);
+}
+
+// Of the invariant plane of `basis`, product = M basis, the complex eigenvector for the eigenvalue nearest to mu.
+VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex mu) {
+  const Eigen::EigenSolver<MatrixXd> plane((basis.transpose() * basis).ldlt().solve(basis.transpose() * product));
+  Index nearest = 0;
+  (plane.eigenvalues().array() - mu).abs().minCoeff(&nearest);
+  return basis * plane.eigenvectors().col(nearest);
 }
 
 }  // namespace
 
 double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier) {
-  const MatrixXd m = problem.monodromy();
-  const Index n = m.rows();
-  const MatrixXd one = MatrixXd::Identity(n, n);
-  VectorXcd q, p;
-  eigenvectors(m, multiplier, q, p);
+  Composition& joined = problem.composition();
+  BorderedMonodromy bordered(problem, 2);
+  find_null_vectors(bordered, {1, -2 * multiplier.real() / std::abs(multiplier), 1});
+  // p^* q = 1 and |q|^2 = n
+  VectorXcd q = eigenvector_in(bordered.v, joined.times(bordered.v), multiplier),
+            p = eigenvector_in(bordered.left(), joined.times_transposed(bordered.left()), std::conj(multiplier));
+  q *= std::sqrt(static_cast<double>(q.size())) / q.norm();
+  p /= std::conj(p.dot(q));
   Map map(problem, u);
   const Complex i(0, 1);
   const auto r = map.path(q.real()), s = map.path(q.imag());
   const VectorXd rr = map.bilinear(r, r), ss = map.bilinear(s, s), rs = map.bilinear(r, s);
-  const VectorXd h11 = (one - m).partialPivLu().solve(rr + ss);
-  const VectorXcd h20 = (multiplier * multiplier * one.cast<Complex>() - m.cast<Complex>())
-                            .partialPivLu()
-                            .solve((rr - ss).cast<Complex>() + 2.0 * i * rs.cast<Complex>());
+  const VectorXd h11 = solve_polynomial(problem, {1, -1}, rr + ss);
+  // (nu - M)^-1 = (conj nu - M)(|nu|^2 - 2 Re nu M + M^2)^-1, nu = mu^2
+  const Complex nu = multiplier * multiplier;
+  MatrixXd parts(q.size(), 2);
+  parts << rr - ss, 2 * rs;
+  parts = solve_polynomial(problem, {std::norm(nu), -2 * nu.real(), 1}, parts);
+  const MatrixXd moved = joined.times(parts);
+  const VectorXcd h20 = std::conj(nu) * (parts.col(0) + i * parts.col(1)) - (moved.col(0) + i * moved.col(1));
   const auto mean = map.path(h11), x = map.path(h20.real()), y = map.path(h20.imag());
   // C(q, q, conj q), B(q, h11), B(conj q, h20) of q = r + i s, h20 = x + i y
   const VectorXcd cubic = (map.trilinear(r, r) + map.trilinear(s, r)).cast<Complex>() +
@@ -103,20 +110,27 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   return (c1 / multiplier * std::abs(multiplier)).real();
 }
 
-double flip_coefficient(CycleProblem& problem, Vec u, double step) {
-  const MatrixXd m = problem.monodromy();
-  VectorXcd q, p;
-  eigenvectors(m, -1, q, p);
-  // The complex vectors of a real eigenvalue are real ones times a common factor.
-  Index largest = 0;
-  q.cwiseAbs().maxCoeff(&largest);
-  const Complex factor = std::abs(q(largest)) / q(largest);
-  const VectorXd v = (factor * q).real();
-  const VectorXd w = (p / std::conj(factor) / std::norm(factor)).real();
+double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step) {
   Map map(problem, u, step);
-  const auto a = map.path(v);
-  const VectorXd h = (MatrixXd::Identity(m.rows(), m.rows()) - m).partialPivLu().solve(map.bilinear(a, a));
-  return w.dot(map.trilinear(a, a) + 3 * map.bilinear(a, map.path(h))) / (6 * w.dot(v));
+  const Map::Path a = map.path(v);
+  // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
+  Map::Path b;
+  const VectorXd h = solve_polynomial(problem, {1, -1}, map.bilinear(a, a, &b));
+  const Map::Path more = map.path(h);
+  b.start += more.start;
+  b.nodes += more.nodes;
+  VectorXd end;
+  (void)problem.forced(map.third(a, a) + 3 * map.second(a, b), end);
+  return w.dot(end) / 6;
+}
+
+double flip_coefficient(CycleProblem& problem, Vec u, double step) {
+  BorderedMonodromy bordered(problem, 1);
+  find_null_vectors(bordered, {1, 1});
+  const VectorXd w = bordered.left().col(0);
+  VectorXd v = bordered.v.col(0).normalized();
+  v *= std::sqrt(static_cast<double>(v.size()));
+  return flip_cubic(problem, u, v, w, step) / w.dot(v);
 }
 
 }  // namespace whirl::solve

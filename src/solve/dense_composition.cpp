@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/solve/composition.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -22,7 +23,7 @@ public:
   void compose(const Run& run) override;
   void solve(const double* rhs, VectorXd& border, double* x) override;
   void solve_transposed(const double* rhs, VectorXd& border, double* x) override;
-  std::vector<std::complex<double>> multipliers() override { return spectral::eigenvalues(monodromy_); }
+  std::vector<std::complex<double>> multipliers() override { return spectral::eigenvalues(run_->comm, monodromy_); }
   VectorXd critical_start(double mu) override;
   MatrixXd monodromy() override { return monodromy_; }
   bool has_monodromy() const override { return true; }
@@ -158,6 +159,7 @@ VectorXd DenseComposition::critical_start(double mu) {
   VectorXd v(n);
   for (Index k = 0; k < n; ++k) v(k) = std::sin(1.0 + static_cast<double>(k));
   for (int k = 0; k < 4; ++k) v = lu.solve(v).normalized();
+  core::share(run_->comm, v.data(), static_cast<std::size_t>(n));
   return v;
 }
 

@@ -73,7 +73,7 @@ public:
     normalise(b_);
     normalise(c_);
   }
-  std::vector<CodimensionTest> tests(const VectorXd& inner, Vec along) override {
+  std::vector<CodimensionTest> tests(Vec, const VectorXd& inner, Vec along) override {
     return {{"bogdanov_takens", inner(0)}, {"fold_hopf", last_entry(problem_.comm(), along)}};
   }
 

@@ -185,7 +185,7 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
         throw;
       } else {
         found_ = false;
-        return spectral::eigenvalues(monodromy());
+        return spectral::eigenvalues(run_->comm, monodromy());
       }
     }
   }

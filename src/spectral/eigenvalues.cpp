@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
@@ -50,6 +51,14 @@ Pair pair_of(EPS eps, PetscInt i, Vec re, Vec im, bool vectors) {
   return p;
 }
 
+// Rank 0's list for all ranks.
+void share(MPI_Comm comm, std::vector<Complex>& values) {
+  auto count = static_cast<unsigned long>(values.size());
+  MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, 0, comm);
+  values.resize(count);
+  core::share(comm, reinterpret_cast<double*>(values.data()), 2 * values.size());
+}
+
 // The generalised Schur form of strongly non-normal pencils (thin films swept along by the journal) may refuse to be
 // sorted: LAPACK's dtgexc calls neighbours too close. Their standard form b^-1 a sorts.
 void solve_dense(EigenSolver& eps, Mat a, Mat b) {
@@ -70,6 +79,38 @@ void solve_dense(EigenSolver& eps, Mat a, Mat b) {
   check(EPSSetType(eps.get(), EPSLAPACK));
   check(EPSSetFromOptions(eps.get()));
   check(EPSSolve(eps.get()));
+}
+
+// What a solver has found, at least `wanted` of them; `scale` makes the shapes SI.
+std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<double>& scale, PetscInt wanted,
+                           const EigenOptions& options) {
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  if (converged < wanted)
+    throw core::NotConverged(fmt::format("only {} of {} eigenvalues converged", converged, options.count));
+  core::Vector re, im;
+  check(MatCreateVecs(a, re.put(), im.put()));
+  std::vector<Mode> out;
+  for (PetscInt i = 0; i < converged; ++i) {
+    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes);
+    if (p.value.imag() < 0 || !std::isfinite(p.value.real())) continue;
+    Mode m{p.value, {}};
+    if (options.shapes) {
+      m.shape.resize(p.real.size());
+      Complex largest = 0;
+      for (std::size_t k = 0; k < p.real.size(); ++k) {
+        const Complex value(p.real[k], p.value.imag() != 0 ? p.imaginary[k] : 0.0);
+        if (std::abs(value) > std::abs(largest)) largest = value;
+        m.shape[k] = value * scale[k];
+      }
+      for (Complex& v : m.shape) v /= largest;
+    }
+    out.push_back(std::move(m));
+  }
+  std::sort(out.begin(), out.end(), [](const Mode& m, const Mode& n) {
+    return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
+  });
+  return out;
 }
 
 }  // namespace
@@ -125,37 +166,26 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     check(EPSSetInitialSpace(eps.get(), 1, &first));
   }
   check(EPSSetFromOptions(eps.get()));
-  if (dense)
-    solve_dense(eps, a.get(), b.get());
-  else
-    check(EPSSolve(eps.get()));
-  PetscInt converged = 0;
-  check(EPSGetConverged(eps.get(), &converged));
-  if (converged < std::min<PetscInt>(options.count, system.size() - 2))
-    throw core::NotConverged(fmt::format("only {} of {} eigenvalues converged", converged, options.count));
-
-  core::Vector re, im;
-  check(MatCreateVecs(a.get(), re.put(), im.put()));
   std::vector<Mode> out;
-  for (PetscInt i = 0; i < converged; ++i) {
-    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes);
-    if (p.value.imag() < 0 || !std::isfinite(p.value.real())) continue;
-    Mode m{p.value, {}};
-    if (options.shapes) {
-      m.shape.resize(p.real.size());
-      Complex largest = 0;
-      for (std::size_t k = 0; k < p.real.size(); ++k) {
-        const Complex value(p.real[k], p.value.imag() != 0 ? p.imaginary[k] : 0.0);
-        if (std::abs(value) > std::abs(largest)) largest = value;
-        m.shape[k] = value * scale[k];
-      }
-      for (Complex& v : m.shape) v /= largest;
-    }
-    out.push_back(std::move(m));
+  if (!dense) {
+    check(EPSSolve(eps.get()));
+    return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options);
   }
-  std::sort(out.begin(), out.end(), [](const Mode& m, const Mode& n) {
-    return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
+  // One rank's answer for all: how many modes there are, and which of them are unstable, decides what comes next.
+  core::agree(system.comm(), [&] {
+    if (core::rank_of(system.comm()) != 0) return;
+    solve_dense(eps, a.get(), b.get());
+    out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options);
   });
+  if (core::size_of(system.comm()) == 1) return out;
+  std::vector<Complex> values;
+  for (const Mode& m : out) values.push_back(m.lambda);
+  share(system.comm(), values);
+  out.resize(values.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].lambda = values[k];
+    share(system.comm(), out[k].shape);
+  }
   return out;
 }
 
@@ -189,6 +219,15 @@ std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
   std::vector<Complex> out;
   for (PetscInt i = 0; i < converged; ++i) out.push_back(pair_of(eps.get(), i, nullptr, nullptr, false).value);
   std::stable_sort(out.begin(), out.end(), by_modulus);
+  return out;
+}
+
+std::vector<Complex> eigenvalues(MPI_Comm comm, const Eigen::MatrixXd& matrix) {
+  std::vector<Complex> out;
+  core::agree(comm, [&] {
+    if (core::rank_of(comm) == 0) out = eigenvalues(matrix);
+  });
+  share(comm, out);
   return out;
 }
 

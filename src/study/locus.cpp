@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "bifurcation.hpp"
@@ -24,11 +25,21 @@ namespace {
 using core::check;
 
 // Names of the monitors behind the condition's own tests.
+constexpr const char* generalised_hopf = "generalised_hopf";
 constexpr const char* meeting = "meeting";
 constexpr const char* meeting_over_second = "meeting_over_second";
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
 struct Row {
   double first = 0, second = 0, period = 0, angle = 0;
+};
+
+// Normal forms of flips on the curve, a little behind and ahead of a point of it, and what lies between the two in the
+// scaled parameters.
+struct FlipsBeside {
+  double behind = 0, ahead = 0;
+  Eigen::Vector2d moved = Eigen::Vector2d::Zero();
 };
 
 // The branch problem at the bifurcation that the curve begins with, in both parameters.
@@ -44,9 +55,21 @@ private:
   void make_equilibria(const EquilibriumBranchOptions& o);
   void make_system(const std::optional<deck::Quantity>& speed);
   [[nodiscard]] system::Train train_at(double first) const;
+  [[nodiscard]] solve::SecondParameter second();
   [[nodiscard]] Row row_at(Vec whole, double second) const;
   [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
-  void record(const std::string& type, double second, double bracket, Vec whole);
+  // `error` in scaled second parameter; not a number: unknown.
+  void record(const std::string& type, double second, double error, Vec whole);
+  void record_flip(double second, double bracket, Vec whole);
+  [[nodiscard]] FlipsBeside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
+  // Whether the zero of the coefficient at `whole` is one on the doubled mesh too: its error in scaled second parameter,
+  // or not a number; and whether that mesh has another one near.
+  struct Verdict {
+    double error = unknown;
+    bool unclear = false;
+  };
+  [[nodiscard]] Verdict judge_flip(Vec whole, double reach);
+  void suspect(double from, double to, const std::string& reason);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
 
@@ -171,6 +194,14 @@ void LocusFollower::make_equilibria(const EquilibriumBranchOptions& o) {
   condition_ = solve::condition_of(*system_, *rest_, seed_.event, seed_.critical);
 }
 
+solve::SecondParameter LocusFollower::second() {
+  return {[this](double value) {
+            second_value_ = value;
+            system_->set_train(train_at(system_->parameter()));
+          },
+          second_scale_};
+}
+
 Row LocusFollower::row_at(Vec whole, double second) const {
   const core::Vector u = problem_->branch_part(whole);
   const Eigen::VectorXd inner = problem_->inner(whole);
@@ -191,12 +222,12 @@ std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent)
     // zero it is a difference of larger terms: longer steps than usual leave less rounding in its third derivatives.
     core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
     rest_->to_state(problem_->branch_part(whole).get(), x.get());
-    all.push_back({"generalised_hopf", solve::hopf_coefficient(*system_, x.get(), problem_->inner(whole)(0), 8)});
+    all.push_back({generalised_hopf, solve::hopf_coefficient(*system_, x.get(), problem_->inner(whole)(0), 8)});
   }
   return all;
 }
 
-void LocusFollower::record(const std::string& type, double second, double bracket, Vec whole) {
+void LocusFollower::record(const std::string& type, double second, double error, Vec whole) {
   const Row row = row_at(whole, second);
   io::CodimensionTwo c;
   c.type = type;
@@ -204,9 +235,8 @@ void LocusFollower::record(const std::string& type, double second, double bracke
   c.value = {deck::from_si(row.first, first_range_.unit), first_range_.unit};
   c.second_parameter = options_.second.path;
   c.second_value = {deck::from_si(row.second, options_.second.range.unit), options_.second.range.unit};
-  // The rounding of a Lyapunov coefficient is more than its location leaves, and not known.
-  if (type != "generalised_hopf")
-    c.uncertainty = bracket * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
+  if (!std::isnan(error))
+    c.uncertainty = error * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
   const double speed = first_.path == "speed" ? row.first : system_->speed();
   if (const auto groups = system::groups_of(system_->train())) {
     c.more["nondimensional_speed"] = speed / groups->speed_scale;
@@ -214,6 +244,81 @@ void LocusFollower::record(const std::string& type, double second, double bracke
     c.more["nondimensional_unbalance"] = groups->unbalance;
   }
   context_.results.summary().codimension_two.push_back(std::move(c));
+}
+
+FlipsBeside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, double reach) {
+  const core::Vector at = problem_->branch_part(whole);
+  const auto cycle = cycles_->gather(at.get());
+  solve::CycleProblem cycles(context_.comm, *system_, cycles_->options(), mesh);
+  const core::Vector u = cycles.scatter(cycle), along = solve::any_tangent(cycles, u.get());
+  const auto condition = solve::make_flip(cycles);
+  solve::AugmentedProblem problem(cycles, *condition, along.get(), second());
+  core::Vector here = problem.make_unknown(), row = core::duplicate(here.get());
+  problem.join(u.get(), condition->start(), solve::last_entry(context_.comm, whole), here.get());
+  problem.prime(here.get());
+  const core::Vector tangent = solve::any_tangent(problem, here.get());
+  solve::weighted_row(problem, tangent.get(), row.get());
+  double middle = 0;
+  check(VecDot(row.get(), here.get(), &middle));
+  FlipsBeside out;
+  for (const bool ahead : {false, true}) {
+    check(VecAXPY(here.get(), ahead ? 2 * reach : -reach, tangent.get()));
+    const auto result =
+        solve::newton(problem, here.get(), row.get(), middle + (ahead ? reach : -reach), continuation_.newton);
+    if (!result.converged) throw core::NotConverged(result.reason);
+    problem.linearise(here.get(), row.get());
+    (ahead ? out.ahead : out.behind) = solve::flip_coefficient(cycles, problem.branch_part(here.get()).get());
+    const Eigen::Vector2d place(problem.first_parameter(here.get()), solve::last_entry(context_.comm, here.get()));
+    out.moved += ahead ? place : Eigen::Vector2d(-place);
+  }
+  return out;
+}
+
+// Where the journal stands still in its oil for a moment the force of a closed-form film has a kink, and the
+// coefficient a peak as narrow as the time mesh allows: on its flanks it vanishes, too. Only a zero through which the
+// doubled mesh repeats the same straight line is one of the equations.
+LocusFollower::Verdict LocusFollower::judge_flip(Vec whole, double reach) {
+  Verdict verdict;
+  const auto mesh = cycles_->mesh();
+  const FlipsBeside coarse = flips_beside(whole, mesh, reach);
+  const double tolerance = std::abs(coarse.ahead - coarse.behind) / 4, width = std::abs(coarse.moved(1));
+  const auto alike = [&](double a, double b) { return std::abs(a - b) < tolerance; };
+  if (!alike(coarse.ahead, -coarse.behind)) return verdict;
+  FlipsBeside fine = flips_beside(whole, solve::doubled(mesh), reach);
+  if (coarse.moved.dot(fine.moved) < 0) std::swap(fine.behind, fine.ahead);
+  verdict.unclear = fine.behind * fine.ahead < 0;
+  // Twice the move to the doubled mesh, as for all errors of the time mesh.
+  if (alike(fine.behind, coarse.behind) && alike(fine.ahead, coarse.ahead))
+    verdict.error = std::abs((fine.ahead + fine.behind) / (fine.ahead - fine.behind)) * width;
+  return verdict;
+}
+
+void LocusFollower::record_flip(double second_here, double bracket, Vec whole) {
+  const double first_here = row_at(whole, second_here).first;
+  Verdict verdict;
+  double reach = continuation_.max_step / 100;
+  try {
+    verdict = judge_flip(whole, reach);
+    // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
+    if (std::isnan(verdict.error)) verdict = judge_flip(whole, reach *= 10);
+  } catch (const core::NotConverged&) {
+    verdict.unclear = true;
+  } catch (const core::DomainError&) {
+    verdict.unclear = true;
+  }
+  system_->set_parameter(first_here);
+  second().set(second_here * second_scale_);
+  if (!std::isnan(verdict.error))
+    record(solve::generalised_flip, second_here, verdict.error + bracket, whole);
+  else if (verdict.unclear)
+    suspect(second_here - reach, second_here + reach,
+            "the coefficient of the flip changes its sign, but not alike on the doubled time mesh");
+}
+
+void LocusFollower::suspect(double from, double to, const std::string& reason) {
+  const std::string& unit = options_.second.range.unit;
+  const double factor = second_scale_ / deck::number_to_si(1, unit);
+  context_.results.summary().suspected.push_back({from * factor, to * factor, unit, reason});
 }
 
 std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd& end) {
@@ -229,13 +334,8 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     }
     rest_->from_state(x.get(), seed_.cycle.parameter, u.get());
   }
-  solve::SecondParameter second{[this](double value) {
-                                  second_value_ = value;
-                                  system_->set_train(train_at(system_->parameter()));
-                                },
-                                second_scale_};
   const core::Vector along = solve::any_tangent(*branch_, u.get());
-  problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), std::move(second));
+  problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), second());
   core::Vector start = problem_->make_unknown();
   problem_->join(u.get(), condition_->start(), start_second_ / second_scale_, start.get());
   problem_->prime(start.get());
@@ -259,16 +359,17 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     return values;
   };
   callbacks.on_zero = [&](const solve::LocatedZero& zero, Vec whole) {
-    if (zero.located) record(names[zero.monitor], zero.parameter, zero.bracket, whole);
+    if (!zero.located) return;
+    const std::string type = names[zero.monitor];
+    if (type == solve::generalised_flip) return record_flip(zero.parameter, zero.bracket, whole);
+    // The rounding of a Lyapunov coefficient is more than its location leaves, and not known.
+    record(type, zero.parameter, type == generalised_hopf ? unknown : zero.bracket, whole);
   };
   callbacks.on_event = [&](const solve::LocatedEvent& event, Vec whole) {
     if (event.event == solve::Event::fold && event.located) record(meeting, event.parameter, event.bracket, whole);
   };
   callbacks.on_suspicion = [&](const solve::Suspicion& s) {
-    context_.results.summary().suspected.push_back(
-        {s.from * second_scale_ / deck::number_to_si(1, options_.second.range.unit),
-         s.to * second_scale_ / deck::number_to_si(1, options_.second.range.unit), options_.second.range.unit,
-         s.reason});
+    suspect(s.from, s.to, s.reason);
   };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
     last_ = row_at(whole, point.parameter);

@@ -36,7 +36,7 @@ std::vector<std::complex<double>> to_cycle(system::Plant& system, Vec x) {
   const Eigen::VectorXd first = problem.gather(u.get()).at(problem.scheme(), 0);
   const core::WriteArray out(x);
   for (PetscInt i = 0; i < out.size(); ++i) out[i] = first(i);
-  return spectral::eigenvalues(problem.monodromy());
+  return spectral::eigenvalues(problem.comm(), problem.monodromy());
 }
 
 }  // namespace

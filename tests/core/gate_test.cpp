@@ -109,6 +109,49 @@ TEST(Agree, TheGravestErrorWins) {
   }
 }
 
+// An iteration whose end each rank would see at another step: rank 0's counts, and all ranks take part in its steps.
+TEST(Lead, OneRankDecidesForAll) {
+  const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
+  int parts = 0;
+  double sum = 0, last = 0;
+  lead(
+      MPI_COMM_WORLD, 0,
+      [&](const auto& together) {
+        const double perturbed = 1e-3 * rank;  // nobody's business but the leader's
+        for (double left = 1 + perturbed; left > 0.1; left /= 2) {
+          last = left;
+          together();
+        }
+      },
+      [&] {
+        ++parts;
+        const double mine = 1;
+        MPI_Allreduce(&mine, &sum, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+      });
+  EXPECT_EQ(parts, 4);
+  EXPECT_EQ(sum, size);
+  EXPECT_EQ(last, rank == 0 ? 0.125 : 0);
+  share(MPI_COMM_WORLD, &last, 1);
+  EXPECT_EQ(last, 0.125);
+}
+
+TEST(Lead, ErrorsEndTheWorkOnAllRanks) {
+  const int rank = rank_of(MPI_COMM_WORLD), size = size_of(MPI_COMM_WORLD);
+  const auto collective = [&](int failing) {
+    return [=] {
+      agree(MPI_COMM_WORLD, [&] {
+        if (rank == failing) throw NotConverged("a part");
+      });
+    };
+  };
+  EXPECT_THROW(lead(
+                   MPI_COMM_WORLD, size - 1, [](const auto& together) { together(); }, collective(0)),
+               NotConverged);
+  EXPECT_THROW(lead(
+                   MPI_COMM_WORLD, size - 1, [](const auto&) { throw DomainError("the leader's"); }, collective(-1)),
+               DomainError);
+}
+
 TEST(Check, PetscFailureCarriesItsText) {
   Vector v = make_vector(MPI_COMM_WORLD, 2, PETSC_DETERMINE), w = make_vector(MPI_COMM_WORLD, 3, PETSC_DETERMINE);
   try {

@@ -239,7 +239,9 @@ TEST(Locus, FlipsAndWhereTheyTurnSubcritical) {
   const auto coefficient = [&](Vec at, const VectorXd&) { return solve::flip_coefficient(problem, at); };
   const Curve c = curve(problem, *condition, std::move(u), {&q, 1, -1, coefficient});
   for (const Point& at : c.points) EXPECT_NEAR(at.p, at.q * at.q / 4, 1e-8);
-  ASSERT_EQ(c.zeros.size(), 1U);
-  EXPECT_EQ(c.names[c.zeros[0].monitor], "monitor");
-  EXPECT_NEAR(c.zeros[0].parameter, 0.5, 1e-6);
+  // The condition's own test and the coefficient itself.
+  ASSERT_EQ(c.zeros.size(), 2U);
+  EXPECT_EQ(c.names[c.zeros[0].monitor], solve::generalised_flip);
+  EXPECT_EQ(c.names[c.zeros[1].monitor], "monitor");
+  for (const auto& zero : c.zeros) EXPECT_NEAR(zero.parameter, 0.5, 1e-6);
 }

@@ -137,6 +137,18 @@ TEST(Eigenvalues, OfANonnormalMatrix) {
   EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 12);
 }
 
+// Ranks whose matrices differ in the last digits, so that a multiplier lies on this side of the circle or on that.
+TEST(Eigenvalues, AreThoseOfRankZero) {
+  const int rank = core::rank_of(MPI_COMM_WORLD);
+  for (const int n : {3, 20}) {
+    Eigen::MatrixXd m = Eigen::MatrixXd::Identity(n, n) * 0.5;
+    m(0, 0) = 1 + 1e-15 * rank;
+    const auto values = spectral::eigenvalues(MPI_COMM_WORLD, m);
+    ASSERT_EQ(values.size(), static_cast<std::size_t>(n));
+    EXPECT_EQ(values[0], 1.0);
+  }
+}
+
 TEST(Eigenvalues, SortedByFallingModulus) {
   Eigen::MatrixXd a(4, 4);
   a << -0.5, 30, 2, 1, 0, 0.1, 5, -7, 0, 0, 0, -2, 0, 0, 2, 0;  // -0.5, 0.1, +-2 i

@@ -13,6 +13,9 @@
 
 namespace whirl::solve {
 
+/// The test whose zeros hold on to the time mesh only where the equations are smooth: check them on another one.
+inline constexpr const char* generalised_flip = "generalised_flip";
+
 /// A number whose zero along a curve of bifurcations is a point of codimension two.
 struct CodimensionTest {
   const char* name;
@@ -43,9 +46,9 @@ public:
                            std::vector<core::Vector>& gradients) = 0;
   /// Takes the null vectors where values() was called last as borders.
   virtual void update() = 0;
-  /// The same names in the same order at every point; where values() and derivatives() were called last, `along` the
-  /// tangent of the branch R(u) = 0 there.
-  [[nodiscard]] virtual std::vector<CodimensionTest> tests(const Eigen::VectorXd& inner, Vec along) = 0;
+  /// The same names in the same order at every point; at the u where values() and derivatives() were called last,
+  /// `along` the tangent of the branch R(u) = 0 there. A test that cannot be had is not a number.
+  [[nodiscard]] virtual std::vector<CodimensionTest> tests(Vec u, const Eigen::VectorXd& inner, Vec along) = 0;
 };
 
 /// Folds of equilibria and cycles: g is the entry of the parameter in the tangent z of the branch, K z = e_last with
