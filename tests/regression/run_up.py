@@ -194,7 +194,8 @@ def ranks(h):
     with h5py.File(h.work / "on_2/results.h5") as f:
         moved = f["studies/up/run_up/node_amplitude"][0]
     h.true("the shaft moves, its ends and its middle differently", moved.min() > 1e-7 and moved[1] > 1.01 * moved[0], str(moved))
-    for what, difference, within in same_results(h.work / "on_1", h.work / "on_2"):
+    # Stiffness over mass of 5000 elements spreads over 1e14: orders of summation are seen at 1e-6 to 1e-5.
+    for what, difference, within in same_results(h.work / "on_1", h.work / "on_2", 1e-4):
         h.close(f"two ranks: {what}", difference, 0, within)
 
 
