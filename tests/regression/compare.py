@@ -60,6 +60,9 @@ def same_results(one, other, within=1e-8):
             found = key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value") if "/" in key else key
             if "uncertainty" in key and found in a:
                 scale = numpy.max(numpy.abs(a[found]))
+            if key.endswith("_imag") and key[:-4] + "real" in a:
+                # A complex number has one accuracy: where all of them are real, imaginary parts are rounding.
+                scale = max(numpy.max(numpy.abs(x), initial=0) for x in (a[key], a[key[:-4] + "real"]))
             d = difference(key, a[key], b[key], scale)
             if d > worst:
                 worst, where = d, key

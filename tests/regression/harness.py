@@ -1,10 +1,13 @@
 """What the regression tests share: running the program, reading summary.json, comparing with reference values."""
 import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 
 class Harness:
@@ -12,7 +15,7 @@ class Harness:
 
     def __init__(self, program, source, launcher):
         self.program = program
-        self.source = pathlib.Path(source)
+        self.source = pathlib.Path(source).resolve()
         self.train = self.source / "inputs" / "turbine_train"
         self.launcher = launcher
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="whirl_regression_"))
@@ -34,6 +37,18 @@ class Harness:
         if code is not None and done.returncode != code:
             sys.exit(f"{deck}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
         return self.studies(name)
+
+    def kill_at_checkpoint(self, deck, out, overrides=()):
+        """Starts a deck on one rank and kills it as soon as it has written a checkpoint into the directory `out`."""
+        process = subprocess.Popen(self.command(deck, out, overrides, launcher=[]), stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        limit = time.monotonic() + 200
+        while process.poll() is None and time.monotonic() < limit and not list(out.glob("*.checkpoint.h5")):
+            time.sleep(1e-3)
+        if process.poll() is None:
+            os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        self.true(f"{out.name}: killed at a checkpoint", process.returncode == -signal.SIGKILL and list(out.glob("*.checkpoint.h5")))
 
     def studies(self, name):
         summary = json.loads((self.work / name / "summary.json").read_text())

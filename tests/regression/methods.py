@@ -4,11 +4,7 @@ undisturbed one finds.
 
 methods.py PROGRAM SOURCE
 """
-import os
-import signal
-import subprocess
 import sys
-import time
 
 from compare import same_results
 from harness import Harness
@@ -24,23 +20,13 @@ METHODS = {"shooting": "method: shooting, scheme: radau_iia_3, steps: 40",
            "Newton-Picard": "method: newton_picard, scheme: classical, intervals: 80, steps: 1"}
 
 
-def checkpointed(out):
-    return out.exists() and any("checkpoint" in p.name and not p.name.endswith(".next") for p in out.iterdir())
-
-
 for name, words in METHODS.items():
     for kind, branch in ("forced", FORCED), ("self-excited", SELF_EXCITED):
         case = f"{name}, {kind}"
         overrides = [f"studies=[{{cycle_branch: {{{branch}, {words}}}}}]"]
         h.run(deck, case, overrides)
         out = h.work / f"{case}, killed"
-        process = subprocess.Popen(h.command(deck, out, overrides), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while process.poll() is None and not checkpointed(out):
-            time.sleep(1e-3)
-        if process.poll() is None:
-            os.kill(process.pid, signal.SIGKILL)
-        process.wait()
-        h.true(f"{case}: killed at a checkpoint", process.returncode == -signal.SIGKILL)
+        h.kill_at_checkpoint(deck, out, overrides)
         h.run(deck, f"{case}, killed", overrides, ["--resume"])
         for what, d, within in same_results(h.work / case, out):
             h.close(f"{case}: {what}", d, 0, within)

@@ -4,11 +4,7 @@
 motions.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
 import math
-import os
-import signal
-import subprocess
 import sys
-import time
 
 from compare import same_results
 from harness import Harness, value
@@ -175,13 +171,7 @@ def resume(h):
     short = ["studies.1.motion.revolutions=40", "studies.1.motion.discard=10", "studies.1.motion.tolerance=1e-4"]
     h.run(path, "whole", short)
     out = h.work / "killed"
-    process = subprocess.Popen(h.command(path, out, short), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    limit = time.monotonic() + 200
-    while not list(out.glob("*.checkpoint.h5")) and process.poll() is None and time.monotonic() < limit:
-        time.sleep(0.01)
-    h.true("a checkpoint before the end", process.poll() is None)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
+    h.kill_at_checkpoint(path, out, short)
     h.run(path, "killed", short, ["--resume"])
     for what, difference, within in same_results(h.work / "whole", out, 1e-14):
         h.close(f"resumed: {what}", difference, 0, within)

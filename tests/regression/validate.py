@@ -34,6 +34,9 @@ PRINTED = {
     ("5_9", "1", "balanced"): ["1.10"],
     ("5_10", "0.01", "a2"): ["0.414 [2]"], ("5_10", "0.1", "a2"): ["0.507"], ("5_10", "1", "a2"): ["1.16"],
 }
+# Estimates are differences of cycles at whose residuals of 1e-9 Newton's method stops: no value is known better than that,
+# relatively, even where a difference happens to vanish.
+FLOOR = 1e-9
 WORDS = {"hopf": "Hopf", "cyclic_fold": "cyclic fold", "flip": "flip", "neimark_sacker": "Neimark-Sacker"}
 
 
@@ -49,7 +52,7 @@ def rows(h, figure, compliance, deck, overrides, wanted):
             found, error = b.get("nondimensional_speed"), b.get("uncertainty")
             here = "-" if found is None else f"{found:.6g}"
             if found is not None and error is not None:
-                here += f" \u00b1 {error * found / b['value']:.1g}"
+                here += f" \u00b1 {max(error * found / b['value'], FLOOR * found):.1g}"
             case = f"B = {compliance}, {name}" if compliance else name
             print(f"| {figure.replace('_', '.')} | {case} | {WORDS[kind]} | {text} | {reference:.9g} | {here} |", flush=True)
 
