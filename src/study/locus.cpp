@@ -115,6 +115,11 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
     throw core::NotConverged(
         fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), options.bifurcation));
   seed_ = all[static_cast<std::size_t>(options.bifurcation) - 1];
+  if (of_cycles_ && seed_.cycle.mesh.size() < 2)
+    throw core::NotConverged(
+        fmt::format("bifurcation {} of '{}' is the Hopf point where its cycles are born: follow it from the branch of "
+                    "equilibria, or choose another one",
+                    options.bifurcation, options.of));
   first_ = of_cycles_ ? of_cycles_->parameter : of_rest_->parameter;
   first_range_ = options.first_range.value_or(first_.range);
   first_scale_ = width(first_range_);
