@@ -20,7 +20,7 @@ SPEED = 160.0  # rad/s: one unit of Omega* of the decks with F0* = 1
 # below, 2.4978 on 60 x 12. Cycles of finite_curve.yaml: 50 x 10 to 400 x 80 cells, steps in time 5e-5 and 1e-4.
 FINITE_HOPF = 2.49964, 2e-4
 FINITE_FLIPS = (2.05439, 1.5e-4), (4.3339, 7e-4)
-FINITE_FOLD = 6.5085, 2e-3
+FINITE_FOLD = 6.5085, 1.4e-3
 # short.yaml and long.yaml: Hopf points of an independent computation without a mesh; cycles on 60 to 480 cells.
 SHORT = {"balanced": [(2.732563, 0)], "unbalanced": [(4.28239, 6e-4), (5.97699, 1e-4)]}
 LONG = {"balanced": [(0.498391, 0)], "unbalanced": [(0.500669, 2e-5)]}
