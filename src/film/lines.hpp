@@ -55,13 +55,14 @@ public:
   void solve(Columns& x) const {
     const int n = x.count, length = x.length;
     for (int z = 1; z < length; ++z) {
-      Real* y = x.row(z);
-      const Real *before = x.row(z - 1), *low = lower_.row(z);
+      Real* __restrict y = x.row(z);
+      const Real* __restrict before = x.row(z - 1), * __restrict low = lower_.row(z);
       for (int i = 0; i < n; ++i) y[i] -= low[i] * before[i];
     }
     for (int z = length - 1; z >= 0; --z) {
-      Real* y = x.row(z);
-      const Real *after = z + 1 < length ? x.row(z + 1) : nullptr, *up = upper_.row(z), *inv = inverse_.row(z);
+      Real* __restrict y = x.row(z);
+      const Real *__restrict after = z + 1 < length ? x.row(z + 1) : nullptr, *__restrict up = upper_.row(z),
+                             *__restrict inv = inverse_.row(z);
       if (after)
         for (int i = 0; i < n; ++i) y[i] = (y[i] - up[i] * after[i]) * inv[i];
       else
@@ -89,22 +90,30 @@ private:
   Columns lower_, upper_, inverse_;
 };
 
+// to -= a x + b y + c z, in one sweep over `to`.
+inline void subtract(int n, const Real* __restrict a, const Real* __restrict x, const Real* __restrict b,
+                     const Real* __restrict y, const Real* __restrict c, const Real* __restrict z,
+                     Real* __restrict to) {
+  for (int i = 0; i < n; ++i) to[i] -= a[i] * x[i] + b[i] * y[i] + c[i] * z[i];
+}
+inline void subtract(int n, const Real* __restrict a, const Real* __restrict x, Real* __restrict to) {
+  for (int i = 0; i < n; ++i) to[i] -= a[i] * x[i];
+}
+
 // y -= block x, with x of the neighbour `shift` columns on; a diagonal block has only its centre.
 inline void subtract(const Block& block, bool diagonal, const Columns& x, int shift, Columns& y) {
   const int n = y.count;
   for (int z = 0; z < y.length; ++z) {
     Real* to = y.row(z);
     const Real *a = block.centre.row(z), *v = x.row(z) + shift;
-    for (int i = 0; i < n; ++i) to[i] -= a[i] * v[i];
-    if (diagonal) continue;
-    if (z > 0) {
-      const Real *b = block.below.row(z), *u = x.row(z - 1) + shift;
-      for (int i = 0; i < n; ++i) to[i] -= b[i] * u[i];
+    const bool below = !diagonal && z > 0, above = !diagonal && z + 1 < y.length;
+    if (below && above) {
+      subtract(n, a, v, block.below.row(z), x.row(z - 1) + shift, block.above.row(z), x.row(z + 1) + shift, to);
+      continue;
     }
-    if (z + 1 < y.length) {
-      const Real *b = block.above.row(z), *u = x.row(z + 1) + shift;
-      for (int i = 0; i < n; ++i) to[i] -= b[i] * u[i];
-    }
+    subtract(n, a, v, to);
+    if (below) subtract(n, block.below.row(z), x.row(z - 1) + shift, to);
+    if (above) subtract(n, block.above.row(z), x.row(z + 1) + shift, to);
   }
 }
 
