@@ -14,27 +14,39 @@ def title_of(study):
     return study.name if study.name != "bearing_map" else study.attribute("bearing", study.name)
 
 
+def between(e, phi, table, x, y):
+    """A table over (eccentricity, angle from 0 to 2 pi) at places (x, y), linear in both."""
+    r, t = np.hypot(x, y), np.arctan2(y, x) % (2 * np.pi)
+    i, j = (np.clip(np.searchsorted(axis, v) - 1, 0, len(axis) - 2) for axis, v in ((e, r), (phi, t)))
+    u, w = (r - e[i]) / (e[i + 1] - e[i]), (t - phi[j]) / (phi[j + 1] - phi[j])
+    return (1 - u) * ((1 - w) * table[i, j] + w * table[i, j + 1]) + u * ((1 - w) * table[i + 1, j] + w * table[i + 1, j + 1])
+
+
 def draw_impedance(study):
     """Size (contours) and direction (arrows) of the resistance to a squeeze velocity, over the journal's place."""
-    if not study.has("impedance/W_along", "impedance/along"):
+    if not study.has("impedance/W_along", "impedance/eccentricity"):
         return []
-    along, across = study.get("impedance/along"), study.get("impedance/across")
+    e, phi = study.get("impedance/eccentricity"), study.get("impedance/angle")
     w, v = study.get("impedance/W_along"), study.get("impedance/W_across")
-    half = across >= -1e-12  # mirrored below
-    size = np.hypot(w, v)[:, half]
+    size = np.hypot(w, v)
     figure, axes, _ = grid_of(1, width=8.4, height=4.6)
     axis = axes[0]
-    known = size[np.isfinite(size)]
-    steps = np.array([0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
-    steps = steps[(steps > known.min()) & (steps < known.max())]
-    lines = axis.contour(along, across[half], np.ma.masked_invalid(size).T, steps, colors=COLOURS[0], linewidths=1.0)
-    axis.clabel(lines, fmt="%g", fontsize=7.5)
-    skip = max(1, len(along) // 20)
-    x, y = np.meshgrid(along[::skip], across[half][::skip], indexing="ij")
-    u, n = (-a[:, half][::skip, ::skip] / size[::skip, ::skip] for a in (w, v))
-    axis.quiver(x, y, u, n, color=COLOURS[1], pivot="mid", scale=34, width=0.0022, headwidth=4)
+    upper = phi <= np.pi * (1 + 1e-12)  # mirrored below
+    steps = np.outer(10.0 ** np.arange(-2, 5), (1, 2, 5)).ravel()
+    steps = steps[(steps > np.nanmin(size)) & (steps < np.nanmax(size))]
+    x, y = (np.outer(e, f(phi[upper])) for f in (np.cos, np.sin))
+    lines = axis.contour(x, y, np.ma.masked_invalid(np.log10(size[:, upper])), np.log10(steps), colors=COLOURS[0],
+                         linewidths=np.where(np.isclose(np.log10(steps) % 1, 0), 1.4, 0.8))
+    axis.clabel(lines, fmt=lambda level: f"{round(10**level, 3):g}", fontsize=7.5)
+    places = np.linspace(-0.95, 0.95, 20)
+    x, y = (g.ravel() for g in np.meshgrid(places, np.linspace(0.05, 0.95, 10)))
+    inside = np.hypot(x, y) < e[-1]
+    x, y = x[inside], y[inside]
+    u, n = (-between(e, phi, a / size, x, y) for a in (w, v))
+    axis.quiver(x, y, u / np.hypot(u, n), n / np.hypot(u, n), color=COLOURS[1], pivot="mid", scale=34, width=0.0022, headwidth=4)
     turn = np.linspace(0, np.pi, 181)
     axis.plot(np.cos(turn), np.sin(turn), color=INK, linewidth=1.1)
+    axis.plot(e[-1] * np.cos(turn), e[-1] * np.sin(turn), color=GREY, linewidth=0.7, linestyle=":")
     axis.set_aspect("equal")
     axis.set_xlim(-1.04, 1.04)
     axis.set_ylim(-0.02, 1.04)
@@ -42,7 +54,8 @@ def draw_impedance(study):
     axis.set_ylabel(r"$\varepsilon$ across it")
     handles = [Line2D([], [], color=COLOURS[0], label=r"$|W|$"),
                Line2D([], [], color=COLOURS[1], marker=r"$\rightarrow$", linestyle="none", label=r"direction of the force $F^* = -v_s^*\,W$")]
-    return [save(figure, study, "impedance", r"$F^* = (c/R)^2 F/(\mu LD)$; the lower half is its mirror image", handles)]
+    note = rf"$F^* = (c/R)^2 F/(\mu LD)$; computed up to $\varepsilon$ = {e[-1]:.3g}; the lower half is its mirror image"
+    return [save(figure, study, "impedance", note, handles)]
 
 
 def maps_of(results):

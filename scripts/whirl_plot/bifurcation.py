@@ -2,8 +2,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, levels, mark, parameter_label,
-                    place_on_branch, save)
+from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, mark, parameter_label, place_on_branch, save)
 
 
 def events_of(study):
@@ -30,12 +29,17 @@ def heights(study, curves, kind, value):
     return place_on_branch(parameter, curves, unstable, kind, value)
 
 
-def mark_events(axis, study, curves, scale, label=True, size=6):
-    parameter, _, _ = branch_of(study)
-    events = events_of(study)
-    for (kind, value), level in zip(events, levels([v for _, v in events], np.ptp(parameter))):
-        for i, height in enumerate(heights(study, [c * scale for c in curves], kind, value)):
-            mark(axis, kind, value, height, label=label and i == 0, size=size, level=level)
+def mark_events(axis, study, curves, scale, size=6):
+    for kind, value in events_of(study):
+        for height in heights(study, [c * scale for c in curves], kind, value):
+            mark(axis, kind, value, height, size=size)
+
+
+def distinct(*tables):
+    """Columns (bearings) of tables that do not move exactly like one before: two bearings at one node of a rigid rotor do."""
+    def alike(b, c):
+        return all(np.allclose(t[:, b], t[:, c], rtol=1e-9, atol=1e-9 * np.abs(t).max()) for t in tables)
+    return [b for b in range(tables[0].shape[1]) if not any(alike(b, c) for c in range(b))]
 
 
 def draw_equilibria(study):
@@ -45,13 +49,14 @@ def draw_equilibria(study):
     x, y = (study.get(f"branch/{k}").reshape(len(parameter), -1) for k in "xy")
     names = study.bearings(x.shape[1])
     growth = study.get("branch/leading_real")
-    figure, axes, _ = grid_of(len(names) + (growth is not None))
+    shown = distinct(x, y)
+    figure, axes, _ = grid_of(len(shown) + (growth is not None))
     scale, unit = study.measure(np.concatenate([x, y]))
-    for b, (axis, name) in enumerate(zip(axes, names)):
+    for axis, b in zip(axes, shown):
         draw_branch(axis, parameter, y[:, b] * scale, stable, COLOURS[0])
         draw_branch(axis, parameter, x[:, b] * scale, stable, COLOURS[1])
         mark_events(axis, study, [y[:, b], x[:, b]], scale)
-        axis.set_title(name)
+        axis.set_title(names[b])
         axis.set_ylabel(f"position [{unit}]")
         axis.set_xlabel(parameter_label(study))
         axis.margins(y=0.12)
@@ -69,30 +74,31 @@ def draw_equilibria(study):
                  branch_legend([k for k, _ in events_of(study)], directions))]
 
 
-def draw_cycle_panel(axis, study, direction, b, scale, colour, label=True, size=6):
+def draw_cycle_panel(axis, study, direction, b, scale, colour, size=6):
     parameter, stable, _ = branch_of(study)
     high, low = (study.get(f"branch/{direction}_{k}").reshape(len(parameter), -1)[:, b] for k in ("max", "min"))
     axis.fill_between(parameter, low * scale, high * scale, color=colour, alpha=0.06, linewidth=0)
     draw_branch(axis, parameter, high * scale, stable, colour)
     draw_branch(axis, parameter, low * scale, stable, colour)
-    mark_events(axis, study, [high, low], scale, label, size)
+    mark_events(axis, study, [high, low], scale, size)
 
 
 def draw_cycles(study):
     if not study.has("branch/parameter", "branch/y_max"):
         return []
     parameter, _, _ = branch_of(study)
-    count = study.get("branch/y_max").reshape(len(parameter), -1).shape[1]
-    names = study.bearings(count)
+    tables = [study.get(f"branch/{d}_{k}").reshape(len(parameter), -1) for d in "xy" for k in ("max", "min")
+              if study.has(f"branch/{d}_{k}")]
+    shown, names = distinct(*tables), study.bearings(tables[0].shape[1])
     files = []
     for direction, words in (("y", "vertical"), ("x", "horizontal")):
         if not study.has(f"branch/{direction}_max"):
             continue
-        figure, axes, _ = grid_of(count)
+        figure, axes, _ = grid_of(len(shown))
         scale, unit = study.measure(np.concatenate([study.get(f"branch/{direction}_max"), study.get(f"branch/{direction}_min")]))
-        for b, (axis, name) in enumerate(zip(axes, names)):
+        for axis, b in zip(axes, shown):
             draw_cycle_panel(axis, study, direction, b, scale, COLOURS[0] if direction == "y" else COLOURS[1])
-            axis.set_title(name)
+            axis.set_title(names[b])
             axis.set_ylabel(f"{direction}, max and min [{unit}]")
             axis.set_xlabel(parameter_label(study))
             axis.margins(y=0.12)
@@ -135,22 +141,22 @@ def draw_together(results):
     field = {"cycle_branch": "branch/y_max", "equilibrium_branch": "branch/y"}
     tables = [s.get(field[s.kind]).reshape(len(s.get("branch/parameter")), -1) for s in studies]
     count = min(t.shape[1] for t in tables)
-    names = studies[0].bearings(count)
+    names, shown = studies[0].bearings(count), distinct(*(t[:, :count] for t in tables))
     scale, unit = studies[0].measure(np.concatenate([t[:, :count].ravel() for t in tables]))
-    figure, axes, _ = grid_of(count)
+    figure, axes, _ = grid_of(len(shown))
     handles = []
     for s, study in enumerate(studies):
         colour = INK if study.kind == "equilibrium_branch" else COLOURS[s % len(COLOURS)]
         handles.append(Line2D([], [], color=colour, label=study.name))
-        for b, axis in enumerate(axes):
+        for axis, b in zip(axes, shown):
             if study.kind == "equilibrium_branch":
                 parameter, stable, _ = branch_of(study)
                 draw_branch(axis, parameter, tables[s][:, b] * scale, stable, colour, linewidth=1.3)
-                mark_events(axis, study, [tables[s][:, b]], scale, False, 5)
+                mark_events(axis, study, [tables[s][:, b]], scale, 5)
             else:
-                draw_cycle_panel(axis, study, "y", b, scale, colour, False, 5)
-    for axis, name in zip(axes, names):
-        axis.set_title(name)
+                draw_cycle_panel(axis, study, "y", b, scale, colour, 5)
+    for axis, b in zip(axes, shown):
+        axis.set_title(names[b])
         axis.set_ylabel(f"y, max and min [{unit}]")
         axis.set_xlabel(label)
         axis.margins(y=0.12)

@@ -56,7 +56,7 @@ def draw(results):
             scale, height = known[s.name][0], eccentricity(s)
             draw_branch(axis, parameter / scale, height, stable, colour)
             for kind, value in events_of(s):
-                mark(axis, kind, value / scale, heights(s, [height], kind, value)[0], label=False, size=5)
+                mark(axis, kind, value / scale, heights(s, [height], kind, value)[0], size=5)
         axis.set_title(f"a* = {unbalance:.3g}" if unbalance else "balanced")
         axis.set_xlabel(r"$\Omega^* = \Omega/\Omega_0$")
         axis.set_ylabel(r"max $\varepsilon$")

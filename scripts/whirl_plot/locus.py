@@ -1,4 +1,6 @@
 """Curves of bifurcations in two parameters, with their points of codimension two."""
+import re
+
 import numpy as np
 from matplotlib import pyplot as plt
 
@@ -36,7 +38,8 @@ def label(axis, points):
         elif word not in near[0][2]:
             near[0][2].append(word)
     for x, y, words in groups:
-        axis.annotate(",\n".join(words), (x, y), textcoords="offset points", xytext=(8, -5), va="top", fontsize=8, color=INK)
+        axis.annotate(",\n".join(words), (x, y), textcoords="offset points", xytext=(8, -5), va="top", fontsize=8, color=INK,
+                      bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5})
 
 
 def draw_together(results):
@@ -57,7 +60,8 @@ def draw_together(results):
                           np.atleast_1d(study.get("codimension_two/second")))
     label(axis, points)
     axis.set_xlabel(f"{last(studies[0].attribute('parameter'))} [{studies[0].attribute('parameter_unit')}]")
-    axis.set_ylabel(f"{last(studies[0].attribute('second'))} [{studies[0].attribute('second_unit')}]")
+    unit = re.sub("^u(?=m$)", "\u00b5", studies[0].attribute("second_unit"))
+    axis.set_ylabel(f"{last(studies[0].attribute('second'))} [{unit}]")
     axis.margins(x=0.04, y=0.08)
     whole = type("Whole", (), {"run_title": results.title, "name": "curves of bifurcations", "status": "",
                                "file": lambda self, what: results.directory / f"{what}.png"})()

@@ -77,8 +77,8 @@ def turn_arrow(axis):
 
 def finish(axis, name=None, unit="\u00b5m"):
     axis.set_aspect("equal", adjustable="box")
-    axis.set_xlabel(f"x [{unit}]")
-    axis.set_ylabel(f"y [{unit}]")
+    for put, letter in ((axis.set_xlabel, "x"), (axis.set_ylabel, "y")):
+        put(letter if unit == "1" else f"{letter} [{unit}]")
     if name:
         axis.set_title(name)
 
@@ -100,7 +100,9 @@ def draw(study, shown=9):
     names = study.bearings(x.shape[2])
     known = study.has("bearings/clearance") or study.has("bearings/outline_x")
     rows = 2 if known else 1
-    figure, axes = plt.subplots(rows, len(names), figsize=(max(7.2, 2.75 * len(names)), 2.55 * rows + 0.9), squeeze=False)
+    # A panel by itself fills the page instead of standing at one side of it.
+    size = (max(7.2, 2.75 * len(names)), 2.55 * rows + 0.9) if rows * len(names) > 1 else (5.6, 4.6)
+    figure, axes = plt.subplots(rows, len(names), figsize=size, squeeze=False)
     norm = plt.Normalize(parameter.min(), parameter.max() if np.ptp(parameter) else parameter.min() + 1)
     for b, name in enumerate(names):
         if known:
@@ -136,7 +138,7 @@ def draw_locus(study):
         axis.plot(x[:, b], y[:, b], color=GREY, linewidth=0.6)
         axis.scatter(x[:, b], y[:, b], c=parameter, cmap="viridis", s=np.where(stable, 13, 5), linewidths=0, zorder=3)
         for kind, value in events_of(study):
-            mark(axis, kind, *place_on_branch(parameter, [x[:, b], y[:, b]], unstable, kind, value), label=False)
+            mark(axis, kind, *place_on_branch(parameter, [x[:, b], y[:, b]], unstable, kind, value))
         finish(axis, name)
     colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
     figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)

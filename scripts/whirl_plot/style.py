@@ -1,9 +1,12 @@
 """The look of all pictures, units of axes, and the marks that recur."""
+import io
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from PIL import Image  # noqa: E402
 from cycler import cycler  # noqa: E402
 
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
@@ -72,9 +75,32 @@ def save(figure, study, what, note="", handles=(), columns=6):
                       handlelength=2.2, labelspacing=0.35, bbox_to_anchor=(0.005, (0.05 + 0.19 * bool(note)) / height))
     figure.text(0.99, 0.13 / height, note, ha="right", va="center", fontsize=7.5, color=GREY)
     path = study.file(what)
-    figure.savefig(path, facecolor="white")
+    write(figure, path)
     plt.close(figure)
     return path
+
+
+def write(figure, path):
+    """As a PNG of 256 colours, a third of the size of one of all: lines on white need no more."""
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png", facecolor="white")
+    few_colours(Image.open(drawn).convert("RGB")).save(path, format="PNG", optimize=True)
+
+
+def few_colours(image):
+    """In 256 colours: the 32 of the largest areas as they are, maximum coverage of the rest, which keeps the hue of thin lines
+    and small marks."""
+    pixels = np.asarray(image).astype(np.int64) @ (1 << 16, 1 << 8, 1)
+    codes, place, count = np.unique(pixels.ravel(), return_inverse=True, return_counts=True)
+    colours = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1)
+    frequent = colours[np.argsort(-count, kind="stable")[:32]]
+    rest = image.quantize(256 - len(frequent), method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).getpalette()
+    palette = np.concatenate([frequent, np.reshape(rest, (-1, 3))])[:256]
+    nearest = np.concatenate([np.argmin(((part[:, None] - palette)**2).sum(axis=2), axis=1)
+                              for part in np.array_split(colours, 1 + len(colours) // 4096)])
+    few = Image.fromarray(nearest[place].reshape(pixels.shape).astype(np.uint8), mode="P")
+    few.putpalette(palette.astype(np.uint8).tobytes())
+    return few
 
 
 def runs(keys):
@@ -136,13 +162,11 @@ def levels(values, span, width=0.075):
     return result
 
 
-def mark(axis, kind, x, y, label=True, size=6, level=0):
-    short, marker, colour, _ = MARKS.get(kind, (kind, "x", INK, kind))
+def mark(axis, kind, x, y, size=6):
+    """The legend says what marks mean: words beside them would cover curves."""
+    _, marker, colour, _ = MARKS.get(kind, (kind, "x", INK, kind))
     axis.plot([x], [y], marker=marker, color=colour, markersize=size, markeredgecolor="white", markeredgewidth=0.8,
               linestyle="none", zorder=6)
-    if label:
-        axis.annotate(short, (x, y), xytext=(0, 6 + 9 * level), textcoords="offset points", ha="center", va="bottom",
-                      fontsize=7.5, color=colour, fontweight="bold", zorder=7)
 
 
 def branch_legend(kinds, more=()):

@@ -84,12 +84,14 @@ public:
 
   void squeeze() {
     if (bearing_.has_states()) return;
-    for (int i = 0; i < options_.grid; ++i)
-      axis.push_back(options_.max_eccentricity * (2.0 * i / (options_.grid - 1) - 1));
-    for (const double a : axis)
-      for (const double b : axis) {
-        const bool inside = std::hypot(a, b) <= options_.max_eccentricity * (1 + 1e-12);
-        const auto w = inside ? bearing_.impedance(a, b) : std::array<double, 2>{nan, nan};
+    // W grows like powers of 1/(1 - e): its logarithm is all but linear in log(1 - e).
+    const int last = options_.grid - 1;
+    for (int i = 0; i <= last; ++i)
+      radii.push_back(1 - std::pow(1 - options_.max_eccentricity, static_cast<double>(i) / last));
+    for (int j = 0; j <= 2 * last; ++j) angles.push_back(std::numbers::pi * j / last);
+    for (const double e : radii)
+      for (const double phi : angles) {
+        const auto w = bearing_.impedance(e * std::cos(phi), e * std::sin(phi));
         along.push_back(w[0]);
         across.push_back(w[1]);
       }
@@ -98,7 +100,7 @@ public:
   std::vector<Point> locus;
   std::vector<Loaded> loaded;
   std::optional<BearingEquilibrium> threshold;
-  std::vector<double> axis, along, across;
+  std::vector<double> radii, angles, along, across;
 
 private:
   Point complete(const BearingEquilibrium& e) {
@@ -208,13 +210,13 @@ void BearingMap::run(Context& context) {
   group.set("speed", options.speed.value);
   put_locus(group, map->locus, options.frequencies);
   put_loaded(group, summary, map->loaded);
-  if (!map->axis.empty()) {
+  if (!map->radii.empty()) {
     auto& table = group.child("impedance");
-    const io::Shape shape{map->axis.size(), map->axis.size()};
-    table.put("along", map->axis, "1", "eccentricity along the squeeze velocity, in clearances");
-    table.put("across", map->axis, "1", "eccentricity across it (turned counter-clockwise)");
-    table.put("W_along", shape, map->along, "1", "impedance [along][across], resisting the squeeze");
-    table.put("W_across", shape, map->across, "1", "impedance [along][across]");
+    const io::Shape shape{map->radii.size(), map->angles.size()};
+    table.put("eccentricity", map->radii, "1", "distance of the journal from the centre, in clearances");
+    table.put("angle", map->angles, "rad", "from the squeeze velocity to the journal, counter-clockwise");
+    table.put("W_along", shape, map->along, "1", "impedance [eccentricity][angle], resisting the squeeze");
+    table.put("W_across", shape, map->across, "1", "impedance [eccentricity][angle], to the left of the squeeze");
   }
   if (map->threshold) {
     const double speed = groups->load / (groups->bearings * map->threshold->sommerfeld);

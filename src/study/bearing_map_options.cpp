@@ -13,7 +13,8 @@ void describe(deck::Description<BearingMapOptions>& d) {
   d.add("max_eccentricity", &O::max_eccentricity, deck::positive,
         "largest eccentricity, in clearances; that of a compliant bearing may exceed 1");
   d.add("points", &O::points, deck::at_least(2), "eccentricities, evenly spaced");
-  d.add("grid", &O::grid, deck::at_least(3), "points along and across the squeeze velocity in the impedance plot");
+  d.add("grid", &O::grid, deck::at_least(3),
+        "eccentricities in the impedance plot, closer together towards the wall; directions have twice as many");
   d.add("frequencies", &O::frequencies, deck::positive,
         "frequencies omega/Omega at which the stiffness and damping of a film with own states are tabulated; the first "
         "one is that of the locus");

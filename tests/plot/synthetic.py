@@ -150,10 +150,10 @@ def bearing_map(root, name, soft):
         ratio = np.array([1, 0.01, 0.1, 10, 100.0])
         put(g.create_group("frequencies"), ratio=ratio, **{k: v[:, None] * (1 + ratio / (1 + ratio)) for k, v in entries.items()})
         return
-    axis = np.linspace(-0.9, 0.9, 31)
-    a, b = np.meshgrid(axis, axis, indexing="ij")
-    w = np.where(a**2 + b**2 <= 0.81, 1 / (1 - np.minimum(a**2 + b**2, 0.99)), np.nan)
-    put(g.create_group("impedance"), along=axis, across=axis, W_along=w * (1 + a), W_across=w * b)
+    e, phi = 1 - 0.1 ** np.linspace(0, 1, 31), np.linspace(0, 2 * np.pi, 61)
+    a, b = np.outer(e, np.cos(phi)), np.outer(e, np.sin(phi))
+    w = 1 / (1 - a**2 - b**2) ** 2
+    put(g.create_group("impedance"), eccentricity=e, angle=phi, W_along=w * (1 + a), W_across=w * b)
 
 
 def motion(root):

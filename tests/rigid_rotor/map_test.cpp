@@ -73,15 +73,22 @@ TEST(BearingMap, ShortBearing) {
     EXPECT_NEAR(b[i], bxy, 1e-10 * (1 + std::abs(bxy)));
   }
   const auto& map = m.group.group("impedance");
-  const auto &axis = map.reals("across"), &along = map.reals("W_along"), &across = map.reals("W_across");
-  const std::size_t n = axis.size(), middle = n / 2;  // along = 0: alpha = 90 deg
-  ASSERT_NEAR(map.reals("along")[middle], 0, 1e-15);
-  for (std::size_t j = 0; j < n; ++j) {
-    const double q = 1 - axis[j] * axis[j], w = pi / std::pow(q, 1.5), v = 4 * axis[j] / (q * q);
-    EXPECT_NEAR(along[middle * n + j], w, 1e-12 * w);
-    EXPECT_NEAR(across[middle * n + j], v, 1e-12 * (w + std::abs(v)));
+  const auto &radii = map.reals("eccentricity"), &angles = map.reals("angle"), &along = map.reals("W_along"),
+             &across = map.reals("W_across");
+  ASSERT_EQ(radii.size(), 41U);
+  ASSERT_EQ(along.size(), radii.size() * angles.size());
+  EXPECT_EQ(radii.front(), 0);
+  EXPECT_NEAR(radii.back(), 0.95, 1e-12);
+  EXPECT_NEAR(angles.back(), 2 * pi, 1e-12);
+  const std::size_t n = angles.size();
+  for (const auto& [j, side] : {std::pair{n / 4, 1}, {3 * (n / 4), -1}}) {  // the journal to the left, to the right
+    ASSERT_NEAR(std::cos(angles[j]), 0, 1e-15);
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      const double q = 1 - radii[i] * radii[i], w = pi / std::pow(q, 1.5), v = side * 4 * radii[i] / (q * q);
+      EXPECT_NEAR(along[i * n + j], w, 1e-11 * w);
+      EXPECT_NEAR(across[i * n + j], v, 1e-11 * (w + std::abs(v)));
+    }
   }
-  EXPECT_TRUE(std::isnan(along[0]));
 }
 
 TEST(BearingMap, OtherFilms) {

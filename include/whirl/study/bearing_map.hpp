@@ -13,7 +13,7 @@ struct BearingMapOptions {
   deck::Quantity speed;           ///< [rad/s]; rigid laminar films give the same nondimensional values at every speed
   double max_eccentricity = 0.9;  ///< [clearances]
   int points = 90;                ///< eccentricities, evenly spaced up to the largest
-  int grid = 41;                  ///< points per direction of the impedance plot
+  int grid = 41;                  ///< eccentricities of the impedance plot
   /// omega/Omega at which stiffness and damping are tabulated, for films with own states.
   std::vector<double> frequencies{1};
   std::vector<double> sommerfeld;  ///< loads S at which position and pressure are reported
