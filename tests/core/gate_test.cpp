@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
+
 using namespace whirl::core;
 
 namespace {
@@ -106,6 +108,19 @@ TEST(Agree, TheGravestErrorWins) {
     FAIL();
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(), "deck");
+  }
+}
+
+TEST(Agree, MemoryThatRunsOutOnOneRankIsNoMistakeOfOurs) {
+  try {
+    agree(MPI_COMM_WORLD, [&] {
+      if (rank_of(MPI_COMM_WORLD) == 0) throw std::bad_alloc();
+    });
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), out_of_memory);
+    EXPECT_EQ(e.exit(), Exit::failure);
+    EXPECT_TRUE(e.agreed());
   }
 }
 
