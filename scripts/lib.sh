@@ -43,13 +43,13 @@ quietly() {
   fi
 }
 
-# Configures and builds the release preset in build/.
+# Configures and builds the release preset in build/: the targets named, or everything.
 build_release() {
   cd "$whirl_root"
   quietly cmake --preset release
   # Configuring has just looked for new files, so ninja's plan is complete; silence if there is nothing to do.
-  if ! ninja -C build -n | grep -q 'no work to do'; then
-    NINJA_STATUS='[%f/%t %es] ' cmake --build --preset release >&2
+  if ! ninja -C build -n "$@" | grep -q 'no work to do'; then
+    NINJA_STATUS='[%f/%t %es] ' cmake --build --preset release ${1:+--target "$@"} >&2
   fi
   cd - >/dev/null
 }

@@ -5,11 +5,23 @@
 #include <filesystem>
 
 #include "directory.hpp"
+#include "outcome.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/core/session.hpp"
 #include "whirl/deck/output.hpp"
+#include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
 
 namespace whirl::app {
 namespace {
+
+namespace fs = std::filesystem;
+
+// "1 bearing", "2 bearings"
+std::string count(std::size_t n, const std::string& what, const std::string& plural) {
+  return fmt::format("{} {}", n, n == 1 ? what : plural);
+}
 
 // An InputError that does not depend on the rank is one that all ranks have.
 [[noreturn]] void refuse(const std::string& text) {
@@ -25,16 +37,19 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   if (deck.studies.empty()) refuse(fmt::format("{}: the deck asks for no study (`studies: [...]`)", request.deck.path));
   if (request.resume && request.force)
     refuse("--resume goes on with earlier results, --force replaces them: choose one");
-  const std::string directory = request.directory.empty()
-                                    ? "results/" + std::filesystem::path(request.deck.path).stem().string()
-                                    : request.directory;
+  const std::string directory =
+      request.directory.empty() ? "results/" + fs::path(request.deck.path).stem().string() : request.directory;
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
   prepare_directory(comm, directory, study::resolved_text(deck), earlier);
   study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
   const std::vector<std::string> undelivered = study::run(comm, deck, options);
-  for (const auto& line : undelivered) text += line + "\n";
+  core::agree(comm, [&] {
+    if (core::rank_of(comm) == 0) text += outcome_text(io::Summary::read(fs::path(directory) / "summary.json"));
+  });
+  for (const std::string& option : core::Session::unused_options())
+    text += fmt::format("nothing has asked for the PETSc option {}\n", option);
   text += fmt::format("results in {}\n", directory);
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }
@@ -42,10 +57,12 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
 std::string check(MPI_Comm comm, const DeckRequest& request) {
   const study::Deck deck = study::load(comm, request.path, request.overrides);
   const system::Machine& m = deck.machine;
-  const std::string what = system::is_rotor(m)
-                               ? fmt::format("{} segments, {} bearings", m.rotor.segments.size(), m.bearings.size())
-                               : "system " + m.system.name;
-  std::string text = fmt::format("{}: no errors; {}, {} studies\n", request.path, what, deck.studies.size());
+  const std::string rotor =
+      m.rotor.segments.empty() ? "rigid rotor" : count(m.rotor.segments.size(), "segment", "segments");
+  const std::string what =
+      system::is_rotor(m) ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") : "system " + m.system.name;
+  std::string text =
+      fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
   for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
   return text;
 }

@@ -33,6 +33,14 @@ void write_whole(const fs::path& path, const std::string& text) {
   fs::rename(temporary, path);
 }
 
+// True for what a run and its pictures leave; other files in a directory of results are the user's.
+bool is_ours(const fs::path& file) {
+  const std::string name = file.filename().string(), kind = file.extension().string();
+  return name == "resolved.yaml" || name == "summary.json" || name == "results.h5" || name == "report.html" ||
+         kind == ".xdmf" || kind == ".png" || kind == ".part" || name == "resolved.yaml.new" ||
+         name.find(".checkpoint.h5") != std::string::npos;
+}
+
 void prepare(const fs::path& directory, const std::string& resolved, Earlier earlier) {
   if (fs::exists(directory) && !fs::is_directory(directory))
     throw InputError(fmt::format("'{}' is a file; -o names a directory", directory.string()));
@@ -53,7 +61,8 @@ void prepare(const fs::path& directory, const std::string& resolved, Earlier ear
       throw InputError(
           fmt::format("'{}' holds results of another deck: --resume needs the same one", directory.string()));
     if (earlier == Earlier::replace)
-      for (const auto& entry : fs::directory_iterator(directory)) fs::remove_all(entry.path());
+      for (const auto& entry : fs::directory_iterator(directory))
+        if (entry.is_regular_file() && is_ours(entry.path())) fs::remove(entry.path());
   }
   fs::create_directories(directory);
   write_whole(deck, resolved);

@@ -1,10 +1,12 @@
 // The program: splits the command line, owns MPI and PETSc, and is the only place that turns errors into exit codes.
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
+#include "whirl/deck/node.hpp"
 
 namespace {
 
@@ -36,11 +39,44 @@ CommandLine split(int argc, char** argv) {
   return c;
 }
 
+std::vector<std::string> names_of_commands(const CLI::App& cli) {
+  std::vector<std::string> names;
+  for (const CLI::App* c : cli.get_subcommands({})) names.push_back(c->get_name());
+  return names;
+}
+
+// What is wrong with the words, in our own form: the library's texts neither name the command nor guess what was meant.
+std::string complaint(const CLI::App& cli, const CommandLine& line, const CLI::ParseError& e) {
+  const std::vector<std::string> commands = names_of_commands(cli);
+  const auto chosen = cli.get_subcommands();
+  if (chosen.empty()) {
+    const std::string list = fmt::format("commands are help, {}", fmt::join(commands, ", "));
+    if (line.words.empty()) return "what shall be done? " + list;
+    const std::string& word = line.words.back();
+    const std::string hint = deck::did_you_mean(word, commands);
+    return word.starts_with("-") ? fmt::format("there is no option '{}'; see whirl --help", word)
+                                 : fmt::format("there is no command '{}'{}; {}", word, hint, list);
+  }
+  const std::string name = chosen.front()->get_name();
+  std::string text = e.what();
+  for (const std::string& word : cli.remaining(true)) {
+    if (!word.starts_with("-") || word == "-") continue;
+    std::vector<std::string> options;
+    for (const CLI::Option* o : chosen.front()->get_options())
+      for (const std::string& l : o->get_lnames()) options.push_back("--" + l);
+    text = fmt::format("there is no option '{}'{}", word, deck::did_you_mean(word, options));
+    break;
+  }
+  return fmt::format("{}: {}; see whirl help {}", name, text, name);
+}
+
 core::Exit dispatch(CommandLine line, bool prints) {
   CLI::App cli{"Nonlinear dynamics of rotors in fluid films", "whirl"};
   cli.set_version_flag("--version", "whirl " WHIRL_VERSION);
   cli.require_subcommand(1);
-  cli.footer("Words behind `--` are options of PETSc: whirl run deck.yaml -- -eq_snes_monitor");
+  cli.footer(
+      "`whirl help COMMAND` explains a command, `whirl help KEY` an option of decks.\n"
+      "Words behind `--` are options of PETSc: whirl run deck.yaml -- -eq_snes_monitor");
 
   app::RunRequest run;
   app::DeckRequest check;
@@ -55,7 +91,8 @@ core::Exit dispatch(CommandLine line, bool prints) {
   deck_options(run_command, run.deck);
   run_command->add_option("-o,--output", run.directory, "directory of the results (results/NAME OF DECK if not given)")
       ->type_name("DIR");
-  run_command->add_flag("--resume", run.resume, "go on from the checkpoints in the directory");
+  run_command->add_flag("--resume", run.resume,
+                        "go on from the checkpoints in the directory, from the beginning if there are none");
   run_command->add_flag("--force", run.force, "replace results of an earlier run");
   run_command->add_flag("--progress", run.progress, "tell how far the work is");
   CLI::App* check_command = cli.add_subcommand("check", "check a deck without computing");
@@ -65,12 +102,26 @@ core::Exit dispatch(CommandLine line, bool prints) {
   describe_command->add_option("KEY", key, "option or group of options, such as bearings.geometry");
   CLI::App* schema_command = cli.add_subcommand("schema", "print the JSON Schema of decks, for editors");
 
+  // `help`, `help COMMAND` and `help KEY` are other words for what there is.
+  if (!line.words.empty() && line.words.back() == "help") {
+    const std::string about = line.words.size() > 1 ? line.words[line.words.size() - 2] : "";
+    if (about.empty())
+      line.words = {"--help"};
+    else if (const auto known = names_of_commands(cli); std::find(known.begin(), known.end(), about) != known.end())
+      line.words = {"--help", about};
+    else
+      line.words.back() = "describe";
+  }
   try {
-    cli.parse(std::move(line.words));
+    cli.parse(std::vector<std::string>(line.words));
   } catch (const CLI::ParseError& e) {
-    const bool asked = e.get_exit_code() == 0;
+    if (e.get_exit_code() != 0) {
+      core::InputError wrong(complaint(cli, line, e));
+      wrong.mark_agreed();
+      throw wrong;
+    }
     if (prints) (void)cli.exit(e);
-    return asked ? core::Exit::success : core::Exit::input;
+    return core::Exit::success;
   }
   std::string text;
   core::Exit exit = core::Exit::success;
@@ -110,6 +161,8 @@ int main(int argc, char** argv) {
     return static_cast<int>(dispatch(std::move(line), prints));
   } catch (const core::Error& e) {
     return leave(e.what(), e.exit(), e.agreed(), prints);
+  } catch (const std::bad_alloc&) {
+    return leave(core::out_of_memory, core::Exit::failure, false, prints);
   } catch (const std::exception& e) {
     return leave(fmt::format("internal error: {}", e.what()), core::Exit::bug, false, prints);
   }

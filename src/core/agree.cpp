@@ -1,5 +1,6 @@
 #include "whirl/core/agree.hpp"
 
+#include <new>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ Kind kind_of(const std::exception_ptr& e) {
     return bug;
   } catch (const Error&) {
     return error;
+  } catch (const std::bad_alloc&) {
+    return error;
   } catch (...) {
     return bug;
   }
@@ -32,6 +35,8 @@ Kind kind_of(const std::exception_ptr& e) {
 std::string text_of(const std::exception_ptr& e) {
   try {
     std::rethrow_exception(e);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory;
   } catch (const std::exception& x) {
     return x.what();
   } catch (...) {

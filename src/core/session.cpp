@@ -47,6 +47,16 @@ Session::~Session() {
   (void)SlepcFinalize();
 }
 
+std::vector<std::string> Session::unused_options() {
+  PetscInt n = 0;
+  char **names = nullptr, **values = nullptr;
+  check(PetscOptionsLeftGet(nullptr, &n, &names, &values));
+  std::vector<std::string> unused;
+  for (PetscInt i = 0; i < n; ++i) unused.push_back(fmt::format("-{}", names[i]));
+  check(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
+  return unused;
+}
+
 std::string Session::take_trace() {
   return std::exchange(trace(), std::string());
 }

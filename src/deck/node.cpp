@@ -1,6 +1,6 @@
 #include "whirl/deck/node.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -160,6 +160,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string n = nearest(word, candidates);
   return n.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", n);
+}
+
+std::string did_you_mean_one_of(std::string_view word, const std::vector<std::string>& names) {
+  if (names.empty()) return "; there is none";
+  const std::string hint = did_you_mean(word, names);
+  return hint.empty() ? fmt::format("; there {} {}", names.size() == 1 ? "is" : "are", fmt::join(names, ", ")) : hint;
 }
 
 }  // namespace whirl::deck

@@ -137,7 +137,7 @@ Access find_in(const Structure& structure, void* object, std::string_view path) 
   } catch (const InputError& e) {
     throw InputError(fmt::format("'{}': {}", path, e.what()));
   }
-  if (!a.value) throw InputError(fmt::format("'{}' is not a number of the deck", path));
+  if (!a.value) throw InputError(fmt::format("'{}' is no real number that could be varied", path));
   return a;
 }
 

@@ -104,6 +104,8 @@ void describe(deck::Description<Geometry>& d) {
       .continuable()
       .only(&Geometry::type, {lemon_bore});
   d.check([](const Geometry& g, const deck::Report& r) {
+    if (!(g.clearance < 0.1 * g.radius))
+      r.fail("clearance", "'clearance' must be below a tenth of 'radius': the equations are those of a thin film");
     if (g.type == lemon_bore && g.arc > pi) r.fail("arc", "'arc' must be at most 180 deg where type is lemon_bore");
     if (g.type == lemon_bore && least_thickness(g) <= 0)
       r.fail("offset", "'offset' closes the film of the centred journal: it leaves no thickness at a pad's edge");

@@ -1,5 +1,7 @@
 #include "whirl/film/impedance.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -161,7 +163,7 @@ Impedance finite_film(double ld, const Pair& e, const Pair& v) {
 
 void require_inside(const Pair& e) {
   const double eps = std::hypot(e[0], e[1]);
-  if (!(eps < 1.0)) throw core::DomainError("eccentricity is not below 1: " + std::to_string(eps));
+  if (!(eps < 1.0)) throw core::DomainError("eccentricity is not below 1: " + fmt::format("{:.9g}", eps));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "film/pad.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -39,7 +41,8 @@ Grid::Grid(const Pad& pad, const std::array<int, 2>& cells)
 }
 
 void require_thickness(double h_min) {
-  if (!(h_min > 0.0)) throw core::DomainError("film thickness is not positive: " + std::to_string(h_min * 1e6) + " um");
+  if (!(h_min > 0.0))
+    throw core::DomainError("film thickness is not positive: " + fmt::format("{:.4g}", h_min * 1e6) + " um");
 }
 
 }  // namespace whirl::film

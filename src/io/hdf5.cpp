@@ -51,21 +51,12 @@ public:
   Id& operator=(const Id&) = delete;
   ~Id() { Close(id_); }
   operator hid_t() const { return id_; }
-  void release_checked() {
-    const hid_t id = id_;
-    id_ = H5I_INVALID_HID;
-    check(Close(id));
-  }
 
 private:
   hid_t id_;
 };
 
-herr_t close_if_open(hid_t file) {
-  return file == H5I_INVALID_HID ? 0 : H5Fclose(file);
-}
-
-using File = Id<close_if_open>;
+using File = Id<H5Fclose>;
 using GroupId = Id<H5Gclose>;
 using Data = Id<H5Dclose>;
 using Attr = Id<H5Aclose>;
@@ -232,6 +223,21 @@ Group read_group(hid_t at) {
   return group;
 }
 
+// The bytes of a file with `root`. It is made in memory: where the disk is full, HDF5 cannot close a file, and ends the
+// process with a fault when it tries again at exit.
+std::string image_of(const Group& root) {
+  const List in_memory(H5Pcreate(H5P_FILE_ACCESS));
+  check(H5Pset_fapl_core(in_memory, std::size_t{1} << 20, false));
+  const File file(H5Fcreate("image", H5F_ACC_TRUNC, H5P_DEFAULT, in_memory));
+  write_group(file, root);
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) throw core::Error(reason());
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) < 0) throw core::Error(reason());
+  return bytes;
+}
+
 // Locks fail on some network file systems, and an atomic rename needs none.
 hid_t access() {
   const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
@@ -243,16 +249,13 @@ hid_t access() {
 
 void write_hdf5(const std::filesystem::path& path, const Group& root) {
   const Quiet quiet;
-  replace_file(path, [&](const std::filesystem::path& part) {
-    try {
-      const List how(access());
-      File file(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, how));
-      write_group(file, root);
-      file.release_checked();
-    } catch (const core::Error& e) {
-      throw core::Error("cannot write " + path.string() + ": " + e.what());
-    }
-  });
+  std::string bytes;
+  try {
+    bytes = image_of(root);
+  } catch (const core::Error& e) {
+    throw core::Error("cannot write " + path.string() + ": " + e.what());
+  }
+  replace_file(path, bytes);
 }
 
 Group read_hdf5(const std::filesystem::path& path) {

@@ -108,6 +108,7 @@ Json to_json(const StudySummary& s) {
   for (const Bifurcation& b : s.bifurcations) bifurcations.push_back(to_json(b));
   for (const ModeEntry& m : s.modes)
     modes.push_back({{"speed", number(m.speed)},
+                     {"speed_unit", m.speed_unit},
                      {"real", number(m.real)},
                      {"imag", number(m.imag)},
                      {"log_decrement", number(m.log_decrement)},
@@ -139,7 +140,8 @@ StudySummary study(const Json& j) {
     s.suspected.push_back({number(x.at("from")), number(x.at("to")), x.at("unit"), x.at("reason")});
   for (const Json& m : j.at("modes"))
     s.modes.push_back({number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
-                       m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>()});
+                       m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>(),
+                       m.value("speed_unit", std::string())});
   s.points = j.at("points");
   return s;
 }

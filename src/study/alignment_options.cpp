@@ -27,7 +27,7 @@ void Alignment::validate(const system::Machine& machine, const deck::Report& rep
   const std::vector<std::string> bearings = system::bearing_names(machine);
   auto exists = [&](const std::string& name, const std::string& path) {
     if (!system::find_bearing(machine, name))
-      report.fail(path, fmt::format("there is no bearing '{}'{}", name, deck::did_you_mean(name, bearings)));
+      report.fail(path, fmt::format("there is no bearing '{}'{}", name, deck::did_you_mean_one_of(name, bearings)));
   };
   for (const auto& [name, load] : options.loads) exists(name, "loads." + name);
   for (std::size_t i = 0; i < options.adjust.size(); ++i) {

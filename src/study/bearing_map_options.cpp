@@ -26,8 +26,9 @@ void BearingMap::validate(const system::Machine& machine, const deck::Report& re
   const auto found =
       options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
   if (!found)
-    return report.fail("bearing", fmt::format("there is no bearing '{}'{}", options.bearing,
-                                              deck::did_you_mean(options.bearing, system::bearing_names(machine))));
+    return report.fail("bearing",
+                       fmt::format("there is no bearing '{}'{}", options.bearing,
+                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
   if (machine.bearings.empty()) return;
   const film::Options::Kind kind = machine.bearings[*found].film.kind;
   if (kind == film::Options::Kind::linear)

@@ -11,7 +11,7 @@ void check_unbalance(const std::vector<std::string>& names, const system::Machin
     if (!system::find_unbalance(machine, names[i]))
       report.fail(fmt::format("unbalance.{}", i + 1),
                   fmt::format("there is no unbalance '{}'{}", names[i],
-                              deck::did_you_mean(names[i], system::unbalance_names(machine))));
+                              deck::did_you_mean_one_of(names[i], system::unbalance_names(machine))));
 }
 
 void check_nodes(const std::string& key, const std::vector<int>& nodes, const system::Machine& machine,

@@ -67,7 +67,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, where the parameter is another one");
   using enum O::Method;
   d.add("method", &O::method, "solver of the periodic solutions", "van de Vrande (2001), ch. 3");
-  d.add("intervals", &O::intervals, deck::positive, "intervals of the time mesh")
+  d.add("intervals", &O::intervals, deck::Check{.min = 1, .max = 100000}, "intervals of the time mesh")
       .only(&O::method, {collocation, multiple_shooting, finite_difference, newton_picard});
   d.add("scheme", &O::scheme, "scheme of integration")
       .only(&O::method, {shooting, multiple_shooting, finite_difference, newton_picard});

@@ -187,7 +187,8 @@ void Modes::run(Context& context) {
       decrement.push_back(spectral::log_decrement(m.lambda));
       factor.push_back(spectral::stability_factor(m.lambda));
       sense_column.emplace_back(sense);
-      summary.modes.push_back({deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense});
+      summary.modes.push_back(
+          {deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense, unit});
       for (const ShaftMode& b : before) {
         const double f0 = b.lambda.imag() - speeds[i - 1], f1 = m.lambda.imag() - speed;
         if (m.id == b.id && f0 * f1 < 0) crossings.push_back({speeds[i - 1], speed, f0, f1, m});

@@ -128,7 +128,7 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && !name->empty() && !m.lubricants.contains(*name))
       r.fail(path + ".lubricant",
-             fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean(*name, lubricants)));
+             fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean_one_of(*name, lubricants)));
   }
   if (rigid && m.bearings.empty()) r.fail("bearings", "a rotor needs a bearing");
   if (!rigid && m.bearings.size() < 2) r.fail("bearings", "a shaft needs at least two bearings");
@@ -148,7 +148,8 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
                fmt::format("node {} does not exist: the shaft has nodes 1 to {}", u.planes[i].node, n_nodes));
     if (u.rotor.empty()) continue;
     if (std::find(rotors.begin(), rotors.end(), u.rotor) == rotors.end())
-      r.fail(path + ".rotor", fmt::format("there is no rotor '{}'{}", u.rotor, deck::did_you_mean(u.rotor, rotors)));
+      r.fail(path + ".rotor",
+             fmt::format("there is no rotor '{}'{}", u.rotor, deck::did_you_mean_one_of(u.rotor, rotors)));
     else if (u.grade && !enclosing_bearings(m, u.rotor))
       r.fail(path + ".rotor", fmt::format("the middle of rotor '{}' does not lie between two bearings", u.rotor));
   }

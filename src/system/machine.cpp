@@ -103,7 +103,8 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
   for (const std::string& name : unbalance) {
     const auto i = find_unbalance(m, name);
     if (!i)
-      throw core::InputError("there is no unbalance '" + name + "'" + deck::did_you_mean(name, unbalance_names(m)));
+      throw core::InputError("there is no unbalance '" + name + "'" +
+                             deck::did_you_mean_one_of(name, unbalance_names(m)));
     for (const UnbalanceMass& x : unbalance_masses(m, m.unbalance[*i])) t.unbalance.push_back(x);
   }
   return t;

@@ -5,6 +5,7 @@ command_line.py PROGRAM SOURCE RANKS [LAUNCHER WORDS...]
 """
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -38,8 +39,14 @@ if not few:
     whirl("describe", "cycle_branch", code=0, out="studies.1.cycle_branch.intervals")
     whirl("schema", code=0, out='"$schema"')
     whirl("--version", code=0, out="whirl ")
-    whirl(code=2)
-    whirl("rum", train / "static.yaml", code=2)
+    whirl(code=2, err="commands are help, run, check, list, describe, schema")
+    whirl("rum", train / "static.yaml", code=2, err="there is no command 'rum' (did you mean 'run'?)")
+    whirl("run", train / "static.yaml", "--resum", code=2, err="run: there is no option '--resum' (did you mean '--resume'?)")
+    whirl("check", code=2, err="whirl: check: DECK is required; see whirl help check")
+    whirl("help", code=0, out="Subcommands:")
+    whirl("help", "run", code=0, out="--resume")
+    whirl("help", "clearance", code=0, out="bearings.NAME.geometry.clearance")
+    whirl("help", "clearence", code=2, err="did you mean 'clearance'?")
 whirl("check", work / "none.yaml", code=2, err="No such file or directory")
 
 # A wrong deck is refused with its place, said once, and leaves nothing behind.
@@ -66,6 +73,22 @@ if not few:
     whirl("run", train / "static.yaml", "-o", strange / "thesis.txt", code=2, err="is a file")
 if (earlier / "resolved.yaml").read_text() != "title: another deck\n" or not (strange / "thesis.txt").exists():
     failures.append("a refused run changed files")
+
+# What a run says at its end; what it leaves alone.
+if not few:
+    short = source / "inputs" / "rigid_rotor" / "short_f1.yaml"
+    done = whirl("run", short, "-o", work / "short", "--", "-no_such_option", "3", code=0,
+                 out="nothing has asked for the PETSc option -no_such_option")
+    said = re.search(r"^balanced: completed \(equilibrium_branch, \d+ points, [\d.e-]+ s\)\n  hopf at speed (\d+\.\d+) ",
+                     done.stdout, re.M)
+    located = json.loads((work / "short" / "summary.json").read_text())["studies"][0]["bifurcations"][0]["value"]
+    if not said or abs(float(said[1]) - located) > 1e-4 * located:
+        failures.append(f"the Hopf point at {located} is not among what was said:\n{done.stdout}")
+    (work / "short" / "notes.txt").write_text("mine\n")
+    (work / "short" / "old.png").write_text("of the run before\n")
+    whirl("run", short, "-o", work / "short", "--force", code=0)
+    if not (work / "short" / "notes.txt").exists() or (work / "short" / "old.png").exists():
+        failures.append("--force removes the files of a run and its pictures, and no others")
 
 # A machine of another kind: published frequencies (rad/s) and senses of whirl, and no threshold where nothing damps or drives.
 if not few:

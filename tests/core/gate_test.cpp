@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
+
 using namespace whirl::core;
 
 namespace {
@@ -150,6 +152,19 @@ TEST(Lead, ErrorsEndTheWorkOnAllRanks) {
   EXPECT_THROW(lead(
                    MPI_COMM_WORLD, size - 1, [](const auto&) { throw DomainError("the leader's"); }, collective(-1)),
                DomainError);
+}
+
+TEST(Agree, MemoryThatRunsOutOnOneRankIsNoMistakeOfOurs) {
+  try {
+    agree(MPI_COMM_WORLD, [&] {
+      if (rank_of(MPI_COMM_WORLD) == 0) throw std::bad_alloc();
+    });
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), out_of_memory);
+    EXPECT_EQ(e.exit(), Exit::failure);
+    EXPECT_TRUE(e.agreed());
+  }
 }
 
 TEST(Check, PetscFailureCarriesItsText) {

@@ -1,8 +1,11 @@
 #include "whirl/io/record.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 
@@ -105,6 +108,36 @@ TEST(Record, MisuseIsABugAndAMissingEntryAnError) {
   EXPECT_THROW(g.child("x"), core::Bug);
   EXPECT_EQ(safe_name("0.5/1"), "0.5_1");
   EXPECT_EQ(safe_name(""), "_");
+}
+
+namespace {
+
+// Ends the process with 4 if the refusal is told and leaves nothing behind.
+[[noreturn]] void write_without_room(const std::filesystem::path& path, const Group& large) {
+  (void)::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{100000, 100000};
+  if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) std::exit(5);
+  try {
+    write_hdf5(path, large);
+  } catch (const core::Error& e) {
+    if (e.what() != "cannot write " + path.string() + ": File too large") std::exit(6);
+    std::exit(std::filesystem::exists(path.string() + ".part") ? 7 : 4);
+  }
+  std::exit(0);
+}
+
+}  // namespace
+
+// A limit on the size of files stands for a full disk. The process goes on, and ends in order: HDF5's own end included.
+TEST(RecordDeathTest, AFullDiskIsAnErrorAndNoFault) {
+  const test::Temporary folder;
+  const auto path = folder / "results.h5";
+  Group small, large;
+  small.put("x", std::vector<double>(10, 1.0), "m", "");
+  large.put("x", std::vector<double>(100000, 1.0), "m", "");
+  write_hdf5(path, small);
+  EXPECT_EXIT(write_without_room(path, large), testing::ExitedWithCode(4), "");
+  EXPECT_EQ(read_hdf5(path), small);
 }
 
 TEST(Table, ColumnsBecomeDatasets) {

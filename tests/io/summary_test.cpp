@@ -31,7 +31,12 @@ Summary example() {
                             .period_s = 60 / 5057.0,
                             .uncertainty = 40,
                             .more = {{"angle_rad", 0.93}, {"error.film", INFINITY}}});
-  s.modes.push_back({.speed = 3600, .real = -0.583, .imag = 81.678, .log_decrement = 0.0448, .whirl = "forward"});
+  s.modes.push_back({.speed = 3600,
+                     .real = -0.583,
+                     .imag = 81.678,
+                     .log_decrement = 0.0448,
+                     .whirl = "forward",
+                     .speed_unit = "rpm"});
   s.points = 73;
   Summary whole;
   whole.title = "Train \"A\"";

@@ -9,6 +9,10 @@
 
 namespace whirl::core {
 
+/// What is said where memory runs out.
+inline constexpr const char* out_of_memory =
+    "out of memory: a mesh, a number of intervals or of points is too large for this computer";
+
 /// Runs `local` (which must not communicate) on every rank and, if it threw anywhere, throws on all ranks of `comm`.
 ///
 /// The ranks that failed rethrow their own exception, marked as agreed; the others throw one of the same kind with the

@@ -17,6 +17,9 @@ public:
   Session& operator=(const Session&) = delete;
   ~Session();
 
+  /// Options of PETSc that were given and that no solver on this rank has asked for.
+  [[nodiscard]] static std::vector<std::string> unused_options();
+
   /// Text of the PETSc error in flight (innermost first), and forgets it.
   static std::string take_trace();
 };

@@ -82,6 +82,9 @@ private:
 /// ` (did you mean 'x'?)`, or nothing.
 [[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The same for a few names of the deck: where none is near, `; there are a, b`.
+[[nodiscard]] std::string did_you_mean_one_of(std::string_view word, const std::vector<std::string>& names);
+
 /// `path` split at its dots.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
 

@@ -49,10 +49,11 @@ struct Suspicion {
   std::string unit = {}, reason = {};
 };
 
-/// One eigenvalue real + i imag (rad/s) at a speed (in the unit of the study's range).
+/// One eigenvalue real + i imag (rad/s) at a speed (in `speed_unit`, that of the study's range).
 struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
-  std::string whirl = {};  ///< forward, backward, mixed
+  std::string whirl = {};  ///< forward, backward, mixed, planar
+  std::string speed_unit = "rad/s";
 };
 
 /// What one study delivered.
