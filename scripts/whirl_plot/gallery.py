@@ -19,6 +19,8 @@ RUNS = {
                                                  "figure_2_2", "figure_2_2_chaos", "run_up", "loci")},
     **{f: (f"compliant_rotor/{f}.yaml", []) for f in ("figure_5_7", "figure_5_8", "figure_5_9", "figure_4_10", "figure_4_13",
                                                      "figure_5_13", "figure_5_13_sweep", "finite_curve")},
+    "chart_load": ("rigid_rotor/stability_chart.yaml", []),
+    "chart_compliance": ("compliant_rotor/stability_chart.yaml", []),
     "figure_5_10": ("compliant_rotor/figure_5_10.yaml", ["bearings.half.film.compliance=1"]),
     "brusselator": ("other_systems/brusselator.yaml", []),
 }
@@ -50,6 +52,8 @@ PICTURES = {
     "motions": [("figure_2_2", "period_2.motion"), ("figure_2_2", "quasi-periodic.motion"), ("figure_2_2_chaos", "chaotic.motion")],
     "run_up": [("run_up", "run-up")],
     "loci": [("loci", "loci")],
+    "chart_load": [("chart_load", "loci")],
+    "chart_compliance": [("chart_compliance", "loci")],
     "brusselator": [("brusselator", "oscillation.orbits")],
 }
 WIDTH = 1300  # pixels of pictures that are put below each other
