@@ -223,8 +223,7 @@ void BorderedMonodromy::solve(const std::vector<double>& polynomial) {
     unit.bottomRows(k) = size * MatrixXd::Identity(k, k);
     const Eigen::PartialPivLU<MatrixXd> lu(whole);
     MatrixXd right = lu.solve(unit), adjoint = lu.transpose().solve(unit);
-    for (MatrixXd* m : {&right, &adjoint})
-      core::share(problem_.comm(), m->data(), static_cast<std::size_t>(m->size()));
+    for (MatrixXd* m : {&right, &adjoint}) core::share(problem_.comm(), m->data(), static_cast<std::size_t>(m->size()));
     v = right.topRows(n);
     g = size * right.bottomRows(k);
     w_ = adjoint.topRows(n);

@@ -23,8 +23,8 @@ double corner(double sign, BorderedMonodromy& bordered) {
   return bordered.g(0, 0);
 }
 
-// A multiplier of -1 beside another at -1 shows in w . v of its null vectors, beside one at +1 in the slope dp/ds of the
-// branch; the cycles of twice the period turn round where the cubic coefficient of the normal form vanishes.
+// A multiplier of -1 beside another at -1 shows in w . v of its null vectors, beside one at +1 in the slope dp/ds of
+// the branch; the cycles of twice the period turn round where the cubic coefficient of the normal form vanishes.
 class FlipCondition : public Condition {
 public:
   explicit FlipCondition(CycleProblem& problem) : problem_(problem), bordered_(problem, 1) {

@@ -220,12 +220,15 @@ void ScaledPoint::linearise(double angle, const VectorXd& x, const VectorXd& xdo
 }
 
 VectorXd ScaledPoint::rate(double angle, const VectorXd& x) {
-  VectorXd f(size());
-  const VectorXd rest = VectorXd::Zero(size());
+  VectorXd f(size()), rate = VectorXd::Zero(size());
   MatrixXd jx, jxdot;
-  residual(angle, x, rest, f);
-  linearise(angle, x, rest, jx, jxdot, nullptr);
-  return -jxdot.partialPivLu().solve(f);
+  // The first pass finds the rates of own states, the second one the forces that are cut off at these.
+  for (int pass = 0; pass < 2; ++pass) {
+    residual(angle, x, rate, f);
+    linearise(angle, x, rate, jx, jxdot, nullptr);
+    rate -= jxdot.partialPivLu().solve(f);
+  }
+  return rate;
 }
 
 }  // namespace whirl::solve

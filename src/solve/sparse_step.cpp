@@ -146,6 +146,8 @@ std::shared_ptr<const StageSolver> SparseRungeKutta::solve_stage(double angle, d
 void SparseRungeKutta::rate(double angle, Vec x, Vec xdot) {
   check(VecSet(xdot, 0));
   (void)solve_stage(angle, 0, x, xdot);
+  // With the rates of damped liners known, the pressures that they turn on and off.
+  if (!constant_rates_) (void)solve_stage(angle, 0, x, xdot);
 }
 
 void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, StepProduct* product) {

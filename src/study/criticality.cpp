@@ -1,5 +1,7 @@
 // Criticality, read off the branch that is born at a bifurcation.
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -48,11 +50,17 @@ void CycleFollower::set_normal_form(io::Bifurcation& b, const solve::LocatedEven
   }
   auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
   if (found.event != solve::Event::neimark_sacker || !found.refined || !cycles || autonomous()) return;
-  if (system_->size() > 1000) return;  // it takes the whole monodromy matrix
   core::Vector row = core::duplicate(u);
   solve::parameter_row(*cycles, row.get());
-  cycles->linearise(u, row.get());
-  const double coefficient = solve::neimark_sacker_coefficient(*cycles, u, found.critical);
+  double coefficient = 0;
+  try {
+    cycles->linearise(u, row.get());
+    coefficient = solve::neimark_sacker_coefficient(*cycles, u, found.critical);
+  } catch (const core::NotConverged& e) {
+    b.criticality_by = fmt::format("undetermined: {}", e.what());
+  } catch (const core::DomainError& e) {
+    b.criticality_by = fmt::format("undetermined: {}", e.what());
+  }
   if (!std::isfinite(coefficient) || coefficient == 0) return;
   b.criticality = coefficient < 0 ? "supercritical" : "subcritical";
   b.criticality_by = "normal form of the map over one period (Kuznetsov 2004, 5.73)";

@@ -62,8 +62,8 @@ private:
   void record(const std::string& type, double second, double error, Vec whole);
   void record_flip(double second, double bracket, Vec whole);
   [[nodiscard]] FlipsBeside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
-  // Whether the zero of the coefficient at `whole` is one on the doubled mesh too: its error in scaled second parameter,
-  // or not a number; and whether that mesh has another one near.
+  // Whether the zero of the coefficient at `whole` is one on the doubled mesh too: its error in scaled second
+  // parameter, or not a number; and whether that mesh has another one near.
   struct Verdict {
     double error = unknown;
     bool unclear = false;
@@ -240,8 +240,7 @@ void LocusFollower::record(const std::string& type, double second, double error,
   c.value = {deck::from_si(row.first, first_range_.unit), first_range_.unit};
   c.second_parameter = options_.second.path;
   c.second_value = {deck::from_si(row.second, options_.second.range.unit), options_.second.range.unit};
-  if (!std::isnan(error))
-    c.uncertainty = error * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
+  if (!std::isnan(error)) c.uncertainty = error * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
   const double speed = first_.path == "speed" ? row.first : system_->speed();
   if (const auto groups = system::groups_of(system_->train())) {
     c.more["nondimensional_speed"] = speed / groups->speed_scale;
@@ -373,9 +372,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   callbacks.on_event = [&](const solve::LocatedEvent& event, Vec whole) {
     if (event.event == solve::Event::fold && event.located) record(meeting, event.parameter, event.bracket, whole);
   };
-  callbacks.on_suspicion = [&](const solve::Suspicion& s) {
-    suspect(s.from, s.to, s.reason);
-  };
+  callbacks.on_suspicion = [&](const solve::Suspicion& s) { suspect(s.from, s.to, s.reason); };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
     last_ = row_at(whole, point.parameter);
     if (point.index > 0)

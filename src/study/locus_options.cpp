@@ -16,11 +16,14 @@ void describe(deck::Description<LocusOptions>& d) {
        "name of an earlier cycle_branch or equilibrium_branch, one of whose bifurcations is followed; 'NAME flip 1' is "
        "the branch of twice the period born at the first flip of a branch NAME with follow_flips")
       .required();
-  d.add("bifurcation", &O::bifurcation, deck::positive, "which one: 1 is the first that its summary lists. Marked along a curve of folds: cusp, of cyclic folds fold_flip "
-        "and resonance_1_1, too; of flips: generalised_flip (from supercritical to subcritical), resonance_1_2, "
-        "fold_flip; of Neimark-Sacker points: resonance_1_1, 1_2, 1_3, 1_4, fold_neimark_sacker; of Hopf points: "
-        "generalised_hopf, bogdanov_takens, fold_hopf; of all: meeting and meeting_over_second, where the curve turns in "
-        "the second and in the first parameter. resonance_1_1 and generalised_flip are those of forced cycles");
+  d.add(
+      "bifurcation", &O::bifurcation, deck::positive,
+      "which one: 1 is the first that its summary lists. Marked along a curve of folds: cusp, of cyclic folds "
+      "fold_flip "
+      "and resonance_1_1, too; of flips: generalised_flip (from supercritical to subcritical), resonance_1_2, "
+      "fold_flip; of Neimark-Sacker points: resonance_1_1, 1_2, 1_3, 1_4, fold_neimark_sacker; of Hopf points: "
+      "generalised_hopf, bogdanov_takens, fold_hopf; of all: meeting and meeting_over_second, where the curve turns in "
+      "the second and in the first parameter. resonance_1_1 and generalised_flip are those of forced cycles");
   d.embed(&O::second);
   d.add("first_range", &O::first_range, "*", deck::any,
         "values of the branch's own parameter at which the curve ends; the range of the branch if not given");

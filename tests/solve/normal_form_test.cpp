@@ -61,6 +61,8 @@ struct BentFlip {
 }  // namespace
 
 // x = Z q + conj with |q|^2 = 2 means z = 2 Z, so that c_1 = 4 (re + i im).
+using Joining = solve::CycleOptions::Joining;
+
 TEST(NormalForm, Hopf) {
   for (const double re : {-0.7, 0.4}) {
     test::SmallSystem s(PETSC_COMM_WORLD, 2, 0, 1, BentHopf{re});
@@ -71,10 +73,11 @@ TEST(NormalForm, Hopf) {
 }
 
 TEST(NormalForm, NeimarkSacker) {
-  for (const double re : {-1.0, 0.5}) {
+  for (const auto& [re, joining] : {std::pair{-1.0, Joining::dense}, {0.5, Joining::dense}, {0.5, Joining::sweeps}}) {
     test::SmallSystem s(PETSC_COMM_SELF, 3, 0, speed, BentNeimarkSacker{re});
     solve::CycleOptions o;
     o.degree = 4;
+    o.joining = joining;
     solve::CycleProblem problem(MPI_COMM_WORLD, s, o, solve::uniform_mesh(20));
     core::Vector u = problem.scatter(test::sampled(problem.scheme(), problem.mesh(), 1, 0, [](double a) {
       // x2' = -x2 + cos(2 t)
@@ -93,13 +96,16 @@ TEST(NormalForm, NeimarkSacker) {
 }
 
 TEST(NormalForm, Flip) {
-  test::SmallSystem s(PETSC_COMM_SELF, 2, 0, speed, BentFlip{});
-  solve::CycleOptions o;
-  o.degree = 4;
-  solve::CycleProblem problem(MPI_COMM_WORLD, s, o, solve::uniform_mesh(16));
-  const core::Vector u = problem.make_unknown();
-  core::Vector row = core::duplicate(u.get());
-  solve::parameter_row(problem, row.get());
-  problem.linearise(u.get(), row.get());
-  EXPECT_NEAR(solve::flip_coefficient(problem, u.get()), 2 * test::two_pi / speed, 1e-4);
+  for (const Joining joining : {Joining::dense, Joining::sweeps}) {
+    test::SmallSystem s(PETSC_COMM_SELF, 2, 0, speed, BentFlip{});
+    solve::CycleOptions o;
+    o.degree = 4;
+    o.joining = joining;
+    solve::CycleProblem problem(MPI_COMM_WORLD, s, o, solve::uniform_mesh(16));
+    const core::Vector u = problem.make_unknown();
+    core::Vector row = core::duplicate(u.get());
+    solve::parameter_row(problem, row.get());
+    problem.linearise(u.get(), row.get());
+    EXPECT_NEAR(solve::flip_coefficient(problem, u.get()), 2 * test::two_pi / speed, 1e-4);
+  }
 }

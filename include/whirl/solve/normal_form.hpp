@@ -18,15 +18,15 @@ namespace whirl::solve {
 /// the tangents along the cycle. Collective.
 [[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier);
 
-/// w . (D^3 P(v, v, v) + 3 D^2 P(v, h))/6, (I - M) h = D^2 P(v, v), of the map P over one period of a forced cycle with a
-/// multiplier of -1, M v = -v and M^T w = -w. It has no pole where w . v = 0 (resonance 1:2), but one where +1 is a
+/// w . (D^3 P(v, v, v) + 3 D^2 P(v, h))/6, (I - M) h = D^2 P(v, v), of the map P over one period of a forced cycle with
+/// a multiplier of -1, M v = -v and M^T w = -w. It has no pole where w . v = 0 (resonance 1:2), but one where +1 is a
 /// multiplier too (fold-flip). Else as below.
 [[nodiscard]] double flip_cubic(CycleProblem& problem, Vec u, const Eigen::VectorXd& v, const Eigen::VectorXd& w,
                                 double step = 1);
 
-/// c = flip_cubic/(w . v) of the map y -> -y + c y^3 at a flip of a forced cycle: positive where the cycle of twice the period is stable
-/// within the centre manifold (supercritical). Source: Kuznetsov (2004), (5.68). Else as above; `step` times the usual
-/// length of the differences looks over kinks of F that are narrower than that.
+/// c = flip_cubic/(w . v) of the map y -> -y + c y^3 at a flip of a forced cycle: positive where the cycle of twice the
+/// period is stable within the centre manifold (supercritical). Source: Kuznetsov (2004), (5.68). Else as above; `step`
+/// times the usual length of the differences looks over kinks of F that are narrower than that.
 [[nodiscard]] double flip_coefficient(CycleProblem& problem, Vec u, double step = 1);
 
 /// Re c_1 of y' = i omega y + c_1 y |y|^2 at a Hopf point x (SI) of F(0, x, dx/dt): omega times the first Lyapunov

@@ -29,16 +29,16 @@ struct EigenOptions {
 
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.
 ///
-/// Small systems: all modes, by LAPACK on rank 0 for all. Larger ones: Krylov-Schur with shift and invert at a real target
-/// (LU by MUMPS); such a search can miss a mode far from the target, so ask for more than are needed.
+/// Small systems: all modes, by LAPACK on rank 0 for all. Larger ones: Krylov-Schur with shift and invert at a real
+/// target (LU by MUMPS); such a search can miss a mode far from the target, so ask for more than are needed.
 /// Collective; throws core::NotConverged.
 [[nodiscard]] std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options);
 
 /// All eigenvalues of a dense matrix, by SLEPc's LAPACK solver, on this rank alone; sorted by falling modulus.
 [[nodiscard]] std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix);
 
-/// The same of a matrix that every rank of `comm` has, the same on all of them: those that rank 0 finds, since what they
-/// decide must not depend on the last digit of a rank's arithmetic. Collective.
+/// The same of a matrix that every rank of `comm` has, the same on all of them: those that rank 0 finds, since what
+/// they decide must not depend on the last digit of a rank's arithmetic. Collective.
 [[nodiscard]] std::vector<Complex> eigenvalues(MPI_Comm comm, const Eigen::MatrixXd& matrix);
 
 }  // namespace whirl::spectral
