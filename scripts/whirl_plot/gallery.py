@@ -4,10 +4,6 @@ import shutil
 import subprocess
 import sys
 
-from PIL import Image
-
-from .style import few_colours
-
 FLIPS = [f"studies.{k}.cycle_branch.follow_flips=true" for k in (1, 2)]
 # Name of a run: deck, overrides.
 RUNS = {
@@ -24,39 +20,40 @@ RUNS = {
     "figure_5_10": ("compliant_rotor/figure_5_10.yaml", ["bearings.half.film.compliance=1"]),
     "brusselator": ("other_systems/brusselator.yaml", []),
 }
-# Picture of docs/: run and picture in its results; several are put below each other.
+# Picture of docs/: run and picture in its results.
 PICTURES = {
-    "bifurcations": [("unbalance", "bifurcations")],
-    "train_orbits": [("unbalance", "G2.5.orbits")],
-    "train_response": [("response", "generator_pair_G2.5.response")],
-    "train_whirl": [("self_excited", "whirl.cycles-vertical")],
-    "train_run_up": [("train_run_up", "run-up")],
-    "rigid_5_3": [("figure_5_3", "whirl.frequency")],
-    **{f"rigid_5_{k}": [(f"figure_5_{k}", "eccentricity")] for k in (2, 4, 5, 6)},
-    **{f"compliant_5_{k}": [(f"figure_5_{k}", "eccentricity")] for k in (7, 8, 9, 10)},
-    "compliant_5_13": [("figure_5_13", "synchronous.cycles-horizontal")],
-    "compliant_5_13_sweep": [("figure_5_13_sweep", "run-up")],
-    "compliant_finite": [("finite_curve", "eccentricity")],
-    "map_4_3": [("figure_4_7", "short.impedance")],
-    "map_4_4": [("figure_4_7", "finite.impedance")],
-    "map_4_6": [("figure_4_10", "map-pressure")],
-    "map_4_7": [("figure_4_7", "map-locus")],
-    "map_4_8": [("figure_4_7", "map-stiffness")],
-    "map_4_9": [("figure_4_7", "map-damping")],
-    "map_4_10": [("figure_4_10", "map-locus")],
-    "map_4_11": [("figure_4_10", "map-stiffness")],
-    "map_4_12": [("figure_4_10", "map-damping")],
-    "map_4_13": [("figure_4_13", "map-locus")],
-    "map_4_14": [("figure_4_13", "map-stiffness")],
-    "map_4_15": [("figure_4_13", "map-damping")],
-    "motions": [("figure_2_2", "period_2.motion"), ("figure_2_2", "quasi-periodic.motion"), ("figure_2_2_chaos", "chaotic.motion")],
-    "run_up": [("run_up", "run-up")],
-    "loci": [("loci", "loci")],
-    "chart_load": [("chart_load", "loci")],
-    "chart_compliance": [("chart_compliance", "loci")],
-    "brusselator": [("brusselator", "oscillation.orbits")],
+    "bifurcations": ("unbalance", "bifurcations"),
+    "train_orbits": ("unbalance", "G2.5.orbits"),
+    "train_response": ("response", "generator_pair_G2.5.response"),
+    "train_whirl": ("self_excited", "whirl.cycles-vertical"),
+    "train_run_up": ("train_run_up", "run-up"),
+    "rigid_5_3": ("figure_5_3", "whirl.frequency"),
+    **{f"rigid_5_{k}": (f"figure_5_{k}", "eccentricity") for k in (2, 4, 5, 6)},
+    **{f"compliant_5_{k}": (f"figure_5_{k}", "eccentricity") for k in (7, 8, 9, 10)},
+    "compliant_5_13": ("figure_5_13", "synchronous.cycles-horizontal"),
+    "compliant_5_13_sweep": ("figure_5_13_sweep", "run-up"),
+    "compliant_finite": ("finite_curve", "eccentricity"),
+    "map_4_3": ("figure_4_7", "short.impedance"),
+    "map_4_4": ("figure_4_7", "finite.impedance"),
+    "map_4_6": ("figure_4_10", "map-pressure"),
+    "map_4_7": ("figure_4_7", "map-locus"),
+    "map_4_8": ("figure_4_7", "map-stiffness"),
+    "map_4_9": ("figure_4_7", "map-damping"),
+    "map_4_10": ("figure_4_10", "map-locus"),
+    "map_4_11": ("figure_4_10", "map-stiffness"),
+    "map_4_12": ("figure_4_10", "map-damping"),
+    "map_4_13": ("figure_4_13", "map-locus"),
+    "map_4_14": ("figure_4_13", "map-stiffness"),
+    "map_4_15": ("figure_4_13", "map-damping"),
+    "motion_period_2": ("figure_2_2", "period_2.motion"),
+    "motion_quasi_periodic": ("figure_2_2", "quasi-periodic.motion"),
+    "motion_chaotic": ("figure_2_2_chaos", "chaotic.motion"),
+    "run_up": ("run_up", "run-up"),
+    "loci": ("loci", "loci"),
+    "chart_load": ("chart_load", "loci"),
+    "chart_compliance": ("chart_compliance", "loci"),
+    "brusselator": ("brusselator", "oscillation.orbits"),
 }
-WIDTH = 1300  # pixels of pictures that are put below each other
 
 
 def results(run):
@@ -74,30 +71,17 @@ def results(run):
     return out
 
 
-def stack(files, target):
-    parts = [Image.open(f).convert("RGB") for f in files]
-    parts = [p.resize((WIDTH, round(WIDTH * p.height / p.width)), Image.Resampling.LANCZOS) for p in parts]
-    whole = Image.new("RGB", (WIDTH, sum(p.height for p in parts)), "white")
-    top = 0
-    for p in parts:
-        whole.paste(p, (0, top))
-        top += p.height
-    few_colours(whole).save(target, optimize=True)
-
-
 def main(names):
     unknown = [n for n in names if n not in PICTURES]
     if unknown:
         sys.exit(f"gallery: there is no picture {', '.join(unknown)}; there are {', '.join(sorted(PICTURES))}")
     folders = {}
     for name in names or PICTURES:
-        files = []
-        for run, picture in PICTURES[name]:
-            if run not in folders:
-                folders[run] = results(run)
-            files.append(folders[run] / f"{picture}.png")
+        run, picture = PICTURES[name]
+        if run not in folders:
+            folders[run] = results(run)
         target = pathlib.Path("docs") / f"{name}.png"
-        shutil.copyfile(files[0], target) if len(files) == 1 else stack(files, target)
+        shutil.copyfile(folders[run] / f"{picture}.png", target)
         print(f"{target}: {target.stat().st_size / 1000:.0f} kB", flush=True)
 
 
