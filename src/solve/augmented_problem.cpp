@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -96,7 +97,7 @@ VectorXd AugmentedProblem::inner(Vec whole) const {
 }
 
 void AugmentedProblem::set_second(double q) {
-  second_->set(q * second_->scale);
+  core::agree(comm(), [&] { second_->set(q * second_->scale); });
   branch_.equations_changed();
 }
 

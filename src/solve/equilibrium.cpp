@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 
 namespace whirl::solve {
@@ -49,7 +50,8 @@ void EquilibriumProblem::from_state(Vec x, double parameter, Vec u) const {
 }
 
 void EquilibriumProblem::prepare(Vec u) {
-  system_.set_parameter(last_entry(comm(), u) * parameter_scale_);
+  const double parameter = last_entry(comm(), u) * parameter_scale_;
+  core::agree(comm(), [&] { system_.set_parameter(parameter); });
   to_state(u, x_.get());
 }
 

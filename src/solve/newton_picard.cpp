@@ -77,7 +77,7 @@ VectorXd NewtonPicardProblem::border_of(Vec u) const {
 
 // Sets the parameter and returns the period.
 double NewtonPicardProblem::begin_point(const VectorXd& border) {
-  system_.set_parameter(border(borders_ - 1) * options_.parameter_scale);
+  core::agree(comm(), [&] { system_.set_parameter(border(borders_ - 1) * options_.parameter_scale); });
   stepper_->refresh();
   const double period =
       options_.autonomous ? border(0) * period_scale_ : 2 * std::numbers::pi * options_.turns / system_.speed();
