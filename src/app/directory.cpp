@@ -33,7 +33,7 @@ void write_whole(const fs::path& path, const std::string& text) {
   fs::rename(temporary, path);
 }
 
-// True for what a run and its pictures leave; other files in a directory of results are the user's.
+// True for the kinds of files that a run and its pictures leave; others in a directory of results are the user's.
 bool is_ours(const fs::path& file) {
   const std::string name = file.filename().string(), kind = file.extension().string();
   return name == "resolved.yaml" || name == "summary.json" || name == "results.h5" || name == "report.html" ||
@@ -60,9 +60,10 @@ void prepare(const fs::path& directory, const std::string& resolved, Earlier ear
     if (earlier == Earlier::resume && contents(deck) != resolved)
       throw InputError(
           fmt::format("'{}' holds results of another deck: --resume needs the same one", directory.string()));
+    // The deck goes last (it is replaced below): it says whose directory this is.
     if (earlier == Earlier::replace)
       for (const auto& entry : fs::directory_iterator(directory))
-        if (entry.is_regular_file() && is_ours(entry.path())) fs::remove(entry.path());
+        if (entry.is_regular_file() && is_ours(entry.path()) && entry.path() != deck) fs::remove(entry.path());
   }
   fs::create_directories(directory);
   write_whole(deck, resolved);

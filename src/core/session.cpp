@@ -4,6 +4,8 @@
 #include <petscsys.h>
 #include <slepcsys.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 
 #include "whirl/core/petsc.hpp"
@@ -26,11 +28,21 @@ PetscErrorCode keep_text(MPI_Comm, int line, const char* function, const char* f
   return code;
 }
 
+// Those of the command line, which PETSc keeps for the process, too.
+std::vector<std::string>& given_options() {
+  static std::vector<std::string> names;
+  return names;
+}
+
+// Options for the end of a process, which PETSc asks for when it is there.
+constexpr std::array at_end = {"-log_", "-malloc_", "-memory_", "-objects_", "-options_"};
+
 }  // namespace
 
 Session::Session(int argc, char** argv, const std::vector<std::string>& petsc_options) {
   int one = argc > 0 ? 1 : 0;
   check(SlepcInitialize(&one, &argv, nullptr, nullptr));
+  given_options() = petsc_options;
   for (std::size_t i = 0; i < petsc_options.size(); ++i) {
     const bool has_value =
         i + 1 < petsc_options.size() && (petsc_options[i + 1].empty() || petsc_options[i + 1][0] != '-');
@@ -52,7 +64,15 @@ std::vector<std::string> Session::unused_options() {
   char **names = nullptr, **values = nullptr;
   check(PetscOptionsLeftGet(nullptr, &n, &names, &values));
   std::vector<std::string> unused;
-  for (PetscInt i = 0; i < n; ++i) unused.push_back(fmt::format("-{}", names[i]));
+  for (PetscInt i = 0; i < n; ++i) {
+    std::string name = fmt::format("-{}", names[i]);
+    // Not what other sources set, nor what PETSc asks for only as it ends.
+    const auto is = [&](const std::string& option) { return option == name; };
+    const auto late = [&](const char* start) { return name.starts_with(start); };
+    const auto& given = given_options();
+    if (std::any_of(given.begin(), given.end(), is) && std::none_of(at_end.begin(), at_end.end(), late))
+      unused.push_back(std::move(name));
+  }
   check(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
   return unused;
 }

@@ -174,11 +174,13 @@ void override_value(Node& root, const std::string& argument, const Files& files)
       if (at->kind == Node::Kind::none) at->kind = Node::Kind::map;
       Node* next = at->find(steps[i]);
       if (!next) {
-        // A part of something new beside something of nearly this name is a slip: a bearing is not begun by its
-        // clearance.
+        // A part of something new beside something of nearly this name is a slip where all are of a kind: a bearing is
+        // not begun by its clearance.
         std::vector<std::string> names;
         for (const Node& n : at->items) names.push_back(n.key);
-        if (const std::string hint = did_you_mean(steps[i], names); !last && !hint.empty())
+        const bool of_a_kind =
+            std::all_of(at->items.begin(), at->items.end(), [](const Node& n) { return n.kind == Node::Kind::map; });
+        if (const std::string hint = did_you_mean(steps[i], names); !last && of_a_kind && !hint.empty())
           fail(fmt::format("there is no '{}'{}; a new one is given whole: --set {}{}{}={{...}}", steps[i], hint, walked,
                            walked.empty() ? "" : ".", steps[i]));
         next = &at->set(steps[i], Node{});

@@ -341,20 +341,23 @@ void FiniteFilm::by_states(int i, double speed, StateResponse& response) const {
   const double *ka = &around_.k[x], *kb = ka - stride, *kz = &along_.k[x], *qa = &around_.q[x], *qb = qa - stride,
                *qz = &along_.q[x];
   // Of the P that `by` moves, and of the h at faces (flow = 1) or not.
-  const auto set =
-      [&](const std::vector<double>& by, double flow, std::array<double, 3> wedge_of, Stencil& s) {
-        const auto [before, centre, after] = wedge_of;
-        const double *here = &by[x], *pb = here - stride, *pf = here + stride;
-        double* __restrict to = &s.at[Stencil::centre][begin], * __restrict to_before = &s.at[Stencil::before][begin], * __restrict to_after = &s.at[Stencil::after][begin], * __restrict to_below = &s.at[Stencil::below][begin], * __restrict to_above = &s.at[Stencil::above][begin];
-        for (int j = 0; j < n; ++j) {
-          to[j] = centre - flow * (qa[j] - qb[j] + qz[j] - qz[j - 1]) + here[j] * (ka[j] + kb[j] + kz[j] + kz[j - 1]);
-          to_before[j] = before + flow * qb[j] - pb[j] * kb[j];
-          to_after[j] = after - flow * qa[j] - pf[j] * ka[j];
-          to_below[j] = flow * qz[j - 1] - here[j - 1] * kz[j - 1];
-          to_above[j] = -flow * qz[j] - here[j + 1] * kz[j];
-        }
-        to_below[0] = to_above[n - 1] = 0.0;
-      };
+  const auto set = [&](const std::vector<double>& by, double flow, std::array<double, 3> wedge_of, Stencil& s) {
+    const auto [before, centre, after] = wedge_of;
+    const double *here = &by[x], *pb = here - stride, *pf = here + stride;
+    double* __restrict to = &s.at[Stencil::centre][begin];
+    double* __restrict to_before = &s.at[Stencil::before][begin];
+    double* __restrict to_after = &s.at[Stencil::after][begin];
+    double* __restrict to_below = &s.at[Stencil::below][begin];
+    double* __restrict to_above = &s.at[Stencil::above][begin];
+    for (int j = 0; j < n; ++j) {
+      to[j] = centre - flow * (qa[j] - qb[j] + qz[j] - qz[j - 1]) + here[j] * (ka[j] + kb[j] + kz[j] + kz[j - 1]);
+      to_before[j] = before + flow * qb[j] - pb[j] * kb[j];
+      to_after[j] = after - flow * qa[j] - pf[j] * ka[j];
+      to_below[j] = flow * qz[j - 1] - here[j - 1] * kz[j - 1];
+      to_above[j] = -flow * qz[j] - here[j + 1] * kz[j];
+    }
+    to_below[0] = to_above[n - 1] = 0.0;
+  };
   set(carried_.by_h, 1.0, {w1 * wedge, w2 * wedge, w3 * wedge}, response.by_states);
   if (reach() == 2) std::fill_n(&response.by_states.at[Stencil::second_before][begin], n, w0 * wedge);
   if (liner_.damped()) set(carried_.by_rate, 0.0, {0.0, 1.0, 0.0}, response.by_rates);

@@ -86,6 +86,7 @@ void LinerLaw::carry(std::span<const double> h, std::span<const double> u, std::
 // phi(u)/b - P_c(rigid + u) rises with u from u = 0 on, where it is negative: Newton between two bounds.
 LinerLaw::Edge LinerLaw::edge(double rigid) const {
   if (!touches() || rigid >= reach_) return {rigid};
+  if (std::isnan(rigid)) throw core::DomainError("the journal is nowhere");
   double low = 0.0, high = rubber_ ? std::min(reach_ - rigid, thickness_) : reach_ - rigid, u = 0.0;
   for (int iteration = 0; iteration < 200; ++iteration) {
     const Value elastic = this->elastic(u), touch = contact(rigid + u);
@@ -94,7 +95,7 @@ LinerLaw::Edge LinerLaw::edge(double rigid) const {
     (excess > 0.0 ? high : low) = u;
     u = u - step > low && u - step < high ? u - step : 0.5 * (low + high);
   }
-  throw core::NotConverged("the liner at an edge of the bearing");
+  throw core::DomainError("the liner does not settle on the asperities at an edge of the bearing");
 }
 
 }  // namespace whirl::film

@@ -228,7 +228,7 @@ Group read_group(hid_t at) {
 std::string image_of(const Group& root) {
   const List in_memory(H5Pcreate(H5P_FILE_ACCESS));
   check(H5Pset_fapl_core(in_memory, std::size_t{1} << 20, false));
-  const File file(H5Fcreate("image", H5F_ACC_TRUNC, H5P_DEFAULT, in_memory));
+  const File file(H5Fcreate("whirl results in memory.h5", H5F_ACC_TRUNC, H5P_DEFAULT, in_memory));
   write_group(file, root);
   check(H5Fflush(file, H5F_SCOPE_GLOBAL));
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);

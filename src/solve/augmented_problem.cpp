@@ -329,7 +329,7 @@ std::unique_ptr<Condition> condition_of(problem::System& system, EquilibriumProb
 }
 
 std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
-                              const NewtonOptions& options) {
+                              const NewtonOptions& options) try {
   core::Vector row = core::duplicate(u);
   weighted_row(problem, tangent, row.get());
   problem.linearise(u, row.get());
@@ -344,6 +344,10 @@ std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, 
     found->critical = {inner(0), std::sqrt(1 - inner(0) * inner(0))};
   }
   return found;
+} catch (const core::DomainError&) {
+  return std::nullopt;
+} catch (const core::NotConverged&) {
+  return std::nullopt;
 }
 
 std::optional<Refined> refine(problem::System& system, EquilibriumProblem& problem, const LocatedEvent& event, Vec u,

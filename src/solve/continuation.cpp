@@ -160,6 +160,7 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
   }
 
   const auto ended = [&](std::string reason, bool completed) {
+    release_held();
     return BranchEnd{std::move(reason), completed, here.point.index + 1, here.point.parameter};
   };
   // The last point stands at the limit but for rounding, whose sign must not decide whether another one follows.

@@ -56,6 +56,8 @@ private:
       return flip_cubic(problem_, u, v, bordered_.left().col(0).normalized());
     } catch (const core::NotConverged&) {
       return std::numeric_limits<double>::quiet_NaN();
+    } catch (const core::DomainError&) {
+      return std::numeric_limits<double>::quiet_NaN();
     }
   }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle_problem.hpp"
 
@@ -65,19 +66,21 @@ void CycleProblem::set_phase_reference(const Cycle& reference) {
   const Index m = scheme_.degree;
   phase_row_.resize(n_, count_ * m);
   double values[2] = {0, 0};  // squared norm of the rate, and integral of <x, x'>
-  for (Index i = 0; i < count_; ++i) {
-    const Index g = first_ + i;
-    const double h = interval_length(g - first_);
-    for (Index l = 1; l <= m; ++l) {
-      VectorXd rate = reference_rate(here, g, l);
-      rate = rate.cwiseQuotient(state_scale());
-      const VectorXd value = here.x.col(g * m + l - 1).cwiseQuotient(state_scale());
-      const double weight = h * scheme_.node_weight(l - 1);
-      phase_row_.col(i * m + l - 1) = weight * rate;
-      values[0] += weight * rate.squaredNorm();
-      values[1] += weight * rate.dot(value);
+  core::agree(comm_, [&] {    // a film may refuse a cycle that comes from another mesh
+    for (Index i = 0; i < count_; ++i) {
+      const Index g = first_ + i;
+      const double h = interval_length(g - first_);
+      for (Index l = 1; l <= m; ++l) {
+        VectorXd rate = reference_rate(here, g, l);
+        rate = rate.cwiseQuotient(state_scale());
+        const VectorXd value = here.x.col(g * m + l - 1).cwiseQuotient(state_scale());
+        const double weight = h * scheme_.node_weight(l - 1);
+        phase_row_.col(i * m + l - 1) = weight * rate;
+        values[0] += weight * rate.squaredNorm();
+        values[1] += weight * rate.dot(value);
+      }
     }
-  }
+  });
   MPI_Allreduce(MPI_IN_PLACE, values, 2, MPI_DOUBLE, MPI_SUM, comm_);
   const double norm = std::sqrt(values[0]);
   core::require(norm > 0, "the phase reference does not move");

@@ -231,16 +231,22 @@ void Follower::crossings(const State& a, const State& b, int depth) {
   if (real && std::abs(to - from) == 2 && separate()) return;
   // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such. After a split the
   // two may lie on different sides of the middle.
-  const bool at_fold = std::any_of(folds_.begin(), folds_.end(), [&](const auto& fold) {
-    return std::abs(found.parameter - fold.first) <= 0.01 * fold.second;
-  });
-  if (found.event == Event::branch_point && (a.point.slope * b.point.slope < 0 || at_fold || turns_beside(a, at)))
-    return;
+  const auto is_it = [&](const auto& fold) { return std::abs(found.parameter - fold.first) <= 0.01 * fold.second; };
+  if (found.event == Event::branch_point) {
+    if (a.point.slope * b.point.slope < 0 || std::any_of(folds_.begin(), folds_.end(), is_it) ||
+        std::any_of(last_folds_.begin(), last_folds_.end(), is_it))
+      return;
+    if (turns_beside(a, at)) {
+      held_.emplace(found, std::move(at));
+      return;
+    }
+  }
   callbacks_.on_event(found, at.u.get());
 }
 
-// Whether the branch turns right beside `at`, in the step before or after it: a multiplier passes +1 at the fold itself
-// only as exactly as the discretisation conserves it. The slope is linear there, the parameter quadratic.
+// Whether the branch is about to turn right behind `at`: a multiplier passes +1 at the fold itself only as exactly as
+// the discretisation conserves it, and may do so in the step before. The slope is linear there, the parameter
+// quadratic.
 bool Follower::turns_beside(const State& a, const State& at) const {
   const double change = at.point.slope - a.point.slope;
   if (change == 0) return false;
@@ -347,9 +353,17 @@ void Follower::around(const State& a, State& middle, const State& b) {
   crossings(middle, rest, 0);
 }
 
+// The branch did not turn after all.
+void Follower::release_held() {
+  if (held_) callbacks_.on_event(held_->first, held_->second.u.get());
+  held_.reset();
+}
+
 void Follower::events(const State* first, const State* before, const State& a, const State& b) {
-  folds_.clear();
+  last_folds_ = std::exchange(folds_, {});
   folds(a, b, 0);
+  if (folds_.empty()) release_held();
+  held_.reset();
   crossings(a, b, 0);
   if (callbacks_.on_zero) zeros(a, b);
   bool seen = std::exchange(visited_, false);  // between `before` and a

@@ -2,6 +2,7 @@
 // One branch on its way: steps here, events between two points beside it.
 
 #include <functional>
+#include <optional>
 
 #include "whirl/solve/continuation.hpp"
 
@@ -53,6 +54,7 @@ private:
                 LocatedEvent& found, State& at);
   void folds(const State& a, const State& b, int depth);
   [[nodiscard]] bool turns_beside(const State& a, const State& at) const;
+  void release_held();
   void crossings(const State& a, const State& b, int depth);
   void zeros(const State& a, const State& b);
   void visits(const State& before, const State& a, const State& b, bool seen);
@@ -67,8 +69,10 @@ private:
   Newton newton_;
   int direction_;
   bool visited_ = false;  // the last step's crossings came from a closer look
-  // Folds of the step whose events are sought: parameter, and how far the step reaches from there.
-  std::vector<std::pair<double, double>> folds_;
+  // Folds of the step whose events are sought, and of the one before: parameter, and how far the step reaches from
+  // there.
+  std::vector<std::pair<double, double>> folds_, last_folds_;
+  std::optional<std::pair<LocatedEvent, State>> held_;  // a crossing that is none if a fold follows
 };
 
 }  // namespace whirl::solve

@@ -123,8 +123,7 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
     check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
     const double f = solve::last_entry(problem_->comm(), tangent.get());
     if (out.solves > 1 && f != last_f) curvature = (f - last_f) / step;
-    const double next =
-        curvature != 0 ? std::clamp(-f / curvature, -longest, longest) : 0.02 * continuation_.max_step;
+    const double next = curvature != 0 ? std::clamp(-f / curvature, -longest, longest) : 0.02 * continuation_.max_step;
     const double p = solve::last_entry(problem_->comm(), u.get());
     // The slope is linear in s near the fold, the parameter quadratic.
     out.bracket = std::abs(f * next / 2);

@@ -11,6 +11,7 @@
 #include "common.hpp"
 #include "cycle_follower.hpp"
 #include "located.hpp"
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -285,7 +286,7 @@ LocusFollower::Verdict LocusFollower::judge_flip(Vec whole, double reach) {
   Verdict verdict;
   const auto mesh = cycles_->mesh();
   const FlipsBeside coarse = flips_beside(whole, mesh, reach);
-  const double tolerance = std::abs(coarse.ahead - coarse.behind) / 4, width = std::abs(coarse.moved(1));
+  const double tolerance = std::abs(coarse.ahead - coarse.behind) / 4, width = coarse.moved.cwiseAbs().maxCoeff();
   const auto alike = [&](double a, double b) { return std::abs(a - b) < tolerance; };
   if (!alike(coarse.ahead, -coarse.behind)) return verdict;
   FlipsBeside fine = flips_beside(whole, solve::doubled(mesh), reach);
@@ -304,14 +305,21 @@ void LocusFollower::record_flip(double second_here, double bracket, Vec whole) {
   try {
     verdict = judge_flip(whole, reach);
     // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
-    if (std::isnan(verdict.error)) verdict = judge_flip(whole, reach *= 10);
+    if (std::isnan(verdict.error)) {
+      const bool unclear = verdict.unclear;
+      verdict = judge_flip(whole, reach *= 10);
+      verdict.unclear = verdict.unclear || unclear;
+    }
   } catch (const core::NotConverged&) {
     verdict.unclear = true;
   } catch (const core::DomainError&) {
     verdict.unclear = true;
   }
-  system_->set_parameter(first_here);
-  second().set(second_here * second_scale_);
+  core::agree(context_.comm, [&] {
+    second_value_ = second_here * second_scale_;
+    system_->set_parameter(first_here);
+    system_->set_train(train_at(first_here));
+  });
   if (!std::isnan(verdict.error))
     record(solve::generalised_flip, second_here, verdict.error + bracket, whole);
   else if (verdict.unclear)

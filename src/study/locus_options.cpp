@@ -19,8 +19,8 @@ void describe(deck::Description<LocusOptions>& d) {
   d.add(
       "bifurcation", &O::bifurcation, deck::positive,
       "which one: 1 is the first that its summary lists. Marked along a curve of folds: cusp, of cyclic folds "
-      "fold_flip "
-      "and resonance_1_1, too; of flips: generalised_flip (from supercritical to subcritical), resonance_1_2, "
+      "fold_flip and resonance_1_1, too; of flips: generalised_flip (from supercritical to subcritical), "
+      "resonance_1_2, "
       "fold_flip; of Neimark-Sacker points: resonance_1_1, 1_2, 1_3, 1_4, fold_neimark_sacker; of Hopf points: "
       "generalised_hopf, bogdanov_takens, fold_hopf; of all: meeting and meeting_over_second, where the curve turns in "
       "the second and in the first parameter. resonance_1_1 and generalised_flip are those of forced cycles");

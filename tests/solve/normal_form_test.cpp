@@ -60,9 +60,9 @@ struct BentFlip {
 
 }  // namespace
 
-// x = Z q + conj with |q|^2 = 2 means z = 2 Z, so that c_1 = 4 (re + i im).
 using Joining = solve::CycleOptions::Joining;
 
+// x = Z q + conj with |q|^2 = 2 means z = 2 Z, so that c_1 = 4 (re + i im).
 TEST(NormalForm, Hopf) {
   for (const double re : {-0.7, 0.4}) {
     test::SmallSystem s(PETSC_COMM_WORLD, 2, 0, 1, BentHopf{re});
