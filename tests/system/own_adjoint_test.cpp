@@ -140,6 +140,11 @@ TEST(OwnAdjoint, GradientOfAFlip) {
       return condition->values(moved.get(), {});
     };
     VectorXd& value = values[joining == Joining::dense ? 1 : 0];
+    // Borders start differently; they become the singular vectors, and the value the singular value but for its sign.
+    for (int k = 0; k < 8; ++k) {
+      (void)at(0);
+      condition->update();
+    }
     value = at(0);
     MatrixXd d_inner;
     std::vector<core::Vector> gradients;
@@ -148,7 +153,7 @@ TEST(OwnAdjoint, GradientOfAFlip) {
     EXPECT_GT(std::abs(exact), 1e-4);
     EXPECT_NEAR(difference, exact, 1e-5 * std::max(1.0, std::abs(exact)));
   }
-  EXPECT_NEAR(values[0](0), values[1](0), 1e-10);
+  EXPECT_NEAR(std::abs(values[0](0)), std::abs(values[1](0)), 1e-10);
 }
 
 TEST(OwnAdjoint, FlipByTheAugmentedSystemAndByFalsePosition) {
