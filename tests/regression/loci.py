@@ -30,21 +30,23 @@ studies:
       first_range: {{from: 80 rad/s, to: 1600 rad/s}}
 """
 
-DOUBLED = """
-title: Folds of the cycles of twice the period over the unbalance
-base: {base}
+BRANCH = """
+base: {{base}}
 studies:
   - cycle_branch:
       name: branch
       unbalance: [a]
       parameter: speed
-      range: {{from: 360 rad/s, to: 440 rad/s}}
-      step: {{initial: 4 rad/s, min: 0.001 rad/s, max: 16 rad/s}}
+      range: {{{{from: 360 rad/s, to: {end}}}}}
+      step: {{{{initial: 4 rad/s, min: 0.001 rad/s, max: 16 rad/s}}}}
       intervals: 40
       degree: 4
       points: gauss
       adapt_mesh: false
       follow_flips: true
+"""
+
+DOUBLED = "title: Folds of the cycles of twice the period over the unbalance" + BRANCH.format(end="440 rad/s") + """\
   - locus:
       name: curve
       of: branch flip 1
@@ -53,22 +55,8 @@ studies:
       first_range: {{from: 160 rad/s, to: 1600 rad/s}}
 """
 
-BORN = """
-title: On which side the cycles of twice the period are born
-base: {base}
-studies:
-  - cycle_branch:
-      name: branch
-      unbalance: [a]
-      parameter: speed
-      range: {{from: 360 rad/s, to: 700 rad/s}}
-      step: {{initial: 4 rad/s, min: 0.001 rad/s, max: 16 rad/s}}
-      intervals: 40
-      degree: 4
-      points: gauss
-      adapt_mesh: false
+BORN = "title: On which side the cycles of twice the period are born" + BRANCH.format(end="700 rad/s") + """\
       detect: [flip]
-      follow_flips: true
 """
 
 

@@ -14,7 +14,7 @@ namespace whirl::solve {
 /// Second and third derivatives of the map solve the variational equations of the collocation, with the derivatives of
 /// F by central differences of its exact tangents along the critical motion. `problem` is linearised at u, `multiplier`
 /// is the critical one; strong resonances (theta = pi, 2 pi/3, pi/2) have other normal forms. The critical vector has a
-/// root mean square of one in scaled states. Source: Kuznetsov (2004), 4.7 and (5.73). Cost: about 40 evaluations of
+/// root mean square of one in scaled states. Source: Kuznetsov (2004), 4.7 and (5.73). Cost: about 60 evaluations of
 /// the tangents along the cycle. Collective.
 [[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier);
 
