@@ -18,8 +18,8 @@ struct Deck {
 };
 void describe(deck::Description<Deck>& d);
 
-/// Reads and checks the deck at `path` after `overrides` (arguments of `--set`); nothing is solved. Collective; the same on all
-/// ranks. Throws core::InputError (agreed) with a line per problem.
+/// Reads and checks the deck at `path` after `overrides` (arguments of `--set`); nothing is solved. Collective; the
+/// same on all ranks. Throws core::InputError (agreed) with a line per problem.
 [[nodiscard]] Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides);
 
 /// The deck as understood: valid, SI, every default written out.
