@@ -79,7 +79,12 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
       system::is_rotor(m) ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") : "system " + m.system.name;
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
-  for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
+  constexpr double notable = 2e8;
+  for (const auto& s : deck.studies) {
+    const double bytes = s->memory(m);
+    text += fmt::format("  {} ({}){}\n", s->name(), s->kind(),
+                        bytes < notable ? "" : fmt::format(", about {} of memory", deck::write_memory(bytes)));
+  }
   text += changes_text(deck.changes);
   return text;
 }
@@ -92,7 +97,7 @@ std::string list() {
 
 std::string describe(const std::string& key) {
   try {
-    return deck::reference_text(deck::structure_of<study::Deck>(), key);
+    return deck::reference_text(deck::structure_of<study::Deck>(), key, study::citations());
   } catch (core::InputError& e) {
     e.mark_agreed();
     throw;

@@ -2,16 +2,46 @@
 
 #include <fmt/core.h>
 
+#include <map>
+
+#include "cost.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
 
 namespace whirl::study {
 
+namespace {
+
+// Files are named by studies, with endings such as ` flip 12.checkpoint.h5`, and most file systems take 255 bytes.
+constexpr std::size_t longest_name = 150;
+
+void check_names(const Deck& deck, std::size_t i, const std::string& path, std::map<std::string, std::size_t>& taken,
+                 const deck::Report& r) {
+  const Study& s = *deck.studies[i];
+  if (s.name().size() > longest_name)
+    return r.fail(path + ".name", fmt::format("the name of a study has at most {} bytes, since files are named by it; "
+                                              "this one has {}",
+                                              longest_name, s.name().size()));
+  const auto [first, fresh] = taken.emplace(io::safe_name(s.name()), i);
+  if (!fresh)
+    r.fail(path + ".name", fmt::format("study {} is called '{}' already: give each a name of its own",
+                                       first->second + 1, deck.studies[first->second]->name()));
+}
+
+}  // namespace
+
+void describe(deck::Description<Limits>& d) {
+  d.add("memory", &Limits::memory, "byte", deck::positive,
+        "of all ranks together, above which a study is refused before it begins; its need is estimated from counts");
+}
+
 void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
+  d.add("limits", &Deck::limits, "what a run may take");
   d.check([](const Deck& deck, const deck::Report& r) {
+    std::map<std::string, std::size_t> taken;
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());
@@ -22,10 +52,10 @@ void describe(deck::Description<Deck>& d) {
       }
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
-      for (std::size_t j = 0; j < i; ++j)
-        if (io::safe_name(deck.studies[j]->name()) == io::safe_name(s.name()))
-          r.fail(path + ".name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1,
-                                             deck.studies[j]->name()));
+      check_names(deck, i, path, taken, r);
+      if (const double bytes = s.memory(deck.machine); bytes > deck.limits.memory)
+        r.fail(path, fmt::format("'{}' needs about {} of memory, and limits.memory is {}", s.name(),
+                                 deck::write_memory(bytes), deck::write_memory(deck.limits.memory)));
     }
   });
 }

@@ -1,5 +1,9 @@
 #include "whirl/study/modes.hpp"
 
+#include <algorithm>
+
+#include "cost.hpp"
+
 namespace whirl::study {
 
 std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
@@ -14,9 +18,9 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
   d.add("supports", &ModesOptions::supports, "what holds the journals");
   d.add("range", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
-  d.add("points", &ModesOptions::points, deck::at_least(2), "speeds in the range, evenly spaced with both ends");
+  d.add("points", &ModesOptions::points, deck::in(2, 1e8), "speeds in the range, evenly spaced with both ends");
   d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
-  d.add("count", &ModesOptions::count, deck::positive, "modes at each speed, those of lowest frequency");
+  d.add("count", &ModesOptions::count, deck::in(1, 1e5), "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
   d.check([](const ModesOptions& o, const deck::Report& r) {
@@ -24,9 +28,9 @@ void describe(deck::Description<ModesOptions>& d) {
     // Without films the shaft is taken at rest, whatever its speed.
     if (o.supports != ModesOptions::Supports::films) return;
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
-    for (double s : o.all_speeds())
-      if (s <= 0)
-        return r.fail(o.range ? "range" : "speeds", "a film carries no load at rest: speeds must be positive");
+    bool at_rest = o.range && std::min(o.range->from, o.range->to) <= 0;
+    for (const deck::Quantity& s : o.speeds) at_rest = at_rest || s.value <= 0;
+    if (at_rest) r.fail(o.range ? "range" : "speeds", "a film carries no load at rest: speeds must be positive");
   });
 }
 
@@ -40,6 +44,11 @@ std::vector<double> ModesOptions::all_speeds() const {
 
 std::string ModesOptions::unit() const {
   return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
+}
+
+double Modes::memory(const system::Machine& machine) const {
+  const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
+  return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
 }
 
 void Modes::validate(const system::Machine&, const deck::Report&) const {}
