@@ -9,6 +9,7 @@ namespace whirl::study {
 
 void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds) {
   group.set("count", static_cast<int>(seeds.size()));
+  group.set("restart", 1);
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     auto& g = group.child(fmt::format("{}", k + 1));
     write_cycle(g.child("cycle"), seeds[k].cycle);

@@ -19,6 +19,10 @@ Groups Groups::split(MPI_Comm world, const system::Machine& machine) {
   return g;
 }
 
+MPI_Comm sharing_time(MPI_Comm comm, std::size_t intervals) {
+  return intervals < static_cast<std::size_t>(core::size_of(comm)) ? MPI_COMM_SELF : comm;
+}
+
 std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
                                             const std::function<std::vector<double>(std::size_t)>& work) {
   std::vector<std::vector<double>> all(n);

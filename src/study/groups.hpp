@@ -24,6 +24,10 @@ struct Groups {
   [[nodiscard]] static Groups split(MPI_Comm world, const system::Machine& machine);
 };
 
+/// Who shares the intervals of a cycle: the ranks of `comm`, or each rank by itself where there are more ranks than
+/// intervals; then all of them compute the same.
+[[nodiscard]] MPI_Comm sharing_time(MPI_Comm comm, std::size_t intervals);
+
 /// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
 /// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.
 [[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "whirl/io/checkpoint.hpp"
+#include "whirl/io/manifest.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 
@@ -47,23 +48,25 @@ public:
   [[nodiscard]] bool shows_progress() const { return static_cast<bool>(say_); }
 
   /// Checkpoint of the study that runs: saved on rank 0, loaded on all ranks (empty group if there is none).
-  void save_checkpoint(const io::Group& state) const;
+  void save_checkpoint(const io::Group& state);
   [[nodiscard]] io::Group load_checkpoint() const;
   [[nodiscard]] bool has_checkpoint() const;
 
   /// `NAME: reason` for each study that delivered nothing.
   [[nodiscard]] const std::vector<std::string>& undelivered() const { return undelivered_; }
-  [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
+  /// Where a file of the results goes; its name enters the manifest. Call on rank 0.
+  [[nodiscard]] std::filesystem::path file(const std::string& name);
   [[nodiscard]] io::Group& root() { return root_; }
   [[nodiscard]] std::string group_path() const { return "/studies/" + io::safe_name(current_.name); }
 
 private:
   void write();
-  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) const;
+  [[nodiscard]] io::Checkpoint checkpoint(const std::string& study) const;
 
   MPI_Comm comm_;
   int rank_;
   std::filesystem::path directory_;
+  io::Manifest manifest_;  // rank 0's is the one that grows
   Say say_;
   io::Group root_;
   io::Summary all_;

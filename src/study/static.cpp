@@ -43,8 +43,8 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
     int rank = 0;
     MPI_Comm_rank(context.comm, &rank);
     if (rank == 0 && !grids.empty())
-      io::write_xdmf(context.results.directory() / (io::safe_name(context.results.summary().name) + ".xdmf"),
-                     "results.h5", grids);
+      io::write_xdmf(context.results.file(io::safe_name(context.results.summary().name) + ".xdmf"), "results.h5",
+                     grids);
   });
 }
 

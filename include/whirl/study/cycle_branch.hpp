@@ -61,6 +61,7 @@ public:
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] bool resumes_itself() const override { return true; }
+  [[nodiscard]] bool may_add(std::string_view other) const override;
   void run(Context& context) override;
 };
 
