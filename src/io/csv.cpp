@@ -6,6 +6,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "io/atomic_file.hpp"
+
 namespace whirl::io {
 namespace {
 
@@ -119,6 +121,10 @@ void collect(const Columns& columns, const Group& group, const std::string& path
 }
 
 }  // namespace
+
+void write_csv(const std::filesystem::path& path, const CsvFile& table) {
+  replace_file(path, table.text);
+}
 
 std::vector<CsvFile> csv_tables(const Group& tree) {
   std::vector<CsvFile> out;

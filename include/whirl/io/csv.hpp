@@ -1,6 +1,7 @@
 #pragma once
 // Tables of results as text that every spreadsheet reads.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,8 @@ struct CsvFile {
 /// Left out: groups with the attribute `restart` and all below them, datasets of three and more axes, tables of more
 /// than a million cells, and datasets that fit no table.
 [[nodiscard]] std::vector<CsvFile> csv_tables(const Group& tree);
+
+/// Writes one of them; atomic, makes the folder if it is missing.
+void write_csv(const std::filesystem::path& path, const CsvFile& table);
 
 }  // namespace whirl::io
