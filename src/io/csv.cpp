@@ -61,6 +61,8 @@ public:
 
   // Nothing if the group is no table.
   [[nodiscard]] std::string text(const Group& group) const {
+    for (const auto& [name, d] : group.datasets())
+      if (d.shape.size() > 2) return {};
     std::size_t rows = 0;
     bool known = false, two = false;
     for (const std::size_t axes : {2UL, 1UL}) {

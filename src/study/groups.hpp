@@ -5,11 +5,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "whirl/system/options.hpp"
 
 namespace whirl::study {
+
+class Pieces;
 
 /// Groups of ranks, each of which holds a whole system on its `space` communicator; independent work (speeds,
 /// collocation intervals) is shared between groups.
@@ -32,5 +35,11 @@ struct Groups {
 /// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.
 [[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
                                                           const std::function<std::vector<double>(std::size_t)>& work);
+
+/// The same in rounds of about half a second, after which the answers are `kept` as pieces `name 1`, ..., `name n`:
+/// those of an interrupted run are not computed again.
+[[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
+                                                          const std::function<std::vector<double>(std::size_t)>& work,
+                                                          Pieces& kept, const std::string& name);
 
 }  // namespace whirl::study

@@ -15,9 +15,10 @@ import time
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
 work = pathlib.Path(tempfile.mkdtemp(prefix="whirl_folder_"))
 failures = []
-# Some seconds of work, of which the first millisecond is enough here.
-LONG = [source / "inputs" / "turbine_train" / "modes.yaml"]
 SHORT = [source / "inputs" / "rigid_rotor" / "short_f1.yaml"]
+# Minutes of work, of which the first seconds are enough here.
+LONG = [*SHORT, "--set", "studies.1.equilibrium_branch.step={initial: 1 mm/s, min: 1 mm/s, max: 1 mm/s}".replace("mm/s", "mrad/s"),
+        "--set", "studies.1.equilibrium_branch.max_points=1000000"]
 
 
 def command(words):
@@ -61,11 +62,17 @@ true("the first run was still at work when others were refused", first.poll() is
 true("a refused run changes nothing", set(before) <= set(left(held)))
 first.send_signal(signal.SIGKILL)
 first.wait()
-# Nothing had been finished: what the killed run left does not stand in the way.
-whirl(*SHORT, "-o", held)
-true("names of the manifest", sorted((held / "manifest.txt").read_text().split("\n")[:-1]) ==
-     sorted(n for n in left(held) if n != "manifest.txt") + ["unbalanced.checkpoint.h5"] * ("unbalanced.checkpoint.h5" in (held / "manifest.txt").read_text()),
-     (held / "manifest.txt").read_text() + str(left(held)))
+whirl(*SHORT, "-o", held, "--force")
+named = (held / "manifest.txt").read_text().split("\n")[:-1]
+true("the manifest names all that a run leaves", set(left(held)) - {"manifest.txt"} <= set(named), f"{named} {left(held)}")
+
+# A run that is killed before it has anything: what it left does not stand in the way.
+early = work / "early"
+process = started([*LONG, "-o", early], early)
+process.send_signal(signal.SIGKILL)
+process.wait()
+true("nothing but the deck is left", set(left(early)) <= {"manifest.txt", "resolved.yaml"}, str(left(early)))
+whirl(*SHORT, "-o", early)
 
 # --force replaces what the manifest names: pictures beside it too, the user's own files never.
 mine = ["notes.txt", "mine.png", "mine.xdmf", "mine.part", "mine.checkpoint.h5", "csv/mine.csv"]
