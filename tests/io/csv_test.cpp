@@ -49,6 +49,7 @@ TEST(Csv, LeavesOutWhatIsNoTable) {
   Group tree;
   tree.child("odd").put("a", {1, 2}, "m", "");
   tree.child("odd").put("b", {1, 2, 3}, "m", "");
+  tree.child("orbits").put("parameter", {1}, "rpm", "");
   tree.child("orbits").put("x", {1, 2, 2}, {1, 2, 3, 4}, "m", "");
   auto& seeds = tree.child("flips");
   seeds.set("restart", 1);
