@@ -20,8 +20,8 @@ struct CsvFile {
 /// the rows, and a dataset of one axis as long as their second one names their columns: `x.B1 [m]`. Failing that,
 /// `bearings/name` or `places/name` of the tree does, or numbers from 1. Numbers are as short as they can be without
 /// loss, `nan` where there is none.
-/// Left out: groups with the attribute `restart` and all below them, groups with datasets of three and more axes, tables
-/// of more than a million cells, and datasets that fit no table.
+/// Left out: groups with the attribute `restart` and all below them, groups with datasets of three and more axes,
+/// tables of more than a million cells, and datasets that fit no table.
 [[nodiscard]] std::vector<CsvFile> csv_tables(const Group& tree);
 
 /// Writes one of them; atomic, makes the folder if it is missing.
