@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "whirl/core/error.hpp"
+#include "whirl/io/text.hpp"
 
 namespace whirl::io {
 namespace {
@@ -52,6 +53,10 @@ void replace_file(const std::filesystem::path& path, const std::string& content)
     out.close();
     if (!out) throw core::Error("cannot write " + path.string() + ": " + std::strerror(errno));
   });
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  replace_file(path, text);
 }
 
 }  // namespace whirl::io

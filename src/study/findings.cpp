@@ -36,6 +36,10 @@ void Findings::progress(const std::string& line) {
   say_(line, true);
 }
 
+std::filesystem::path Findings::part_path(const std::string& part) const {
+  return checkpoint_.parent_path() / (io::safe_name(result_.summary.name) + " " + part);
+}
+
 void Findings::save_checkpoint(const io::Group& state) const {
   core::agree(comm_, [&] {
     if (rank_ == 0) io::Checkpoint(checkpoint_).save(state);

@@ -27,6 +27,10 @@ public:
   /// Tables and fields.
   [[nodiscard]] io::Group& group() { return result_.group; }
   [[nodiscard]] io::StudySummary& summary() { return result_.summary; }
+  /// Writes a text file of that name beside the results.
+  void attach(std::string name, std::string text) { result_.files.emplace_back(std::move(name), std::move(text)); }
+  /// Another checkpoint that goes as soon as the result is written.
+  void leave_behind(std::filesystem::path checkpoint) { result_.checkpoints.push_back(std::move(checkpoint)); }
   /// Shows a mesh in ParaView; dataset paths are relative to group().
   void show(io::StructuredGrid grid) { result_.grids.push_back(std::move(grid)); }
   /// The result, with how it ended; nothing may be added any more.
@@ -41,11 +45,17 @@ public:
   /// Replaces the progress line; rank 0 only, at most ten times a second.
   void progress(const std::string& line);
   [[nodiscard]] bool shows_progress() const { return static_cast<bool>(say_); }
+  /// The same at once, for the progress of a part of this study.
+  void say(const std::string& line, bool transient) const {
+    if (say_) say_(line, transient);
+  }
 
   /// Saved on rank 0, loaded on all ranks. Collective.
   void save_checkpoint(const io::Group& state) const;
   [[nodiscard]] io::Group load_checkpoint() const;
   [[nodiscard]] bool has_checkpoint() const;
+  /// Beginning of the names of the checkpoints of a part of this study.
+  [[nodiscard]] std::filesystem::path part_path(const std::string& part) const;
 
 private:
   MPI_Comm comm_;

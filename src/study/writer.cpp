@@ -6,6 +6,7 @@
 #include "whirl/core/petsc.hpp"
 #include "whirl/io/checkpoint.hpp"
 #include "whirl/io/hdf5.hpp"
+#include "whirl/io/text.hpp"
 
 namespace whirl::study {
 
@@ -60,11 +61,15 @@ void Writer::add(StudyResult result) {
   }
   // The study counts as finished as soon as the files of the run are written: what belongs to it goes first.
   core::agree(comm_, [&] {
-    if (rank_ == 0 && !result.grids.empty()) io::write_xdmf(directory_ / (file + ".xdmf"), "results.h5", result.grids);
+    if (rank_ != 0) return;
+    if (!result.grids.empty()) io::write_xdmf(directory_ / (file + ".xdmf"), "results.h5", result.grids);
+    for (const auto& [called, text] : result.files) io::write_text(directory_ / called, text);
   });
   write();
   core::agree(comm_, [&] {
-    if (rank_ == 0) io::Checkpoint(checkpoint_path(name)).remove();
+    if (rank_ != 0) return;
+    io::Checkpoint(checkpoint_path(name)).remove();
+    for (const auto& part : result.checkpoints) io::Checkpoint(part).remove();
   });
 }
 

@@ -3,10 +3,12 @@
 
 #include <mpi.h>
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "whirl/deck/description.hpp"
@@ -25,6 +27,8 @@ struct StudyResult {
   io::Group group;                        ///< tables and fields, with units
   io::StudySummary summary;               ///< named values, bifurcations, how it ended
   std::vector<io::StructuredGrid> grids;  ///< meshes for ParaView; dataset paths are relative to `group`
+  std::vector<std::pair<std::string, std::string>> files;  ///< text files beside the results: name, contents
+  std::vector<std::filesystem::path> checkpoints;          ///< of its parts; they go when the result is written
   bool delivered = true;                  ///< false: nothing but the reason in summary.status
 };
 
@@ -34,6 +38,7 @@ struct Context {
   const system::Machine& machine;
   Findings& results;                                ///< what the study has found so far
   const io::Group& earlier;                         ///< results of the studies before, by io::safe_name of their names
+  std::span<const io::StudySummary> summaries;      ///< of those
   bool resume = false;                              ///< go on from the checkpoint of this study, if there is one
   std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
 };
