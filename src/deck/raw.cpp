@@ -20,8 +20,7 @@ class RawMapCodec final : public Codec {
 public:
   explicit RawMapCodec(std::string words) : words_(std::move(words)) {}
   void read(const Node& node, void* value, Reading& r) const override {
-    if (node.kind != Node::Kind::map)
-      return r.problems.add(node.place, "'" + node.key + "' must be " + words_);
+    if (node.kind != Node::Kind::map) return r.problems.add(node.place, "'" + node.key + "' must be " + words_);
     Node& kept = *static_cast<Node*>(value);
     kept = node;
     try {

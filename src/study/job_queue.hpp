@@ -8,8 +8,8 @@
 
 namespace whirl::study {
 
-/// Jobs 0 to n-1 for the ranks of `comm`, in groups of `ranks` (fewer where the ranks do not suffice). A counter on rank 0
-/// that all can reach says which is next, so that a group with short jobs takes more of them.
+/// Jobs 0 to n-1 for the ranks of `comm`, in groups of `ranks` (fewer where the ranks do not suffice). A counter on
+/// rank 0 that all can reach says which is next, so that a group with short jobs takes more of them.
 class JobQueue {
 public:
   /// Collective on `comm`.

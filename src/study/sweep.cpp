@@ -86,15 +86,16 @@ void broadcast(MPI_Comm comm, int owner, std::string& bytes) {
 
 }  // namespace
 
-// The numbers of a variant do not depend on who computes it: groups of ranks take the next one as soon as they are free.
+// The numbers of a variant do not depend on who computes it: groups of ranks take the next one as soon as they are
+// free.
 StudyResult Sweep::run(Context& context) {
   const std::size_t n = variants_.size();
   auto& results = context.results;
   JobQueue queue(context.comm, options.ranks, n);
   std::vector<std::unique_ptr<VariantStore>> stores;
   for (std::size_t k = 0; k < n; ++k)
-    stores.push_back(std::make_unique<VariantStore>(
-        queue.group(), results.part_path(fmt::format("variant {}", k + 1))));
+    stores.push_back(
+        std::make_unique<VariantStore>(queue.group(), results.part_path(fmt::format("variant {}", k + 1))));
   std::vector<int> mine(n, -1), owner(n, -1);
   std::exception_ptr caught;
   try {

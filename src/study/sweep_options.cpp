@@ -23,7 +23,8 @@ void describe(deck::Description<SweepOptions>& d) {
         "a map PATH: VALUES of quantities of which every combination is a variant; VALUES is a list or {from, to, "
         "points, spacing: linear or log}, whose ends may be factors or offsets. Together with `variants`: each of them "
         "at every point of the grid");
-  d.add("at", &O::at, deck::any, "place of the deck as it stands on the axis of trends, beside the `at` of the variants");
+  d.add("at", &O::at, deck::any,
+        "place of the deck as it stands on the axis of trends, beside the `at` of the variants");
   d.add("as_given", &O::as_given,
         "also run the studies for the deck as it stands, as the first row of the table; if not, they are run for the "
         "variants only");
@@ -46,9 +47,8 @@ void Sweep::validate_among(std::span<const std::unique_ptr<Study>> before, const
   if (names.empty()) report.fail("", "there is no study before this one that it could repeat");
   for (std::size_t i = 0; i < options.of.size(); ++i)
     if (std::find(names.begin(), names.end(), options.of[i]) == names.end())
-      report.fail(fmt::format("of.{}", i + 1),
-                  fmt::format("there is no study '{}' before this one{}", options.of[i],
-                              deck::did_you_mean_one_of(options.of[i], names)));
+      report.fail(fmt::format("of.{}", i + 1), fmt::format("there is no study '{}' before this one{}", options.of[i],
+                                                           deck::did_you_mean_one_of(options.of[i], names)));
 }
 
 }  // namespace whirl::study

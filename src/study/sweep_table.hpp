@@ -23,8 +23,8 @@ struct SweepRow {
 /// Columns of all rows, in the order in which they are met; names start with that of the study.
 [[nodiscard]] std::vector<io::SweepColumn> table_of(const std::vector<SweepRow>& rows);
 
-/// How each column changes along each quantity that distinguishes rows, the others the same. The sign of a change counts
-/// if its bar, the sum of the two uncertainties, does not contain zero.
+/// How each column changes along each quantity that distinguishes rows, the others the same. The sign of a change
+/// counts if its bar, the sum of the two uncertainties, does not contain zero.
 [[nodiscard]] std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows,
                                                const std::vector<io::SweepColumn>& columns);
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "run_studies.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
-#include "run_studies.hpp"
 
 namespace whirl::study {
 

@@ -29,7 +29,7 @@ struct StudyResult {
   std::vector<io::StructuredGrid> grids;  ///< meshes for ParaView; dataset paths are relative to `group`
   std::vector<std::pair<std::string, std::string>> files;  ///< text files beside the results: name, contents
   std::vector<std::filesystem::path> checkpoints;          ///< of its parts; they go when the result is written
-  bool delivered = true;                  ///< false: nothing but the reason in summary.status
+  bool delivered = true;                                   ///< false: nothing but the reason in summary.status
 };
 
 /// What a study gets to work with.

@@ -50,8 +50,8 @@ public:
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 
-  /// Makes and checks the deck of each variant from the tree of the whole one; `before` are the studies before this one.
-  /// Problems cite the line of the sweep and the variant. Solves nothing. Collective (tables).
+  /// Makes and checks the deck of each variant from the tree of the whole one; `before` are the studies before this
+  /// one. Problems cite the line of the sweep and the variant. Solves nothing. Collective (tables).
   void prepare(const deck::Node& root, std::span<const std::unique_ptr<Study>> before, const deck::Files& files,
                deck::Problems& problems);
   [[nodiscard]] const std::vector<Variant>& variants() const { return variants_; }
