@@ -69,6 +69,7 @@ std::string sign_of(const io::Trend& t) {
   bool up = false, down = false, open = false, bare = false;
   for (std::size_t k = 0; k < t.difference.size(); ++k) {
     const double d = t.difference[k], bar = t.uncertainty[k];
+    if (d == 0 && bar == 0) continue;  // counts
     if (!std::isfinite(bar))
       bare = true;
     else if (!(std::abs(d) > bar))
@@ -79,7 +80,7 @@ std::string sign_of(const io::Trend& t) {
   if (up && down) return "mixed";
   if (bare) return "no bar";
   if (open) return "undetermined";
-  return up ? "+" : "-";
+  return up ? "+" : down ? "-" : "0";
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ struct SweepColumn {
 struct Trend {
   std::string column = {}, quantity = {}, unit = {};
   std::string beside = {};                 ///< the other quantities of a grid, which are constant; else empty
-  std::string sign = {};                   ///< "+", "-", "mixed", "undetermined" (the bar contains zero), "no bar"
+  std::string sign = {};                   ///< "+", "-", "0", "mixed", "undetermined" (the bar contains zero), "no bar"
   std::vector<std::string> variants = {};  ///< by rising quantity
   std::vector<double> at = {};             ///< the quantity of each
   std::vector<double> difference = {};     ///< of the value from each to the next
