@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "whirl/core/error.hpp"
-#include "whirl/io/text.hpp"
 
 namespace whirl::io {
 namespace {
@@ -53,10 +52,6 @@ void replace_file(const std::filesystem::path& path, const std::string& content)
     out.close();
     if (!out) throw core::Error("cannot write " + path.string() + ": " + std::strerror(errno));
   });
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  replace_file(path, text);
 }
 
 }  // namespace whirl::io

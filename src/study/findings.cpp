@@ -36,8 +36,10 @@ void Findings::progress(const std::string& line) {
   say_(line, true);
 }
 
-std::filesystem::path Findings::part_path(const std::string& part) const {
-  return checkpoint_.parent_path() / (io::safe_name(result_.summary.name) + " " + part);
+bool Findings::agreed(bool word) const {
+  int yes = word;
+  MPI_Bcast(&yes, 1, MPI_INT, 0, comm_);
+  return yes != 0;
 }
 
 void Findings::save_checkpoint(const io::Group& state) const {

@@ -27,8 +27,6 @@ public:
   /// Tables and fields.
   [[nodiscard]] io::Group& group() { return result_.group; }
   [[nodiscard]] io::StudySummary& summary() { return result_.summary; }
-  /// Writes a text file of that name beside the results.
-  void attach(std::string name, std::string text) { result_.files.emplace_back(std::move(name), std::move(text)); }
   /// Another checkpoint that goes as soon as the result is written.
   void leave_behind(std::filesystem::path checkpoint) { result_.checkpoints.push_back(std::move(checkpoint)); }
   /// Shows a mesh in ParaView; dataset paths are relative to group().
@@ -50,12 +48,13 @@ public:
     if (say_) say_(line, transient);
   }
 
+  /// Rank 0's word, for all: what a clock decides must be decided alike. Collective.
+  [[nodiscard]] bool agreed(bool word) const;
+
   /// Saved on rank 0, loaded on all ranks. Collective.
   void save_checkpoint(const io::Group& state) const;
   [[nodiscard]] io::Group load_checkpoint() const;
   [[nodiscard]] bool has_checkpoint() const;
-  /// Beginning of the names of the checkpoints of a part of this study.
-  [[nodiscard]] std::filesystem::path part_path(const std::string& part) const;
 
 private:
   MPI_Comm comm_;

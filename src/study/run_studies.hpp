@@ -21,8 +21,8 @@ public:
   virtual ~Store() = default;
   /// True if an earlier run finished this study and it delivered something; its results are kept.
   [[nodiscard]] virtual bool finished(const std::string& name) const = 0;
-  /// Where that study keeps its checkpoint.
-  [[nodiscard]] virtual std::filesystem::path checkpoint_path(const std::string& study) const = 0;
+  /// Where that study keeps its checkpoint. Collective.
+  [[nodiscard]] virtual std::filesystem::path checkpoint_path(const std::string& study) = 0;
   /// Takes the result of a study; its checkpoint goes. Collective.
   virtual void add(StudyResult result) = 0;
   /// Results of the studies that are finished: a group for each, under io::safe_name of its name.

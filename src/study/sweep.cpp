@@ -23,11 +23,14 @@ namespace fs = std::filesystem;
 // Results of the studies of one variant, kept in its checkpoint as soon as a study is finished.
 class VariantStore final : public Store {
 public:
-  VariantStore(MPI_Comm comm, fs::path stem) : comm_(comm), stem_(std::move(stem)) { root_.child("studies"); }
+  VariantStore(MPI_Comm comm, fs::path path, fs::path running)
+      : comm_(comm), path_(std::move(path)), running_path_(std::move(running)) {
+    root_.child("studies");
+  }
 
   void restore() {
     core::agree(comm_, [&] {
-      const io::Checkpoint saved(path());
+      const io::Checkpoint saved(path_);
       if (saved.exists()) set(saved.load().state);
     });
   }
@@ -37,10 +40,12 @@ public:
     io::Summary text;
     text.studies = summaries_;
     s.put("summary", std::vector<std::string>{text.to_json()}, "of the studies");
+    s.set("running", running_);
     return s;
   }
   void set(io::Group state) {
     summaries_ = io::Summary::from_json(state.strings("summary").front()).studies;
+    running_ = state.text("running");
     root_ = {};
     root_.child("studies") = std::move(state.child("studies"));
   }
@@ -49,27 +54,38 @@ public:
     // What delivered nothing is tried again.
     return studies().has_group(io::safe_name(name)) && studies().group(io::safe_name(name)).integer("delivered") != 0;
   }
-  [[nodiscard]] fs::path checkpoint_path(const std::string& study) const override {
-    return stem_.string() + " " + io::safe_name(study) + ".checkpoint.h5";
+  // One study after another uses the same file; what it holds of another study than the one that begins is stale.
+  [[nodiscard]] fs::path checkpoint_path(const std::string& study) override {
+    core::agree(comm_, [&] {
+      if (study == running_) return;
+      running_ = study;
+      if (core::rank_of(comm_) != 0) return;
+      io::Checkpoint(running_path_).remove();
+      io::Checkpoint(path_).save(state());
+    });
+    return running_path_;
   }
   void add(StudyResult result) override {
     const std::string name = result.summary.name;
+    running_.clear();
     root_.child("studies").child(io::safe_name(name)) = std::move(result.group);
     std::erase_if(summaries_, [&](const auto& s) { return s.name == name; });
     summaries_.push_back(std::move(result.summary));
     core::agree(comm_, [&] {
       if (core::rank_of(comm_) != 0) return;
-      io::Checkpoint(path()).save(state());
-      io::Checkpoint(checkpoint_path(name)).remove();
+      io::Checkpoint(path_).save(state());
+      io::Checkpoint(running_path_).remove();
     });
   }
   [[nodiscard]] const io::Group& studies() const override { return root_.group("studies"); }
   [[nodiscard]] std::span<const io::StudySummary> summaries() const override { return summaries_; }
-  [[nodiscard]] fs::path path() const { return stem_.string() + ".checkpoint.h5"; }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+  [[nodiscard]] const fs::path& running_path() const { return running_path_; }
 
 private:
   MPI_Comm comm_;
-  fs::path stem_;
+  fs::path path_, running_path_;
+  std::string running_;  // the study that has begun
   io::Group root_;
   std::vector<io::StudySummary> summaries_;
 };
@@ -94,8 +110,9 @@ StudyResult Sweep::run(Context& context) {
   JobQueue queue(context.comm, options.ranks, n);
   std::vector<std::unique_ptr<VariantStore>> stores;
   for (std::size_t k = 0; k < n; ++k)
-    stores.push_back(
-        std::make_unique<VariantStore>(queue.group(), results.part_path(fmt::format("variant {}", k + 1))));
+    stores.push_back(std::make_unique<VariantStore>(queue.group(),
+                                                    context.checkpoint_of(fmt::format("variant {}", k + 1)),
+                                                    context.checkpoint_of(fmt::format("variant {} running", k + 1))));
   std::vector<int> mine(n, -1), owner(n, -1);
   std::exception_ptr caught;
   try {
@@ -124,6 +141,7 @@ StudyResult Sweep::run(Context& context) {
     broadcast(context.comm, owner[k], bytes);
     if (mine[k] != owner[k]) stores[k]->set(io::from_bytes(bytes));
     results.leave_behind(stores[k]->path());
+    results.leave_behind(stores[k]->running_path());
   }
 
   std::vector<SweepRow> rows;

@@ -17,17 +17,6 @@ bool alike(double a, double b) {
   return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-std::string cell(double x) {
-  return std::isfinite(x) ? fmt::format("{:.10g}", x) : "";
-}
-
 // Rows along one quantity: their numbers and places, by rising place.
 struct Line {
   const Coordinate* what = nullptr;
@@ -145,34 +134,6 @@ std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows, const std::v
   return all;
 }
 
-std::string csv_of(const std::vector<SweepRow>& rows, const std::vector<io::SweepColumn>& columns) {
-  std::vector<std::string> quantities;
-  for (const SweepRow& row : rows)
-    for (const Coordinate& c : row.coordinates) {
-      const std::string head = fmt::format("{} [{}]", c.quantity, c.unit);
-      if (std::isfinite(c.value) && std::find(quantities.begin(), quantities.end(), head) == quantities.end())
-        quantities.push_back(head);
-    }
-  std::string text = "variant";
-  for (const std::string& q : quantities) text += "," + quoted(q);
-  for (const auto& c : columns) {
-    text += "," + quoted(fmt::format("{} [{}]", c.name, c.unit));
-    text += "," + quoted(fmt::format("{} +- [{}]", c.name, c.unit));
-  }
-  text += "\n";
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    text += quoted(rows[r].name);
-    for (const std::string& q : quantities) {
-      text += ",";
-      for (const Coordinate& c : rows[r].coordinates)
-        if (fmt::format("{} [{}]", c.quantity, c.unit) == q) text += cell(c.value);
-    }
-    for (const auto& c : columns) text += "," + cell(c.values[r]) + "," + cell(c.uncertainties[r]);
-    text += "\n";
-  }
-  return text;
-}
-
 void put_table(Findings& results, const std::vector<SweepRow>& rows) {
   auto& summary = results.summary();
   summary.columns = table_of(rows);
@@ -180,26 +141,30 @@ void put_table(Findings& results, const std::vector<SweepRow>& rows) {
   std::vector<std::string> names;
   for (const SweepRow& row : rows) names.push_back(row.name);
   auto& table = results.group().child("table");
-  table.put("variant", names, "rows of the table; all else is one value for each of them");
-  std::vector<std::string> known;
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (const Coordinate& c : rows[r].coordinates) {
-      if (!std::isfinite(c.value) || std::find(known.begin(), known.end(), c.quantity) != known.end()) continue;
-      known.push_back(c.quantity);
+  std::string order = "variant";
+  table.put("variant", names, "the deck as it stands, and the variants in their order");
+  const auto put = [&](const std::string& name, std::vector<double> values, const std::string& unit,
+                       const std::string& text) {
+    table.put(io::safe_name(name), std::move(values), unit, text);
+    order += "\n" + io::safe_name(name);
+  };
+  for (const SweepRow& row : rows)
+    for (const Coordinate& c : row.coordinates) {
+      if (!std::isfinite(c.value) || table.has_dataset(io::safe_name(c.quantity))) continue;
       std::vector<double> at(rows.size(), no_value);
       for (std::size_t k = 0; k < rows.size(); ++k) {
         if (rows[k].coordinates.empty()) at[k] = c.given;
         for (const Coordinate& o : rows[k].coordinates)
           if (o.quantity == c.quantity && o.unit == c.unit) at[k] = o.value;
       }
-      table.child("quantities").put(io::safe_name(c.quantity), at, c.unit, "value, ratio or difference to the deck");
+      put(c.quantity, at, c.unit, "what changes: the value, its ratio to the deck's, or the difference");
     }
   for (const auto& c : summary.columns) {
-    auto& column = table.child("columns").child(io::safe_name(c.name));
-    column.put("value", c.values, c.unit, c.name);
-    column.put("uncertainty", c.uncertainties, c.unit, "absolute, of the value");
+    put(c.name, c.values, c.unit, "of the study before the first dot");
+    put(c.name + " +-", c.uncertainties, c.unit, "absolute uncertainty of the column before");
   }
-  results.attach(io::safe_name(summary.name) + ".csv", csv_of(rows, summary.columns));
+  // An attribute of a file holds 64 kB; without it the columns stand in the order of their names.
+  if (order.size() < 60000) table.set("columns", order);
 }
 
 }  // namespace whirl::study

@@ -28,9 +28,6 @@ struct SweepRow {
 [[nodiscard]] std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows,
                                                const std::vector<io::SweepColumn>& columns);
 
-/// The table as comma-separated text: a row for each variant, a column for each value and one for its uncertainty.
-[[nodiscard]] std::string csv_of(const std::vector<SweepRow>& rows, const std::vector<io::SweepColumn>& columns);
-
 /// All of it into the results.
 void put_table(Findings& results, const std::vector<SweepRow>& rows);
 

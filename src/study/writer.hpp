@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "run_studies.hpp"
+#include "whirl/io/manifest.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 
@@ -22,7 +23,8 @@ public:
          bool resume);
 
   [[nodiscard]] bool finished(const std::string& name) const override;
-  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) const override;
+  /// The manifest names it from now on.
+  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) override;
   /// Writes the files as well.
   void add(StudyResult result) override;
   [[nodiscard]] const io::Group& studies() const override { return root_.group("studies"); }
@@ -32,10 +34,13 @@ public:
 
 private:
   void write();
+  // Where a file goes; rank 0 enters its name into the manifest.
+  [[nodiscard]] std::filesystem::path file(const std::string& name);
 
   MPI_Comm comm_;
   int rank_;
   std::filesystem::path directory_;
+  io::Manifest manifest_;  // rank 0's is the one that grows
   io::Group root_;
   io::Summary all_;
   std::vector<std::string> finished_;

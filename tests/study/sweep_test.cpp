@@ -11,6 +11,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/io/csv.hpp"
 #include "whirl/io/hdf5.hpp"
 #include "whirl/rotor/advice.hpp"
 #include "whirl/study/deck.hpp"
@@ -190,9 +191,14 @@ TEST(SweepTable, ASignCountsIfItsBarDoesNotContainZero) {
   EXPECT_EQ(trend(trends, "balanced.hopf.count").sign, "+");
   // A value that only one variant has shows no trend.
   EXPECT_THROW((void)trend(trends, "balanced.hopf.5"), core::Bug);
-  const std::string csv = study::csv_of(rows, columns);
-  EXPECT_EQ(csv.substr(0, csv.find(',', 9)), "variant,clearance [1]");
-  EXPECT_NE(csv.find("\nnarrow,0.8,4000,20,"), std::string::npos) << csv;
+  study::Findings results(MPI_COMM_WORLD, "s", "sweep", "s.checkpoint.h5", nullptr);
+  study::put_table(results, rows);
+  const auto files = io::csv_tables(results.group());
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].name, "table");
+  const std::string& csv = files[0].text;
+  EXPECT_EQ(csv.substr(0, 72), "variant,clearance,balanced.hopf.1 [rpm],balanced.hopf.1 +- [rpm],balance") << csv;
+  EXPECT_NE(csv.find("\nnarrow,0.8,4000,20,5590,1,"), std::string::npos) << csv;
 }
 
 TEST(SweepTable, LinesOfAGridKeepTheOtherQuantities) {

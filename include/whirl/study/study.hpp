@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,12 +25,11 @@ class Study;
 
 /// What a study found; the same on all ranks.
 struct StudyResult {
-  io::Group group;                        ///< tables and fields, with units
-  io::StudySummary summary;               ///< named values, bifurcations, how it ended
-  std::vector<io::StructuredGrid> grids;  ///< meshes for ParaView; dataset paths are relative to `group`
-  std::vector<std::pair<std::string, std::string>> files;  ///< text files beside the results: name, contents
-  std::vector<std::filesystem::path> checkpoints;          ///< of its parts; they go when the result is written
-  bool delivered = true;                                   ///< false: nothing but the reason in summary.status
+  io::Group group;                                 ///< tables and fields, with units
+  io::StudySummary summary;                        ///< named values, bifurcations, how it ended
+  std::vector<io::StructuredGrid> grids;           ///< meshes for ParaView; dataset paths are relative to `group`
+  std::vector<std::filesystem::path> checkpoints;  ///< of its parts; they go when the result is written
+  bool delivered = true;                           ///< false: nothing but the reason in summary.status
 };
 
 /// What a study gets to work with.
@@ -41,6 +41,8 @@ struct Context {
   std::span<const io::StudySummary> summaries;      ///< of those
   bool resume = false;                              ///< go on from the checkpoint of this study, if there is one
   std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
+  /// Where a part of this study keeps a checkpoint of its own. Collective.
+  std::function<std::filesystem::path(const std::string& part)> checkpoint_of;
 };
 
 /// One analysis of a deck.
@@ -54,6 +56,9 @@ public:
   [[nodiscard]] virtual std::string_view kind() const = 0;
   /// Its name in results: that of the deck, or the kind.
   [[nodiscard]] virtual std::string name() const = 0;
+  /// True if a study `other` may be one that this one adds to the results, under the name of its files
+  /// (io::plain_name).
+  [[nodiscard]] virtual bool may_add(std::string_view /*other*/) const { return false; }
   /// True if it asks about a rotor in bearings, so that a deck of another system cannot have it.
   [[nodiscard]] virtual bool needs_rotor() const { return true; }
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
