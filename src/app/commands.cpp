@@ -14,6 +14,7 @@
 #include "whirl/deck/output.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
+#include "whirl/study/sweep.hpp"
 
 namespace whirl::app {
 namespace {
@@ -91,11 +92,17 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
   constexpr double notable = 2e8;
   for (const auto& s : deck.studies) {
+    const auto* sweep = dynamic_cast<const study::Sweep*>(s.get());
     const double bytes = s->memory(m);
-    text += fmt::format("  {} ({}){}\n", s->name(), s->kind(),
+    text += fmt::format("  {} ({}{}){}\n", s->name(), s->kind(),
+                        sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "",
                         bytes < notable ? "" : fmt::format(", about {} of memory", deck::write_memory(bytes)));
   }
   text += changes_text(deck.changes);
+  const std::vector<std::string> warnings = study::warnings(deck);
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
+  if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
   return text;
 }
 

@@ -68,6 +68,7 @@ std::string scalar_text(const Node& n) {
   return is_plain(n.text) && !may_be_no_text(n.text) ? n.text : Json(n.text).dump();
 }
 
+// Keys may be paths with wildcards.
 std::string key_text(const std::string& key) {
   return is_plain(key) && !may_be_no_text(key) ? key : Json(key).dump();
 }

@@ -33,6 +33,9 @@ void describe(deck::Description<Deck>& d);
 /// Full references of the sources that help names in short.
 [[nodiscard]] std::span<const deck::Citation> citations();
 
+/// What is unusual about the deck and its variants, a line each; nothing of it keeps the deck from being computed.
+[[nodiscard]] std::vector<std::string> warnings(const Deck& deck);
+
 /// The deck as understood: valid, SI, every default written out.
 [[nodiscard]] std::string resolved_text(const Deck& deck);
 
