@@ -15,7 +15,7 @@ struct Separation {
 ///     above `to`    required = 0.10 + 0.17 (1 - 1/(AF - 1.5))    of `to`
 ///
 /// Inside the range the actual margin is zero and the required one that of the nearer border. Any one unit of speed.
-/// Source: API 617 (2014), part 1, 4.8.2.11; API 684 (2005), 2.5.
+/// Source: API 617 (separation of lateral critical speeds); API 684 (2005), 2.5.
 [[nodiscard]] Separation separation(double critical_speed, double amplification_factor, double from, double to);
 
 }  // namespace whirl::study
