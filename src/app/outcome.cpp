@@ -24,6 +24,8 @@ std::string with_uncertainty(double value, double uncertainty, const std::string
 std::string text_of(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
+  if (!s.stability.empty()) text += fmt::format("  {}\n", s.stability);
+  for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
   for (const io::Bifurcation& b : s.bifurcations)
     text +=
         fmt::format("  {} at {} {}{}{}\n", io::name_of(b.type), b.parameter,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -60,16 +61,23 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   spectral::EigenOptions options;
   options.count = 60;
   options.shapes = false;
+  options.rounding = true;
+  // Without damping the real parts are rounding errors, and none of them is a bifurcation.
   std::vector<std::complex<double>> values;
+  std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
+  int neutral = 0;
   for (const auto& mode : spectral::modes(system, x, options)) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
+    if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
+    if (mode.neutral()) neutral += mode.lambda.imag() != 0 ? 2 : 1;
   }
-  // Without damping the real parts are rounding errors of the largest eigenvalue, and none of them is a bifurcation.
-  double largest = 0;
-  for (const auto& v : values) largest = std::max(largest, std::abs(v));
-  const double rounding = 1e-11 * largest;
-  return solve::make_stability(std::move(values), [rounding](std::complex<double> v) { return v.real() - rounding; });
+  solve::Stability s = solve::make_stability(std::move(values), [&rounding](std::complex<double> v) {
+    const auto at = rounding.find(v.real());
+    return v.real() - (at == rounding.end() ? 0 : at->second);
+  });
+  s.neutral = neutral;
+  return s;
 }
 
 std::vector<std::string> names_of_bearings(const system::Machine& machine) {

@@ -7,6 +7,7 @@
 #include "results.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/newton.hpp"
+#include "whirl/study/parameter.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -43,6 +44,11 @@ void put_places(io::Group& group, const system::Machine& machine, const system::
 /// The nondimensional groups of a rigid rotor in equal bearings, as nondimensional.*; nothing for other machines.
 void put_groups(io::StudySummary& summary, const system::Train& train);
 void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups);
+
+/// The same word of the solver.
+[[nodiscard]] inline solve::Continuation kind_of(Following f) {
+  return f == Following::natural ? solve::Continuation::natural : solve::Continuation::arclength;
+}
 
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);

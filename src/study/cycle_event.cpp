@@ -81,6 +81,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (found.event == solve::Event::cyclic_fold && at_simple_cycle(problem_->orbit(u))) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
+  b.more["others_unstable"] = found.others_unstable;
   if (found.event == solve::Event::flip && found.located) {
     const FlipSeed seed = seed_at(cycle);
     if (options_.follow_flips) seeds_.push_back(seed);

@@ -25,6 +25,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       scale_(deck::number_to_si(1, unit_)),
       system_(make_system(false)),
       record_(system_->places(), unit_, options_.multipliers),
+      films_(system_->places()),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
@@ -35,6 +36,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
   continuation_.beta_1 = options_.parameter.beta_1;
   continuation_.beta_2 = options_.parameter.beta_2;
+  continuation_.kind = kind_of(options_.parameter.continuation);
   continuation_.max_points = options_.max_points;
   const bool adapt = options_.method == CycleBranchOptions::Method::collocation && options_.adapt_mesh;
   continuation_.adapt_every = adapt ? options_.adapt_every : 0;
@@ -117,6 +119,10 @@ void CycleFollower::run() {
     callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
       return solve::refine(*cycles, e, v, t, newton_);
     };
+  if (films_.exists()) {
+    callbacks.limit = [this](Vec v) { return films_.margin(least_films(problem_->orbit(v), *system_)); };
+    callbacks.why = [this](Vec v) { return films_.reason(least_films(problem_->orbit(v), *system_)); };
+  }
   callbacks.on_suspicion = [this](const solve::Suspicion& s) {
     context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
   };
@@ -143,7 +149,9 @@ void CycleFollower::run() {
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
-  if (contact_) results.summary().set("contact", end.parameter, unit_);
+  if (contact_ || end.limited) results.summary().set("contact", end.parameter, unit_);
+  if (end.limited) results.summary().set("contact.uncertainty", end.bracket, unit_);
+  results.summary().stability = record_.verdict();
   results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
 }
 

@@ -9,6 +9,7 @@
 
 #include "common.hpp"
 #include "cycle_record.hpp"
+#include "film_limit.hpp"
 #include "located.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
@@ -100,6 +101,7 @@ private:
   std::unique_ptr<system::Plant> system_;
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
+  FilmLimit films_;
   std::optional<solve::Cycle> last_;
   double last_saved_ = -1e9;
   std::vector<FlipSeed> seeds_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film_limit.hpp"
+#include "verdict.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -69,6 +71,7 @@ std::vector<io::Table::Column> columns(const system::Places& places, const std::
           {"y_max", length, "largest y of " + places.text, b},
           {"y_min", length, "smallest", b},
           {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
+          {"film_min", length, "smallest film thickness over the cycle, not a number without a film", b},
           {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
           {"multipliers_imag", "1", "their imaginary parts", m}};
 }
@@ -106,6 +109,7 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                  e.y_max,
                  e.y_min,
                  eccentricity,
+                 film_column(least_films(cycle, system), places_.names.size()),
                  re,
                  im});
   orbits_.push_back(std::move(motion));
@@ -114,6 +118,13 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
 double CycleRecord::eccentricity() const {
   const auto& all = table_.column("eccentricity_max");
   return *std::max_element(all.end() - static_cast<std::ptrdiff_t>(places_.names.size()), all.end());
+}
+
+std::string CycleRecord::verdict() const {
+  BranchVerdict verdict;
+  for (const double stable : table_.column("stable"))
+    verdict.add(stable > 0 ? StabilityClass::stable : StabilityClass::unstable);
+  return verdict.text();
 }
 
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,

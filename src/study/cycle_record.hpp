@@ -25,6 +25,8 @@ public:
               const system::Plant& system, double scale);
   /// Largest eccentricity per clearance of any journal on the last point.
   [[nodiscard]] double eccentricity() const;
+  /// Verdict on the stability of the points so far.
+  [[nodiscard]] std::string verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
   void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
               const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary);

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
@@ -12,6 +14,10 @@ void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
   d.check([](const Deck& deck, const deck::Report& r) {
+    const auto holds = [](const auto& s) { return s->needs_bearings(); };
+    const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
+    if (shaft && deck.machine.bearings.size() < 2 && std::any_of(deck.studies.begin(), deck.studies.end(), holds))
+      r.fail("bearings", "a shaft needs at least two bearings");
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());

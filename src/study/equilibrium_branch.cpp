@@ -7,9 +7,11 @@
 
 #include "bifurcation.hpp"
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "groups.hpp"
 #include "located.hpp"
 #include "make_plant.hpp"
+#include "verdict.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -56,6 +58,7 @@ void EquilibriumBranch::run(Context& context) {
   continuation.max_step = step ? step->max.value / scale : width / 25;
   continuation.beta_1 = options.parameter.beta_1;
   continuation.beta_2 = options.parameter.beta_2;
+  continuation.kind = kind_of(options.parameter.continuation);
   continuation.max_points = options.max_points;
   continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
   continuation.newton.max_iterations = 20;
@@ -76,12 +79,17 @@ void EquilibriumBranch::run(Context& context) {
   io::Table table({{"parameter", unit, "parameter of the branch"},
                    {"stable", "1", "1 if no eigenvalue has a positive real part"},
                    {"unstable_count", "1", "eigenvalues with positive real part"},
+                   {"undamped_count", "1", "eigenvalues whose real part is rounding"},
                    {"step", unit, "arclength from the previous point"},
                    {"leading_real", "1/s", "real part of the least stable eigenvalue"},
                    {"leading_imag", "rad/s", "its imaginary part"},
                    {"x", places.unit, places.text, {places.names.size()}},
-                   {"y", places.unit, places.text, {places.names.size()}}});
+                   {"y", places.unit, places.text, {places.names.size()}},
+                   {"film", places.unit, "smallest film thickness, not a number without a film", {places.names.size()}}});
   std::vector<Located> located;  // one for each bifurcation of the summary
+  std::vector<BorderEvent> borders;  // likewise
+  BranchVerdict verdict;
+  const FilmLimit films(places);
   auto& results = context.results;
   put_groups(results.summary(), system->groups());
   solve::BranchCallbacks callbacks;
@@ -92,20 +100,24 @@ void EquilibriumBranch::run(Context& context) {
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
     problem.to_state(v, x.get());
     std::vector<double> px, py;
-    for (const auto& j : system->shown(system->gather(x.get()).data())) {
+    const std::vector<double> whole = system->gather(x.get());
+    for (const auto& j : system->shown(whole.data())) {
       px.push_back(j.position[0]);
       py.push_back(j.position[1]);
     }
     const auto& s = point.stability;
+    verdict.add(class_of(s));
     const std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
     table.append({{point.parameter},
                   {s.unstable() == 0 ? 1.0 : 0.0},
                   {static_cast<double>(s.unstable())},
+                  {static_cast<double>(s.neutral)},
                   {point.step},
                   {leading.real()},
                   {std::abs(leading.imag())},
                   px,
-                  py});
+                  py,
+                  film_column(system->film_thickness(whole.data()), places.names.size())});
     results.progress(fmt::format(
         "{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
         results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
@@ -158,6 +170,8 @@ void EquilibriumBranch::run(Context& context) {
       system->set_parameter(found.parameter * scale);
       set_lyapunov(b, *system, x.get(), omega);
     }
+    b.more["others_unstable"] = found.others_unstable;
+    borders.push_back({found.others_unstable == 0 && found.located, found.loses});
     results.summary().bifurcations.push_back(b);
     if (is_followed(context, name())) {
       problem.to_state(v, x.get());
@@ -173,6 +187,14 @@ void EquilibriumBranch::run(Context& context) {
   callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {
     return solve::refine(*system, problem, e, v, t, continuation.newton);
   };
+  if (films.exists()) {
+    const auto thickness = [&](Vec v) {
+      problem.to_state(v, x.get());
+      return system->film_thickness(system->gather(x.get()).data());
+    };
+    callbacks.limit = [&, thickness](Vec v) { return films.margin(thickness(v)); };
+    callbacks.why = [&, thickness](Vec v) { return films.reason(thickness(v)); };
+  }
   callbacks.on_suspicion = [&](const solve::Suspicion& s) {
     results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
@@ -185,14 +207,19 @@ void EquilibriumBranch::run(Context& context) {
   put_bifurcations(group, results.summary().bifurcations);
   group.set("parameter", options.parameter.path);
   group.set("parameter_unit", unit);
-  int k = 0;
-  for (const auto& b : results.summary().bifurcations)
-    if (b.type == io::BifurcationType::hopf && k++ == 0) {
-      results.summary().set(
-          "threshold", b.value * scale,
-          deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path));
-      results.summary().set("whirl_frequency", b.more.at("whirl_frequency_rad_s"), "rad/s");
-    }
+  const std::string si_unit =
+      deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path);
+  results.summary().stability = verdict.text();
+  if (const int k = threshold_among(borders, range.to >= range.from); k >= 0) {
+    const auto& b = results.summary().bifurcations[static_cast<std::size_t>(k)];
+    results.summary().set("threshold", b.value * scale, si_unit);
+    if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
+      results.summary().set("whirl_frequency", omega->second, "rad/s");
+  }
+  if (end.limited) {
+    results.summary().set("contact", end.parameter, unit);
+    results.summary().set("contact.uncertainty", end.bracket, unit);
+  }
   results.summary().points = end.points;
   results.finish(branch_status(end, unit), end.points > 0);
 }

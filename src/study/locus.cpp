@@ -131,6 +131,7 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   continuation_.min_step = step ? step->min.value / second_scale_ : 1e-6;
   continuation_.max_step = step ? step->max.value / second_scale_ : 1.0 / 30;
   continuation_.max_points = options.max_points;
+  continuation_.kind = kind_of(options.second.continuation);
   continuation_.location_tolerance = 1e-7;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "verdict.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
@@ -24,6 +25,7 @@ using Complex = std::complex<double>;
 struct ShaftMode {
   Complex lambda;
   std::vector<Complex> x, y;  // per node
+  bool undamped = false;      // its real part is rounding
   int id = -1;                // the same for the same mode at other speeds
 
   [[nodiscard]] std::vector<Complex> both() const {
@@ -36,6 +38,7 @@ struct ShaftMode {
 std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency) {
   spectral::EigenOptions options;
   options.count = 2 * count + 40;
+  options.rounding = true;
   std::vector<ShaftMode> out;
   for (const auto& mode : spectral::modes(system, equilibrium, options)) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
@@ -48,7 +51,8 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
       part[k] = system.shaft(state.data(), 0, false);
     }
     ShaftMode m;
-    m.lambda = mode.lambda;
+    m.undamped = mode.neutral();
+    m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
     Complex largest = 0;
     for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
       m.x.emplace_back(part[0][i], part[1][i]);
@@ -74,6 +78,7 @@ std::vector<double> pack(const std::vector<ShaftMode>& modes) {
   };
   for (const ShaftMode& m : modes) {
     put(m.lambda);
+    put(m.undamped ? 1.0 : 0.0);
     for (const Complex& v : m.both()) put(v);
   }
   return flat;
@@ -89,6 +94,7 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
   };
   for (ShaftMode& m : modes) {
     m.lambda = take();
+    m.undamped = take().real() > 0;
     for (auto* side : {&m.x, &m.y})
       for (std::size_t k = 0; k < nodes; ++k) side->push_back(take());
   }
@@ -131,7 +137,7 @@ void rigid_modes(Context& context, const ModesOptions& options) {
   auto& summary = context.results.summary();
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
-    summary.modes.push_back({0, 0, frequencies[k], 0, "planar"});
+    summary.modes.push_back({0, 0, frequencies[k], 0, "planar", "rad/s", name_of(StabilityClass::undamped)});
   }
   context.results.group()
       .child("spectrum")
@@ -165,7 +171,7 @@ void Modes::run(Context& context) {
 
   std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
-  std::vector<std::string> sense_column;
+  std::vector<std::string> sense_column, stability_column;
   std::vector<ShaftMode> before;
   int next_id = 1;
   // Damped frequency meets the speed of the shaft between two speeds.
@@ -187,8 +193,12 @@ void Modes::run(Context& context) {
       decrement.push_back(spectral::log_decrement(m.lambda));
       factor.push_back(spectral::stability_factor(m.lambda));
       sense_column.emplace_back(sense);
+      const char* const stability = name_of(m.undamped              ? StabilityClass::undamped
+                                            : m.lambda.real() > 0 ? StabilityClass::unstable
+                                                                  : StabilityClass::stable);
+      stability_column.emplace_back(stability);
       summary.modes.push_back(
-          {deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense, unit});
+          {deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense, unit, stability});
       for (const ShaftMode& b : before) {
         const double f0 = b.lambda.imag() - speeds[i - 1], f1 = m.lambda.imag() - speed;
         if (m.id == b.id && f0 * f1 < 0) crossings.push_back({speeds[i - 1], speed, f0, f1, m});
@@ -229,6 +239,7 @@ void Modes::run(Context& context) {
   spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
   spectrum.put("whirl", sense_column, "sense of whirl of the shaft's nodes");
+  spectrum.put("stability", stability_column, "stable, unstable, or undamped: the real part is rounding, shown as zero");
   group.set("speed_unit", unit);
 
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });

@@ -1,5 +1,9 @@
 #include "whirl/study/modes.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 namespace whirl::study {
 
 std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
@@ -24,9 +28,6 @@ void describe(deck::Description<ModesOptions>& d) {
     // Without films the shaft is taken at rest, whatever its speed.
     if (o.supports != ModesOptions::Supports::films) return;
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
-    for (double s : o.all_speeds())
-      if (s <= 0)
-        return r.fail(o.range ? "range" : "speeds", "a film carries no load at rest: speeds must be positive");
   });
 }
 
@@ -42,6 +43,16 @@ std::string ModesOptions::unit() const {
   return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
 }
 
-void Modes::validate(const system::Machine&, const deck::Report&) const {}
+void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (options.supports != ModesOptions::Supports::films) return;
+  const std::vector<double> speeds = options.all_speeds();
+  if (std::none_of(speeds.begin(), speeds.end(), [](double s) { return s <= 0; })) return;
+  for (const system::Bearing& b : machine.bearings)
+    if (b.film.kind != film::Options::Kind::linear)
+      return report.fail(options.range ? "range" : "speeds",
+                         fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
+                                     "films have coefficients at rest, too)",
+                                     b.name));
+}
 
 }  // namespace whirl::study

@@ -26,6 +26,13 @@ std::span<const deck::Name<Event>> names(Event) {
   return table;
 }
 
+std::span<const deck::Name<Following>> names(Following) {
+  static constexpr deck::Name<Following> table[] = {
+      {Following::arclength, "arclength", "pseudo-arclength: folds are passed, the parameter may turn back"},
+      {Following::natural, "natural", "the parameter goes on in steps of its own: the branch ends at a fold"}};
+  return table;
+}
+
 void describe(deck::Description<Step>& d) {
   d.add("initial", &Step::initial, "*", deck::positive, "length of the first step").required();
   d.add("min", &Step::min, "*", deck::positive, "length below which the branch ends").required();
@@ -42,6 +49,7 @@ void describe(deck::Description<Parameter>& d) {
         "values to cover, from the first towards the second; results carry its unit")
       .required();
   d.add("step", &Parameter::step, "lengths of steps, in the unit of the range");
+  d.add("continuation", &Parameter::continuation, "how the branch goes on from point to point");
   d.add(
       "beta_1", &Parameter::beta_1, "rad", deck::Check{.min = 0, .max = std::numbers::pi, .min_open = true},
       "angle between the predictor and the line from point to point above which a step is halved; the tangent may turn "

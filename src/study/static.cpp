@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "groups.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/io/xdmf.hpp"
@@ -58,8 +59,10 @@ void Static::run(Context& context) {
   const auto journals = system.journals(x.data());
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
+  const std::vector<double> thickness = system.film_thickness(x.data());
   auto& summary = context.results.summary();
   auto& group = context.results.group();
+  FilmLimit(system.places()).warn(thickness, "at rest", summary);
 
   const auto& rotor = system.train().rotor;
   summary.set("mass.total", rotor::total_mass(rotor), "kg");
@@ -83,8 +86,11 @@ void Static::run(Context& context) {
         summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
       film::Summary report;
       core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
-      summary.set(head + "min_thickness", report.min_thickness, "m");
-      summary.set(head + "min_thickness_ratio", report.min_thickness / support.geometry.clearance, "1");
+      // Between the nodes of a mesh, too.
+      const double thinnest = std::min(report.min_thickness, thickness[b]);
+      summary.set(head + "min_thickness", thinnest, "m");
+      summary.set(head + "min_thickness_ratio", thinnest / support.geometry.clearance, "1");
+      summary.set(head + "minimum_film", support.minimum_film, "m");
       summary.set(head + "max_pressure", report.max_pressure, "Pa");
       summary.set(head + "side_flow", report.side_flow, "m^3/s");
       summary.set(head + "power_loss", report.power_loss, "W");

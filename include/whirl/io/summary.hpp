@@ -54,6 +54,13 @@ struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
   std::string whirl = {};  ///< forward, backward, mixed, planar
   std::string speed_unit = "rad/s";
+  std::string stability = {};  ///< stable, undamped (its real part is rounding), unstable; or empty
+};
+
+/// A column of numbers over the points of a curve.
+struct Column {
+  std::string name = {}, unit = {};
+  std::vector<double> values = {};
 };
 
 /// What one study delivered.
@@ -65,6 +72,9 @@ struct StudySummary {
   std::vector<Bifurcation> bifurcations = {};
   std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any
   std::vector<Suspicion> suspected = {};             ///< likewise
+  std::string stability = {};                        ///< verdict on the whole branch; likewise
+  std::vector<std::string> warnings = {};            ///< what its numbers must not be taken for; likewise
+  std::vector<Column> curve = {};                    ///< a curve, column by column of equal length; likewise
   std::vector<ModeEntry> modes = {};
   long points = 0;
 

@@ -29,6 +29,7 @@ class Modes final : public StudyWith<ModesOptions> {
 public:
   static constexpr std::string_view key = "modes";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool needs_bearings() const override { return options.supports == ModesOptions::Supports::films; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void run(Context& context) override;
 };

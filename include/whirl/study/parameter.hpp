@@ -23,11 +23,16 @@ struct Step {
   deck::Quantity max;
 };
 
+/// How a branch goes on from a point.
+enum class Following { arclength, natural };
+[[nodiscard]] std::span<const deck::Name<Following>> names(Following);
+
 /// `speed`, or the path of a continuable option, and the interval to cover.
 struct Parameter {
   std::string path = "speed";
   deck::Range range;                                                ///< SI; direction is from -> to
   std::optional<Step> step;                                         ///< the study's own choice if absent
+  Following continuation = Following::arclength;
   double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;  ///< [rad], of solve::ContinuationOptions
 };
 
