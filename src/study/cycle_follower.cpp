@@ -97,7 +97,7 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
   }
 }
 
-void CycleFollower::run() {
+StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
   if (!restart) {
@@ -152,7 +152,7 @@ void CycleFollower::run() {
   if (contact_ || end.limited) results.summary().set("contact", end.parameter, unit_);
   if (end.limited) results.summary().set("contact.uncertainty", end.bracket, unit_);
   results.summary().stability = record_.verdict();
-  results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
+  return results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
 }
 
 }  // namespace whirl::study

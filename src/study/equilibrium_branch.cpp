@@ -45,7 +45,7 @@ void set_lyapunov(io::Bifurcation& b, system::Plant& system, Vec x, double omega
 
 }  // namespace
 
-void EquilibriumBranch::run(Context& context) {
+StudyResult EquilibriumBranch::run(Context& context) {
   const auto& range = options.parameter.range;
   const std::string unit = range.unit;
   const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
@@ -221,7 +221,7 @@ void EquilibriumBranch::run(Context& context) {
     results.summary().set("contact.uncertainty", end.bracket, unit);
   }
   results.summary().points = end.points;
-  results.finish(branch_status(end, unit), end.points > 0);
+  return results.finish(branch_status(end, unit), end.points > 0);
 }
 
 }  // namespace whirl::study

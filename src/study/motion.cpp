@@ -45,7 +45,7 @@ public:
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
 
-  void run() {
+  StudyResult run() {
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     const int total = options_.discard + options_.revolutions;
     std::string status = "completed";
@@ -61,7 +61,7 @@ public:
       if (record_.revolutions() < 2) throw;
       status = fmt::format("ended in revolution {}: {}", done_ + 1, e.what());
     }
-    report(status);
+    return report(status);
   }
 
 private:
@@ -126,7 +126,7 @@ private:
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
-  void report(const std::string& status) {
+  StudyResult report(const std::string& status) {
     auto& results = context_.results;
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
@@ -144,7 +144,7 @@ private:
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
     summary.points = record_.revolutions();
-    results.finish(status, true);
+    return results.finish(status, true);
   }
 
   Context& context_;
@@ -162,8 +162,8 @@ private:
 
 }  // namespace
 
-void Motion::run(Context& context) {
-  Player(context, options).run();
+StudyResult Motion::run(Context& context) {
+  return Player(context, options).run();
 }
 
 }  // namespace whirl::study

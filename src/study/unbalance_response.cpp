@@ -208,7 +208,7 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::Places
 
 }  // namespace
 
-void UnbalanceResponse::run(Context& context) {
+StudyResult UnbalanceResponse::run(Context& context) {
   std::set<int> wanted(options.nodes.begin(), options.nodes.end());
   std::vector<int> nodes = options.nodes;
   if (nodes.empty()) {
@@ -319,7 +319,7 @@ void UnbalanceResponse::run(Context& context) {
   group.set("speed_unit", unit);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
   summary.points = static_cast<long>(curve.size());
-  results.finish("completed", true);
+  return results.finish("completed", true);
 }
 
 }  // namespace whirl::study
