@@ -10,7 +10,6 @@
 //     dF = -lambda . (d src + dA p).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "film/band.hpp"
 #include "film/groove.hpp"
@@ -61,6 +60,7 @@ private:
 
   Pad pad_;
   Grid grid_;
+  LeastThickness least_;
   bool tilt_;
   Options::Cavitation cavitation_;
   Resistance resistance_around_, resistance_along_;
@@ -81,6 +81,7 @@ private:
 BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
     : pad_(pad),
       grid_(pad, options.cells),
+      least_(pad),
       tilt_(options.tilt),
       cavitation_(options.cavitation),
       resistance_around_(resistance_around(options.turbulence)),
@@ -113,16 +114,9 @@ void BandedPad::coefficients(const Motion& motion) {
   tx_ = tilt_ ? motion.position[2] : 0.0;
   ty_ = tilt_ ? motion.position[3] : 0.0;
   const double txd = tilt_ ? motion.velocity[2] : 0.0, tyd = tilt_ ? motion.velocity[3] : 0.0;
-  const double c = pad_.clearance, end = 0.5 * pad_.length;
-  // h is linear in z: its minimum lies on a side.
-  h_min_ = std::numeric_limits<double>::infinity();
-  const auto check = [&](double cosine, double sine) {
-    const double middle = c - X_ * cosine - Y_ * sine, tip = end * (tx_ * cosine + ty_ * sine);
-    h_min_ = std::min(h_min_, middle - std::abs(tip));
-  };
-  for (std::size_t i = 0; i < grid_.node_cos.size(); ++i) check(grid_.node_cos[i], grid_.node_sin[i]);
-  for (std::size_t i = 0; i < grid_.face_cos.size(); ++i) check(grid_.face_cos[i], grid_.face_sin[i]);
-  require_thickness(std::isfinite(X_ + Y_ + tx_ + ty_) ? h_min_ : std::numeric_limits<double>::quiet_NaN());
+  const double c = pad_.clearance;
+  h_min_ = least_(X_, Y_, tx_, ty_);
+  require_thickness(h_min_);
 
   const int a_columns = tilt_ ? rows_ : 1, b_columns = tilt_ ? z_faces_ : 1;
   for (int i = 0; i < n; ++i) {

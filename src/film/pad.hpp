@@ -30,6 +30,22 @@ struct Grid {
   std::vector<double> face_cos, face_sin;  // [n_theta]
 };
 
+/// Least thickness of an arc, exactly and not over nodes: where h = clearance - X cos(theta) - Y sin(theta) is smallest
+/// on the whole circle if the arc reaches there, else at one of its edges.
+class LeastThickness {
+public:
+  explicit LeastThickness(const Pad& pad);
+  /// X, Y: journal relative to the centre of the arc [m]; NaN if they are.
+  [[nodiscard]] double operator()(double X, double Y) const;
+  /// The same with the slopes tx, ty of the journal: h is linear along the shaft, least at one of the sides.
+  [[nodiscard]] double operator()(double X, double Y, double tx, double ty) const;
+
+private:
+  double clearance_, half_length_;
+  std::array<double, 2> middle_, first_, last_;  // directions of the middle and the edges of the arc
+  double half_;                                  // cosine of half the arc
+};
+
 /// Part of a film that answers for one pad.
 class PadSolver {
 public:

@@ -75,6 +75,9 @@ Summary ReynoldsFilm::summary(const Motion& motion) {
   const double mu = lubricant_.viscosity;
   for (std::size_t n = 0; n < pads_.size(); ++n) {
     const Pad& pad = pads_[n];
+    const double X = motion.position[0] - pad.centre_x, Y = motion.position[1] - pad.centre_y;
+    const double tx = options_.tilt ? motion.position[2] : 0.0, ty = options_.tilt ? motion.position[3] : 0.0;
+    result.min_thickness = std::min(result.min_thickness, LeastThickness(pad)(X, Y, tx, ty));
     const Grid grid(pad, options_.cells);
     const auto columns = static_cast<std::size_t>(grid.n_z + 1);
     const std::vector<double> p = solvers_[n]->pressure(motion);
@@ -103,7 +106,6 @@ Summary ReynoldsFilm::summary(const Motion& motion) {
           slope = (at(i == grid.n_theta ? 1 : i + 1) - at(i == 0 ? grid.n_theta - 1 : i - 1)) / (2.0 * grid.dtheta);
         }
         shear += area * (mu * U / h * couette + 0.5 * h * slope / pad.radius);
-        result.min_thickness = std::min(result.min_thickness, h);
         result.max_pressure = std::max(result.max_pressure, row[j]);
       }
     }

@@ -26,7 +26,7 @@ struct Response {
   std::array<std::array<double, 4>, 4> d_position{};  // [i][j] = d force_i / d position_j; stiffness K is its negative
   std::array<std::array<double, 4>, 4> d_velocity{};  // [i][j] = d force_i / d velocity_j; damping C is its negative
   std::array<double, 4> d_speed{};                    // [i] = d force_i / d Omega
-  double min_thickness = 0.0;  // m, over the nodes and faces of all pads; infinite for a linear film
+  double min_thickness = 0.0;  // m, least of all pads, exactly (minimum_thickness); infinite for a linear film
 };
 
 /// Quantities for reports, computed apart from evaluate() so that they cost nothing inside solvers.
@@ -64,6 +64,10 @@ public:
   /// True if the force is linear in position and velocity and independent of speed.
   [[nodiscard]] virtual bool linear() const { return false; }
 };
+
+/// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`
+/// as in Motion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
+[[nodiscard]] double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position);
 
 /// The film described by the options; throws core::InputError on values outside their range.
 std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
