@@ -34,7 +34,8 @@ bool Follower::turns_back(const State& here) {
   State from{copy(here.u.get()), copy(here.tangent.get()), here.point};
   double ds = options_.max_step;
   for (int k = 0; k < 60 && !turned && ds >= options_.min_step &&
-                  std::abs(from.point.parameter - here.point.parameter) <= options_.max_step; ++k) {
+                  std::abs(from.point.parameter - here.point.parameter) <= options_.max_step;
+       ++k) {
     State to;
     NewtonResult result;
     if (!advance(from, ds, to, result)) {

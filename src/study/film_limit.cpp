@@ -34,9 +34,10 @@ std::string FilmLimit::reason(const std::vector<double>& thickness) const {
 void FilmLimit::warn(const std::vector<double>& thickness, const std::string& where, io::StudySummary& summary) const {
   for (std::size_t k = 0; k < limits_.size() && k < thickness.size(); ++k)
     if (thickness[k] < limits_[k] || thickness[k] <= 0)
-      summary.warnings.push_back(fmt::format("film of bearing {} {}: {:.3g} um, less than the {:.3g} um below which "
-                                             "the surfaces touch (minimum_film)",
-                                             names_[k], where, thickness[k] * 1e6, limits_[k] * 1e6));
+      summary.warnings.push_back(
+          fmt::format("film of bearing {} {}: {:.3g} um, less than the {:.3g} um below which "
+                      "the surfaces touch (minimum_film)",
+                      names_[k], where, thickness[k] * 1e6, limits_[k] * 1e6));
 }
 
 std::vector<double> film_column(std::vector<double> thickness, std::size_t places) {

@@ -190,10 +190,10 @@ StudyResult Modes::run(Context& context) {
       id_column.push_back(m.id);
       frequency.push_back(m.lambda.imag());
       real.push_back(m.lambda.real());
-      decrement.push_back(spectral::log_decrement(m.lambda));
+      decrement.push_back(m.undamped ? 0 : spectral::log_decrement(m.lambda));
       factor.push_back(spectral::stability_factor(m.lambda));
       sense_column.emplace_back(sense);
-      const char* const stability = name_of(m.undamped              ? StabilityClass::undamped
+      const char* const stability = name_of(m.undamped            ? StabilityClass::undamped
                                             : m.lambda.real() > 0 ? StabilityClass::unstable
                                                                   : StabilityClass::stable);
       stability_column.emplace_back(stability);
@@ -239,7 +239,8 @@ StudyResult Modes::run(Context& context) {
   spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
   spectrum.put("whirl", sense_column, "sense of whirl of the shaft's nodes");
-  spectrum.put("stability", stability_column, "stable, unstable, or undamped: the real part is rounding, shown as zero");
+  spectrum.put("stability", stability_column,
+               "stable, unstable, or undamped: the real part is rounding, shown as zero");
   group.set("speed_unit", unit);
 
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });

@@ -67,8 +67,8 @@ double film_left(const system::Support& s, const std::array<double, 2>& at, cons
   constexpr int samples = 90;
   for (int k = 0; k < samples; ++k) {
     const Complex turn = std::exp(Complex(0, 2 * std::numbers::pi * k / samples));
-    least = std::min(least, film::minimum_thickness(
-                                s.geometry, {at[0] + (m.x * turn).real(), at[1] + (m.y * turn).real(), 0, 0}));
+    least = std::min(
+        least, film::minimum_thickness(s.geometry, {at[0] + (m.x * turn).real(), at[1] + (m.y * turn).real(), 0, 0}));
   }
   return least;
 }
@@ -184,8 +184,9 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::Places
     const auto films = film_column(r.films, places.names.size());
     all.insert(all.end(), films.begin(), films.end());
   }
-  group.child("bearings").put("film_min", {curve.size(), places.names.size()}, all, "m",
-                              "smallest film thickness that the linear motion leaves, not a number without a film");
+  group.child("bearings")
+      .put("film_min", {curve.size(), places.names.size()}, all, "m",
+           "smallest film thickness that the linear motion leaves, not a number without a film");
   for (std::size_t b = 0; b < places.names.size(); ++b) {
     const Response *worst = nullptr, *first = nullptr, *last = nullptr;
     for (const Response& r : curve) {

@@ -63,8 +63,8 @@ struct DeflationOptions {
 };
 
 /// Further solutions at the parameter of the `known` ones (not empty): `guess(k)` is the k-th start, at that parameter,
-/// null when there are no more; `copies(u)` are other unknowns for the same solution (a cycle of several turns begun one
-/// turn later), none if empty. In the order found. Collective.
+/// null when there are no more; `copies(u)` are other unknowns for the same solution (a cycle of several turns begun
+/// one turn later), none if empty. In the order found. Collective.
 [[nodiscard]] std::vector<core::Vector> deflate(ExtendedProblem& problem, double unit,
                                                 const std::vector<core::Vector>& known,
                                                 const std::function<core::Vector(int k)>& guess,

@@ -30,8 +30,8 @@ enum class Following { arclength, natural };
 /// `speed`, or the path of a continuable option, and the interval to cover.
 struct Parameter {
   std::string path = "speed";
-  deck::Range range;                                                ///< SI; direction is from -> to
-  std::optional<Step> step;                                         ///< the study's own choice if absent
+  deck::Range range;         ///< SI; direction is from -> to
+  std::optional<Step> step;  ///< the study's own choice if absent
   Following continuation = Following::arclength;
   double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;  ///< [rad], of solve::ContinuationOptions
 };

@@ -19,10 +19,10 @@ struct PlaceState {
 /// The pairs of outputs that results show.
 struct Places {
   std::vector<std::string> names;
-  std::vector<double> clearances;  ///< a length to measure them in, in `unit`; zero where there is none
-  std::string unit;                ///< of positions: "m"
-  std::string rate_unit;           ///< of velocities: "m/s"
-  std::string text;                ///< what a position is: "journal relative to the bearing centre"
+  std::vector<double> clearances;     ///< a length to measure them in, in `unit`; zero where there is none
+  std::string unit;                   ///< of positions: "m"
+  std::string rate_unit;              ///< of velocities: "m/s"
+  std::string text;                   ///< what a position is: "journal relative to the bearing centre"
   std::vector<double> least_films{};  ///< thickness below which the surfaces touch, in `unit`; empty: there are none
 };
 

@@ -1,0 +1,154 @@
+// What branches conclude: stability from start to end, where films become too thin, and how folds end them.
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "rigid_rotor/run_deck.hpp"
+#include "whirl/core/error.hpp"
+
+namespace {
+
+using namespace whirl;
+
+std::vector<io::StudySummary> run(const std::string& name, const std::string& path,
+                                  const std::vector<std::string>& overrides) {
+  study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/" + path, overrides);
+  return test::run_deck(deck, "verdict_" + name);
+}
+
+io::StudySummary balanced(const std::string& from, const std::string& to) {
+  return run("balanced", "inputs/rigid_rotor/short_f1.yaml",
+             {"studies=[{equilibrium_branch: {range: {from: " + from + ", to: " + to + "}}}]"})
+      .at(0);
+}
+
+bool has(const io::StudySummary& s, const std::string& name) {
+  return test::values_of(s).contains(name);
+}
+
+// The short bearing's threshold at F0* = 1 is at Omega* = 2.73..., 440 rad/s.
+TEST(Verdict, OfAnEquilibriumBranchSaysWhereItBegins) {
+  const auto loses = balanced("160 rad/s", "560 rad/s");
+  EXPECT_EQ(loses.stability, "loses stability");
+  ASSERT_TRUE(has(loses, "threshold"));
+  const double threshold = test::values_of(loses).at("threshold");
+  EXPECT_EQ(loses.bifurcations.at(0).more.at("others_unstable"), 0);
+
+  const auto stable = balanced("160 rad/s", "300 rad/s");
+  EXPECT_EQ(stable.stability, "stable throughout");
+  EXPECT_FALSE(has(stable, "threshold"));
+
+  const auto unstable = balanced("480 rad/s", "560 rad/s");
+  EXPECT_EQ(unstable.stability, "unstable throughout");
+  EXPECT_EQ(unstable.status, "completed");
+  EXPECT_FALSE(has(unstable, "threshold"));
+
+  const auto back = balanced("560 rad/s", "160 rad/s");
+  EXPECT_EQ(back.stability, "unstable from its start");
+  EXPECT_NEAR(test::values_of(back).at("threshold"), threshold, 1e-5 * threshold);
+}
+
+// Rounding must not decide whether an undamped machine is stable.
+TEST(Verdict, UndampedIsAClassOfItsOwn) {
+  const auto studies = run("undamped", "tests/app/friswell_591.yaml",
+                           {"bearings.A.film.stiffness=[1 MN/m, 0 N/m, 0 N/m, 0.8 MN/m]",
+                            "bearings.B.film.stiffness=[1 MN/m, 0 N/m, 0 N/m, 0.8 MN/m]"});
+  for (const auto& mode : studies.at(0).modes) {
+    EXPECT_EQ(mode.stability, "undamped");
+    EXPECT_EQ(mode.real, 0);
+    EXPECT_EQ(mode.log_decrement, 0);
+  }
+  EXPECT_EQ(studies.at(1).stability, "undamped throughout");
+  EXPECT_TRUE(studies.at(1).bifurcations.empty());
+  // A damping of 1e-7 of the critical one is no rounding.
+  const auto damped =
+      run("damped", "tests/app/friswell_591.yaml",
+          {"bearings.A.film.damping=[1 N s/m, 0 N s/m, 0 N s/m, 1 N s/m]", "rotor.stiffness_damping=1e-12 s",
+           "studies.2.equilibrium_branch.range={from: 100 rpm, to: 4000 rpm}"});
+  for (const auto& mode : damped.at(0).modes) {
+    EXPECT_EQ(mode.stability, "stable");
+    EXPECT_LT(mode.real, 0);
+  }
+  EXPECT_EQ(damped.at(1).stability, "stable throughout");
+}
+
+// At rest nothing gyroscopic parts the frequencies of the two planes; slow rotation parts them evenly.
+TEST(ModesAtRest, OfLinearBearingsAndOfNone) {
+  const std::string path = "tests/app/friswell_591.yaml";
+  const auto modes =
+      run("rest", path, {"studies=[{modes: {name: at rest, speeds: [0 rpm, 1 rpm], count: 4}}]"}).at(0).modes;
+  ASSERT_EQ(modes.size(), 8U);
+  for (std::size_t k = 0; k < 4; k += 2) {
+    EXPECT_NEAR(modes[k].imag, modes[k + 1].imag, 1e-7 * modes[k].imag);
+    EXPECT_NEAR(modes[k].imag, (modes[4 + k].imag + modes[5 + k].imag) / 2, 1e-7 * modes[k].imag);
+    EXPECT_GT(modes[5 + k].imag - modes[4 + k].imag, 1e-5 * modes[k].imag);
+  }
+  const auto free = run("free", path, {"studies=[{modes: {supports: free, count: 4}}]"}).at(0);
+  const auto none = run("none", path, {"bearings={}", "studies=[{modes: {supports: free, count: 4}}]"}).at(0);
+  ASSERT_EQ(free.modes.size(), none.modes.size());
+  ASSERT_GE(none.modes.size(), 1U);
+  for (std::size_t k = 0; k < none.modes.size(); ++k) EXPECT_EQ(none.modes[k].imag, free.modes[k].imag);
+  EXPECT_THROW((void)study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/" + path, {"bearings={}"}),
+               core::InputError);
+}
+
+// A load that presses the journal of a short bearing to a given film: W = mu Omega R L^3/(4 c^2) e/(1 - e^2)^2
+// sqrt(16 e^2 + pi^2 (1 - e^2)) (Ocvirk), two bearings.
+TEST(MinimumFilm, EndsABranchWhereTheLoadSays) {
+  const auto load = [](double film) {
+    const double e = 1 - film / 25e-6, q = 1 - e * e;
+    return 2 * 1e-3 * 400 * 5e-3 * std::pow(10e-3, 3) / (4 * 25e-6 * 25e-6) * e / (q * q) *
+           std::sqrt(16 * e * e + std::numbers::pi * std::numbers::pi * q);
+  };
+  const auto branch = [](double to, const std::vector<std::string>& more) {
+    std::vector<std::string> words{fmt::format(
+        "studies=[{{equilibrium_branch: {{parameter: rotor.load, range: {{from: 1 N, to: {} N}}, speed: 400 rad/s}}}}]",
+        to)};
+    words.insert(words.end(), more.begin(), more.end());
+    return run("film", "inputs/rigid_rotor/short_f1.yaml", words).at(0);
+  };
+  struct Case {
+    std::vector<std::string> words;
+    double film;
+    std::string bearing;
+  };
+  for (const Case& c : {Case{{"minimum_film=2 um"}, 2e-6, "left"},
+                        Case{{"minimum_film=2 um", "bearings.right.minimum_film=5 um"}, 5e-6, "right"},
+                        Case{{}, 25e-6 / 2000, "left"}}) {
+    const auto s = branch(2 * load(c.film), c.words);
+    const std::string reason =
+        fmt::format("film of bearing {} falls below {:.3g} um (minimum_film)", c.bearing, c.film * 1e6);
+    EXPECT_NE(s.status.find(reason), std::string::npos) << s.status;
+    const auto values = test::values_of(s);
+    ASSERT_TRUE(values.contains("contact"));
+    EXPECT_NEAR(values.at("contact"), load(c.film), 1e-5 * load(c.film));
+    EXPECT_LE(values.at("contact.uncertainty"), 1e-5 * load(c.film));
+  }
+  // Static solutions beyond are there, and marked.
+  const auto rest = run("static", "inputs/rigid_rotor/short_f1.yaml",
+                        {"minimum_film=20 um", "studies=[{static: {speed: 400 rad/s}}]"})
+                        .at(0);
+  EXPECT_EQ(rest.warnings.size(), 2U);
+  EXPECT_EQ(test::values_of(rest).at("bearing.left.minimum_film"), 20e-6);
+}
+
+TEST(MinimumFilm, EndsCyclesMotionsAndRunUps) {
+  const std::string path = "inputs/rigid_rotor/short_f1.yaml";
+  // The cycles of a* = 0.1 grow through the range.
+  const std::string range = "range: {from: 200 rad/s, to: 400 rad/s}";
+  const auto cycles = run("cycles", path,
+                          {"minimum_film=8 um", "studies=[{cycle_branch: {unbalance: [a], " + range +
+                                                    ", intervals: 20, degree: 3, adapt_mesh: false}}]"})
+                          .at(0);
+  EXPECT_NE(cycles.status.find("falls below 8 um (minimum_film)"), std::string::npos) << cycles.status;
+  EXPECT_TRUE(has(cycles, "contact"));
+  const auto up = run("run_up", path,
+                      {"minimum_film=8 um", "studies=[{run_up: {unbalance: [a], " + range +
+                                                ", acceleration: 50 rad/s^2, start: {from: cycle}}}]"})
+                      .at(0);
+  EXPECT_NE(up.status.find("falls below 8 um (minimum_film)"), std::string::npos) << up.status;
+}
+
+}  // namespace
