@@ -26,10 +26,13 @@ std::string text_of(const io::StudySummary& s) {
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.stability.empty()) text += fmt::format("  {}\n", s.stability);
   for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
-  for (const io::Bifurcation& b : s.bifurcations)
-    text +=
-        fmt::format("  {} at {} {}{}{}\n", io::name_of(b.type), b.parameter,
-                    with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ", b.criticality);
+  for (const io::Bifurcation& b : s.bifurcations) {
+    const auto others = b.more.find("others_unstable");
+    const bool beyond = others != b.more.end() && others->second > 0;
+    text += fmt::format("  {} at {} {}{}{}{}\n", io::name_of(b.type), b.parameter,
+                        with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ",
+                        b.criticality, beyond ? fmt::format(", {:.0f} others unstable", others->second) : "");
+  }
   for (const io::CodimensionTwo& c : s.codimension_two)
     text += fmt::format("  {} at {} {}, {} {}\n", c.type, c.parameter,
                         with_uncertainty(c.value.value, io::no_value, c.value.unit), c.second_parameter,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coexisting.hpp"
 #include "cycle_follower.hpp"
 
 namespace whirl::study {
@@ -25,6 +26,22 @@ private:
   FlipSeed seed_;
 };
 
+// The branch that begins at a forced cycle beside the first one of another branch.
+class BesideBranch final : public Study {
+public:
+  BesideBranch(std::string name, CycleBranchOptions options, solve::Cycle first)
+      : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
+  [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
+  [[nodiscard]] std::string name() const override { return name_; }
+  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
+  [[nodiscard]] StudyResult run(Context& context) override { return CycleFollower(context, options_, first_).run(); }
+
+private:
+  std::string name_;
+  CycleBranchOptions options_;
+  solve::Cycle first_;
+};
+
 }  // namespace
 
 StudyResult CycleBranch::run(Context& context) {
@@ -34,6 +51,11 @@ StudyResult CycleBranch::run(Context& context) {
 // A resumed run takes the flips of a finished branch from its results, and so does any other.
 std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result) const {
   std::vector<std::unique_ptr<Study>> born;
+  CycleBranchOptions beside = options;
+  beside.parameter.deflation.reset();
+  beside.follow_flips = false;
+  for (std::size_t k = 2; auto& first : read_solutions(result))
+    born.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), beside, std::move(first)));
   if (!options.follow_flips || !result.has_group("flips")) return born;
   const std::vector<FlipSeed> seeds = read_seeds(result.group("flips"));
   for (std::size_t k = 1; k <= seeds.size(); ++k) {

@@ -127,6 +127,8 @@ void CycleBranch::validate(const system::Machine& machine, const deck::Report& r
     report.fail("", "'unbalance' is missing (forced cycles need a force; self-excited ones have 'origin: hopf')");
   if (!forced && !options.unbalance.empty())
     report.fail("unbalance", "self-excited cycles (origin: hopf) are those of the balanced machine");
+  if (!forced && options.parameter.deflation)
+    report.fail("deflation", "self-excited cycles start at the Hopf point, where there is one solution");
   if (!forced && options.start) report.fail("start", "self-excited cycles start at the Hopf point");
   check_parameter(options.parameter, options.speed, machine, report);
   const deck::Range& range = options.parameter.range;

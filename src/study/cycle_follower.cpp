@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bifurcation.hpp"
+#include "coexisting.hpp"
 #include "make_plant.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/augmented_problem.hpp"
@@ -43,6 +44,11 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;
+}
+
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first)
+    : CycleFollower(context, std::move(options)) {
+  first_ = std::move(first);
 }
 
 std::unique_ptr<system::Plant> CycleFollower::make_system(bool half_film) const {
@@ -152,6 +158,7 @@ StudyResult CycleFollower::run() {
   if (contact_ || end.limited) results.summary().set("contact", end.parameter, unit_);
   if (end.limited) results.summary().set("contact.uncertainty", end.bracket, unit_);
   results.summary().stability = record_.verdict();
+  if (options_.parameter.deflation) put_solutions(group, results.summary(), coexisting());
   return results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
 }
 

@@ -37,6 +37,8 @@ public:
   /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
   /// options are those of that branch: period and intervals doubled).
   CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
+  /// Follows the branch that begins at a given forced cycle.
+  CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first);
   /// Solves and records. The study that runs is finished.
   [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
@@ -58,6 +60,8 @@ private:
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed) const;
   [[nodiscard]] solve::Restart leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const;
   [[nodiscard]] core::Vector start(const solve::PeriodicProblem& problem) const;
+  /// Forced cycles beside the first one, at its parameter.
+  [[nodiscard]] std::vector<solve::Cycle> coexisting();
   [[nodiscard]] solve::Restart start_at_hopf();
   [[nodiscard]] solve::Restart start_at_flip();
   [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle);
@@ -92,6 +96,7 @@ private:
   Context& context_;
   CycleBranchOptions options_;
   std::optional<FlipSeed> seed_;
+  std::optional<solve::Cycle> first_;
   std::string unit_;
   double scale_;  // SI value of one unit of the range
   solve::NewtonOptions newton_;

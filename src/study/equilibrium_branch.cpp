@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bifurcation.hpp"
+#include "coexisting.hpp"
 #include "common.hpp"
 #include "film_limit.hpp"
 #include "groups.hpp"
@@ -43,9 +44,8 @@ void set_lyapunov(io::Bifurcation& b, system::Plant& system, Vec x, double omega
   b.criticality_by = "first Lyapunov coefficient (Kuznetsov 2004, 5.39)";
 }
 
-}  // namespace
-
-StudyResult EquilibriumBranch::run(Context& context) {
+// Follows the branch from `first`, or from the equilibrium that is easiest to find.
+StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& options, const solve::Cycle* first) {
   const auto& range = options.parameter.range;
   const std::string unit = range.unit;
   const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
@@ -67,7 +67,12 @@ StudyResult EquilibriumBranch::run(Context& context) {
   // A change of the root mean square state by half a clearance counts as one longest step.
   solve::EquilibriumProblem problem(*system, scale, std::pow(continuation.max_step / 0.5, 2));
   core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
-  if (system->parameter_is_speed()) {
+  if (first) {
+    const core::WriteArray to(x.get());
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(x.get(), &begin, nullptr));
+    for (PetscInt i = 0; i < to.size(); ++i) to[i] = first->x(begin + i, 0);
+  } else if (system->parameter_is_speed()) {
     Walker walker(*system);
     check(VecCopy(walker.at(range.from), x.get()));
   } else {
@@ -174,7 +179,7 @@ StudyResult EquilibriumBranch::run(Context& context) {
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});
     results.summary().bifurcations.push_back(b);
-    if (is_followed(context, name())) {
+    if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
       const std::vector<double> whole = system->gather(x.get());
       located.push_back({found.event,
@@ -200,9 +205,21 @@ StudyResult EquilibriumBranch::run(Context& context) {
     results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
   const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
+  if (options.parameter.deflation) {
+    system->set_parameter(range.from);
+    const auto others = coexisting_equilibria(*system, *options.parameter.deflation, continuation.newton);
+    put_solutions(results.group(), results.summary(), others);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const auto shown = system->shown(others[k].x.data());
+      for (std::size_t place = 0; place < shown.size(); ++place)
+        for (std::size_t d = 0; d < 2; ++d)
+          results.summary().set(fmt::format("solution.{}.{}.{}", k + 2, places.names[place], d == 0 ? "x" : "y"),
+                                shown[place].position[d], places.unit);
+    }
+  }
 
   auto& group = results.group();
-  if (is_followed(context, name())) write_located(group.child("located"), located);
+  if (is_followed(context, results.summary().name)) write_located(group.child("located"), located);
   table.write(group.child("branch"));
   put_places(group, context.machine, *system);
   put_bifurcations(group, results.summary().bifurcations);
@@ -223,6 +240,37 @@ StudyResult EquilibriumBranch::run(Context& context) {
   }
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);
+}
+
+// The branch that begins at an equilibrium beside the first one of another branch.
+class BesideBranch final : public Study {
+public:
+  BesideBranch(std::string name, EquilibriumBranchOptions options, solve::Cycle first)
+      : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
+  [[nodiscard]] std::string_view kind() const override { return EquilibriumBranch::key; }
+  [[nodiscard]] std::string name() const override { return name_; }
+  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
+  [[nodiscard]] StudyResult run(Context& context) override { return follow_equilibria(context, options_, &first_); }
+
+private:
+  std::string name_;
+  EquilibriumBranchOptions options_;
+  solve::Cycle first_;
+};
+
+}  // namespace
+
+StudyResult EquilibriumBranch::run(Context& context) {
+  return follow_equilibria(context, options, nullptr);
+}
+
+std::vector<std::unique_ptr<Study>> EquilibriumBranch::further(const io::Group& result) const {
+  std::vector<std::unique_ptr<Study>> beside;
+  EquilibriumBranchOptions own = options;
+  own.parameter.deflation.reset();
+  for (std::size_t k = 2; auto& first : read_solutions(result))
+    beside.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), own, std::move(first)));
+  return beside;
 }
 
 }  // namespace whirl::study

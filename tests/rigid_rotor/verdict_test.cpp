@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -149,6 +150,48 @@ TEST(MinimumFilm, EndsCyclesMotionsAndRunUps) {
                                                 ", acceleration: 50 rad/s^2, start: {from: cycle}}}]"})
                       .at(0);
   EXPECT_NE(up.status.find("falls below 8 um (minimum_film)"), std::string::npos) << up.status;
+}
+
+// Between its folds (540.27 and 544.26 rad/s) the bent resonance has three cycles; the middle one is unstable and meets
+// the large one at the upper fold.
+TEST(Deflation, FindsTheCyclesThatCoexist) {
+  const auto studies =
+      run("deflation", "inputs/compliant_rotor/figure_5_13.yaml",
+          {"bearings.rubber.film.cells=[60, 4]", "studies.1.cycle_branch.range={from: 542 rad/s, to: 546 rad/s}",
+           "studies.1.cycle_branch.deflation={solutions: 3, attempts: 20}"});
+  ASSERT_EQ(studies.size(), 3U);
+  EXPECT_EQ(test::values_of(studies[0]).at("solutions"), 3);
+  int unstable = 0, folds = 0;
+  for (const auto& s : studies) {
+    unstable += s.stability.starts_with("unstable");
+    for (const auto& b : s.bifurcations)
+      if (b.type == io::BifurcationType::cyclic_fold && std::abs(b.value - 544.26) < 0.5) ++folds;
+  }
+  EXPECT_EQ(unstable, 1);
+  EXPECT_EQ(folds, 2);
+  EXPECT_EQ(studies[1].name, studies[0].name + " solution 2");
+}
+
+// A Brusselator of one inner point with a = D_u/(L dz)^2, b = D_v/(L dz)^2: beside u = A its equilibria u = A - w solve
+// g w^2 - (2 A g - B/A) w + 1 + 2 a + A^2 g - B = 0, g = (1 + 2 a)/(2 b).
+TEST(Deflation, FindsTheEquilibriaThatCoexist) {
+  const auto studies = run("patterns", "inputs/other_systems/brusselator.yaml",
+                           {"brusselator.cells=2", "brusselator.diffusion_u=0.025", "brusselator.diffusion_v=0.25",
+                            "studies=[{equilibrium_branch: {name: uniform, parameter: brusselator.length, "
+                            "range: {from: 1, to: 1.02}, deflation: {solutions: 5, attempts: 20}}}]"});
+  ASSERT_EQ(studies.size(), 3U);
+  auto values = test::values_of(studies[0]);
+  EXPECT_EQ(values.at("solutions"), 3);
+  const double a = 0.1, b = 1, g = (1 + 2 * a) / (2 * b), linear = 2 * 2 * g - 5.45 / 2,
+               constant = 1 + 2 * a + 4 * g - 5.45, root = std::sqrt(linear * linear - 4 * g * constant);
+  std::vector<double> found{values.at("solution.2.middle.x"), values.at("solution.3.middle.x")},
+      exact{2 - (linear + root) / (2 * g), 2 - (linear - root) / (2 * g)};
+  std::sort(found.begin(), found.end());
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(found[k], exact[k], 1e-8);
+  for (const auto& s : studies) {
+    EXPECT_EQ(s.status, "completed") << s.name;
+    EXPECT_FALSE(s.stability.empty());
+  }
 }
 
 }  // namespace

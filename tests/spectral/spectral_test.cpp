@@ -192,7 +192,9 @@ TEST(Modes, RoundingIsToldFromDamping) {
     for (const auto& m : modes) {
       EXPECT_EQ(m.neutral(), damping == 0) << m.lambda << " " << m.rounding;
       EXPECT_LE(m.rounding, 1e-11);
-      if (damping > 0) EXPECT_NEAR(m.lambda.real(), -damping / 2, m.rounding);
+      if (damping > 0) {
+        EXPECT_NEAR(m.lambda.real(), -damping / 2, m.rounding);
+      }
     }
   }
   // A free mass has a double eigenvalue zero with one vector, which rounding splits by its square root.
