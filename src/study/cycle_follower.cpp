@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bifurcation.hpp"
 #include "coexisting.hpp"
@@ -68,6 +69,11 @@ solve::Stability CycleFollower::stability() {
   return solve::make_stability(std::move(values), distance_of_multiplier);
 }
 
+double CycleFollower::room(const solve::Cycle& orbit) const {
+  if (!options_.max_eccentricity) return std::numeric_limits<double>::infinity();
+  return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), *system_);
+}
+
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
   record_.append(point, problem_->orbit(u), problem_->orbit_scheme(), *system_, scale_);
@@ -125,9 +131,20 @@ StudyResult CycleFollower::run() {
     callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
       return solve::refine(*cycles, e, v, t, newton_);
     };
-  if (films_.exists()) {
-    callbacks.limit = [this](Vec v) { return films_.margin(least_films(problem_->orbit(v), *system_)); };
-    callbacks.why = [this](Vec v) { return films_.reason(least_films(problem_->orbit(v), *system_)); };
+  // The branch has touched, as it was asked to, or its film has become too thin.
+  bool contact = false;
+  if (films_.exists() || options_.max_eccentricity) {
+    callbacks.limit = [this](Vec v) {
+      const solve::Cycle orbit = problem_->orbit(v);
+      return std::min(films_.margin(least_films(orbit, *system_)), room(orbit));
+    };
+    callbacks.why = [this, &contact](Vec v) {
+      const solve::Cycle orbit = problem_->orbit(v);
+      const std::vector<double> films = least_films(orbit, *system_);
+      contact = room(orbit) <= films_.margin(films);
+      return contact ? fmt::format("the eccentricity reaches {:.6g} (max_eccentricity)", *options_.max_eccentricity)
+                     : films_.reason(films);
+    };
   }
   callbacks.on_suspicion = [this](const solve::Suspicion& s) {
     context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
@@ -135,8 +152,7 @@ StudyResult CycleFollower::run() {
   callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
     save(p, v, t, step);
     returned_ = seed_ && returned(problem_->orbit(v));
-    contact_ = options_.max_eccentricity && record_.eccentricity() >= *options_.max_eccentricity;
-    return !returned_ && !contact_;
+    return !returned_;
   };
   const solve::BranchEnd end =
       solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
@@ -155,11 +171,14 @@ StudyResult CycleFollower::run() {
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
-  if (contact_ || end.limited) results.summary().set("contact", end.parameter, unit_);
-  if (end.limited) results.summary().set("contact.uncertainty", end.bracket, unit_);
+  if (end.limited) {
+    results.summary().set("contact", end.parameter, unit_);
+    results.summary().set("contact.uncertainty", end.bracket, unit_);
+  }
   results.summary().stability = record_.verdict();
   if (options_.parameter.deflation) put_solutions(group, results.summary(), coexisting());
-  return results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
+  return results.finish(returned_ || (end.limited && contact) ? "completed" : branch_status(end, unit_),
+                        end.points > 0);
 }
 
 }  // namespace whirl::study

@@ -79,6 +79,8 @@ private:
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   [[nodiscard]] solve::Stability stability();
+  /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
+  [[nodiscard]] double room(const solve::Cycle& orbit) const;
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
@@ -112,7 +114,7 @@ private:
   std::vector<Located> located_;    // one for each bifurcation of the summary
   Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
   double largest_difference_ = 0;   // its largest norm so far
-  bool returned_ = false, contact_ = false;
+  bool returned_ = false;
 };
 
 /// Signed distance of a Floquet multiplier from the unit circle.

@@ -115,9 +115,13 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
   orbits_.push_back(std::move(motion));
 }
 
-double CycleRecord::eccentricity() const {
-  const auto& all = table_.column("eccentricity_max");
-  return *std::max_element(all.end() - static_cast<std::ptrdiff_t>(places_.names.size()), all.end());
+double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                 const system::Plant& system) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < e.radius.size(); ++i)
+    if (places_.clearances[i] > 0) largest = std::max(largest, e.radius[i] / places_.clearances[i]);
+  return largest;
 }
 
 std::string CycleRecord::verdict() const {

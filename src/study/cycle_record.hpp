@@ -23,8 +23,9 @@ public:
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
   void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
               const system::Plant& system, double scale);
-  /// Largest eccentricity per clearance of any journal on the last point.
-  [[nodiscard]] double eccentricity() const;
+  /// Largest eccentricity per clearance of any journal on a cycle.
+  [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                    const system::Plant& system) const;
   /// Verdict on the stability of the points so far.
   [[nodiscard]] std::string verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
