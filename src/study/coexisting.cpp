@@ -35,7 +35,7 @@ solve::DeflationOptions deflation_options(const Deflation& deflation, const solv
   o.attempts = deflation.attempts;
   o.power = deflation.power;
   o.newton = newton;
-  o.newton.max_iterations = 100;
+  o.newton.max_iterations = 50;
   return o;
 }
 
@@ -77,25 +77,37 @@ std::vector<solve::Cycle> coexisting_equilibria(system::Plant& plant, const Defl
   return out;
 }
 
-solve::Cycle delayed(const solve::Cycle& cycle, const solve::Scheme& scheme, double by) {
+namespace {
+
+// x(rate s + by) at the nodes of x(s).
+solve::Cycle replayed(const solve::Cycle& cycle, const solve::Scheme& scheme, double rate, double by) {
   solve::Cycle out = cycle;
   for (Eigen::Index i = 0; i < cycle.intervals(); ++i)
     for (Eigen::Index l = 1; l <= scheme.degree; ++l) {
-      const double begin = cycle.mesh[static_cast<std::size_t>(i)];
-      const double s = begin + (cycle.mesh[static_cast<std::size_t>(i) + 1] - begin) * scheme.node(l) + by;
+      const double begin = cycle.mesh[static_cast<std::size_t>(i)],
+                   here = begin + (cycle.mesh[static_cast<std::size_t>(i) + 1] - begin) * scheme.node(l),
+                   s = rate * here + by;
       out.x.col(i * scheme.degree + l - 1) = cycle.at(scheme, s - std::floor(s));
     }
   return out;
 }
 
-solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& scheme, int k) {
-  constexpr std::array<double, 6> sizes{4, 0.25, 2, 0.5, 8, 1};
+}  // namespace
+
+solve::Cycle delayed(const solve::Cycle& cycle, const solve::Scheme& scheme, double by) {
+  return replayed(cycle, scheme, 1, by);
+}
+
+// From a motion of one turn run through several times Newton's method finds such motions only: every other guess is the
+// first turn spread over all of them.
+solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& scheme, int turns, int k) {
+  constexpr std::array<double, 7> sizes{4, 2, 0.25, 1, 0.5, 8, 16};
   constexpr std::array<double, 4> phases{0, 0.25, 0.5, 0.75};
-  const double size = sizes[static_cast<std::size_t>(k) % sizes.size()],
-               phase =
-                   phases[(static_cast<std::size_t>(k) / sizes.size() + static_cast<std::size_t>(k)) % phases.size()];
-  solve::Cycle out = delayed(cycle, scheme, phase);
-  const Eigen::VectorXd mean = cycle.x.rowwise().mean();
+  const bool slow = turns > 1 && k % 2 == 0;
+  const auto n = static_cast<std::size_t>(turns > 1 ? k / 2 : k);
+  const double size = sizes[n % sizes.size()], phase = phases[(n / sizes.size() + n) % phases.size()] / turns;
+  solve::Cycle out = replayed(cycle, scheme, slow ? 1.0 / turns : 1, phase);
+  const Eigen::VectorXd mean = out.x.rowwise().mean();
   out.x = (size * (out.x.colwise() - mean)).colwise() + mean;
   return out;
 }

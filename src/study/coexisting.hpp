@@ -22,8 +22,9 @@ namespace whirl::study {
 
 /// The same motion begun `by` of its period later, s + by.
 [[nodiscard]] solve::Cycle delayed(const solve::Cycle& cycle, const solve::Scheme& scheme, double by);
-/// Guesses for forced cycles beside `cycle`: its vibration larger, smaller, and at other phases; the k-th of them.
-[[nodiscard]] solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& scheme, int k);
+/// Guesses for forced cycles beside `cycle` of so many turns: its vibration larger, smaller, at other phases and
+/// slower; the k-th of them.
+[[nodiscard]] solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& scheme, int turns, int k);
 
 /// The further solutions into `group`/solutions, and their number with the first one as the value `solutions`.
 void put_solutions(io::Group& group, io::StudySummary& summary, const std::vector<solve::Cycle>& further);

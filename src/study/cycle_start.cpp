@@ -139,7 +139,9 @@ std::vector<solve::Cycle> CycleFollower::coexisting() {
       out.push_back(problem.scatter(delayed(cycle, problem.scheme(), static_cast<double>(turn) / options_.period)));
     return out;
   };
-  const auto guess = [&](int k) { return problem.scatter(other_vibration(first, problem.scheme(), k)); };
+  const auto guess = [&](int k) {
+    return problem.scatter(other_vibration(first, problem.scheme(), options_.period, k));
+  };
   std::vector<solve::Cycle> out;
   for (const auto& u : solve::deflate(problem, state_weight(), known, guess,
                                       deflation_options(*options_.parameter.deflation, newton), copies))
