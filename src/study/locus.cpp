@@ -11,6 +11,7 @@
 #include "common.hpp"
 #include "cycle_follower.hpp"
 #include "film_limit.hpp"
+#include "groups.hpp"
 #include "located.hpp"
 #include "locus_follower.hpp"
 #include "whirl/core/agree.hpp"
@@ -119,7 +120,8 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
   continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
   continuation_.newton.tolerance = o.tolerance;
-  cycles_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, c, seed_.cycle.mesh);
+  cycles_ = std::make_unique<solve::CycleProblem>(sharing_time(context_.comm, seed_.cycle.mesh.size() - 1), *system_, c,
+                                                  seed_.cycle.mesh);
   if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());

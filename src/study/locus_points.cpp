@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "groups.hpp"
 #include "locus_follower.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -62,11 +63,11 @@ void LocusFollower::record(const std::string& type, double second, double error,
 
 Beside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, double reach) {
   const auto cycle = cycles_->gather(problem_->branch_part(whole).get());
-  solve::CycleProblem cycles(context_.comm, *system_, cycles_->options(), mesh);
+  solve::CycleProblem cycles(sharing_time(context_.comm, mesh.size() - 1), *system_, cycles_->options(), mesh);
   const core::Vector u = cycles.scatter(cycle), along = solve::any_tangent(cycles, u.get());
   const auto condition = solve::make_flip(cycles);
   solve::AugmentedProblem problem(cycles, *condition, along.get(), second(*system_));
-  return look_beside(problem, u.get(), condition->start(), solve::last_entry(context_.comm, whole), reach,
+  return look_beside(problem, u.get(), condition->start(), solve::last_entry(problem_->comm(), whole), reach,
                      continuation_.newton,
                      [&](Vec here) { return solve::flip_coefficient(cycles, problem.branch_part(here).get()); });
 }
@@ -90,7 +91,7 @@ Beside LocusFollower::hopfs_beside(Vec whole, bool half_film, double step, doubl
   const core::Vector along = solve::any_tangent(rest, u.get());
   const auto condition = solve::condition_of(system, rest, solve::Event::hopf, {0, omega});
   solve::AugmentedProblem problem(rest, *condition, along.get(), second(system, half_film));
-  return look_beside(problem, u.get(), condition->start(), solve::last_entry(context_.comm, whole), reach,
+  return look_beside(problem, u.get(), condition->start(), solve::last_entry(problem_->comm(), whole), reach,
                      continuation_.newton, [&](Vec here) {
                        rest.to_state(problem.branch_part(here).get(), x.get());
                        return solve::hopf_coefficient(system, x.get(), problem.inner(here)(0), step);
