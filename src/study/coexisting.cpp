@@ -131,4 +131,10 @@ std::string name_of_solution(const std::string& name, std::size_t k) {
   return fmt::format("{} solution {}", name, k);
 }
 
+bool may_be_solution(const std::string& name, std::string_view file) {
+  const std::string stem = io::plain_name(name + " solution ");
+  return file.size() > stem.size() && file.starts_with(stem) &&
+         file.find_first_not_of("0123456789", stem.size()) == std::string_view::npos;
+}
+
 }  // namespace whirl::study

@@ -2,6 +2,7 @@
 // Solutions that coexist with the first one of a branch, found by deflation.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "whirl/io/record.hpp"
@@ -32,5 +33,7 @@ void put_solutions(io::Group& group, io::StudySummary& summary, const std::vecto
 
 /// Name of the branch that begins at the k-th solution (the first is the branch's own) of the study `name`.
 [[nodiscard]] std::string name_of_solution(const std::string& name, std::size_t k);
+/// True if the files of such a branch may be called `file` (io::plain_name).
+[[nodiscard]] bool may_be_solution(const std::string& name, std::string_view file);
 
 }  // namespace whirl::study

@@ -68,6 +68,7 @@ std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result
 }
 
 bool CycleBranch::may_add(std::string_view other) const {
+  if (options.parameter.deflation && may_be_solution(name(), other)) return true;
   const std::string first = io::plain_name(name_of_doubled(name(), 1));
   const std::string_view stem = std::string_view(first).substr(0, first.size() - 1);
   if (!options.follow_flips || !other.starts_with(stem) || other.size() == stem.size() ||

@@ -30,14 +30,12 @@ void check_name(const Deck& deck, std::size_t i, const deck::Report& report) {
                   fmt::format("study {} is called '{}', and the files of both are '{}': give each a name of its own",
                               j + 1, earlier.name(), file));
     else if (earlier.may_add(file))
-      report.fail("name",
-                  fmt::format("study {}, '{}', follows its flips and calls a branch so: give each a name of its own",
-                              j + 1, earlier.name()));
+      report.fail("name", fmt::format("study {}, '{}', adds a branch that it calls so: give each a name of its own",
+                                      j + 1, earlier.name()));
     else if (later.may_add(io::plain_name(earlier.name())))
-      report.fail("name",
-                  fmt::format("'{}' follows its flips and calls a branch '{}', as study {} is called: give each a "
-                              "name of its own",
-                              name, earlier.name(), j + 1));
+      report.fail("name", fmt::format("'{}' adds a branch that it calls '{}', as study {} is called: give each a "
+                                      "name of its own",
+                                      name, earlier.name(), j + 1));
   }
 }
 

@@ -260,6 +260,10 @@ private:
 
 }  // namespace
 
+bool EquilibriumBranch::may_add(std::string_view other) const {
+  return options.parameter.deflation && may_be_solution(name(), other);
+}
+
 StudyResult EquilibriumBranch::run(Context& context) {
   return follow_equilibria(context, options, nullptr);
 }
