@@ -182,6 +182,27 @@ TEST(MinimumFilm, EndsCyclesMotionsAndRunUps) {
   if (core::rank_of(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(directory);
 }
 
+// Steps of the parameter find what steps of arclength find, up to the first fold: the doubled cycles are born
+// subcritically at 395.02 rad/s and turn at 393.825.
+TEST(NaturalContinuation, OfDecksEndsAtAFold) {
+  const auto rest = run("natural", "inputs/rigid_rotor/short_f1.yaml",
+                        {"studies=[{equilibrium_branch: {range: {from: 160 rad/s, to: 560 rad/s}, "
+                         "continuation: natural}}]"})
+                        .at(0);
+  EXPECT_EQ(rest.status, "completed");
+  EXPECT_NEAR(test::values_of(rest).at("threshold"), 437.6421, 1e-3);
+  const auto cycles =
+      run("natural_cycles", "inputs/rigid_rotor/short_f1.yaml",
+          {"studies=[{cycle_branch: {name: c, unbalance: [a], range: {from: 390 rad/s, to: 400 rad/s}, "
+           "continuation: natural, intervals: 20, degree: 3, adapt_mesh: false, follow_flips: true}}]"});
+  ASSERT_EQ(cycles.size(), 2U);
+  EXPECT_EQ(cycles[0].status, "completed");
+  EXPECT_NE(cycles[1].status.find("turns back at a fold"), std::string::npos) << cycles[1].status;
+  ASSERT_EQ(cycles[1].bifurcations.size(), 1U);
+  EXPECT_EQ(cycles[1].bifurcations[0].type, io::BifurcationType::cyclic_fold);
+  EXPECT_NEAR(cycles[1].bifurcations[0].value, 393.825, 0.01);
+}
+
 // Between the flips the simple cycle and the one of twice its period coexist; both are motions of two turns.
 TEST(Deflation, FindsTheCyclesThatCoexist) {
   const std::string time = ", intervals: 40, degree: 3, adapt_mesh: false";
