@@ -21,6 +21,7 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
       rows_(tilt_ ? grid_.n_z - 1 : grid_.n_z / 2),
       z_faces_(tilt_ ? rows_ + 1 : rows_),
       last_share_(!tilt_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
+      stiffen_(1.0 + std::pow(4.0 * pad.radius * grid_.dtheta / pad.length, 4)),
       first_(pad.closed ? 0 : 1),
       band_((grid_.n_theta - first_) * rows_, (pad.closed ? 2 : 1) * rows_) {
   const auto n = static_cast<std::size_t>(grid_.n_theta);
@@ -181,7 +182,7 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
       Quad e = (share(j) * (pressure_at(i + 1, j) - pressure_at(i, j))) * (lambda(i + 1, j) - lambda(i, j));
       if (ruptured) {
         for (const int node : {i, i + 1})
-          if (!wall(node)) e += 0.5 * by_mobility_[at(wrap(node), j)];
+          if (!wall(node)) e += 0.5 * stiffen_ * by_mobility_[at(wrap(node), j)];
       }
       const Quad slope = a_.d_h[around(i, j)] * e;
       level += slope;

@@ -56,8 +56,10 @@ private:
   std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
   double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)][0]; }
   double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
-  // Mobility around the pad at a node, and v_j times that.
-  double mobility_at(int i, int j) const { return 0.5 * (a_.value[around(wrap(i - 1), j)] + a_.value[around(i, j)]); }
+  // Mobility around the pad at a node, for the curvature of the pressure at the rupture.
+  double mobility_at(int i, int j) const {
+    return stiffen_ * 0.5 * (a_.value[around(wrap(i - 1), j)] + a_.value[around(i, j)]);
+  }
   double row_z(int j) const { return (j + 1) * grid_.dz - 0.5 * pad_.length; }
 
   Pad pad_;
@@ -69,6 +71,9 @@ private:
   double viscosity_, density_;
   int rows_, z_faces_;
   double last_share_;
+  // The parabola in front of the rupture is seen by cells that are short against the length of the pad; where they are
+  // not, 1 + (dx/(L/4))^4 flattens it and whole cells remain.
+  double stiffen_;
   int first_;                  // first column of unknowns
   std::vector<bool> grooves_;  // columns of a closed pad
 

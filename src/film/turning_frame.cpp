@@ -28,9 +28,11 @@ void turn(std::array<Four, 4>& m, double cosine, double sine) {
 }  // namespace
 
 TurningFrame::TurningFrame(const Motion& motion, double length)
-    : eccentricity_(std::hypot(motion.position[0], motion.position[1])), centred_(!(eccentricity_ > 1e-12 * length)) {
+    : eccentricity_(std::hypot(motion.position[0], motion.position[1])), centred_(eccentricity_ <= 1e-9 * length) {
   cosine_ = centred_ ? 0.0 : -motion.position[0] / eccentricity_;
   sine_ = centred_ ? 1.0 : -motion.position[1] / eccentricity_;
+  // A film without any pressure does not know which half of it carries.
+  if (centred_) eccentricity_ = 1e-9 * length;
   motion_ = {turned(motion.position, cosine_, -sine_), turned(motion.velocity, cosine_, -sine_), motion.speed};
   motion_.position[0] = -eccentricity_;
   motion_.position[1] = 0.0;

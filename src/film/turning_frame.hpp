@@ -13,11 +13,11 @@ namespace whirl::film {
 ///     q = J G - G_x J x' - G_v J v',  g = (0, -1/e, 0, 0) = R^T dphi/dx,  J a turn by 90 deg.
 ///
 /// At the centre of the bearing phi is a limit that depends on the direction: F is continuous there for a journal at
-/// rest only, whose tangent is that of F = R(phi) G_x (-e, 0); it is taken for a moving journal as well, and phi as 90
-/// deg.
+/// rest only, whose tangent is that of F = R(phi) G_x (-e, 0) with a small e; it is taken for a moving journal as well,
+/// and phi as 90 deg.
 class TurningFrame {
 public:
-  /// `length` is that against which the eccentricity is negligible [m].
+  /// `length` [m]: a billionth of it counts as the centre.
   TurningFrame(const Motion& motion, double length);
   /// The motion seen from the frame.
   [[nodiscard]] const Motion& motion() const { return motion_; }
