@@ -12,9 +12,12 @@
 
 namespace whirl::film {
 
-std::vector<Pad> make_pads(const Geometry& g) {
-  if (g.type == Geometry::Bore::cylindrical)
-    return {{g.radius, g.length, g.clearance, 0.5 * std::numbers::pi, 2.0 * std::numbers::pi, 0.0, 0.0, true}};
+std::vector<Pad> make_pads(const Geometry& g, const Inlet& inlet) {
+  if (g.type == Geometry::Bore::cylindrical) {
+    const bool free = inlet.type == Inlet::Type::free;
+    const double start = free ? 0.5 * std::numbers::pi : inlet.type == Inlet::Type::line ? inlet.angle : 0.0;
+    return {{g.radius, g.length, g.clearance, start, 2.0 * std::numbers::pi, 0.0, 0.0, free}};
+  }
   const double machined = g.clearance / (1.0 - g.preload);
   const double rise = machined - g.clearance;  // the centre of each arc lies beyond the bearing centre
   const bool lobes = g.type == Geometry::Bore::lemon_bore;

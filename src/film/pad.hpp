@@ -17,8 +17,8 @@ struct Pad {
 };
 
 /// The pads of a bore, lower pad first (errata of Gavalas 2022, eq. 2.10, items 18-19); a cylindrical bore is one
-/// closed pad that begins at 90 deg.
-std::vector<Pad> make_pads(const Geometry& geometry);
+/// closed pad that begins at 90 deg, or one with two edges at its inlet: at 0 if that follows the maximum gap.
+std::vector<Pad> make_pads(const Geometry& geometry, const Inlet& inlet = {});
 
 /// Uniform grid of a pad: n_theta x n_z cells, nodes on all edges, faces midway between nodes along theta.
 struct Grid {

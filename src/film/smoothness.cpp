@@ -13,9 +13,7 @@ Smoothness smoothness(const Options& o) {
       return {};
     case reynolds:
       if (o.cavitation == Options::Cavitation::none) return {};
-      if (o.cavitation == Options::Cavitation::half_sommerfeld)
-        return {1, "the tangents have kinks where the edge of the positive pressure passes a node"};
-      return {0, "the force has kinks where a node begins or ceases to cavitate"};
+      return {1, "the tangents have kinks where the edge of the positive pressure passes a node"};
     case compliant_short:
     case compliant_long:
     case compliant_finite:

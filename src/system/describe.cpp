@@ -74,6 +74,8 @@ void describe(deck::Description<Bearing>& d) {
     if (b.geometry && !closed && b.film.kind != film::Options::Kind::reynolds)
       r.fail("film.type", "a film in closed form needs a cylindrical bore");
     if (b.geometry && !closed && !b.film.grooves.empty()) r.fail("film.grooves", "only a cylindrical bore has grooves");
+    if (b.geometry && !closed && b.film.inlet.type != film::Inlet::Type::free)
+      r.fail("film.inlet", "only a cylindrical bore has an inlet");
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
   });

@@ -2,6 +2,7 @@
 // Quasi-static fluid films: journal motion in, film force on the journal and its exact tangents out.
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ struct Summary {
   double max_pressure = 0.0;   // Pa
   double side_flow = 0.0;      // m^3/s, out of both sides of all pads
   double power_loss = 0.0;     // W, friction torque on the journal times Omega; full (not striated) film everywhere
+  double inlet_flow = std::numeric_limits<double>::quiet_NaN();  // m^3/s, around into all pads where their films start
 };
 
 /// One array on the grid of one pad, row-major.
