@@ -15,7 +15,8 @@ inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 /// A number with its unit; NaN and infinity become null in the file.
 struct Quantity {
   double value = no_value;
-  std::string unit;
+  std::string unit = {};
+  std::map<std::string, double> more = {};  ///< "uncertainty" and its parts, in the same unit
 };
 
 enum class BifurcationType { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };
@@ -54,6 +55,7 @@ struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
   std::string whirl = {};  ///< forward, backward, mixed, planar
   std::string speed_unit = "rad/s";
+  std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
 };
 
 /// What one study delivered.
@@ -69,7 +71,7 @@ struct StudySummary {
   long points = 0;
 
   /// Sets values[key], replacing an earlier one.
-  void set(const std::string& key, double value, const std::string& unit);
+  void set(const std::string& key, double value, const std::string& unit, std::map<std::string, double> more = {});
 };
 
 /// The whole file; write it again after each study.
