@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "directory.hpp"
@@ -21,6 +22,19 @@ namespace fs = std::filesystem;
 // "1 bearing", "2 bearings"
 std::string count(std::size_t n, const std::string& what, const std::string& plural) {
   return fmt::format("{} {}", n, n == 1 ? what : plural);
+}
+
+// What `--set` did, a line per value.
+std::string changes_text(const std::vector<deck::Change>& changes) {
+  constexpr std::size_t most = 20;
+  auto brief = [](const std::string& s) {
+    return s.empty() ? std::string("nothing") : s.size() > 60 ? s.substr(0, 57) + "..." : s;
+  };
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, changes.size()); ++i)
+    text += fmt::format("  set {}: {}, was {}\n", changes[i].path, brief(changes[i].after), brief(changes[i].before));
+  if (changes.size() > most) text += fmt::format("  and {} more values\n", changes.size() - most);
+  return text;
 }
 
 // An InputError that does not depend on the rank is one that all ranks have.
@@ -45,6 +59,7 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
   const std::vector<std::string> undelivered = study::run(comm, deck, options);
+  text += changes_text(deck.changes);
   core::agree(comm, [&] {
     if (core::rank_of(comm) == 0) text += outcome_text(io::Summary::read(fs::path(directory) / "summary.json"));
   });
@@ -64,6 +79,7 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
   for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
+  text += changes_text(deck.changes);
   return text;
 }
 

@@ -32,7 +32,8 @@ void describe(deck::Description<Deck>& d) {
 
 Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides) {
   const deck::Files files(comm);
-  const deck::Node root = deck::load(path, overrides, files);
+  std::vector<deck::Change> changes;
+  const deck::Node root = deck::load(path, overrides, files, deck::structure_of<Deck>(), &changes);
   deck::Problems problems;
   auto d = deck::read<Deck>(root, files, problems);
   try {
@@ -41,6 +42,7 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
     e.mark_agreed();  // every rank read the same bytes
     throw;
   }
+  d.changes = std::move(changes);
   return d;
 }
 

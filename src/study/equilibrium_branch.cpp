@@ -35,7 +35,7 @@ std::unique_ptr<system::Plant> make_system(const Context& context, const Equilib
 
 }  // namespace
 
-void EquilibriumBranch::run(Context& context) {
+StudyResult EquilibriumBranch::run(Context& context) {
   const auto& range = options.parameter.range;
   const std::string unit = range.unit;
   const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
@@ -149,7 +149,7 @@ void EquilibriumBranch::run(Context& context) {
                             {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
     }
   results.summary().points = end.points;
-  results.finish(branch_status(end, unit), end.points > 0);
+  return results.finish(branch_status(end, unit), end.points > 0);
 }
 
 }  // namespace whirl::study
