@@ -19,9 +19,6 @@ using core::check;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// The differences behind a third derivative: their usual length, and one that looks over kinks narrower than that.
-constexpr double usual_step = 1, long_step = 8;
-
 enum Number : std::size_t { place, frequency, coefficient, numbers };
 
 double lyapunov(system::Plant& system, Vec x, double omega, double step) {
@@ -32,16 +29,6 @@ double lyapunov(system::Plant& system, Vec x, double omega, double step) {
   } catch (const core::DomainError&) {
     return unknown;
   }
-}
-
-core::Vector resampled(system::Plant& to, const EquilibriumEvent& at) {
-  core::Vector x = core::make_vector(to.comm(), to.local_size(), PETSC_DETERMINE);
-  const std::vector<double> whole = to.resampled(at.system, at.system.gather(at.x).data());
-  PetscInt begin = 0;
-  check(VecGetOwnershipRange(x.get(), &begin, nullptr));
-  const core::WriteArray a(x.get());
-  for (PetscInt i = 0; i < a.size(); ++i) a[i] = whole[static_cast<std::size_t>(begin + i)];
-  return x;
 }
 
 // Where the eigenvalue next to the critical one would cross, by its slope along the branch.
@@ -64,7 +51,7 @@ std::vector<double> on_mesh(const EquilibriumEvent& at, const FilmMesh& mesh) tr
   const auto made = at.make(mesh.factor);
   system::Plant& system = *made;
   system.set_parameter(at.found.parameter * at.scale);
-  core::Vector x = resampled(system, at);
+  core::Vector x = resampled(system, at.system, at.system.gather(at.x));
   const bool hopf = at.found.event == solve::Event::hopf;
   // On the far side of a fold there is no equilibrium at this parameter.
   if (hopf && !solve::find_equilibrium(system, x.get(), at.newton).converged) return {};
@@ -82,7 +69,7 @@ std::vector<double> on_mesh(const EquilibriumEvent& at, const FilmMesh& mesh) tr
   problem.to_state(there->u.get(), x.get());
   system.set_parameter(there->parameter * at.scale);
   const double omega = there->critical.imag();
-  return {there->parameter, omega, lyapunov(system, x.get(), omega, usual_step)};
+  return {there->parameter, omega, lyapunov(system, x.get(), omega, long_step)};
 } catch (const core::NotConverged&) {
   return {};
 } catch (const core::DomainError&) {
@@ -123,16 +110,15 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   here[place] = at.found.parameter;
   here[frequency] = hopf ? omega : 0;
   at.system.set_parameter(at.found.parameter * at.scale);
-  here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, usual_step) : at.found.quadratic;
-  const double coarse = hopf ? lyapunov(at.system, at.x, omega, long_step) : here[coefficient];
-  // A coefficient hangs on second or third derivatives of a discrete force, which are first to lose their order.
-  MeshLaw rough = at.law;
-  rough.kinks = true;
-  Bars bars(here, at.law), of_coefficient({here[coefficient]}, rough);
+  here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, long_step) : at.found.quadratic;
+  double doubt = hopf ? std::abs(lyapunov(at.system, at.x, omega, short_step) - here[coefficient]) : 0;
+  Bars bars(here, at.law);
   for (const FilmMesh& mesh : at.meshes) {
     const std::vector<double> there = on_mesh(at, mesh);
     bars.add(mesh.axis, mesh.spacing, there);
-    of_coefficient.add(mesh.axis, mesh.spacing, there.empty() ? there : std::vector<double>{there[coefficient]});
+    // A sign that changes with the mesh is none.
+    const double c = there.empty() ? unknown : there[coefficient];
+    if (!(c * here[coefficient] > 0)) doubt = std::max(doubt, std::abs(c - here[coefficient]));
   }
   at.system.set_parameter(at.found.parameter * at.scale);
   Bar bar = bars[place];
@@ -140,13 +126,12 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   b.uncertainty = bar.total();
   for (const auto& [name, value] : bar.parts(false)) b.more[name] = value;
   if (hopf) b.more["uncertainty_whirl_frequency_rad_s"] = bars[frequency].total();
-  Bar c = of_coefficient[0];
-  c.location = std::abs(coarse - here[coefficient]);
+  const double error = std::max(bars[coefficient].total(), doubt);
   if (hopf)
-    put_criticality(b, here[coefficient], c.total(), "supercritical", "subcritical",
+    put_criticality(b, here[coefficient], error, "supercritical", "subcritical",
                     "first Lyapunov coefficient (Kuznetsov 2004, 5.39)");
   else if (here[coefficient] != 0)
-    put_criticality(b, here[coefficient], c.total(), "below", "above",
+    put_criticality(b, here[coefficient], error, "below", "above",
                     "second derivative of the parameter along the branch: the side on which the equilibria exist");
 }
 

@@ -14,6 +14,11 @@
 
 namespace whirl::study {
 
+/// Lengths of the differences behind third derivatives, in steps of the usual ones: a hundredth and a fiftieth of a
+/// clearance. Discrete films have third derivatives that belong to their mesh at the usual length of 1e-4 clearances;
+/// over the amplitudes of the motions that are born their forces are smooth.
+inline constexpr double short_step = 80, long_step = 160;
+
 /// A bifurcation of equilibria that a branch found, and how to meet it on other film meshes.
 struct EquilibriumEvent {
   system::Plant& system;             ///< the one that is followed; left at the parameter of the event

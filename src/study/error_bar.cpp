@@ -11,7 +11,7 @@ namespace {
 constexpr double least_order = 0.5;
 constexpr double least_doubt = 0.25;   // of the largest estimate: safety factor 1.25 (Roache 1994)
 constexpr double single_factor = 3;    // two meshes alone (Roache 1994)
-constexpr double kinks_factor = 2;     // of the largest estimate of first order
+constexpr double kinks_factor = 3;    // of the largest estimate of first order: meshes that show no order (Roache 1994)
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Estimate {
@@ -66,11 +66,11 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
       continue;
     }
     const Estimate e = estimate(value, own, law.film_order, false);
-    error += e.error;
+    error += std::abs(e.error);
     doubt += e.doubt;
     if (law.kinks) with_kinks += kinks_factor * estimate(value, own, law.film_order, true).largest;
   }
-  bar.film_mesh = std::abs(error) + doubt;
+  bar.film_mesh = error + doubt;
   if (law.kinks) bar.kinks = std::max(0.0, with_kinks - bar.film_mesh);
   return bar;
 }

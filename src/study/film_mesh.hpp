@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "error_bar.hpp"
+#include "whirl/core/petsc.hpp"
 #include "whirl/system/options.hpp"
+#include "whirl/system/plant.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {
@@ -28,5 +30,9 @@ struct FilmMesh {
 /// Order of the films' equations (one with upwind differences, else two: cavitation limits it) and whether their forces
 /// have kinks (Simpson's rule, whose weights jump where the pressure changes its sign).
 [[nodiscard]] MeshLaw law_of(const system::Machine& machine);
+
+/// The whole state of `from` on the film meshes of `to`, distributed. Collective.
+[[nodiscard]] core::Vector resampled(const system::Plant& to, const system::Plant& from,
+                                     const std::vector<double>& whole);
 
 }  // namespace whirl::study
