@@ -54,15 +54,25 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   const std::string directory =
       request.directory.empty() ? "results/" + fs::path(request.deck.path).stem().string() : request.directory;
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
-  prepare_directory(comm, directory, study::resolved_text(deck), earlier);
+  Directory held(comm, directory, study::resolved_text(deck), earlier);
   study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
-  const std::vector<std::string> undelivered = study::run(comm, deck, options);
+  std::vector<std::string> undelivered;
+  try {
+    undelivered = study::run(comm, deck, options);
+  } catch (const core::InputError&) {
+    held.abandon();
+    throw;
+  }
   text += changes_text(deck.changes);
   core::agree(comm, [&] {
     if (core::rank_of(comm) == 0) text += outcome_text(io::Summary::read(fs::path(directory) / "summary.json"));
   });
+  for (const auto& o : core::Session::options_in_force())
+    if (o.source != "command line")
+      text += fmt::format("PETSc option {}{} from {} was in force\n", o.name, o.value.empty() ? "" : " " + o.value,
+                          o.source.empty() ? "an unknown source" : o.source);
   for (const std::string& option : core::Session::unused_options())
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
   text += fmt::format("results in {}\n", directory);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -87,7 +88,7 @@ core::Exit dispatch(CommandLine line, bool prints) {
   cli.require_subcommand(1);
   cli.footer(
       "`whirl help COMMAND` explains a command, `whirl help KEY` an option of decks.\n"
-      "Words behind `--` are options of PETSc: whirl run deck.yaml -- -eq_snes_monitor");
+      "Words behind `--` are options of PETSc: whirl run deck.yaml -- -newton_snes_monitor");
 
   app::RunRequest run;
   app::DeckRequest check;
@@ -168,11 +169,18 @@ int leave(const std::string& text, core::Exit exit, bool agreed, bool prints) {
 
 int main(int argc, char** argv) {
   CommandLine line = split(argc, argv);
-  const core::Session session(argc, argv, line.petsc);
+  std::optional<core::Session> session;
+  try {
+    session.emplace(argc, argv);
+  } catch (const std::exception& e) {  // every rank reads the same files and environment
+    (void)std::fprintf(stderr, "whirl: %s\n", e.what());
+    return static_cast<int>(core::Exit::failure);
+  }
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   const bool prints = rank == 0;
   try {
+    core::Session::set_options(line.petsc);
     return static_cast<int>(dispatch(std::move(line), prints));
   } catch (const core::Error& e) {
     return leave(e.what(), e.exit(), e.agreed(), prints);

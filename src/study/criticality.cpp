@@ -66,9 +66,12 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium
   io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
-  study::describe(b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine),
-                      law_of(context_.machine), [this](const auto& cells) { return make_system(cells); }});
-  set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity);
+  pieces_->complete("hopf bars", b, [&] {
+    study::describe(b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine),
+                        law_of(context_.machine), [this](const auto& cells) { return make_system(cells); }});
+  });
+  pieces_->complete("hopf criticality", b,
+                    [&] { set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity); });
   context_.results.summary().set("hopf", hopf.parameter, unit_, {{"uncertainty", b.uncertainty}});
   context_.results.summary().set("hopf.whirl_frequency", b.more["whirl_frequency_rad_s"], "rad/s",
                                  {{"uncertainty", b.more["uncertainty_whirl_frequency_rad_s"]}});

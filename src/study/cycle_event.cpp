@@ -1,8 +1,8 @@
 // What is recorded of a bifurcation of cycles: its place, and its normal form with bars from several meshes.
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "bifurcation.hpp"
 #include "cycle_follower.hpp"
@@ -16,6 +16,10 @@ using core::check;
 
 io::Bifurcation CycleFollower::bifurcation_here(io::BifurcationType type, double value) const {
   return bifurcation_at(type, value, options_.parameter.path, unit_, context_.machine, options_.unbalance, *system_);
+}
+
+std::string CycleFollower::piece(const std::string& what) const {
+  return fmt::format("event {} {}", events_ + 1, what);
 }
 
 // At u, where `problem` is linearised anew; not a number where there is no such normal form.
@@ -43,18 +47,25 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
   double doubt = 0;
   if (fold && found.refined) here.coefficient = found.quadratic;
   if (forms) {
-    here.coefficient = normal_form(*cycles, found.event, found.critical, u, long_step);
-    doubt = std::abs(normal_form(*cycles, found.event, found.critical, u, short_step) - here.coefficient);
+    const auto with = [&](const char* name, double step) {
+      return pieces_->number(piece(name), [&] { return normal_form(*cycles, found.event, found.critical, u, step); });
+    };
+    here.coefficient = with("long normal form", long_step);
+    doubt = std::abs(with("short normal form", short_step) - here.coefficient);
   }
   Bars bars(here.list(), law()), of_coefficient({here.coefficient}, law());
   for (const CycleMesh& mesh : meshes()) {
     // A verdict that is lost on one mesh needs no others.
     const bool film = mesh.axis != Axis::time, also = (fold || film) && decided(here.coefficient, doubt);
     // Near contact the same cycle may leave the validity of the film on another mesh: no number there.
-    const auto there = numbers_on(mesh, found, cycle, also);
-    bars.add(mesh.axis, mesh.spacing, there ? there->list() : std::vector<double>{});
+    const auto there =
+        pieces_->numbers(piece(fmt::format("on mesh {} {:.3f}", static_cast<int>(mesh.axis), mesh.spacing)), [&] {
+          const auto numbers = numbers_on(mesh, found, cycle, also);
+          return numbers ? numbers->list() : std::vector<double>{};
+        });
+    bars.add(mesh.axis, mesh.spacing, there);
     if (!also) continue;
-    const double c = there ? there->coefficient : io::no_value;
+    const double c = there.empty() ? io::no_value : there.back();
     of_coefficient.add(mesh.axis, mesh.spacing, {c});
     if (!(c * here.coefficient > 0)) doubt = std::max(doubt, std::abs(c - here.coefficient));
   }
@@ -109,8 +120,10 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (seed) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);
-    set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity);
+    pieces_->complete(piece("criticality"), b,
+                      [&] { set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity); });
   }
+  ++events_;
   context_.results.summary().bifurcations.push_back(b);
   if (keeps_located_)
     located_.push_back(

@@ -12,6 +12,7 @@
 #include "cycle_record.hpp"
 #include "film_mesh.hpp"
 #include "located.hpp"
+#include "pieces.hpp"
 #include "whirl/solve/cycle_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
@@ -45,7 +46,7 @@ struct CycleNumbers {
   double angle = 0;        ///< of the critical multiplier [rad]
   double period = 0;       ///< [s]
   double coefficient = 0;  ///< of its normal form; of a fold the second derivative of the parameter
-  [[nodiscard]] std::vector<double> list() const { return {place, angle, period}; }
+  [[nodiscard]] std::vector<double> list() const { return {place, angle, period, coefficient}; }
 };
 
 /// The parameter of a branch of cycles near its birth, p = p_0 + curvature h^2, h the root mean square amplitude in
@@ -99,6 +100,8 @@ private:
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
+  /// Name of a piece of work about the event that comes next.
+  [[nodiscard]] std::string piece(const std::string& what) const;
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
   /// Values of a cycle asked for with their bars, under `at.<key>.` in the summary.
   void report(const std::string& key, Vec u);
@@ -145,7 +148,8 @@ private:
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   std::optional<solve::Cycle> last_;
-  double last_saved_ = -1e9;
+  std::unique_ptr<Pieces> pieces_;  // of the study that runs
+  int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;
   bool keeps_located_;              // a locus of the deck starts from one of them
   std::vector<Located> located_;    // one for each bifurcation of the summary

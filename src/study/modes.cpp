@@ -8,6 +8,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
@@ -154,14 +155,16 @@ StudyResult Modes::run(Context& context) {
   auto& summary = results.summary();
   auto& group = results.group();
   std::size_t ready = 0;
-  const auto packed = distribute(groups, speeds.size(), [&](std::size_t i) {
+  Pieces pieces(results, context.resume);
+  const auto compute = [&](std::size_t i) {
     auto modes = pack(shaft_modes(system, walker.at(speeds[i]), options.count, limit));
     results.progress(fmt::format(
         "{}: {} of {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
         (speeds.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count),
         deck::from_si(speeds[i], unit), unit, results.seconds()));
     return modes;
-  });
+  };
+  const auto packed = distribute(groups, speeds.size(), compute, pieces, "speed");
 
   std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
@@ -197,7 +200,7 @@ StudyResult Modes::run(Context& context) {
     before = std::move(modes);
   }
   // Where the chords cross, refined by solving there and following the shape.
-  const auto refined = distribute(groups, crossings.size(), [&](std::size_t i) {
+  const auto refine = [&](std::size_t i) {
     Crossing c = crossings[i];
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
@@ -213,7 +216,8 @@ StudyResult Modes::run(Context& context) {
       if (std::abs(f) < 1e-7 * s) break;
     }
     return std::vector<double>{c.s1};
-  });
+  };
+  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical");
   struct Critical {
     double speed;
     int id;
