@@ -132,13 +132,4 @@ std::string branch_status(const solve::BranchEnd& end, const std::string& unit) 
   return fmt::format("ended at {:.6g} {}: {}", end.parameter, unit, end.reason);
 }
 
-system::Train with_half_film_mesh(system::Train train) {
-  for (auto& s : train.supports) {
-    for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = std::max(4, s.film.cells[d] / 2);
-    if (s.film.quadrature == film::Options::Quadrature::simpson)
-      for (int& cells : s.film.cells) cells += cells % 2;
-  }
-  return train;
-}
-
 }  // namespace whirl::study

@@ -53,9 +53,4 @@ void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& 
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);
 
-/// The train with its film meshes halved in both directions. A result that moves by d when the mesh is halved is given
-/// the uncertainty d: a mesh of second order errs by d/3, and two meshes that cannot show the order call for a safety
-/// factor of 3 (Roache 1994).
-[[nodiscard]] system::Train with_half_film_mesh(system::Train train);
-
 }  // namespace whirl::study

@@ -71,7 +71,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   const io::Group state = pieces_->state();
   record_.read(state.group("record"));
   const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
-  problem_ = make_problem(*system_, options_.period, cycle.mesh, false);
+  problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);
   read_summary(state.group("summary"), context_.results.summary());
   events_ = static_cast<int>(state.integer("events"));

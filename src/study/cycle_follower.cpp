@@ -10,6 +10,8 @@
 #include "bifurcation.hpp"
 #include "coexisting.hpp"
 #include "make_plant.hpp"
+#include "summary_bars.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 
@@ -25,7 +27,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       seed_(std::move(seed)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
-      system_(make_system(false)),
+      system_(make_system({1, 1})),
       record_(system_->places(), unit_, options_.multipliers),
       films_(system_->places()),
       keeps_located_(is_followed(context, context.results.summary().name)) {
@@ -52,16 +54,16 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, solve
   first_ = std::move(first);
 }
 
-std::unique_ptr<system::Plant> CycleFollower::make_system(bool half_film) const {
+std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells) const {
   PlantRequest wanted{options_.unbalance, &options_.parameter};
   wanted.value = options_.start ? options_.start->value : options_.parameter.range.from;
   wanted.speed = options_.speed ? options_.speed->value : 0;
-  wanted.half_film = half_film;
+  wanted.film_cells = film_cells;
   return make_plant(space(), context_.machine, wanted);
 }
 
-solve::Stability CycleFollower::stability() {
-  auto values = problem_->multipliers();
+solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) const {
+  auto values = problem.multipliers();
   // The trivial multiplier of a self-excited cycle says nothing.
   if (autonomous())
     values.erase(std::min_element(values.begin(), values.end(),
@@ -104,16 +106,39 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
     const auto result = solve::newton(*problem_, u.get(), row.get(), p / scale_, newton_);
     if (!result.converged) continue;
     problem_->linearise(u.get(), row.get());
-    record_.report(key, problem_->orbit(u.get()), problem_->orbit_scheme(), *system_, stability(),
-                   context_.results.summary());
+    report(key, u.get());
   }
+}
+
+void CycleFollower::report(const std::string& key, Vec u) {
+  io::StudySummary own;
+  record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_), own);
+  const solve::Cycle cycle = problem_->gather(u);
+  SummaryBars bars(own, law());
+  for (const CycleMesh& mesh : meshes()) {
+    io::StudySummary there;
+    try {
+      if (const auto other = corrected_on(mesh, cycle))
+        record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
+                       other->other ? *other->other : *system_, stability_of(*other->problem), there);
+    } catch (const core::NotConverged&) {
+      there = {};
+    } catch (const core::DomainError&) {
+      there = {};
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      there = {};
+    }
+    bars.add(mesh.axis, mesh.spacing, there);
+  }
+  bars.write(newton_.tolerance);
+  for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
 }
 
 StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
   if (!restart) {
-    problem_ = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), false);
+    problem_ = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), 1);
     if (seed_)
       restart = start_at_flip();
     else if (autonomous())
@@ -124,7 +149,7 @@ StudyResult CycleFollower::run() {
   put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
-  callbacks.stability = [this](Vec) { return stability(); };
+  callbacks.stability = [this](Vec) { return stability_of(*problem_); };
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
   if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
@@ -171,10 +196,7 @@ StudyResult CycleFollower::run() {
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
-  if (end.limited) {
-    results.summary().set("contact", end.parameter, unit_);
-    results.summary().set("contact.uncertainty", end.bracket, unit_);
-  }
+  if (end.limited) results.summary().set("contact", end.parameter, unit_, {{"uncertainty", end.bracket}});
   results.summary().stability = record_.verdict();
   if (options_.parameter.deflation) put_solutions(group, results.summary(), coexisting());
   return results.finish(returned_ || (end.limited && contact) ? "completed" : branch_status(end, unit_),

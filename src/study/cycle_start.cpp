@@ -131,9 +131,9 @@ solve::Restart CycleFollower::start_at_hopf() {
   restart.step = continuation_.initial_step;
   restart.point.index = -1;  // the Hopf point is no cycle: the first one comes next
   restart.point.parameter = parameter / scale_;
-  context_.results.summary().set("hopf", parameter / scale_, unit_);
-  context_.results.summary().set("hopf.whirl_frequency", critical->lambda.imag(), "rad/s");
-  record_hopf(hopf, restart, critical->lambda.imag());
+  hopf.event = solve::Event::hopf;
+  hopf.critical = {0, critical->lambda.imag()};
+  record_hopf(hopf, at_hopf.get(), restart);
   return restart;
 }
 
@@ -185,7 +185,7 @@ solve::Cycle two(const solve::Cycle& one, double second) {
 }  // namespace
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
-  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), false);
+  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), 1);
   if (autonomous()) twice->set_phase_reference(two(seed.cycle, 1));
   return twice;
 }
@@ -204,7 +204,7 @@ solve::Restart CycleFollower::leave_flip(const solve::PeriodicProblem& twice, co
 
 solve::Restart CycleFollower::start_at_flip() {
   system_->set_parameter(seed_->cycle.parameter);
-  problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), false);
+  problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), 1);
   if (autonomous()) problem_->set_phase_reference(two(seed_->cycle, 1));
   solve::Restart restart = leave_flip(*problem_, *seed_);
   restart.step = continuation_.initial_step;

@@ -2,13 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "bifurcation.hpp"
 #include "coexisting.hpp"
 #include "common.hpp"
+#include "equilibrium_event.hpp"
 #include "film_limit.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
 #include "located.hpp"
 #include "make_plant.hpp"
@@ -18,7 +20,6 @@
 #include "whirl/io/table.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 #include "whirl/solve/equilibrium.hpp"
-#include "whirl/solve/normal_form.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::study {
@@ -26,22 +27,13 @@ namespace {
 
 using core::check;
 
-std::unique_ptr<system::Plant> make_system(const Context& context, const EquilibriumBranchOptions& o, bool half_film) {
+std::unique_ptr<system::Plant> make_system(const Context& context, const EquilibriumBranchOptions& o,
+                                           const std::array<double, 2>& film_cells = {1, 1}) {
   PlantRequest wanted{{}, &o.parameter};
   wanted.value = o.parameter.range.from;
   wanted.speed = o.speed ? o.speed->value : 0;
-  wanted.half_film = half_film;
+  wanted.film_cells = film_cells;
   return make_plant(Groups::split(context.comm, context.machine).space, context.machine, wanted);
-}
-
-// The differences behind the coefficient must not decide its sign: a film with kinks has no third derivative.
-void set_lyapunov(io::Bifurcation& b, system::Plant& system, Vec x, double omega) {
-  b.criticality_by = "undetermined: the first Lyapunov coefficient depends on the step of its differences";
-  const double fine = solve::hopf_coefficient(system, x, omega, 1),
-               coarse = solve::hopf_coefficient(system, x, omega, 8);
-  if (!(std::abs(fine - coarse) < 0.2 * std::min(std::abs(fine), std::abs(coarse)))) return;
-  b.criticality = fine < 0 ? "supercritical" : "subcritical";
-  b.criticality_by = "first Lyapunov coefficient (Kuznetsov 2004, 5.39)";
 }
 
 // Follows the branch from `first`, or from the equilibrium that is easiest to find.
@@ -63,9 +55,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
   continuation.newton.max_iterations = 20;
 
-  const auto system = make_system(context, options, false);
+  const auto system = make_system(context, options);
   // A change of the root mean square state by half a clearance counts as one longest step.
-  solve::EquilibriumProblem problem(*system, scale, std::pow(continuation.max_step / 0.5, 2));
+  const double state_weight = std::pow(continuation.max_step / 0.5, 2);
+  solve::EquilibriumProblem problem(*system, scale, state_weight);
   core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
   if (first) {
     const core::WriteArray to(x.get());
@@ -133,49 +126,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     if (!wanted(found.event, options.detect)) return;
     io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
                                        context.machine, {}, *system);
-    b.uncertainty = found.bracket;
-    const double omega = std::abs(found.critical.imag());
-    if (found.event == solve::Event::hopf) {
-      b.period_s = 2 * std::numbers::pi / omega;
-      b.more["whirl_frequency_rad_s"] = omega;
-      b.more["whirl_frequency_rpm"] = omega * 30 / std::numbers::pi;
-    }
-    // The same equilibrium on the halved film mesh: how far the border of stability moves.
-    if (found.located && found.sensitivity != 0 && system->has_film_mesh()) {
-      const auto coarse = make_system(context, options, true);
-      coarse->set_parameter(found.parameter * scale);
-      core::Vector xc = core::make_vector(coarse->comm(), coarse->local_size(), PETSC_DETERMINE);
-      problem.to_state(v, x.get());
-      {
-        const std::vector<double> whole = coarse->resampled(*system, system->gather(x.get()).data());
-        PetscInt begin = 0;
-        check(VecGetOwnershipRange(xc.get(), &begin, nullptr));
-        const core::WriteArray to(xc.get());
-        for (PetscInt i = 0; i < to.size(); ++i) to[i] = whole[static_cast<std::size_t>(begin + i)];
-      }
-      if (solve::find_equilibrium(*coarse, xc.get(), continuation.newton).converged) {
-        const auto s = equilibrium_stability(*coarse, xc.get());
-        double nearest = std::numeric_limits<double>::infinity(), distance = 0;
-        for (std::size_t k = 0; k < s.values.size(); ++k) {
-          const double apart = std::abs(std::abs(s.values[k].imag()) - omega) + std::abs(s.values[k].real());
-          if (apart < nearest) {
-            nearest = apart;
-            distance = s.distance[k];
-          }
-        }
-        b.more["uncertainty_film_mesh"] = std::abs(distance / found.sensitivity);
-        b.uncertainty += b.more["uncertainty_film_mesh"];
-      }
-    }
-    if (found.event == solve::Event::fold && found.quadratic != 0) {
-      b.criticality = found.quadratic > 0 ? "above" : "below";
-      b.criticality_by = "second derivative of the parameter along the branch: the side on which the equilibria exist";
-    }
-    if (found.event == solve::Event::hopf && found.located) {
-      problem.to_state(v, x.get());
-      system->set_parameter(found.parameter * scale);
-      set_lyapunov(b, *system, x.get(), omega);
-    }
+    problem.to_state(v, x.get());
+    describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
+                 law_of(context.machine), [&](const auto& cells) { return make_system(context, options, cells); }});
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});
     results.summary().bifurcations.push_back(b);
@@ -230,14 +183,12 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   results.summary().stability = verdict.text();
   if (const int k = threshold_among(borders, range.to >= range.from); k >= 0) {
     const auto& b = results.summary().bifurcations[static_cast<std::size_t>(k)];
-    results.summary().set("threshold", b.value * scale, si_unit);
+    results.summary().set("threshold", b.value * scale, si_unit, {{"uncertainty", b.uncertainty * scale}});
     if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
-      results.summary().set("whirl_frequency", omega->second, "rad/s");
+      results.summary().set("whirl_frequency", omega->second, "rad/s",
+                            {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
   }
-  if (end.limited) {
-    results.summary().set("contact", end.parameter, unit);
-    results.summary().set("contact.uncertainty", end.bracket, unit);
-  }
+  if (end.limited) results.summary().set("contact", end.parameter, unit, {{"uncertainty", end.bracket}});
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);
 }

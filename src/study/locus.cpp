@@ -11,6 +11,7 @@
 #include "common.hpp"
 #include "cycle_follower.hpp"
 #include "film_limit.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
 #include "located.hpp"
 #include "locus_follower.hpp"
@@ -91,7 +92,7 @@ system::Train LocusFollower::train_at(double first, bool half_film) const {
   system::Machine machine = with_parameter(context_.machine, options_.second.path, second_value_);
   if (first_.path != "speed") machine = with_parameter(machine, first_.path, first);
   system::Train train = system::train_of(machine, unbalance_);
-  return half_film ? with_half_film_mesh(std::move(train)) : train;
+  return half_film ? with_film_mesh(std::move(train), {0.5, 0.5}) : train;
 }
 
 std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, bool half_film) const {

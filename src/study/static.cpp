@@ -4,9 +4,13 @@
 
 #include "common.hpp"
 #include "film_limit.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
+#include "summary_bars.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
+#include "whirl/solve/equilibrium.hpp"
 
 namespace whirl::study {
 namespace {
@@ -40,29 +44,13 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
   }
 }
 
-}  // namespace
-
-StudyResult Static::run(Context& context) {
-  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine),
-                             options.speed.value);
-  Walker walker(system);
-  const std::vector<double> x = system.gather(walker.at(options.speed.value));
+// What follows from the films at the state x.
+void put_values(const Context& context, system::RotorSystem& system, const std::vector<double>& x,
+                io::StudySummary& summary) {
   const auto journals = system.journals(x.data());
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
   const std::vector<double> thickness = system.film_thickness(x.data());
-  auto& summary = context.results.summary();
-  auto& group = context.results.group();
-  FilmLimit(system.places()).warn(thickness, "at rest", summary);
-
-  const auto& rotor = system.train().rotor;
-  summary.set("mass.total", rotor::total_mass(rotor), "kg");
-  for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
-    const auto &a = context.machine.bearings[i], &b = context.machine.bearings[i + 1];
-    if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
-  }
-  summary.set("length.total", rotor::node_positions(rotor).back(), "m");
-  std::vector<double> px, py, load;
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
@@ -100,11 +88,62 @@ StudyResult Static::run(Context& context) {
       const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
       if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");
     }
+  }
+  summary.set("power_loss", total_loss, "W");
+}
+
+// The same on other film meshes, for the error bars.
+void put_bars(const Context& context, const system::RotorSystem& system, double speed, const std::vector<double>& x) {
+  SummaryBars bars(context.results.summary(), law_of(context.machine));
+  for (const FilmMesh& mesh : film_meshes(context.machine)) {
+    io::StudySummary there;
+    try {
+      system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);
+      const core::Vector at = resampled(other, system, x);
+      other.set_forcing(false);
+      if (solve::find_equilibrium(other, at.get(), {}).converged)
+        put_values(context, other, other.gather(at.get()), there);
+    } catch (const core::DomainError&) {
+      there = {};
+    } catch (const core::NotConverged&) {
+      there = {};
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      there = {};
+    }
+    bars.add(mesh.axis, mesh.spacing, there);
+  }
+  bars.write(1e-9);
+}
+
+}  // namespace
+
+StudyResult Static::run(Context& context) {
+  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine),
+                             options.speed.value);
+  Walker walker(system);
+  const std::vector<double> x = system.gather(walker.at(options.speed.value));
+  const auto journals = system.journals(x.data());
+  const auto films = system.film_responses(x.data(), film::Need::force);
+  const auto names = names_of_bearings(context.machine);
+  auto& summary = context.results.summary();
+  auto& group = context.results.group();
+
+  const auto& rotor = system.train().rotor;
+  summary.set("mass.total", rotor::total_mass(rotor), "kg");
+  for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
+    const auto &a = context.machine.bearings[i], &b = context.machine.bearings[i + 1];
+    if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
+  }
+  summary.set("length.total", rotor::node_positions(rotor).back(), "m");
+  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
+  put_values(context, system, x, summary);
+  put_bars(context, system, options.speed.value, x);
+  std::vector<double> px, py, load;
+  for (std::size_t b = 0; b < names.size(); ++b) {
     px.push_back(journals[b].position[0]);
     py.push_back(journals[b].position[1]);
     load.push_back(films[b].force[1]);
   }
-  summary.set("power_loss", total_loss, "W");
 
   const std::vector<double> shaft = system.shaft(x.data(), 0, true), z = rotor::node_positions(rotor);
   std::vector<double> sx, sy;

@@ -15,7 +15,8 @@ inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 /// A number with its unit; NaN and infinity become null in the file.
 struct Quantity {
   double value = no_value;
-  std::string unit;
+  std::string unit = {};
+  std::map<std::string, double> more = {};  ///< "uncertainty" and its parts, in the same unit
 };
 
 enum class BifurcationType { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };
@@ -54,7 +55,8 @@ struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
   std::string whirl = {};  ///< forward, backward, mixed, planar
   std::string speed_unit = "rad/s";
-  std::string stability = {};  ///< stable, undamped (its real part is rounding), unstable; or empty
+  std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
+  std::string stability = {};               ///< stable, undamped (its real part is rounding), unstable; or empty
 };
 
 /// A column of numbers over the points of a curve.
@@ -79,7 +81,7 @@ struct StudySummary {
   long points = 0;
 
   /// Sets values[key], replacing an earlier one.
-  void set(const std::string& key, double value, const std::string& unit);
+  void set(const std::string& key, double value, const std::string& unit, std::map<std::string, double> more = {});
 };
 
 /// An option of a library that was in force, and where it came from (empty if that cannot be told).
