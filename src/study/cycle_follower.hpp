@@ -36,10 +36,8 @@ public:
   /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
   /// options are those of that branch: period and intervals doubled).
   CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
-  /// Solves, records, and finishes the study that runs in the results.
-  void run();
-  /// The flips located on the way.
-  [[nodiscard]] const std::vector<FlipSeed>& seeds() const { return seeds_; }
+  /// Solves and records. The study that runs is finished.
+  [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
   /// Finds the bifurcation that `other` found on another film mesh. Throws core::NotConverged or core::DomainError.
   [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other);

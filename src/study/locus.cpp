@@ -47,7 +47,7 @@ struct FlipsBeside {
 class LocusFollower {
 public:
   LocusFollower(Context& context, const LocusOptions& options);
-  void run();
+  StudyResult run();
 
 private:
   // System, branch problem and condition at the start of the curve.
@@ -105,9 +105,9 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
     if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest && s->name() == options.of)
       of_rest_ = &rest->options;
   }
-  if (!context.results.root().child("studies").has_group(io::safe_name(options.of)))
+  if (!context.earlier.has_group(io::safe_name(options.of)))
     throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
-  const io::Group& group = context.results.group_of(options.of);
+  const io::Group& group = context.earlier.group(io::safe_name(options.of));
   if (!group.has_group("located"))
     throw core::NotConverged(
         fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
@@ -415,7 +415,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   return rows;
 }
 
-void LocusFollower::run() {
+StudyResult LocusFollower::run() {
   const deck::Range& range = options_.second.range;
   const double from = range.from / second_scale_, to = range.to / second_scale_;
   solve::BranchEnd there, here;
@@ -460,13 +460,13 @@ void LocusFollower::run() {
     return fmt::format("ended at {:.6g} {} of {}: {}", deck::from_si(end.parameter * second_scale_, range.unit),
                        range.unit, options_.second.path, end.reason);
   };
-  results.finish(!there.completed ? status(there) : !here.completed ? status(here) : "completed", true);
+  return results.finish(!there.completed ? status(there) : !here.completed ? status(here) : "completed", true);
 }
 
 }  // namespace
 
-void Locus::run(Context& context) {
-  LocusFollower(context, options).run();
+StudyResult Locus::run(Context& context) {
+  return LocusFollower(context, options).run();
 }
 
 }  // namespace whirl::study

@@ -120,7 +120,7 @@ void follow(const std::vector<ShaftMode>& before, std::vector<ShaftMode>& now, i
 }
 
 // Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
-void rigid_modes(Context& context, const ModesOptions& options) {
+StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   rotor::Options shaft = context.machine.rotor;
   shaft.reduction = {};
   std::vector<int> pinned;
@@ -137,12 +137,12 @@ void rigid_modes(Context& context, const ModesOptions& options) {
       .child("spectrum")
       .put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
   summary.points = 1;
-  context.results.finish("completed", true);
+  return context.results.finish("completed", true);
 }
 
 }  // namespace
 
-void Modes::run(Context& context) {
+StudyResult Modes::run(Context& context) {
   if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
   const std::vector<double> speeds = options.all_speeds();
   const std::string unit = options.unit();
@@ -263,7 +263,7 @@ void Modes::run(Context& context) {
   shapes.put("z", z, "m", "axial position of the nodes");
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
   summary.points = static_cast<long>(speeds.size());
-  results.finish("completed", true);
+  return results.finish("completed", true);
 }
 
 }  // namespace whirl::study

@@ -152,7 +152,7 @@ void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Mo
 
 }  // namespace
 
-void UnbalanceResponse::run(Context& context) {
+StudyResult UnbalanceResponse::run(Context& context) {
   std::set<int> wanted(options.nodes.begin(), options.nodes.end());
   std::vector<int> nodes = options.nodes;
   if (nodes.empty()) {
@@ -262,7 +262,7 @@ void UnbalanceResponse::run(Context& context) {
   group.set("speed_unit", unit);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
   summary.points = static_cast<long>(curve.size());
-  results.finish("completed", true);
+  return results.finish("completed", true);
 }
 
 }  // namespace whirl::study
