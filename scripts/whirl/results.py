@@ -202,7 +202,7 @@ class Results:
             if "studies" not in self.file or not isinstance(self.file["studies"], h5py.Group):
                 raise Error(f"{self.path} holds no results of whirl: it has no group 'studies'")
             groups = dict(self.file["studies"].items())
-        self.title = title
+        self.title = str(self.summary.get("title") or title)
         entries = {s["name"]: s for s in self.summary.get("studies", [])}
         order = {name: i for i, name in enumerate(entries)}
         studies = []

@@ -1,4 +1,6 @@
 """Bifurcation diagrams: equilibria and cycles over a parameter, each bearing, stable solid and unstable dashed."""
+import re
+
 import numpy as np
 from matplotlib.lines import Line2D
 
@@ -9,16 +11,26 @@ RANGE_ENDS = ("completed", "", "end of the range")
 
 
 class Followed:
-    """The branch of a study: its curves, where its bifurcations lie on it, and why it ends."""
+    """The branch of a study: its curves, where its bifurcations lie on it, and why it ends.
+
+    A branch that left from a bifurcation begins there: that cycle stands first in `parameter`, `stable` and the columns that are
+    known of it; `points` are without it."""
 
     def __init__(self, study):
         self.study = study
         self.parameter = study.get("branch/parameter")
+        self.points = len(self.parameter)
         unstable, stable = study.get("branch/unstable_count"), study.get("branch/stable")
         if stable is None:
             stable = unstable == 0 if unstable is not None else np.ones(len(self.parameter))
         self.stable = np.asarray(stable) > 0.5
-        self.curve = Branch(self.parameter, study.get("branch/step"), unstable if unstable is not None else ~self.stable)
+        unstable, step = unstable if unstable is not None else (~self.stable).astype(int), study.get("branch/step")
+        self.bare = self.curve = Branch(self.parameter, step, unstable)
+        self.born = study.has("birth/parameter") and self.points > 0
+        if self.born:
+            self.parameter = np.concatenate([study.get("birth/parameter"), self.parameter])
+            self.stable = np.concatenate([self.stable[:1], self.stable])
+            self.curve = Branch(self.parameter, None if step is None else np.concatenate([[0.0], step]), np.concatenate([unstable[:1], unstable]))
         kinds = study.get("bifurcations/type")
         values = [] if kinds is None or not len(kinds) else np.atleast_1d(study.get("bifurcations/parameter"))
         self.events = [(kind, value, self._place(kind, value)) for kind, value in zip(kinds if len(values) else [], values)]
@@ -26,7 +38,7 @@ class Followed:
     def _place(self, kind, value):
         # Self-excited cycles begin at their Hopf point, which the branch may pass again.
         if kind == "hopf" and self.study.kind == "cycle_branch":
-            return (0, 0.0)
+            return (0, 0.0) if self.born else None
         return self.curve.place(kind, value)
 
     @property
@@ -36,27 +48,43 @@ class Followed:
     @property
     def ends(self):
         """Why the branch ends, in a list; empty if it was followed to the end of its range."""
-        status = self.study.status
-        return [] if status in RANGE_ENDS else [status if len(status) < 60 else status[:57] + "..."]
+        status = self.study.attribute("end", "") or self.study.status
+        if status in RANGE_ENDS:
+            return []
+        reason = re.sub(r"^ended at [^:]*: ", "", status)
+        return [reason if len(reason) < 70 else reason[:67] + "..."]
 
     def column(self, name):
-        """A column of the table `branch` as [point][bearing]."""
-        return self.study.get(f"branch/{name}").reshape(len(self.parameter), -1)
+        """A column of the table `branch` as [point][bearing], with the cycle that it begins at where that is known."""
+        values = self.study.get(f"branch/{name}").reshape(self.points, -1)
+        return np.concatenate([self.study.get(f"birth/{name}").reshape(1, -1), values]) if self.born and self.study.has(f"birth/{name}") else values
+
+    def curve_of(self, values):
+        """The branch with or without the cycle that it begins at, as the values are."""
+        return self.curve if len(values) == len(self.parameter) else self.bare
+
+    def places_on(self, curve):
+        """(kind, value, place) of the bifurcations on that one."""
+        if curve is self.curve:
+            return self.events
+        return [(k, v, p and ((p[0] - 1, p[1]) if p[0] > 0 else None)) for k, v, p in self.events]
 
     def draw(self, axis, values, colour, scale=1.0, linewidth=1.6, across=1.0):
         """One curve over the parameter (times `across`), solid where stable."""
         values = np.asarray(values, float) * scale
-        for x, y, solid in self.curve.stretches(values, self.stable, [place for _, _, place in self.events]):
+        curve = self.curve_of(values)
+        for x, y, solid in curve.stretches(values, self.stable[len(self.parameter) - len(values):], [p for _, _, p in self.places_on(curve)]):
             axis.plot(x * across, y, color=colour, linestyle="-" if solid else DASHED, linewidth=linewidth if solid else 0.8 * linewidth)
-        if len(self.parameter) == 1:
-            axis.plot(self.parameter * across, values, ".", color=colour)
+        if len(values) == 1:
+            axis.plot(curve.parameter * across, values, ".", color=colour)
 
     def mark(self, axis, curves, scale=1.0, size=6, across=1.0):
         """Bifurcations and the early end of the branch, on each of the curves."""
         for values in curves:
-            for kind, value, place in self.events:
+            curve = self.curve_of(values)
+            for kind, value, place in self.places_on(curve):
                 if place is not None:
-                    mark(axis, kind, value * across, self.curve.at(values, place) * scale, size)
+                    mark(axis, kind, value * across, curve.at(values, place) * scale, size)
             if self.ends:
                 mark_end(axis, self.parameter[-1] * across, values[-1] * scale, size)
 
@@ -127,24 +155,25 @@ def draw_cycles(study):
         note = f"largest and smallest {direction} ({words}) over one cycle: {study.shown}"
         unbalance = study.attribute("unbalance")
         files += save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note, legend([branch]))
-    return files + draw_probes(study, branch)
+    return files + draw_nodes(study, branch)
 
 
-def draw_probes(study, branch):
+def draw_nodes(study, branch):
     """Amplitudes of the shaft at the nodes that the deck asked for, 0-peak."""
-    if not study.has("branch/probe_semi_major", "probes/node"):
+    if not study.has("nodes/amplitude", "nodes/node"):
         return []
-    major, nodes = branch.column("probe_semi_major"), np.atleast_1d(study.get("probes/node"))
-    scale, unit = study.measure(major)
+    nodes = np.atleast_1d(study.get("nodes/node"))
+    tables = {k: study.get(f"nodes/{k}").reshape(branch.points, -1) for k in ("amplitude", "x", "y")}
+    scale, unit = study.measure(tables["amplitude"])
     figure, axes, _ = grid_of(len(nodes))
     for k, (axis, node) in enumerate(zip(axes, nodes)):
-        for name, colour in (("probe_semi_major", INK), ("probe_x", X), ("probe_y", Y)):
-            branch.draw(axis, branch.column(name)[:, k], colour, scale)
-        branch.mark(axis, [major[:, k]], scale)
+        for name, colour in (("amplitude", INK), ("x", X), ("y", Y)):
+            branch.draw(axis, tables[name][:, k], colour, scale)
+        branch.mark(axis, [tables["amplitude"][:, k]], scale)
         finish(axis, f"node {node}, shaft", f"amplitude, 0-peak [{unit}]", parameter_label(study))
         axis.set_ylim(bottom=0)
     handles = [Line2D([], [], color=c, label=w) for c, w in ((INK, "largest distance from the mean"), (Y, "y, vertical"), (X, "x, horizontal"))]
-    return save(figure, study, "probes", "half of what the shaft moves from one side to the other, in space", legend([branch], handles))
+    return save(figure, study, "nodes", "x, y: half of the travel of the shaft in space", legend([branch], handles))
 
 
 def draw_frequency(study):
@@ -155,7 +184,8 @@ def draw_frequency(study):
     if to_si is None:
         return []
     branch = Followed(study)
-    ratio = 2 * np.pi / (study.get("branch/period") * branch.parameter * to_si)
+    period = branch.column("period")[:, 0]
+    ratio = 2 * np.pi / (period * branch.parameter[-len(period):] * to_si)
     figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
     branch.draw(axis, ratio, INK)
     branch.mark(axis, [ratio])

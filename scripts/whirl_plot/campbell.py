@@ -3,10 +3,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import BAD, GOOD, GREY, INK, ROTATION, WARN, levels, runs, save, speed_axis
+from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, WARN, levels, runs, save, speed_axis
 
 LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4))}
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
+OVERDAMPED = 3.0  # log. decrement of modes that lose 95 % of their amplitude in a turn
 BOX = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6}
 
 
@@ -36,8 +37,10 @@ def draw_lines(axis, x, y, decrement, whirl):
         axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
         return
     worst = np.minimum(decrement[:-1], decrement[1:])
-    for start, stop in runs(list(zip(whirl[:-1], map(colour_of, worst)))):
-        axis.plot(x[start:stop + 1], y[start:stop + 1], color=colour_of(worst[start]), linestyle=LINES.get(whirl[start], "-"))
+    for start, stop in runs(list(zip(whirl[:-1], map(colour_of, worst), worst > OVERDAMPED))):
+        heavy = worst[start] > OVERDAMPED
+        axis.plot(x[start:stop + 1], y[start:stop + 1], color=LIGHT if heavy else colour_of(worst[start]),
+                  linewidth=1.0 if heavy else 1.6, linestyle=LINES.get(whirl[start], "-"), zorder=1.5 if heavy else 2)
 
 
 def label_modes(axis, x, ends):
@@ -71,7 +74,13 @@ def draw(study):
         side = ends[1] if times * ends[1] < 0.93 * limit else 0.9 * limit / times
         top.annotate(f"{times}\u00d7", (side * to_speed, times * side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
                      fontsize=9, ha="right", va="bottom", bbox=BOX)
-    critical = np.atleast_1d(study.get("critical/speed", np.array([])))
+    crossed = np.atleast_1d(study.get("critical/speed", np.array([])))
+    damping = study.get("critical/log_decrement")
+    # By API 684 an amplification factor pi/delta below 2.5 is no critical speed.
+    heavy = np.zeros(len(crossed), bool) if damping is None else np.pi / np.maximum(np.atleast_1d(damping), 1e-9) < 2.5
+    for speed in crossed[heavy]:
+        top.plot(speed * to_speed, speed * to_frequency, "o", markersize=4, markerfacecolor="none", color=GREY, zorder=5)
+    critical = crossed[~heavy]
     for speed in critical:
         top.plot(speed * to_speed, speed * to_frequency, "o", markersize=7, markerfacecolor="none", color=INK, zorder=5)
     # Their speeds above the axes, where they cover nothing.
@@ -86,10 +95,14 @@ def draw(study):
                   pad=6 + (12 + 9 * max(levels(critical, ends[1] - ends[0], 0.045), default=0)) * bool(len(critical)))
     handles = [Line2D([], [], color=GOOD, label=f"log. decrement \u2265 {LOW_DAMPING}"),
                Line2D([], [], color=WARN, label=f"0 to {LOW_DAMPING}"), Line2D([], [], color=BAD, label="unstable")]
+    if any(np.any(m[3] > OVERDAMPED) for m in modes):
+        handles.append(Line2D([], [], color=LIGHT, label=f"above {OVERDAMPED:.0f}"))
     occurring = {w for m in modes for w in m[4]}
     handles += [Line2D([], [], color=GREY, linestyle=s, label=w) for w, s in LINES.items() if w in occurring]
     if len(critical):
         handles += [Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", label="critical speed")]
+    if heavy.any():
+        handles += [Line2D([], [], color=GREY, marker="o", markersize=4, markerfacecolor="none", linestyle="none", label="crossed, but AF < 2.5")]
 
     decrements = np.concatenate([m[3] for m in modes])
     inside = decrements[np.isfinite(decrements)]

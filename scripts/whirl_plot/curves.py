@@ -27,7 +27,7 @@ def slopes(s, values):
     if len(h) == 1:
         return np.array([chord[0], chord[0]])
     inner = (h[1:] * chord[:-1] + h[:-1] * chord[1:]) / (h[1:] + h[:-1])
-    both = chord[:-1] * chord[1:] > 0
+    both = chord[:-1] * chord[1:] >= 0
     limit = 3 * np.minimum(np.abs(chord[:-1]), np.abs(chord[1:]))
     inner = np.where(both, np.sign(inner) * np.minimum(np.abs(inner), limit), inner)
     ends = [chord[0] - (inner[0] - chord[0]), chord[-1] - (inner[-1] - chord[-1])]

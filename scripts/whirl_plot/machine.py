@@ -42,7 +42,10 @@ def draw_shaft(results, deck, segments):
     outer = [max(number(s.get("outer_mass_diameter")) or 0.0, number(s.get("outer_stiffness_diameter")) or 0.0) / 2 for s in segments]
     added = [(number(s.get("added_mass_outer_diameter")) or 0.0) / 2 if (number(s.get("added_mass")) or 0) > 0 else 0.0 for s in segments]
     high = max(*outer, *added, 1e-9)
-    figure, axis = plt.subplots(figsize=(11.2, 4.0))
+    # Radii are drawn larger than lengths where the shaft is slender.
+    width = 10.4 / (1.04 * z[-1])  # inches per metre of length
+    stretch = min(4.0, max(1.0, 2.0 / (3.85 * high * width)))
+    figure, axis = plt.subplots(figsize=(11.2, min(6.0, 3.85 * high * width * stretch) + 1.7))
     for a, b, r, m, s in zip(z, z[1:], outer, added, segments):
         inner = (number(s.get("inner_mass_diameter")) or 0.0) / 2
         if m > r:
@@ -68,8 +71,7 @@ def draw_shaft(results, deck, segments):
             axis.annotate(f"{node}", (at, 1.38 * high), ha="center", va="bottom", fontsize=7, color=BAD)
     axis.set_xlim(z[0] - 0.02 * z[-1], 1.02 * z[-1])
     axis.set_ylim(-2.0 * high, 1.85 * high)
-    # Diameters are drawn larger than lengths where the shaft is slender.
-    axis.set_aspect(min(3.0, max(1.0, 0.16 * z[-1] / high)))
+    axis.set_aspect(stretch)
     axis.set_xlabel("z [m]")
     axis.set_ylabel("radius [m]")
     axis.grid(False)
@@ -80,9 +82,8 @@ def draw_shaft(results, deck, segments):
         handles.append(Line2D([], [], color=GREY, linestyle=":", label="coupling"))
     if planes:
         handles.append(Line2D([], [], color=BAD, marker="v", linestyle="none", label="plane of unbalance, with its node"))
-    stretch = axis.get_aspect()
     note = f"{len(segments)} elements, nodes 1 to {len(z)} from left to right"
-    if isinstance(stretch, float) and stretch > 1.05:
+    if stretch > 1.05:
         note += f"; radii drawn {stretch:.1f} times larger than lengths"
     return save(figure, results.whole("the machine"), "machine", note, handles)
 

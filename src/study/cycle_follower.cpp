@@ -25,6 +25,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       scale_(deck::number_to_si(1, unit_)),
       system_(make_system(false)),
       record_(system_->places(), unit_, options_.multipliers),
+      nodes_(options_.nodes, unit_),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
@@ -62,7 +63,9 @@ solve::Stability CycleFollower::stability() {
 
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
-  record_.append(point, problem_->orbit(u), problem_->orbit_scheme(), *system_, scale_);
+  const solve::Cycle orbit = problem_->orbit(u);
+  record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
+  nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
   report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
@@ -106,6 +109,7 @@ StudyResult CycleFollower::run() {
       restart = start_at_hopf();
     else
       u = start(*problem_);
+    if (restart) record_.begin(problem_->orbit(restart->u.get()), problem_->orbit_scheme(), *system_, scale_);
   }
   put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
@@ -131,7 +135,17 @@ StudyResult CycleFollower::run() {
 
   auto& results = context_.results;
   auto& group = results.group();
+  if (returned_) {
+    // The step that showed the return landed on the simple cycle, or beyond it on the branch already followed.
+    record_.drop_last();
+    nodes_.drop_last();
+    std::erase_if(results.summary().suspected, [&](const io::Suspicion& s) { return s.to == end.parameter; });
+    group.set("end", "the cycle of half the period, at a flip");
+  } else if (contact_) {
+    group.set("end", "contact");
+  }
   record_.write(group, false);
+  nodes_.write(group);
   record_.write_orbits(group.child("orbits"), options_.orbits);
   put_places(group, context_.machine, *system_);
   put_bifurcations(group, results.summary().bifurcations);
@@ -139,7 +153,7 @@ StudyResult CycleFollower::run() {
   group.set("parameter_unit", unit_);
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
   group.set("period_turns", options_.period);
-  results.summary().points = end.points;
+  results.summary().points = end.points - (returned_ ? 1 : 0);
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);

@@ -10,6 +10,7 @@
 #include "common.hpp"
 #include "cycle_record.hpp"
 #include "located.hpp"
+#include "node_record.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
@@ -98,6 +99,7 @@ private:
   std::unique_ptr<system::Plant> system_;
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
+  NodeRecord nodes_;
   std::optional<solve::Cycle> last_;
   double last_saved_ = -1e9;
   std::vector<FlipSeed> seeds_;

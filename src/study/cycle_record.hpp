@@ -23,6 +23,11 @@ public:
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
   void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
               const system::Plant& system, double scale);
+  /// Keeps the cycle that the branch leaves from, of no amplitude at a Hopf point or run through twice at a flip: it
+  /// belongs to the branch, but is no point of it.
+  void begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system, double scale);
+  /// Removes the last point.
+  void drop_last();
   /// Largest eccentricity per clearance of any journal on the last point.
   [[nodiscard]] double eccentricity() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
@@ -30,17 +35,19 @@ public:
               const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary);
   [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
 
-  /// Tables into `group`; with `everything`, also what a restart needs.
+  /// Tables `branch` and, if it left from a bifurcation, `birth` into `group`; with `everything`, also what a restart
+  /// needs.
   void write(io::Group& group, bool everything) const;
   void read(const io::Group& group);
   /// `count` orbits spread evenly over the points.
   void write_orbits(io::Group& group, int count) const;
 
 private:
+  [[nodiscard]] std::vector<double> per_clearance(const std::vector<double>& radius) const;
   system::Places places_;
   std::string unit_;
   int multipliers_;
-  io::Table table_;
+  io::Table table_, birth_;
   std::vector<std::vector<double>> orbits_;  // per point: [time][place][x, y]
   std::set<std::string> reported_;
 };
