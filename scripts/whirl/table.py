@@ -1,6 +1,5 @@
 """A table of results: columns of numpy arrays with a unit and a description each."""
 import collections.abc
-import csv
 
 import numpy as np
 
@@ -35,13 +34,13 @@ class Table(collections.abc.Mapping):
         return f"<table {self.name}: {self.rows} rows of {', '.join(self._columns)}>"
 
     def flat(self):
-        """Column -> array of one axis; a column of two is split into `name[place]`."""
+        """Column -> array of one axis; a column of two is split into `name.place`, as in the CSV beside the results."""
         out = {}
         for name, values in self._columns.items():
             if values.ndim == 1:
                 out[name] = values
             else:
-                out.update((f"{name}[{place}]", values[:, k]) for k, place in enumerate(self.places[name]))
+                out.update((f"{name}.{place}", values[:, k]) for k, place in enumerate(self.places[name]))
         return out
 
     def array(self):
@@ -58,14 +57,5 @@ class Table(collections.abc.Mapping):
         frame.attrs["units"] = self._flat_units()
         return frame
 
-    def to_csv(self, path):
-        """Writes the flat columns; the header cells are `name [unit]`, as decks read them."""
-        units = self._flat_units()
-        flat = self.flat()
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            out = csv.writer(file, lineterminator="\n")
-            out.writerow(f"{name} [{units[name]}]" if units[name] else name for name in flat)
-            out.writerows(zip(*(column.tolist() for column in flat.values())))
-
     def _flat_units(self):
-        return {name: self.units[name.split("[")[0]] for name in self.flat()}
+        return {name: self.units[name.split(".")[0]] for name in self.flat()}

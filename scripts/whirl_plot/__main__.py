@@ -1,4 +1,4 @@
-"""Draws every picture that a results folder has data for, and writes its tables as CSV:  scripts/plot DIR [--formats png,svg]"""
+"""Draws every picture that a results folder has data for:  scripts/plot DIR [--formats png,svg]"""
 import argparse
 import pathlib
 import sys
@@ -23,23 +23,10 @@ PICTURES = {
 TOGETHER = [machine.draw, bifurcation.draw_together, eccentricity.draw, bearing_map.draw_together, locus.draw_together, run_up.draw_together]
 
 
-def write_tables(study):
-    """The tables of a study as csv/STUDY.TABLE.csv."""
-    files = []
-    for name in study.tables:
-        stem = study.file(name)
-        path = stem.parent / "csv" / f"{stem.name}.csv"
-        style.list_files(study.results.directory, [path])
-        path.parent.mkdir(exist_ok=True)
-        study.table(name).to_csv(path)
-        files.append(path)
-    return files
-
-
 def drawn(results, command="plot"):
-    """Files of all pictures and tables of a run, each as it is made; ends with the number of pictures that failed."""
+    """Files of all pictures of a run, each as it is made; ends with the number of pictures that failed."""
     failed = 0
-    jobs = [(s.name, picture, s) for s in results.studies for picture in [*PICTURES.get(s.kind, []), write_tables]]
+    jobs = [(s.name, picture, s) for s in results.studies for picture in PICTURES.get(s.kind, [])]
     jobs += [(results.title, picture, results) for picture in TOGETHER]
     for name, picture, subject in jobs:
         try:

@@ -7,6 +7,7 @@ import sys
 
 from . import __main__ as plot
 from . import style, tables
+from .manifest import register
 from .subject import Drawn, results_directory, said_in_a_sentence
 from .units import digits, person, with_bar
 
@@ -131,12 +132,12 @@ def options_in_force(results):
 
 
 def pictures_of(results):
-    """[(study, its pictures)] and the pictures of the whole run, from the run's manifest in the order in which they were drawn."""
-    listed = (results.directory / "manifest.txt")
-    names = listed.read_text(encoding="utf-8").splitlines() if listed.is_file() else []
-    every = [results.directory / n for n in dict.fromkeys(names) if n.endswith(".png") and "/" not in n and (results.directory / n).is_file()]
+    """[(study, its pictures)] and the pictures of the whole run, in the order in which they were drawn: that of the manifest."""
+    listed = results.directory / "manifest.txt"
+    names = listed.read_text(encoding="utf-8").split("\n") if listed.is_file() else []
+    every = sorted((p for p in results.directory.glob("*.png") if not names or p.name in names),
+                   key=lambda p: names.index(p.name) if names else (p.stat().st_mtime_ns, p.name))
     used, found = set(), []
-    # The longest names first: "a.b" must not take the pictures of "a.b.c".
     stems = {s: s.file("x").name.removesuffix("x") for s in results.studies}
     for study in results.studies:
         mine = [p for p in every if p.name.startswith(stems[study]) and p.name.removeprefix(stems[study]).count(".") == 1]
@@ -178,11 +179,10 @@ def main(argv):
         return directory
     style.use_style(("png", "svg"))
     with said_in_a_sentence("report"), Drawn(directory) as results:
-        if not (directory / "manifest.txt").is_file() or not any(p for _, p in pictures_of(results)[0]):
+        if not any(p for _, p in pictures_of(results)[0]):
             for _ in plot.drawn(results, "report"):  # a report by itself draws what it shows
                 pass
-        target = directory / "report.html"
-        style.list_files(directory, [target])
+        target = register(directory / "report.html")
         target.write_text(page_of(results), encoding="utf-8")
     print(target)
     return 0

@@ -11,6 +11,8 @@ from PIL import Image  # noqa: E402
 from cycler import cycler  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 
+from .manifest import register  # noqa: E402
+
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
 # Each colour means one thing: the two directions, the studies of a run, damping and stability; over a parameter, viridis.
 # Marks are ink: their shape says what they are.
@@ -93,8 +95,7 @@ def save(figure, study, what, note="", handles=(), columns=6):
 def write(figure, stem):
     """The figure as `stem`.png of 256 colours, a third of the size of one of all (lines on white need no more), and as
     `stem`.svg. Each is named in the run's manifest before it is written. Returns their paths."""
-    files = [stem.with_name(f"{stem.name}.{kind}") for kind in formats]
-    list_files(stem.parent, files)
+    files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
     for path in files:
         if path.suffix == ".png":
             drawn = io.BytesIO()
@@ -112,16 +113,6 @@ def shorter(svg):
     """Coordinates to a hundredth of a point, which no eye sees, and no indentation."""
     svg = re.sub(r"(?<=[ ML\n\"(,])-?\d+\.\d{3,}", lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), svg)
     return re.sub(r"\n *", "\n", svg)
-
-
-def list_files(directory, files):
-    """Names files in the run's manifest, one a line, so that a later run knows which are its own to remove."""
-    path = directory / "manifest.txt"
-    known = set(path.read_text(encoding="utf-8").splitlines()) if path.is_file() else set()
-    new = [str(f.relative_to(directory)) for f in files if str(f.relative_to(directory)) not in known]
-    if new:
-        with open(path, "a", encoding="utf-8") as out:
-            out.write("".join(f"{name}\n" for name in new))
 
 
 def few_colours(image):

@@ -45,6 +45,18 @@ std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result
   return born;
 }
 
+bool CycleBranch::may_add(std::string_view other) const {
+  const std::string first = io::plain_name(name_of_doubled(name(), 1));
+  const std::string_view stem = std::string_view(first).substr(0, first.size() - 1);
+  if (!options.follow_flips || !other.starts_with(stem) || other.size() == stem.size() ||
+      other.find_first_not_of("0123456789", stem.size()) != std::string_view::npos)
+    return false;
+  const auto& chosen = options.flips;
+  return chosen.empty() || std::any_of(chosen.begin(), chosen.end(), [&](int k) {
+           return other == io::plain_name(name_of_doubled(name(), static_cast<std::size_t>(k)));
+         });
+}
+
 CycleBranchOptions of_twice_the_period(const CycleBranchOptions& options) {
   CycleBranchOptions twice = options;
   twice.period *= 2;

@@ -11,6 +11,7 @@
 #include "cycle_record.hpp"
 #include "located.hpp"
 #include "node_record.hpp"
+#include "pieces.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
@@ -77,6 +78,8 @@ private:
   [[nodiscard]] solve::Stability stability();
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
+  /// Name of a piece of work about the event that comes next.
+  [[nodiscard]] std::string piece(const std::string& what) const;
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
   [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
                              bool half_film) const;
@@ -101,7 +104,8 @@ private:
   CycleRecord record_;
   NodeRecord nodes_;
   std::optional<solve::Cycle> last_;
-  double last_saved_ = -1e9;
+  std::unique_ptr<Pieces> pieces_;  // of the study that runs
+  int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;
   bool keeps_located_;              // a locus of the deck starts from one of them
   std::vector<Located> located_;    // one for each bifurcation of the summary

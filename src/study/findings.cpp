@@ -36,6 +36,12 @@ void Findings::progress(const std::string& line) {
   say_(line, true);
 }
 
+bool Findings::agreed(bool word) const {
+  int yes = word;
+  MPI_Bcast(&yes, 1, MPI_INT, 0, comm_);
+  return yes != 0;
+}
+
 void Findings::save_checkpoint(const io::Group& state) const {
   core::agree(comm_, [&] {
     if (rank_ == 0) io::Checkpoint(checkpoint_).save(state);

@@ -42,6 +42,9 @@ public:
   void progress(const std::string& line);
   [[nodiscard]] bool shows_progress() const { return static_cast<bool>(say_); }
 
+  /// Rank 0's word, for all: what a clock decides must be decided alike. Collective.
+  [[nodiscard]] bool agreed(bool word) const;
+
   /// Saved on rank 0, loaded on all ranks. Collective.
   void save_checkpoint(const io::Group& state) const;
   [[nodiscard]] io::Group load_checkpoint() const;

@@ -10,6 +10,7 @@
 #include "common.hpp"
 #include "groups.hpp"
 #include "mode_follow.hpp"
+#include "pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
@@ -194,15 +195,20 @@ StudyResult Modes::run(Context& context) {
   auto& summary = results.summary();
   auto& group = results.group();
   std::size_t ready = 0, wanted = 0;
+  int rounds = 0;
+  Pieces pieces(results, context.resume);
   const auto modes_at = [&](const std::vector<double>& list) {
     wanted += list.size();
-    const auto packed = distribute(groups, list.size(), [&](std::size_t i) {
+    const auto compute = [&](std::size_t i) {
       auto modes = pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit));
       ready += static_cast<std::size_t>(groups.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
       return modes;
-    });
+    };
+    const auto packed =
+        distribute(groups, list.size(), compute, pieces, rounds == 0 ? "speed" : fmt::format("between {}", rounds));
+    ++rounds;
     std::vector<std::vector<ShaftMode>> out;
     for (const auto& p : packed) out.push_back(unpack(p));
     return out;
@@ -265,7 +271,7 @@ StudyResult Modes::run(Context& context) {
           crossings.push_back({stations[i - 1].speed, stations[i].speed, f0, f1, m});
       }
   // Where the chords cross, refined by solving there and following the mode.
-  const auto refined = distribute(groups, crossings.size(), [&](std::size_t i) {
+  const auto refine = [&](std::size_t i) {
     Crossing c = crossings[i];
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
@@ -282,7 +288,8 @@ StudyResult Modes::run(Context& context) {
       if (std::abs(f) < 1e-7 * s) break;
     }
     return std::vector<double>{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
-  });
+  };
+  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical");
   struct Critical {
     double speed, decrement;
     int id;

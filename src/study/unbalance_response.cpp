@@ -10,6 +10,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
@@ -169,15 +170,17 @@ StudyResult UnbalanceResponse::run(Context& context) {
   auto& summary = results.summary();
   const std::size_t n_bearings = context.machine.bearings.size();
   // Responses at several speeds, shared between the groups of ranks.
-  std::size_t ready = 0;
+  std::size_t ready = 0, calls = 0;
+  Pieces pieces(results, context.resume);
   const auto at_speeds = [&](const std::vector<double>& speeds) {
+    const auto compute = [&](std::size_t i) {
+      auto packed = pack(machine.at(speeds[i]));
+      results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
+                                   deck::from_si(speeds[i], unit), unit, results.seconds()));
+      return packed;
+    };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), [&](std::size_t i) {
-           auto packed = pack(machine.at(speeds[i]));
-           results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
-                                        deck::from_si(speeds[i], unit), unit, results.seconds()));
-           return packed;
-         }))
+    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls)))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "whirl/io/manifest.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/study.hpp"
@@ -23,8 +24,8 @@ public:
 
   /// True if an earlier run finished this study and it delivered something; its results are kept.
   [[nodiscard]] bool finished(const std::string& name) const;
-  /// Where that study keeps its checkpoint.
-  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) const;
+  /// Where that study keeps its checkpoint; the manifest names it from now on.
+  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study);
   /// Adds the result of a study and writes the files; its checkpoint goes. Collective.
   void add(StudyResult result);
 
@@ -35,10 +36,13 @@ public:
 
 private:
   void write();
+  // Where a file goes; rank 0 enters its name into the manifest.
+  [[nodiscard]] std::filesystem::path file(const std::string& name);
 
   MPI_Comm comm_;
   int rank_;
   std::filesystem::path directory_;
+  io::Manifest manifest_;  // rank 0's is the one that grows
   io::Group root_;
   io::Summary all_;
   std::vector<std::string> finished_;

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
 """The module `whirl` on synthetic results, and the numbers behind the pictures: curves, clearances, peaks, multipliers."""
-import csv
 import pathlib
 import sys
 import tempfile
@@ -33,19 +32,14 @@ def module():
         assert [s.name for s in results.studies][:3] == ["at service speed", "modes", "generator pair"], "the order of the deck"
         table = results.table("pair, G2.5")
         assert table.name == "branch" and table["y_max"].shape == (table.rows, 5) and table.places["y_max"] == synthetic.NAMES
-        assert np.array_equal(table.flat()["y_max[B3]"], table["y_max"][:, 2])
+        assert np.array_equal(table.flat()["y_max.B3"], table["y_max"][:, 2])
         assert table.array()["x_min"].shape == (table.rows, 5)
-        table.to_csv(folder / "t.csv")
-        with open(folder / "t.csv", newline="") as file:
-            rows = list(csv.reader(file))
-        k = [h.split(" ")[0] for h in rows[0]].index("y_max[B3]")
-        assert len(rows) == table.rows + 1 and float(rows[5][k]) == table["y_max"][4, 2], "CSV is exact"
         try:
             import pandas  # noqa: F401
         except ImportError:
             pass
         else:
-            assert list(table.frame()["y_max[B3]"]) == list(table["y_max"][:, 2])
+            assert list(table.frame()["y_max.B3"]) == list(table["y_max"][:, 2])
         assert results.values("at service speed")["mass.total"] == whirl.Quantity(42165.66, "kg")
         assert results.bifurcations("balanced")[0]["uncertainty"] == 12.0 and results.bifurcations()[0]["study"] == "balanced"
         orbit = results.orbits("pair, G2.5")[0]

@@ -49,6 +49,9 @@ public:
   [[nodiscard]] virtual std::string_view kind() const = 0;
   /// Its name in results: that of the deck, or the kind.
   [[nodiscard]] virtual std::string name() const = 0;
+  /// True if a study `other` may be one that this one adds to the results, under the name of its files
+  /// (io::plain_name).
+  [[nodiscard]] virtual bool may_add(std::string_view /*other*/) const { return false; }
   /// True if it asks about a rotor in bearings, so that a deck of another system cannot have it.
   [[nodiscard]] virtual bool needs_rotor() const { return true; }
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
