@@ -13,8 +13,8 @@ RANGE_ENDS = ("completed", "", "end of the range")
 class Followed:
     """The branch of a study: its curves, where its bifurcations lie on it, and why it ends.
 
-    A branch that left from a bifurcation begins there: that cycle stands first in `parameter`, `stable` and the columns that are
-    known of it; `points` are without it."""
+    A branch that left from a bifurcation begins there, and one that ran into a bifurcation ends there: those cycles stand first
+    and last in `parameter`, `stable` and the columns that are known of them; `points` are without."""
 
     def __init__(self, study):
         self.study = study
@@ -26,11 +26,19 @@ class Followed:
         self.stable = np.asarray(stable) > 0.5
         unstable, step = unstable if unstable is not None else (~self.stable).astype(int), study.get("branch/step")
         self.bare = self.curve = Branch(self.parameter, step, unstable)
-        self.born = study.has("birth/parameter") and self.points > 0
+        self.bare_parameter, self.bare_stable = self.parameter, self.stable
+        self.born, self.closed = (study.has(f"{end}/parameter") and self.points > 0 for end in ("birth", "closing"))
+        step = np.abs(np.diff(self.parameter, prepend=self.parameter[0])) if step is None else step
         if self.born:
             self.parameter = np.concatenate([study.get("birth/parameter"), self.parameter])
             self.stable = np.concatenate([self.stable[:1], self.stable])
-            self.curve = Branch(self.parameter, None if step is None else np.concatenate([[0.0], step]), np.concatenate([unstable[:1], unstable]))
+            step, unstable = np.concatenate([[0.0], step]), np.concatenate([unstable[:1], unstable])
+        if self.closed:
+            self.parameter = np.concatenate([self.parameter, study.get("closing/parameter")])
+            self.stable = np.concatenate([self.stable, self.stable[-1:]])
+            step, unstable = np.concatenate([step, [abs(self.parameter[-1] - self.parameter[-2])]]), np.concatenate([unstable, unstable[-1:]])
+        if self.born or self.closed:
+            self.curve = Branch(self.parameter, step, unstable)
         kinds = study.get("bifurcations/type")
         values = [] if kinds is None or not len(kinds) else np.atleast_1d(study.get("bifurcations/parameter"))
         self.events = [(kind, value, self._place(kind, value)) for kind, value in zip(kinds if len(values) else [], values)]
@@ -49,31 +57,42 @@ class Followed:
     def ends(self):
         """Why the branch ends, in a list; empty if it was followed to the end of its range."""
         status = self.study.attribute("end", "") or self.study.status
-        if status in RANGE_ENDS:
+        if status in RANGE_ENDS or self.closed:
             return []
         reason = re.sub(r"^ended at [^:]*: ", "", status)
         return [reason if len(reason) < 70 else reason[:67] + "..."]
 
     def column(self, name):
-        """A column of the table `branch` as [point][bearing], with the cycle that it begins at where that is known."""
+        """A column of the table `branch` as [point][bearing], with the cycles at its ends if both are known that there are."""
         values = self.study.get(f"branch/{name}").reshape(self.points, -1)
-        return np.concatenate([self.study.get(f"birth/{name}").reshape(1, -1), values]) if self.born and self.study.has(f"birth/{name}") else values
+        ends = [end for end, there in (("birth", self.born), ("closing", self.closed)) if there]
+        if not all(self.study.has(f"{end}/{name}") for end in ends):
+            return values
+        outer = {end: self.study.get(f"{end}/{name}").reshape(1, -1) for end in ends}
+        none = values[:0]
+        return np.concatenate([outer.get("birth", none), values, outer.get("closing", none)])
 
     def curve_of(self, values):
-        """The branch with or without the cycle that it begins at, as the values are."""
+        """The branch with or without the cycles at its ends, as the values are."""
         return self.curve if len(values) == len(self.parameter) else self.bare
+
+    def along(self, values):
+        """Parameter and stability of each of the values."""
+        whole = len(values) == len(self.parameter)
+        return (self.parameter, self.stable) if whole else (self.bare_parameter, self.bare_stable)
 
     def places_on(self, curve):
         """(kind, value, place) of the bifurcations on that one."""
         if curve is self.curve:
             return self.events
-        return [(k, v, p and ((p[0] - 1, p[1]) if p[0] > 0 else None)) for k, v, p in self.events]
+        first, last = int(self.born), self.points - 2 + int(self.born)
+        return [(k, v, (p[0] - first, p[1]) if p and first <= p[0] <= last else None) for k, v, p in self.events]
 
     def draw(self, axis, values, colour, scale=1.0, linewidth=1.6, across=1.0):
         """One curve over the parameter (times `across`), solid where stable."""
         values = np.asarray(values, float) * scale
         curve = self.curve_of(values)
-        for x, y, solid in curve.stretches(values, self.stable[len(self.parameter) - len(values):], [p for _, _, p in self.places_on(curve)]):
+        for x, y, solid in curve.stretches(values, self.along(values)[1], [p for _, _, p in self.places_on(curve)]):
             axis.plot(x * across, y, color=colour, linestyle="-" if solid else DASHED, linewidth=linewidth if solid else 0.8 * linewidth)
         if len(values) == 1:
             axis.plot(curve.parameter * across, values, ".", color=colour)
@@ -86,7 +105,7 @@ class Followed:
                 if place is not None:
                     mark(axis, kind, value * across, curve.at(values, place) * scale, size)
             if self.ends:
-                mark_end(axis, self.parameter[-1] * across, values[-1] * scale, size)
+                mark_end(axis, curve.parameter[-1] * across, values[-1] * scale, size)
 
 
 def legend(branches, more=()):
@@ -185,7 +204,7 @@ def draw_frequency(study):
         return []
     branch = Followed(study)
     period = branch.column("period")[:, 0]
-    ratio = 2 * np.pi / (period * branch.parameter[-len(period):] * to_si)
+    ratio = 2 * np.pi / (period * branch.along(period)[0] * to_si)
     figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
     branch.draw(axis, ratio, INK)
     branch.mark(axis, [ratio])

@@ -234,7 +234,7 @@ def branch(study):
         for name, (x, y) in tables:
             row = [name]
             for values in (x, y):
-                stable, at = followed.stable[-len(values):], followed.parameter[-len(values):]
+                at, stable = followed.along(values)
                 k = int(np.argmax(np.where(stable, values, -np.inf) if stable.any() else values))
                 row += [digits(float(values[k] * factor), 4), digits(float(at[k]), 5)]
             rows.append(row)

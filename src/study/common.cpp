@@ -88,7 +88,9 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
     offset.push_back(lobes ? g.offset : 0.0);
     arc.push_back(g.arc);
     node.push_back(b.node);
-    bore.emplace_back(deck::name_of(g.type));
+    bore.emplace_back(lobes                                         ? "lemon_bore"
+                      : g.type == film::Geometry::Bore::cylindrical ? "cylindrical"
+                                                                    : "partial_arc");
   }
   auto& bearings = group.child("bearings");
   bearings.put("name", names_of_bearings(machine), "bearings in the order of the deck");

@@ -17,10 +17,12 @@ double distance_of_multiplier(std::complex<double> mu) {
   return std::abs(mu) - 1;
 }
 
-CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed)
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed,
+                             std::vector<FlipSeed> siblings)
     : context_(context),
       options_(std::move(options)),
       seed_(std::move(seed)),
+      siblings_(std::move(siblings)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
       system_(make_system(false)),
@@ -98,6 +100,24 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
   }
 }
 
+// The flip that a branch of twice the period ran back into lies between its last cycle and where the next step landed.
+void CycleFollower::close_at_flip(double landed) {
+  // Other methods keep their unknowns, not the orbit.
+  if (record_.points() == 0 || options_.method != CycleBranchOptions::Method::collocation) return;
+  const auto [low, high] = std::minmax(record_.last_parameter(), landed);
+  const FlipSeed* only = nullptr;
+  for (const FlipSeed& s : siblings_) {
+    const double p = s.cycle.parameter / scale_;
+    if (p < low || p > high || p == seed_->cycle.parameter / scale_) continue;
+    if (only) return;
+    only = &s;
+  }
+  if (!only) return;
+  solve::Cycle simple = only->cycle;  // run through once it shows all that twice would
+  simple.period *= 2;
+  record_.close(simple, problem_->orbit_scheme(), *system_, scale_);
+}
+
 StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
@@ -139,6 +159,7 @@ StudyResult CycleFollower::run() {
     // The step that showed the return landed on the simple cycle, or beyond it on the branch already followed.
     record_.drop_last();
     nodes_.drop_last();
+    close_at_flip(end.parameter);
     std::erase_if(results.summary().suspected, [&](const io::Suspicion& s) { return s.to == end.parameter; });
     group.set("end", "the cycle of half the period, at a flip");
   } else if (contact_) {

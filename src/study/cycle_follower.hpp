@@ -36,8 +36,9 @@ struct Relocated {
 class CycleFollower {
 public:
   /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
-  /// options are those of that branch: period and intervals doubled).
-  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
+  /// options are those of that branch: period and intervals doubled), with all flips of the simple branch.
+  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt,
+                std::vector<FlipSeed> siblings = {});
   /// Solves and records. The study that runs is finished.
   [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
@@ -89,12 +90,14 @@ private:
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(Vec u, Vec tangent);
+  void close_at_flip(double landed);
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
   Context& context_;
   CycleBranchOptions options_;
   std::optional<FlipSeed> seed_;
+  std::vector<FlipSeed> siblings_;
   std::string unit_;
   double scale_;  // SI value of one unit of the range
   solve::NewtonOptions newton_;

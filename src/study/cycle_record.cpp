@@ -89,7 +89,8 @@ CycleRecord::CycleRecord(system::Places places, std::string unit, int multiplier
       unit_(std::move(unit)),
       multipliers_(multipliers),
       table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))),
-      birth_(columns_of_birth(places_, unit_)) {}
+      birth_(columns_of_birth(places_, unit_)),
+      closing_(birth_) {}
 
 std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius) const {
   std::vector<double> eccentricity(places_.names.size(), 0.0);
@@ -98,11 +99,20 @@ std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius
   return eccentricity;
 }
 
+void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                       const system::Plant& system, double scale) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  end.append({{cycle.parameter / scale}, {cycle.period}, e.x_max, e.x_min, e.y_max, e.y_min, per_clearance(e.radius)});
+}
+
 void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
                         double scale) {
-  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
-  birth_.append(
-      {{cycle.parameter / scale}, {cycle.period}, e.x_max, e.x_min, e.y_max, e.y_min, per_clearance(e.radius)});
+  keep(birth_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(closing_, cycle, scheme, system, scale);
 }
 
 void CycleRecord::drop_last() {
@@ -162,6 +172,7 @@ void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, cons
 void CycleRecord::write(io::Group& group, bool everything) const {
   table_.write(group.child("branch"));
   if (birth_.rows() > 0) birth_.write(group.child("birth"));
+  if (closing_.rows() > 0) closing_.write(group.child("closing"));
   if (!everything) return;
   std::vector<double> flat;
   for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());

@@ -9,13 +9,13 @@
 
 #include "common.hpp"
 #include "groups.hpp"
-#include "mode_follow.hpp"
 #include "pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/follow.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
@@ -108,8 +108,8 @@ struct Station {
 constexpr std::size_t beyond = 8;  // modes above those asked for, from which some come down on the way
 constexpr int most_halvings = 4;   // of the way between two speeds asked for
 
-std::vector<ModePoint> points_of(const std::vector<ShaftMode>& modes) {
-  std::vector<ModePoint> points;
+std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes) {
+  std::vector<spectral::ModePoint> points;
   for (const ShaftMode& m : modes) points.push_back({m.lambda, m.both()});
   return points;
 }
@@ -118,7 +118,7 @@ std::vector<ModePoint> points_of(const std::vector<ShaftMode>& modes) {
 // are added at most as were asked for.
 void follow(std::vector<Station>& stations, std::size_t count,
             const std::function<std::vector<std::vector<ShaftMode>>(const std::vector<double>&)>& modes_at) {
-  const std::size_t most = 2 * stations.size() + 8;
+  const std::size_t most = 2 * stations.size();
   std::vector<double> widths;
   for (std::size_t i = 1; i < stations.size(); ++i) widths.push_back(stations[i].speed - stations[i - 1].speed);
   const double least =
@@ -128,7 +128,7 @@ void follow(std::vector<Station>& stations, std::size_t count,
     for (std::size_t i = 1; i < stations.size(); ++i) {
       const Station &left = stations[i - 1], &right = stations[i];
       if (right.speed - left.speed > 2 * least && stations.size() + between.size() < most &&
-          !match_modes(points_of(left.modes), points_of(right.modes), count).sure)
+          !spectral::match_modes(points_of(left.modes), points_of(right.modes), count).sure)
         between.push_back((left.speed + right.speed) / 2);
     }
     if (between.empty()) break;
@@ -141,7 +141,7 @@ void follow(std::vector<Station>& stations, std::size_t count,
     auto& now = stations[i].modes;
     if (i > 0) {
       const auto& last = stations[i - 1].modes;
-      const ModeMatching pairs = match_modes(points_of(last), points_of(now), count);
+      const spectral::ModeMatching pairs = spectral::match_modes(points_of(last), points_of(now), count);
       for (std::size_t k = 0; k < now.size(); ++k)
         if (pairs.before[k] >= 0) now[k].id = last[static_cast<std::size_t>(pairs.before[k])].id;
     }
@@ -276,7 +276,7 @@ StudyResult Modes::run(Context& context) {
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
       const auto there = shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit);
-      const auto pairs = match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
+      const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
       const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
       if (found == pairs.before.end()) break;
       const ShaftMode& m = there[static_cast<std::size_t>(found - pairs.before.begin())];

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace whirl::study {
+namespace whirl::spectral {
 
 /// An eigenvalue [rad/s] with its shape at the nodes of the shaft, the displacements in x, then those in y.
 struct ModePoint {
@@ -26,4 +26,4 @@ struct ModeMatching {
 [[nodiscard]] ModeMatching match_modes(const std::vector<ModePoint>& first, const std::vector<ModePoint>& second,
                                        std::size_t count);
 
-}  // namespace whirl::study
+}  // namespace whirl::spectral

@@ -1,10 +1,10 @@
-#include "mode_follow.hpp"
+#include "whirl/spectral/follow.hpp"
 
 #include <algorithm>
 
 #include "whirl/spectral/whirl.hpp"
 
-namespace whirl::study {
+namespace whirl::spectral {
 namespace {
 
 // A pair that may be one mode, and one that certainly is: where modes approach each other and part again their shapes
@@ -29,7 +29,7 @@ ModeMatching match_modes(const std::vector<ModePoint>& first, const std::vector<
       const double size = std::max({std::abs(first[a].lambda), std::abs(second[b].lambda), 1e-300});
       const double apart = std::abs(first[a].lambda - second[b].lambda) / size;
       if (apart > possible_apart) continue;
-      const double mac = spectral::mac(first[a].shape, second[b].shape);
+      const double mac = mac(first[a].shape, second[b].shape);
       if (mac > possible_mac || apart < sure_apart) pairs.push_back({mac, apart, a, b});
     }
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.score() > q.score(); });
@@ -50,4 +50,4 @@ ModeMatching match_modes(const std::vector<ModePoint>& first, const std::vector<
   return out;
 }
 
-}  // namespace whirl::study
+}  // namespace whirl::spectral
