@@ -87,6 +87,7 @@ std::vector<std::string> names_of_bearings(const system::Machine& machine) {
 void put_bearings(io::Group& group, const system::Machine& machine) {
   std::vector<double> clearance, preload, offset, arc;
   std::vector<std::int64_t> node;
+  std::vector<std::string> bore;
   for (const auto& b : machine.bearings) {
     const film::Geometry g = b.geometry.value_or(film::Geometry{});
     const bool lobes = g.type == film::Geometry::Bore::lemon_bore;
@@ -95,10 +96,14 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
     offset.push_back(lobes ? g.offset : 0.0);
     arc.push_back(g.arc);
     node.push_back(b.node);
+    bore.emplace_back(lobes                                         ? "lemon_bore"
+                      : g.type == film::Geometry::Bore::cylindrical ? "cylindrical"
+                                                                    : "partial_arc");
   }
   auto& bearings = group.child("bearings");
   bearings.put("name", names_of_bearings(machine), "bearings in the order of the deck");
   bearings.put("node", node, "shaft node, 1-based");
+  bearings.put("bore", bore, "kind of geometry");
   bearings.put("clearance", clearance, "m", "assembled radial clearance c_b; zero for a linear film");
   bearings.put("preload", preload, "1", "m = 1 - c_b/c_p of two lobes; zero for one pad at the bottom");
   bearings.put("offset", offset, "m", "horizontal distance between the centres of the two lobes");

@@ -13,17 +13,20 @@ namespace {
 // The branch born at one flip of another one.
 class DoubledBranch final : public Study {
 public:
-  DoubledBranch(std::string name, CycleBranchOptions options, FlipSeed seed)
-      : name_(std::move(name)), options_(std::move(options)), seed_(std::move(seed)) {}
+  DoubledBranch(std::string name, CycleBranchOptions options, std::vector<FlipSeed> flips, std::size_t from)
+      : name_(std::move(name)), options_(std::move(options)), flips_(std::move(flips)), from_(from) {}
   [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
   [[nodiscard]] std::string name() const override { return name_; }
   void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
-  [[nodiscard]] StudyResult run(Context& context) override { return CycleFollower(context, options_, seed_).run(); }
+  [[nodiscard]] StudyResult run(Context& context) override {
+    return CycleFollower(context, options_, flips_[from_], flips_).run();
+  }
 
 private:
   std::string name_;
   CycleBranchOptions options_;
-  FlipSeed seed_;
+  std::vector<FlipSeed> flips_;
+  std::size_t from_;  // of them this branch is born
 };
 
 // The branch that begins at a forced cycle beside the first one of another branch.
@@ -62,7 +65,7 @@ std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result
     const auto& chosen = options.flips;
     if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k)) == chosen.end()) continue;
     born.push_back(
-        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds[k - 1]));
+        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds, k - 1));
   }
   return born;
 }

@@ -21,15 +21,18 @@ double distance_of_multiplier(std::complex<double> mu) {
   return std::abs(mu) - 1;
 }
 
-CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed)
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed,
+                             std::vector<FlipSeed> siblings)
     : context_(context),
       options_(std::move(options)),
       seed_(std::move(seed)),
+      siblings_(std::move(siblings)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
       system_(make_system({1, 1})),
       record_(system_->places(), unit_, options_.multipliers),
       films_(system_->places()),
+      nodes_(options_.nodes, unit_),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
@@ -78,7 +81,9 @@ double CycleFollower::room(const solve::Cycle& orbit) const {
 
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
-  record_.append(point, problem_->orbit(u), problem_->orbit_scheme(), *system_, scale_);
+  const solve::Cycle orbit = problem_->orbit(u);
+  record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
+  nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
   report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
@@ -134,6 +139,24 @@ void CycleFollower::report(const std::string& key, Vec u) {
   for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
 }
 
+// The flip that a branch of twice the period ran back into lies between its last cycle and where the next step landed.
+void CycleFollower::close_at_flip(double landed) {
+  // Other methods keep their unknowns, not the orbit.
+  if (record_.points() == 0 || options_.method != CycleBranchOptions::Method::collocation) return;
+  const auto [low, high] = std::minmax(record_.last_parameter(), landed);
+  const FlipSeed* only = nullptr;
+  for (const FlipSeed& s : siblings_) {
+    const double p = s.cycle.parameter / scale_;
+    if (p < low || p > high || p == seed_->cycle.parameter / scale_) continue;
+    if (only) return;
+    only = &s;
+  }
+  if (!only) return;
+  solve::Cycle simple = only->cycle;  // run through once it shows all that twice would
+  simple.period *= 2;
+  record_.close(simple, problem_->orbit_scheme(), *system_, scale_);
+}
+
 StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
@@ -145,6 +168,7 @@ StudyResult CycleFollower::run() {
       restart = start_at_hopf();
     else
       u = start(*problem_);
+    if (restart) record_.begin(problem_->orbit(restart->u.get()), problem_->orbit_scheme(), *system_, scale_);
   }
   put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
@@ -184,7 +208,18 @@ StudyResult CycleFollower::run() {
 
   auto& results = context_.results;
   auto& group = results.group();
+  if (returned_) {
+    // The step that showed the return landed on the simple cycle, or beyond it on the branch already followed.
+    record_.drop_last();
+    nodes_.drop_last();
+    close_at_flip(end.parameter);
+    std::erase_if(results.summary().suspected, [&](const io::Suspicion& s) { return s.to == end.parameter; });
+    group.set("end", "the cycle of half the period, at a flip");
+  } else if (contact) {
+    group.set("end", "contact");
+  }
   record_.write(group, false);
+  nodes_.write(group);
   record_.write_orbits(group.child("orbits"), options_.orbits);
   put_places(group, context_.machine, *system_);
   put_bifurcations(group, results.summary().bifurcations);
@@ -192,7 +227,7 @@ StudyResult CycleFollower::run() {
   group.set("parameter_unit", unit_);
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
   group.set("period_turns", options_.period);
-  results.summary().points = end.points;
+  results.summary().points = end.points - (returned_ ? 1 : 0);
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);

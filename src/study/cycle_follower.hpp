@@ -13,6 +13,7 @@
 #include "film_limit.hpp"
 #include "film_mesh.hpp"
 #include "located.hpp"
+#include "node_record.hpp"
 #include "pieces.hpp"
 #include "whirl/solve/cycle_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
@@ -60,8 +61,9 @@ struct Parabola {
 class CycleFollower {
 public:
   /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
-  /// options are those of that branch: period and intervals doubled).
-  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
+  /// options are those of that branch: period and intervals doubled), with all flips of the simple branch.
+  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt,
+                std::vector<FlipSeed> siblings = {});
   /// Follows the branch that begins at a given forced cycle.
   CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first);
   /// Solves and records. The study that runs is finished.
@@ -141,6 +143,7 @@ private:
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(Vec u, Vec tangent);
+  void close_at_flip(double landed);
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
@@ -148,6 +151,7 @@ private:
   CycleBranchOptions options_;
   std::optional<FlipSeed> seed_;
   std::optional<solve::Cycle> first_;
+  std::vector<FlipSeed> siblings_;
   std::string unit_;
   double scale_;  // SI value of one unit of the range
   solve::NewtonOptions newton_;
@@ -156,6 +160,7 @@ private:
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   FilmLimit films_;
+  NodeRecord nodes_;
   std::optional<solve::Cycle> last_;
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far

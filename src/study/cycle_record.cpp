@@ -76,21 +76,58 @@ std::vector<io::Table::Column> columns(const system::Places& places, const std::
           {"multipliers_imag", "1", "their imaginary parts", m}};
 }
 
+std::vector<io::Table::Column> columns_of_birth(const system::Places& places, const std::string& unit) {
+  std::vector<io::Table::Column> some;
+  for (auto& c : columns(places, unit, 0))
+    if (c.name == "parameter" || c.name == "period" || c.name == "eccentricity_max" || c.name.ends_with("_max") ||
+        c.name.ends_with("_min"))
+      some.push_back(c);
+  return some;
+}
+
 }  // namespace
 
 CycleRecord::CycleRecord(system::Places places, std::string unit, int multipliers)
     : places_(std::move(places)),
       unit_(std::move(unit)),
       multipliers_(multipliers),
-      table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))) {}
+      table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))),
+      birth_(columns_of_birth(places_, unit_)),
+      closing_(birth_) {}
+
+std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius) const {
+  std::vector<double> eccentricity(places_.names.size(), 0.0);
+  for (std::size_t i = 0; i < eccentricity.size(); ++i)
+    if (places_.clearances[i] > 0) eccentricity[i] = radius[i] / places_.clearances[i];
+  return eccentricity;
+}
+
+void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                       const system::Plant& system, double scale) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  end.append({{cycle.parameter / scale}, {cycle.period}, e.x_max, e.x_min, e.y_max, e.y_min, per_clearance(e.radius)});
+}
+
+void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(birth_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(closing_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::drop_last() {
+  if (orbits_.empty()) return;
+  orbits_.pop_back();
+  table_.truncate(orbits_.size());
+}
 
 void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
                          const system::Plant& system, double scale) {
   std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
   const Extremes e = extremes(motion, places_.names.size());
-  std::vector<double> eccentricity(places_.names.size(), 0.0);
-  for (std::size_t i = 0; i < eccentricity.size(); ++i)
-    if (places_.clearances[i] > 0) eccentricity[i] = e.radius[i] / places_.clearances[i];
   std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
   for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
     re[k] = point.stability.values[k].real();
@@ -108,7 +145,7 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                  e.x_min,
                  e.y_max,
                  e.y_min,
-                 eccentricity,
+                 per_clearance(e.radius),
                  film_column(least_films(cycle, system), places_.names.size()),
                  re,
                  im});
@@ -149,6 +186,8 @@ void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, cons
 
 void CycleRecord::write(io::Group& group, bool everything) const {
   table_.write(group.child("branch"));
+  if (birth_.rows() > 0) birth_.write(group.child("birth"));
+  if (closing_.rows() > 0) closing_.write(group.child("closing"));
   if (!everything) return;
   std::vector<double> flat;
   for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
@@ -159,6 +198,7 @@ void CycleRecord::write(io::Group& group, bool everything) const {
 
 void CycleRecord::read(const io::Group& group) {
   table_.read(group.group("branch"));
+  if (group.has_group("birth")) birth_.read(group.group("birth"));
   const auto& flat = group.reals("orbits");
   const std::size_t width = samples_per_orbit * places_.names.size() * 2;
   orbits_.clear();
@@ -172,9 +212,11 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   const std::size_t total = orbits_.size(),
                     n = std::min<std::size_t>(total, static_cast<std::size_t>(std::max(count, 0)));
   std::vector<double> parameter, x, y;
+  std::vector<std::int64_t> point;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = n == 1 ? 0 : k * (total - 1) / (n - 1);
     parameter.push_back(table_.column("parameter")[i]);
+    point.push_back(static_cast<std::int64_t>(i));
     for (std::size_t v = 0; v < orbits_[i].size(); v += 2) {
       x.push_back(orbits_[i][v]);
       y.push_back(orbits_[i][v + 1]);
@@ -182,6 +224,7 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   }
   const io::Shape shape{n, samples_per_orbit, places_.names.size()};
   group.put("parameter", parameter, unit_, "where on the branch");
+  group.put("point", point, "its row in the table of the branch, from 0");
   group.put("x", shape, x, places_.unit, "x of " + places_.text + " [orbit][time][bearing]");
   group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
 }

@@ -23,6 +23,8 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("count", &ModesOptions::count, deck::positive, "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
+  d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
+        "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
   d.check([](const ModesOptions& o, const deck::Report& r) {
     if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
     // Without films the shaft is taken at rest, whatever its speed.
@@ -36,6 +38,13 @@ std::vector<double> ModesOptions::all_speeds() const {
   for (const deck::Quantity& q : speeds) s.push_back(q.value);
   if (range)
     for (int i = 0; i < points; ++i) s.push_back(range->from + (range->to - range->from) * i / (points - 1));
+  return s;
+}
+
+std::vector<double> ModesOptions::all_shape_speeds() const {
+  std::vector<double> s;
+  for (const deck::Quantity& q : shapes_at) s.push_back(q.value);
+  if (s.empty()) s.push_back(all_speeds().back());
   return s;
 }
 

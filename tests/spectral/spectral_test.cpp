@@ -166,7 +166,17 @@ TEST(Words, ForModes) {
   EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, -2.0 * i}), Sense::forward);
   EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {i, 2.0 * i}), Sense::backward);
   EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, 2.0 * i}), Sense::mixed);
-  EXPECT_EQ(spectral::sense_of_whirl({1, 0.01}, {-i, 0.01 * i}), Sense::forward);  // a node that rests has no vote
+  EXPECT_EQ(spectral::sense_of_whirl({1, 0.01}, {-i, 0.01 * i}), Sense::forward);  // a node that hardly moves
+  // Half-axes 1 and 0.5 forward: f = 0.75, b = 0.25, so that (f^2 - b^2)/(f^2 + b^2) = 0.8.
+  EXPECT_DOUBLE_EQ(spectral::whirl_energy({1}, {-0.5 * i}).whirl, 0.8);
+  EXPECT_DOUBLE_EQ(spectral::whirl_energy({1}, {-0.5 * i}).forward, 0.8);
+  // A line at 45 degrees, and an orbit of half-axes 1 and 0.04: 2 a b/(a^2 + b^2) = 0.08.
+  EXPECT_EQ(spectral::sense_of_whirl({1}, {1}), Sense::planar);
+  EXPECT_EQ(spectral::sense_of_whirl({1}, {-0.04 * i}), Sense::planar);
+  EXPECT_EQ(spectral::sense_of_whirl({1}, {-0.06 * i}), Sense::forward);
+  // Energy 1 forward and 4 backward; the heavy node decides: 50 forward and 4 backward.
+  EXPECT_DOUBLE_EQ(spectral::whirl_energy({1, 2}, {-i, 2.0 * i}).forward, -0.6);
+  EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, 2.0 * i}, {50, 1}), Sense::forward);
   EXPECT_DOUBLE_EQ(spectral::log_decrement({-0.3, 2}), 0.3 * std::numbers::pi);
   EXPECT_DOUBLE_EQ(spectral::log_decrement({-0.3, -2}), 0.3 * std::numbers::pi);
   EXPECT_EQ(spectral::log_decrement({-1, 0}), std::numeric_limits<double>::infinity());
