@@ -176,7 +176,7 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   auto& summary = context.results.summary();
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
-    summary.modes.push_back({0, 0, frequencies[k], 0, "planar", "rad/s", name_of(StabilityClass::undamped)});
+    summary.modes.push_back({0, 0, frequencies[k], 0, "planar", "rad/s", {}, name_of(StabilityClass::undamped)});
   }
   context.results.group()
       .child("spectrum")
