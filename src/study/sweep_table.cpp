@@ -54,12 +54,34 @@ std::vector<Line> lines_of(const std::vector<SweepRow>& rows) {
   return lines;
 }
 
+// The second, third ... bifurcation of a branch is the same one in two variants only if both have as many of its type.
+// The first and the last are what they are by definition.
+class Comparable {
+public:
+  Comparable(const io::SweepColumn& column, const std::vector<io::SweepColumn>& all) {
+    const std::size_t dot = column.name.rfind('.');
+    const std::string number = column.name.substr(dot + 1);
+    if (number == "1" || number.empty() || number.find_first_not_of("0123456789") != std::string::npos) return;
+    const std::string count = column.name.substr(0, dot) + ".count";
+    for (const auto& c : all)
+      if (c.name == count) counts_ = &c.values;
+  }
+  [[nodiscard]] bool operator()(std::size_t a, std::size_t b) const {
+    return !counts_ || (*counts_)[a] == (*counts_)[b];
+  }
+
+private:
+  const std::vector<double>* counts_ = nullptr;
+};
+
 std::string sign_of(const io::Trend& t) {
-  bool up = false, down = false, open = false, bare = false;
+  bool up = false, down = false, open = false, bare = false, same = false;
   for (std::size_t k = 0; k < t.difference.size(); ++k) {
     const double d = t.difference[k], bar = t.uncertainty[k];
-    if (d == 0 && bar == 0) continue;  // counts
-    if (!std::isfinite(bar))
+    if (!std::isfinite(d)) continue;  // not comparable
+    if (d == 0 && bar == 0)           // counts
+      same = true;
+    else if (!std::isfinite(bar))
       bare = true;
     else if (!(std::abs(d) > bar))
       open = true;
@@ -69,7 +91,7 @@ std::string sign_of(const io::Trend& t) {
   if (up && down) return "mixed";
   if (bare) return "no bar";
   if (open) return "undetermined";
-  return up ? "+" : down ? "-" : "0";
+  return up ? "+" : down ? "-" : same ? "0" : "not comparable";
 }
 
 }  // namespace
@@ -116,12 +138,14 @@ std::vector<io::Trend> trends_of(const std::vector<SweepRow>& rows, const std::v
   for (const Line& line : lines_of(rows))
     for (const io::SweepColumn& c : columns) {
       io::Trend t{c.name, line.what->quantity, line.what->unit, line.beside, {}, {}, {}, {}, {}};
+      const Comparable comparable(c, columns);
       std::size_t before = 0;
       for (const auto& [at, r] : line.at) {
         if (!std::isfinite(c.values[r])) continue;
         if (!t.at.empty()) {
-          t.difference.push_back(c.values[r] - c.values[before]);
-          t.uncertainty.push_back(c.uncertainties[r] + c.uncertainties[before]);
+          const bool alike = comparable(before, r);
+          t.difference.push_back(alike ? c.values[r] - c.values[before] : no_value);
+          t.uncertainty.push_back(alike ? c.uncertainties[r] + c.uncertainties[before] : no_value);
         }
         t.variants.push_back(rows[r].name);
         t.at.push_back(at);

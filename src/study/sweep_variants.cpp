@@ -254,7 +254,10 @@ void Sweep::prepare(const Node& root, std::span<const std::unique_ptr<Study>> be
     v.name = fmt::format("{}", fmt::join(names, ", "));
     for (std::string_view rest = wrong; !rest.empty();) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
-      problems.add(here, fmt::format("variant '{}': {}", v.name, rest.substr(0, end)));
+      std::string_view line = rest.substr(0, end);
+      const std::string known = here.text() + ": ";
+      if (line.starts_with(known)) line.remove_prefix(known.size());
+      problems.add(here, fmt::format("variant '{}' of '{}': {}", v.name, name(), line));
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
     for (const Variant& other : variants_)

@@ -175,19 +175,22 @@ TEST(SweepTable, ASignCountsIfItsBarDoesNotContainZero) {
   const std::vector<study::SweepRow> rows{
       {"as given", {}, {with_hopf({{5000, 10}, {5600, 10}, {6000, 10}, {7000, unknown}})}},
       row("narrow", 0.8, {{4000, 20}, {5590, 1}, {5900, 1}, {6500, 1}}),
-      row("wide", 1.2, {{5500, 30}, {5700, 10}, {5800, 1}, {7500, 1}, {8000, 5}})};
+      row("wide", 1.2, {{5500, 30}, {5700, 10}, {5800, 1}, {7500, 1}}),
+      row("wider", 1.5, {{5600, 30}, {5800, 10}, {5900, 1}, {7000, 1}, {8000, 5}})};
   const auto columns = study::table_of(rows);
   const auto trends = study::trends_of(rows, columns);
   const auto& first = trend(trends, "balanced.hopf.1");
-  EXPECT_EQ(first.variants, (std::vector<std::string>{"narrow", "as given", "wide"}));
-  EXPECT_EQ(first.at, (std::vector<double>{0.8, 1, 1.2}));
-  EXPECT_EQ(first.difference, (std::vector<double>{1000, 500}));
-  EXPECT_EQ(first.uncertainty, (std::vector<double>{30, 40}));
+  EXPECT_EQ(first.variants, (std::vector<std::string>{"narrow", "as given", "wide", "wider"}));
+  EXPECT_EQ(first.at, (std::vector<double>{0.8, 1, 1.2, 1.5}));
+  EXPECT_EQ(first.difference, (std::vector<double>{1000, 500, 100}));
+  EXPECT_EQ(first.uncertainty, (std::vector<double>{30, 40, 60}));
   EXPECT_EQ(first.sign, "+");
   EXPECT_EQ(trend(trends, "balanced.hopf.2").sign, "undetermined");
   EXPECT_EQ(trend(trends, "balanced.hopf.3").sign, "mixed");
   EXPECT_EQ(trend(trends, "balanced.hopf.4").sign, "no bar");
-  EXPECT_EQ(trend(trends, "balanced.hopf.count").difference, (std::vector<double>{0, 1}));
+  EXPECT_EQ(trend(trends, "balanced.hopf.count").difference, (std::vector<double>{0, 0, 1}));
+  // The second one of five need not be the second one of four.
+  EXPECT_TRUE(std::isnan(trend(trends, "balanced.hopf.2").difference[2]));
   EXPECT_EQ(trend(trends, "balanced.hopf.count").sign, "+");
   // A value that only one variant has shows no trend.
   EXPECT_THROW((void)trend(trends, "balanced.hopf.5"), core::Bug);
