@@ -105,7 +105,14 @@ std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius
 void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme,
                        const system::Plant& system, double scale) const {
   const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
-  end.append({{cycle.parameter / scale}, {cycle.period}, e.x_max, e.x_min, e.y_max, e.y_min, per_clearance(e.radius)});
+  end.append({{cycle.parameter / scale},
+              {cycle.period},
+              e.x_max,
+              e.x_min,
+              e.y_max,
+              e.y_min,
+              per_clearance(e.radius),
+              film_column(least_films(cycle, system), places_.names.size())});
 }
 
 void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
