@@ -87,7 +87,7 @@ def draw(study, shown=9):
     given = "" if study.attribute("parameter_unit", "1") == "1" else " " + study.attribute("parameter_unit")
     handles = [Line2D([], [], color=c, linestyle=DASHED if s is False else "-",
                       label=f"{o.parameter:.5g}{given}" + (", unstable" if s is False else "")) for o, c, s in zip(orbits, colours, stable)]
-    first = "above in the clearance, pads thick; below enlarged; " if known else ""
+    first = "above in the clearance, pads thick, no wall where dotted; below enlarged; " if known else ""
     moment = "shaft angle 0" if study.attribute("unbalance", "") else "the phase chosen as zero"
     note = f"{first}colours: {words}; dashed: unstable; dot: {moment}; {study.shown}"
     return save(figure, study, "orbits", f"{note}; {ROTATION}" if known and len(names) > 2 else note, handles, 5)
@@ -116,7 +116,7 @@ def draw_locus(study):
         finish(axis, name)
     colours = plt.cm.ScalarMappable(norm=norm, cmap="viridis")
     figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.01, label=parameter_label(study)).outline.set_visible(False)
-    return save(figure, study, "locus", f"pads thick; equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}",
+    return save(figure, study, "locus", f"pads thick, no wall where dotted; equilibrium of the journal relative to the bearing centre; small dots unstable; {ROTATION}",
                 legend([branch])[2:])
 
 
@@ -137,5 +137,5 @@ def draw_positions(study):
             lines += distance_in_words(study, b, x[b], y[b])
         finish(axis, name if load is None else f"{name}: {np.atleast_1d(load)[b] / 1e3:.2f} kN")
         axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8)
-    return save(figure, study, "journals", "pads thick; journal relative to the bearing centre; $c_b$ assembled clearance; "
+    return save(figure, study, "journals", "pads thick, no wall where dotted; journal relative to the bearing centre; $c_b$ assembled clearance; "
                 f"load of the journal on the bearing, positive down; {ROTATION}")

@@ -1,6 +1,7 @@
 """The look of all pictures, units of axes, and the marks that recur."""
 import io
 import re
+import textwrap
 
 import matplotlib
 
@@ -77,15 +78,20 @@ def save(figure, study, what, note="", handles=(), columns=6):
     longest = max((len(h.get_label()) for h in handles), default=0)
     entry = max(1.7, 0.5 + 0.07 * longest)  # inches
     columns = min(columns, max(2, int(figure.get_figwidth() / entry)))
-    head, foot = 0.58, 0.10 + 0.19 * bool(note) + 0.215 * -(-len(handles) // columns)  # inches
+    lines = textwrap.wrap(note, max(40, int(17.5 * figure.get_figwidth())))
+    # A figure grows by what its note needs beyond one line.
+    height += 0.15 * max(0, len(lines) - 1)
+    figure.set_figheight(height)
+    below = 0.19 * bool(lines) + 0.15 * max(0, len(lines) - 1)
+    head, foot = 0.58, 0.10 + below + 0.215 * -(-len(handles) // columns)  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
     figure.text(0.01, 1 - 0.2 / height, study.run_title, va="center", fontsize=11.5, fontweight="bold", color=INK)
     subtitle = study.name if study.status in ("", "completed") else f"{study.name} \u2014 {study.status}"
-    figure.text(0.01, 1 - 0.42 / height, subtitle, va="center", fontsize=9.5, color=GREY)
+    figure.text(0.01, 1 - 0.42 / height, textwrap.shorten(subtitle, max(40, int(14 * figure.get_figwidth())), placeholder=" ..."), va="center", fontsize=9.5, color=GREY)
     if handles:
         figure.legend(handles=list(handles), loc="lower left", ncol=columns, borderpad=0.2, borderaxespad=0, columnspacing=1.4,
-                      handlelength=2.2, labelspacing=0.35, bbox_to_anchor=(0.005, (0.05 + 0.19 * bool(note)) / height))
-    figure.text(0.99, 0.13 / height, note, ha="right", va="center", fontsize=7.5, color=GREY)
+                      handlelength=2.2, labelspacing=0.35, bbox_to_anchor=(0.005, (0.05 + below) / height))
+    figure.text(0.99, 0.07 / height, "\n".join(lines), ha="right", va="bottom", fontsize=7.5, color=GREY)
     stem = study.file(what)
     files = write(figure, stem)
     plt.close(figure)
