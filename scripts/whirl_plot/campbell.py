@@ -114,6 +114,6 @@ def draw(study):
     bottom.set_xlabel(speed_label)
     hidden = sum(1 for m in modes if np.all(m[3] > high))
     bottom.set_title("Damping, unstable below zero" + (f"; {hidden} modes are damped more than shown" if hidden else ""))
-    label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1]])
+    label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1] and m[3][-1] <= OVERDAMPED])
     label_modes(bottom, ends[1] * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == ends[1]])
     return save(figure, study, "campbell", f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", handles, 7)

@@ -19,6 +19,20 @@ def planes_of(deck):
     return {n: list(dict.fromkeys(names)) for n, names in found.items() if isinstance(n, int)}
 
 
+def discs_of(deck, shaft):
+    """(node, radius, thickness, whether the deck gives its size) of each disc; one given by its mass alone is drawn as high as the
+    cube root of it goes, up to three radii of the shaft."""
+    found = deck.get("rotor", {}).get("discs") or []
+    heaviest = max((number(d.get("mass")) or 0.0 for d in found), default=0.0)
+    out = []
+    for d in found:
+        radius = (number(d.get("outer_diameter")) or 0.0) / 2
+        mass = number(d.get("mass")) or 0.0
+        if isinstance(d.get("node"), int):
+            out.append((d["node"], radius or shaft * (1 + 2 * (mass / heaviest)**(1 / 3) if heaviest else 2), number(d.get("thickness")) or 0.0, radius > 0))
+    return out
+
+
 def draw_bearings(axis, deck, place, low, high):
     """A triangle below and a pad on both sides of each journal, as long as the bearing; names above."""
     for name, bearing in (deck.get("bearings") or {}).items():
@@ -41,7 +55,8 @@ def draw_shaft(results, deck, segments):
     z = np.concatenate([[0.0], np.cumsum(lengths)])
     outer = [max(number(s.get("outer_mass_diameter")) or 0.0, number(s.get("outer_stiffness_diameter")) or 0.0) / 2 for s in segments]
     added = [(number(s.get("added_mass_outer_diameter")) or 0.0) / 2 if (number(s.get("added_mass")) or 0) > 0 else 0.0 for s in segments]
-    high = max(*outer, *added, 1e-9)
+    discs = discs_of(deck, max(*outer, *added))
+    high = max([*outer, *added, *(radius for _, radius, _, _ in discs), 1e-9])
     # Radii are drawn larger than lengths where the shaft is slender.
     width = 10.4 / (1.04 * z[-1])  # inches per metre of length
     stretch = min(4.0, max(1.0, 2.0 / (3.85 * high * width)))
@@ -53,6 +68,10 @@ def draw_shaft(results, deck, segments):
         axis.add_patch(Rectangle((a, -r), b - a, 2 * r, facecolor=STEEL, edgecolor=GREY, linewidth=0.3, zorder=2))
         if inner:
             axis.add_patch(Rectangle((a, -inner), b - a, 2 * inner, facecolor="white", edgecolor=GREY, linewidth=0.3, zorder=3))
+    for node, radius, thickness, _ in discs:
+        if 1 <= node <= len(z):
+            at, thickness = z[node - 1], thickness or 0.012 * z[-1]
+            axis.add_patch(Rectangle((at - thickness / 2, -radius), thickness, 2 * radius, facecolor=ADDED, edgecolor=GREY, linewidth=0.4, zorder=2.5))
     axis.plot([z[0], z[-1]], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)), zorder=5)
     place = lambda node: z[node - 1] if isinstance(node, int) and 1 <= node <= len(z) else None  # noqa: E731
     draw_bearings(axis, deck, place, -1.45 * high, high)
@@ -76,13 +95,15 @@ def draw_shaft(results, deck, segments):
     axis.set_ylabel("radius [m]")
     axis.grid(False)
     handles = [Line2D([], [], color=STEEL, linewidth=7, label="shaft"), Line2D([], [], color=COLOURS[1], marker="^", linestyle="none", label="bearing")]
-    if any(m > r for m, r in zip(added, outer)):
-        handles.insert(1, Line2D([], [], color=ADDED, linewidth=7, label="added mass"))
+    if any(m > r for m, r in zip(added, outer)) or discs:
+        handles.insert(1, Line2D([], [], color=ADDED, linewidth=7, label="disc" if discs else "added mass"))
     if len(edges) > 2:
         handles.append(Line2D([], [], color=GREY, linestyle=":", label="coupling"))
     if planes:
         handles.append(Line2D([], [], color=BAD, marker="v", linestyle="none", label="plane of unbalance, with its node"))
     note = f"{len(segments)} elements, nodes 1 to {len(z)} from left to right"
+    if any(not known for *_, known in discs):
+        note += "; discs given by mass are drawn by its size, not to scale"
     if stretch > 1.05:
         note += f"; radii drawn {stretch:.1f} times larger than lengths"
     return save(figure, results.whole("the machine"), "machine", note, handles)

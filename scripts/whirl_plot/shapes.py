@@ -1,7 +1,10 @@
 """Sag line of the shaft and mode shapes along it, flat and in space."""
+import typing
+
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .campbell import OVERDAMPED
 from .style import BAD, COLOURS, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, length_unit, save, speed_axis
 
 
@@ -80,16 +83,10 @@ def semi_major(x, y):
     return np.sqrt(0.5 * (np.abs(x)**2 + np.abs(y)**2 + np.abs(x**2 + y**2)))
 
 
-def describe(study, frequency, speed):
-    """Whirl and damping of the mode of this frequency at this speed, from the spectrum."""
-    if not study.has("spectrum/speed", "spectrum/frequency"):
-        return ""
-    speeds, frequencies = study.get("spectrum/speed"), study.get("spectrum/frequency")
-    here = np.nonzero(np.abs(speeds - speeds[np.argmin(np.abs(speeds - speed))]) < 1e-9 * (1 + abs(speed)))[0]
-    row = here[np.argmin(np.abs(frequencies[here] - frequency))]
-    whirl, decrement = study.get("spectrum/whirl"), study.get("spectrum/log_decrement")
-    words = f", {whirl[row]}" if whirl is not None else ""
-    return words + (f"\nlog. decrement {decrement[row]:.3g}" if decrement is not None else "")
+def describe(shape):
+    """Whirl and damping of a mode in words."""
+    words = f", {shape.whirl}" if shape.whirl else ""
+    return words + (f"\nlog. decrement {shape.decrement:.3g}" if np.isfinite(shape.decrement) else "")
 
 
 def nodes_of(z, values):
@@ -108,22 +105,36 @@ def normalised(x, y):
     return side * x, side * y, size / size[top]
 
 
+class Shape(typing.NamedTuple):
+    """A mode at one speed: number, frequency [rad/s], x and y of the nodes (complex), and what is known of it."""
+
+    mode: int
+    frequency: float
+    x: np.ndarray
+    y: np.ndarray
+    decrement: float
+    whirl: str
+
+
 def tables_of(study):
-    """(suffix of the picture, shapes) of each speed that shapes were kept at."""
+    """(speed, shapes) of each speed that shapes were kept at."""
     if not study.has("shapes/x_real", "shapes/z"):
         return
     x = study.get("shapes/x_real") + 1j * study.get("shapes/x_imag")
     y = study.get("shapes/y_real") + 1j * study.get("shapes/y_imag")
-    frequency = np.atleast_1d(study.get("shapes/frequency", np.zeros(len(x))))
-    speed = np.broadcast_to(np.atleast_1d(study.get("shapes/speed", 0.0)), len(x))
-    mode = np.broadcast_to(np.atleast_1d(study.get("shapes/mode", np.arange(1, len(x) + 1))), len(x))
+    column = lambda name, default: np.broadcast_to(np.atleast_1d(study.get(f"shapes/{name}", default)), len(x))  # noqa: E731
+    speed = column("speed", 0.0)
+    shapes = [Shape(*row) for row in zip(column("mode", np.arange(1, len(x) + 1)), column("frequency", 0.0), x, y,
+                                         column("log_decrement", np.nan), column("whirl", ""))]
     for value in dict.fromkeys(speed):
-        yield value, [(m, f, a, b) for m, f, a, b, s in zip(mode, frequency, x, y, speed) if s == value]
+        yield value, [shape for shape, s in zip(shapes, speed) if s == value]
 
 
 def draw_modes(study, shown=12):
     files, found = [], list(tables_of(study))
     for speed, shapes in found:
+        # What dies within a turn is no vibration; unless nothing else is there.
+        shapes = [s for s in shapes if not s.decrement > OVERDAMPED] or shapes
         suffix = f"-{speed * speed_axis(study.attribute('speed_unit', 'rad/s'))[0]:.0f}" if len(found) > 1 else ""
         files += draw_flat(study, speed, shapes[:shown], suffix) + draw_in_space(study, speed, shapes[:shown], suffix)
     return files
@@ -138,14 +149,14 @@ def draw_flat(study, speed, shapes, suffix):
     z = study.get("shapes/z")
     at, to_frequency, unit = at_words(study, speed)
     figure, axes, grid = grid_of(len(shapes), height=1.95, sharex=True, sharey=True)
-    for axis, (mode, frequency, x, y) in zip(axes, shapes):
-        x, y, envelope = normalised(x, y)
+    for axis, shape in zip(axes, shapes):
+        x, y, envelope = normalised(shape.x, shape.y)
         axis.fill_between(z, -envelope, envelope, color="#eef2f6", linewidth=0, zorder=0)
         axis.axhline(0, color=GREY, linewidth=0.6)
         for values, colour, label in ((y.real, Y, "y, vertical"), (x.real, X, "x, horizontal")):
             axis.plot(z, values, color=colour, linewidth=1.5, label=label)
         mark_bearings(axis, bearing_places(study, z), names=False)
-        axis.set_title(f"{mode}: {frequency * to_frequency:.2f} {unit}{describe(study, frequency, speed)}", fontsize=8.5)
+        axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8.5)
         axis.set_ylim(-1.08, 1.08)
         axis.set_yticks([-1, 0, 1])
         axis.set_xlim(z[0], z[-1])
@@ -166,9 +177,9 @@ def draw_in_space(study, speed, shapes, suffix):
     figure = plt.figure(figsize=(3.6 * columns, 2.6 * rows + 1.0))
     angle = np.exp(1j * np.linspace(0, 2 * np.pi, 61))
     rings = np.unique(np.linspace(0, len(z) - 1, 24).round().astype(int))
-    for k, (mode, frequency, x, y) in enumerate(shapes):
+    for k, shape in enumerate(shapes):
         axis = figure.add_subplot(rows, columns, k + 1, projection="3d", computed_zorder=False)
-        x, y, _ = normalised(x, y)
+        x, y, _ = normalised(shape.x, shape.y)
         for ring in rings:
             ex, ey = (x[ring] * angle).real, (y[ring] * angle).real
             # Forward where the ellipse is run through from x to y.
@@ -182,7 +193,7 @@ def draw_in_space(study, speed, shapes, suffix):
         main = y.real if np.ptp(y.real) >= np.ptp(x.real) else x.real
         crossings = nodes_of(z, main)
         axis.plot(crossings, np.zeros_like(crossings), np.zeros_like(crossings), "o", color=BAD, markersize=3.5)
-        axis.set_title(f"{mode}: {frequency * to_frequency:.2f} {unit}{describe(study, frequency, speed)}", fontsize=8, y=0.98)
+        axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8, y=0.98)
         axis.set_box_aspect((3.0, 1, 1), zoom=1.35)
         axis.view_init(18, -62)
         axis.set(xlim=(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[], zticks=[])
