@@ -6,7 +6,7 @@ import sys
 
 
 from . import __main__ as plot
-from . import style, tables
+from . import brief, style, tables
 from .manifest import register
 from .subject import Drawn, results_directory, said_in_a_sentence
 from .units import digits, person, with_bar
@@ -109,6 +109,12 @@ def section(study, pictures):
                       *(show(t) for t in tables.findings(study)), *(picture(p) for p in pictures), *all_values(study)])
 
 
+def in_brief(results):
+    """One line a study."""
+    rows = "".join(f"<tr><td style='white-space:nowrap'><a href='#{anchor(s.name)}'>{escape(s.name)}</a></td><td>{escape(brief.of(s))}</td></tr>" for s in results.studies if brief.of(s))
+    return f"<h2 id=brief>In brief</h2><table>{rows}</table>" if rows else ""
+
+
 def left_over(results):
     """Entries of summary.json without data in results.h5: studies that delivered nothing."""
     known = {s.name for s in results.studies}
@@ -166,7 +172,7 @@ def page_of(results):
         f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title><style>{STYLE}</style>",
         f"<h1>{title}</h1><p class=note>{', '.join(facts)}</p>",
         f"<nav><a href='#machine'>The machine</a>{links}<a href='#options'>Options</a></nav>",
-        "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
+        in_brief(results), "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
         *([f"<h2 id=together>All together</h2>{''.join(picture(p) for p in together)}"] if together else []),
         *([show(safe)] if safe else []), *(section(s, p) for s, p in studies), left_over(results),
         f"<h2 id=options>Options in force</h2><p class=note>as the deck was understood, every default written out; resolved.yaml beside this page is that deck</p>{options_in_force(results)}",

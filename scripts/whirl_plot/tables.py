@@ -335,7 +335,7 @@ def inputs(results):
         out.append(Table("Bearings", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
     rows = []
     for name, u in (deck.get("unbalance") or {}).items():
-        planes = ", ".join(f"node {p.get('node')}: " + " ".join(f"{k} {quantity(p[k])}" for k in ("eccentricity", "unbalance", "mass_radius", "fraction", "phase") if k in p)
+        planes = ", ".join(f"node {p.get('node')}: " + " ".join(f"{k} {quantity(p[k])}" for k in ("eccentricity", "amount", "fraction", "phase") if k in p)
                            for p in u.get("planes", []))
         rows.append([name, u.get("grade", ""), u.get("rotor", ""), quantity(u.get("service_speed", "")), planes])
     if rows:
