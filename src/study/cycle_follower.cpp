@@ -104,7 +104,7 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
 void CycleFollower::close_at_flip(double landed) {
   // Other methods keep their unknowns, not the orbit.
   if (record_.points() == 0 || options_.method != CycleBranchOptions::Method::collocation) return;
-  const auto [low, high] = std::minmax(record_.last_parameter(), landed);
+  const auto [low, high] = std::minmax({record_.last_parameter(), landed});
   const FlipSeed* only = nullptr;
   for (const FlipSeed& s : siblings_) {
     const double p = s.cycle.parameter / scale_;
