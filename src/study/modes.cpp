@@ -206,8 +206,8 @@ StudyResult Modes::run(Context& context) {
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
       return modes;
     };
-    const auto packed =
-        distribute(groups, list.size(), compute, pieces, rounds == 0 ? "speed" : fmt::format("between {}", rounds));
+    const auto packed = distribute(groups, list.size(), compute, pieces,
+                                   rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
     std::vector<std::vector<ShaftMode>> out;
     for (const auto& p : packed) out.push_back(unpack(p));
@@ -289,7 +289,7 @@ StudyResult Modes::run(Context& context) {
     }
     return std::vector<double>{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
   };
-  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical");
+  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical", walker.trail());
   struct Critical {
     double speed, decrement;
     int id;
