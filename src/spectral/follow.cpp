@@ -29,8 +29,8 @@ ModeMatching match_modes(const std::vector<ModePoint>& first, const std::vector<
       const double size = std::max({std::abs(first[a].lambda), std::abs(second[b].lambda), 1e-300});
       const double apart = std::abs(first[a].lambda - second[b].lambda) / size;
       if (apart > possible_apart) continue;
-      const double alike = mac(first[a].shape, second[b].shape);
-      if (alike > possible_mac || apart < sure_apart) pairs.push_back({alike, apart, a, b});
+      const double likeness = mac(first[a].shape, second[b].shape);
+      if (likeness > possible_mac || apart < sure_apart) pairs.push_back({likeness, apart, a, b});
     }
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.score() > q.score(); });
   ModeMatching out;

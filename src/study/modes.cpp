@@ -340,7 +340,8 @@ StudyResult Modes::run(Context& context) {
   put_bearings(group, context.machine);
   auto& shapes = group.child("shapes");
   const auto z = rotor::node_positions(system.train().rotor);
-  std::vector<double> flat[4], at_frequency, at_speed;
+  std::vector<double> flat[4], at_frequency, at_speed, at_decrement;
+  std::vector<std::string> at_sense;
   std::vector<std::int64_t> at_mode;
   for (const double speed : shape_speeds) {
     const auto& modes = station_at(speed).modes;
@@ -349,6 +350,8 @@ StudyResult Modes::run(Context& context) {
       at_speed.push_back(speed);
       at_mode.push_back(m.id);
       at_frequency.push_back(m.lambda.imag());
+      at_decrement.push_back(spectral::log_decrement(m.lambda));
+      at_sense.emplace_back(spectral::name_of(spectral::sense_of_whirl(m.x, m.y, mass)));
       for (std::size_t k = 0; k < z.size(); ++k) {
         flat[0].push_back(m.x[k].real());
         flat[1].push_back(m.x[k].imag());
@@ -364,6 +367,8 @@ StudyResult Modes::run(Context& context) {
   shapes.put("mode", at_mode, "mode followed by its shape");
   shapes.put("z", z, "m", "axial position of the nodes");
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
+  shapes.put("log_decrement", at_decrement, "1", "of the shapes");
+  shapes.put("whirl", at_sense, "sense of whirl by the kinetic energy of the shaft's nodes");
   summary.points = static_cast<long>(speeds.size());
   return results.finish("completed", true);
 }

@@ -90,6 +90,9 @@ def period_doubling(h):
                    and value(run[name], "returned") is not None, run[name]["status"])
             b = f[f"studies/{name}/branch"]
             speed, size = b["parameter"][()], (b["x_max"][()] - b["x_min"][()])[:, 0]
+            ends = sorted(f[f"studies/{name}/{end}/parameter"][0] for end in ("birth", "closing"))
+            h.true(f"{name} lies between the flips, which are its ends", numpy.allclose(ends, flips, rtol=1e-9, atol=0)
+                   and flips[0] < speed.min() and speed.max() < flips[1], f"{speed.min()} to {speed.max()}, {ends}")
             inside = (speed > flips[0] + 1) & (speed < flips[1] - 1)
             turns = b["period"][()] * speed / 60
             h.close(f"{name}: turns per period", float(numpy.ptp(turns)) + float(turns[0]), 2, 1e-9)
