@@ -132,8 +132,7 @@ std::string name_of_solution(const std::string& name, std::size_t k) {
 }
 
 bool may_be_solution(const std::string& name, std::string_view file) {
-  std::string stem = io::plain_name(name_of_solution(name, 1));
-  stem.pop_back();
+  const std::string second = io::plain_name(name_of_solution(name, 2)), stem = second.substr(0, second.size() - 1);
   return file.size() > stem.size() && file.starts_with(stem) &&
          file.find_first_not_of("0123456789", stem.size()) == std::string_view::npos;
 }
