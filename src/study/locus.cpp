@@ -317,6 +317,14 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     if (!left_ && !ended_) save(point, whole, tangent, next_step);
     return !left_ && !ended_;
   };
+  if (restart) {
+    // The signs of the tests are those of the borders, which are other ones than those of the interrupted run.
+    const core::Vector row = core::duplicate(start.get());
+    solve::weighted_row(*problem_, restart->tangent.get(), row.get());
+    problem_->linearise(restart->u.get(), row.get());
+    restart->point.monitors = callbacks.monitors(restart->u.get(), restart->tangent.get());
+    problem_->update();
+  }
   end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks, std::move(restart));
   end.completed = end.completed || left_ || ended_;
   return std::move(rows_);
