@@ -105,7 +105,9 @@ TEST(Inlet, LineAtTheMaximumGapHasTheSameForce) {
           EXPECT_NEAR(a.d_velocity[i][j], b.d_velocity[i][j], 1e-10 * std::abs(b.d_velocity[i][i]));
       }
       EXPECT_GT(std::abs(a.d_position[0][1] - b.d_position[0][1]), 1e-3 * std::abs(b.d_position[0][1]));
-      if (!tilt) EXPECT_DOUBLE_EQ(a.min_thickness, 0.4 * plain(0.7).clearance);
+      if (!tilt) {
+        EXPECT_DOUBLE_EQ(a.min_thickness, 0.4 * plain(0.7).clearance);
+      }
     }
 }
 
