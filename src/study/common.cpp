@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "branch_state.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/equilibrium.hpp"
@@ -28,6 +29,20 @@ bool Walker::attempt(double speed) {
   std::swap(x_, trial_);
   last_ = speed;
   return true;
+}
+
+Trail Walker::trail() {
+  const auto leave = [this] {
+    std::vector<double> state = system_.gather(x_.get());
+    state.push_back(last_);
+    return state;
+  };
+  const auto take = [this](const std::vector<double>& state) {
+    if (!x_) x_ = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
+    fill(x_.get(), {state.begin(), state.end() - 1});
+    last_ = state.back();
+  };
+  return {leave, take};
 }
 
 Vec Walker::at(double speed) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "findings.hpp"
+#include "groups.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/newton.hpp"
 #include "whirl/study/study.hpp"
@@ -19,6 +20,8 @@ public:
   explicit Walker(system::Plant& system) : system_(system) {}
   /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
   Vec at(double speed);
+  /// Where it stands, for a resumed run to go on from.
+  [[nodiscard]] Trail trail();
 
 private:
   bool attempt(double speed);

@@ -77,7 +77,6 @@ std::optional<solve::Restart> CycleFollower::restore() {
   events_ = static_cast<int>(state.integer("events"));
   solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
                          read_point(state.group("point"))};
-  restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);
   seeds_ = read_seeds(state.group("flips"));
   located_ = read_located(state.group("located"));
   last_ = cycle;

@@ -193,19 +193,33 @@ solve::Cycle read_cycle(const io::Group& group) {
   return cycle;
 }
 
+void write_stability(io::Group& group, const solve::Stability& stability) {
+  std::vector<double> re, im;
+  for (const auto& v : stability.values) {
+    re.push_back(v.real());
+    im.push_back(v.imag());
+  }
+  group.put("real", re, "1", "eigenvalues or multipliers");
+  group.put("imag", im, "1", "their imaginary parts");
+  group.put("distance", stability.distance, "1", "from the border of stability");
+}
+
+solve::Stability read_stability(const io::Group& group) {
+  solve::Stability s;
+  const auto &re = group.reals("real"), &im = group.reals("imag");
+  for (std::size_t k = 0; k < re.size(); ++k) s.values.emplace_back(re[k], im[k]);
+  s.distance = group.reals("distance");
+  return s;
+}
+
 void write_point(io::Group& group, const solve::BranchPoint& point) {
   group.set("index", point.index);
   group.set("parameter", point.parameter);
   group.set("slope", point.slope);
   group.set("step", point.step);
   group.set("newton_iterations", point.newton_iterations);
-  std::vector<double> re, im;
-  for (const auto& v : point.stability.values) {
-    re.push_back(v.real());
-    im.push_back(v.imag());
-  }
-  group.put("real", re, "1", "eigenvalues or multipliers");
-  group.put("imag", im, "1", "their imaginary parts");
+  write_stability(group.child("stability"), point.stability);
+  group.put("monitors", point.monitors, "1", "functions whose zeros are located");
 }
 
 solve::BranchPoint read_point(const io::Group& group) {
@@ -215,8 +229,8 @@ solve::BranchPoint read_point(const io::Group& group) {
   point.slope = group.real("slope");
   point.step = group.real("step");
   point.newton_iterations = static_cast<int>(group.integer("newton_iterations"));
-  const auto &re = group.reals("real"), &im = group.reals("imag");
-  for (std::size_t k = 0; k < re.size(); ++k) point.stability.values.emplace_back(re[k], im[k]);
+  point.stability = read_stability(group.group("stability"));
+  point.monitors = group.reals("monitors");
   return point;
 }
 

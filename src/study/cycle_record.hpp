@@ -47,6 +47,8 @@ private:
 
 void write_cycle(io::Group& group, const solve::Cycle& cycle);
 [[nodiscard]] solve::Cycle read_cycle(const io::Group& group);
+void write_stability(io::Group& group, const solve::Stability& stability);
+[[nodiscard]] solve::Stability read_stability(const io::Group& group);
 void write_point(io::Group& group, const solve::BranchPoint& point);
 [[nodiscard]] solve::BranchPoint read_point(const io::Group& group);
 void write_summary(io::Group& group, const io::StudySummary& summary);

@@ -10,6 +10,7 @@
 #include "groups.hpp"
 #include "located.hpp"
 #include "make_plant.hpp"
+#include "pieces.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -85,9 +86,14 @@ StudyResult EquilibriumBranch::run(Context& context) {
   auto& results = context.results;
   put_groups(results.summary(), system->groups());
   solve::BranchCallbacks callbacks;
+  // A resumed branch is followed anew: Newton's method costs little beside the eigenvalues, which are kept.
+  Pieces pieces(results, context.resume);
+  int looks = 0;
   callbacks.stability = [&](Vec v) {
-    problem.to_state(v, x.get());
-    return equilibrium_stability(*system, x.get());
+    return pieces.stability(fmt::format("look {}", ++looks), [&] {
+      problem.to_state(v, x.get());
+      return equilibrium_stability(*system, x.get());
+    });
   };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
     problem.to_state(v, x.get());

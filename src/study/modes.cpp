@@ -164,7 +164,7 @@ StudyResult Modes::run(Context& context) {
         deck::from_si(speeds[i], unit), unit, results.seconds()));
     return modes;
   };
-  const auto packed = distribute(groups, speeds.size(), compute, pieces, "speed");
+  const auto packed = distribute(groups, speeds.size(), compute, pieces, "speed", walker.trail());
 
   std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
@@ -217,7 +217,7 @@ StudyResult Modes::run(Context& context) {
     }
     return std::vector<double>{c.s1};
   };
-  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical");
+  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical", walker.trail());
   struct Critical {
     double speed;
     int id;

@@ -14,6 +14,7 @@
 #include "whirl/deck/units.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
+#include "whirl/study/separation.hpp"
 
 namespace whirl::study {
 namespace {
@@ -104,6 +105,8 @@ public:
     return r;
   }
 
+  [[nodiscard]] Trail trail() { return walker_.trail(); }
+
 private:
   system::RotorSystem system_;
   Walker walker_;
@@ -180,7 +183,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls)))
+    for (const auto& flat :
+         distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls), machine.trail()))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };
@@ -218,29 +222,31 @@ StudyResult UnbalanceResponse::run(Context& context) {
       std::sort(curve.begin(), curve.end(), by_speed);
     }
 
+  const auto put_peak = [&](const std::string& head, const Peak& peak) {
+    summary.set(head + "speed", deck::from_si(peak.speed, unit), unit);
+    summary.set(head + "semi_major", peak.amplitude, "m");
+    summary.set(head + "amplification_factor", peak.amplification, "1");
+    if (!options.operating && !options.operating_speed) return;
+    const double from = options.operating ? options.operating->from : options.operating_speed->value,
+                 to = options.operating ? options.operating->to : from;
+    const Separation margin = separation(peak.speed, peak.amplification, from, to);
+    summary.set(head + "separation_margin", margin.actual, "1");
+    summary.set(head + "required_margin", margin.required, "1");
+  };
   std::vector<Peak> peaks;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
     for (const std::size_t k : tops(node))
       own.push_back({nodes[node], curve[k].speed, curve[k].nodes[node].semi_major(), amplification(curve, node, k)});
     std::stable_sort(own.begin(), own.end(), [](const Peak& a, const Peak& b) { return a.amplitude > b.amplitude; });
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
-      summary.set(head + "speed", deck::from_si(own[k].speed, unit), unit);
-      summary.set(head + "semi_major", own[k].amplitude, "m");
-    }
+    for (std::size_t k = 0; k < own.size(); ++k) put_peak(fmt::format("node.{}.peak.{}.", nodes[node], k + 1), own[k]);
     if (node == 0) peaks = own;
   }
   // The first node named in the deck is the one the report speaks of; its highest peak comes first.
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const std::string head = fmt::format("peak.{}.", k + 1);
     summary.set(head + "node", peaks[k].node, "1");
-    summary.set(head + "speed", deck::from_si(peaks[k].speed, unit), unit);
-    summary.set(head + "semi_major", peaks[k].amplitude, "m");
-    summary.set(head + "amplification_factor", peaks[k].amplification, "1");
-    if (options.operating_speed)
-      summary.set(head + "separation_margin",
-                  std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
+    put_peak(head, peaks[k]);
   }
   if (options.operating_speed) {
     const Response r = at_speeds({options.operating_speed->value}).front();
