@@ -10,10 +10,16 @@ namespace {
 std::string text_of(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
-  for (const io::Bifurcation& b : s.bifurcations)
+  if (!s.stability.empty()) text += fmt::format("  {}\n", s.stability);
+  for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
+  for (const io::Bifurcation& b : s.bifurcations) {
+    const auto others = b.more.find("others_unstable");
+    const bool beyond = others != b.more.end() && others->second > 0;
     text += fmt::format("  {} at {} {}{}{}{}{}\n", io::name_of(b.type), b.parameter,
                         with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ",
-                        b.criticality, meaning(b).empty() ? "" : ": ", meaning(b));
+                        b.criticality, beyond ? fmt::format(", {:.0f} others unstable", others->second) : "",
+                        meaning(b).empty() ? "" : ": " + meaning(b));
+  }
   for (const io::CodimensionTwo& c : s.codimension_two)
     text += fmt::format("  {} at {} {}, {} {}\n", c.type, c.parameter,
                         with_uncertainty(c.value.value, io::no_value, c.value.unit), c.second_parameter,
