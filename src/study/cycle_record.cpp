@@ -268,6 +268,7 @@ void write_stability(io::Group& group, const solve::Stability& stability) {
   group.put("imag", im, "1", "their imaginary parts");
   group.set("neutral", stability.neutral);
   group.put("distance", stability.distance, "1", "from the border of stability");
+  group.set("neutral", stability.neutral);
 }
 
 solve::Stability read_stability(const io::Group& group) {
