@@ -266,7 +266,6 @@ void write_stability(io::Group& group, const solve::Stability& stability) {
   }
   group.put("real", re, "1", "eigenvalues or multipliers");
   group.put("imag", im, "1", "their imaginary parts");
-  group.set("neutral", stability.neutral);
   group.put("distance", stability.distance, "1", "from the border of stability");
   group.set("neutral", stability.neutral);
 }
