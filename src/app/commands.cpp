@@ -77,6 +77,8 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
                           o.source.empty() ? "an unknown source" : o.source);
   for (const std::string& option : core::Session::unused_options())
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
+  if (core::rank_of(comm) == 0 && !held.locked())
+    text += fmt::format("'{}' cannot be locked: nothing would have kept a second run out\n", directory);
   text += fmt::format("results in {}\n", directory);
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }

@@ -21,14 +21,12 @@ void check_added(const Deck& deck, std::size_t i, const std::vector<std::string>
   for (std::size_t j = 0; j < i; ++j) {
     const Study& earlier = *deck.studies[j];
     if (earlier.may_add(files[i]))
-      report.fail("name",
-                  fmt::format("study {}, '{}', follows its flips and calls a branch so: give each a name of its own",
-                              j + 1, earlier.name()));
+      report.fail("name", fmt::format("study {}, '{}', adds a branch that it calls so: give each a name of its own",
+                                      j + 1, earlier.name()));
     else if (later.may_add(files[j]))
-      report.fail("name",
-                  fmt::format("'{}' follows its flips and calls a branch '{}', as study {} is called: give each a "
-                              "name of its own",
-                              later.name(), earlier.name(), j + 1));
+      report.fail("name", fmt::format("'{}' adds a branch that it calls '{}', as study {} is called: give each a "
+                                      "name of its own",
+                                      later.name(), earlier.name(), j + 1));
   }
 }
 
@@ -72,6 +70,10 @@ void describe(deck::Description<Deck>& d) {
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
   d.add("limits", &Deck::limits, "what a run may take");
   d.check([](const Deck& deck, const deck::Report& r) {
+    const auto holds = [](const auto& s) { return s->needs_bearings(); };
+    const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
+    if (shaft && deck.machine.bearings.size() < 2 && std::any_of(deck.studies.begin(), deck.studies.end(), holds))
+      r.fail("bearings", "a shaft needs at least two bearings");
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());

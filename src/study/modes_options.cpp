@@ -1,5 +1,7 @@
 #include "whirl/study/modes.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "cost.hpp"
@@ -23,14 +25,13 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("count", &ModesOptions::count, deck::in(1, 1e5), "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
+  d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
+        "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
   d.check([](const ModesOptions& o, const deck::Report& r) {
     if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
     // Without films the shaft is taken at rest, whatever its speed.
     if (o.supports != ModesOptions::Supports::films) return;
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
-    bool at_rest = o.range && std::min(o.range->from, o.range->to) <= 0;
-    for (const deck::Quantity& s : o.speeds) at_rest = at_rest || s.value <= 0;
-    if (at_rest) r.fail(o.range ? "range" : "speeds", "a film carries no load at rest: speeds must be positive");
   });
 }
 
@@ -39,6 +40,13 @@ std::vector<double> ModesOptions::all_speeds() const {
   for (const deck::Quantity& q : speeds) s.push_back(q.value);
   if (range)
     for (int i = 0; i < points; ++i) s.push_back(range->from + (range->to - range->from) * i / (points - 1));
+  return s;
+}
+
+std::vector<double> ModesOptions::all_shape_speeds() const {
+  std::vector<double> s;
+  for (const deck::Quantity& q : shapes_at) s.push_back(q.value);
+  if (s.empty()) s.push_back(all_speeds().back());
   return s;
 }
 
@@ -51,6 +59,17 @@ double Modes::memory(const system::Machine& machine) const {
   return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
 }
 
-void Modes::validate(const system::Machine&, const deck::Report&) const {}
+void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (options.supports != ModesOptions::Supports::films) return;
+  bool at_rest = options.range && std::min(options.range->from, options.range->to) <= 0;
+  for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;
+  if (!at_rest) return;
+  for (const system::Bearing& b : machine.bearings)
+    if (b.film.kind != film::Options::Kind::linear)
+      return report.fail(options.range ? "range" : "speeds",
+                         fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
+                                     "films have coefficients at rest, too)",
+                                     b.name));
+}
 
 }  // namespace whirl::study

@@ -9,10 +9,12 @@
 #include <optional>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "groups.hpp"
 #include "make_plant.hpp"
 #include "motion_record.hpp"
 #include "motion_start.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {
@@ -37,22 +39,30 @@ public:
         system_(*plant_),
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
-        integrator_(system_, {options_.speed.value}, start_.x.get(), {.tolerance = options_.tolerance}),
-        record_(options_, system_.places()) {
+        integrator_(system_, {options_.speed.value}, start_.x.get(),
+                    {.tolerance = options_.tolerance,
+                     .after_step = [this](double time, double step) { progress(time, step); }}),
+        record_(options_, system_.places()),
+        films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
 
   StudyResult run() {
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     const int total = options_.discard + options_.revolutions;
-    for (; done_ < total; ++done_) {
-      // Directions need time to turn to those that grow most, before their growth counts.
-      if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
-      revolve(done_ >= options_.discard);
-      progress(total);
-      save();
+    std::string status = "completed";
+    try {
+      for (; done_ < total; ++done_) {
+        // Directions need time to turn to those that grow most, before their growth counts.
+        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
+        revolve(done_ >= options_.discard);
+        save();
+      }
+    } catch (const core::DomainError& e) {
+      if (record_.revolutions() < 2) throw;
+      status = fmt::format("ended in revolution {}: {}", done_ + 1, e.what());
     }
-    return report();
+    return report(status);
   }
 
 private:
@@ -65,19 +75,24 @@ private:
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
       }
-      if (!record) continue;
       integrator_.state(start_.x.get());
-      record_.sample(system_.shown(system_.gather(start_.x.get()).data()), system_.gather(integrator_.scaled()));
+      const std::vector<double> whole = system_.gather(start_.x.get());
+      if (const auto thickness = system_.film_thickness(whole.data()); !(films_.margin(thickness) > 0))
+        throw core::DomainError(films_.reason(thickness));
+      if (record) record_.sample(system_.shown(whole.data()), system_.gather(integrator_.scaled()));
     }
     if (record) record_.close(growth, period);
     integrator_.restart(0, integrator_.step());
   }
 
-  void progress(int total) {
+  // A revolution may take minutes: each step says where it ended.
+  void progress(double time, double step) {
+    if (!context_.results.shows_progress()) return;
+    const double turn = options_.speed.value * 180 / std::numbers::pi;
     context_.results.progress(
-        fmt::format("{}: revolution {} of {}{}, step {:.3g} of a revolution, {:.1f} s", context_.results.summary().name,
-                    done_ + 1, total, done_ < options_.discard ? " (discarded)" : "",
-                    integrator_.step() * options_.speed.value / (2 * std::numbers::pi), context_.results.seconds()));
+        fmt::format("{}: revolution {} of {}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
+                    done_ + 1, options_.discard + options_.revolutions, done_ < options_.discard ? " (discarded)" : "",
+                    turn * time, turn * step, context_.results.seconds()));
   }
 
   void save() {
@@ -115,7 +130,7 @@ private:
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
-  StudyResult report() {
+  StudyResult report(const std::string& status) {
     auto& results = context_.results;
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
@@ -133,7 +148,7 @@ private:
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
     summary.points = record_.revolutions();
-    return results.finish("completed", true);
+    return results.finish(status, true);
   }
 
   Context& context_;
@@ -144,6 +159,7 @@ private:
   transient::Integrator integrator_;
   std::optional<transient::Tangents> tangents_;
   MotionRecord record_;
+  FilmLimit films_;
   int done_ = 0;
   double last_saved_ = -1e9;
 };

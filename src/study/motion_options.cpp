@@ -36,7 +36,8 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
   d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, of orbits and spectra");
-  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2), "error allowed to a step, in clearances");
+  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
+        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
   d.add("exponents", &O::exponents, deck::in(0, 1e4), "Lyapunov exponents to compute, the largest; none: 0");
   d.add("max_period", &O::max_period, deck::in(1, 1e5), "longest period to look for, in revolutions");
   d.add("return_tolerance", &O::return_tolerance, deck::in(1e-13, 1),
