@@ -92,10 +92,13 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
       system::is_rotor(m) ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") : "system " + m.system.name;
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
+  constexpr double notable = 2e8;
   for (const auto& s : deck.studies) {
     const auto* sweep = dynamic_cast<const study::Sweep*>(s.get());
-    text += fmt::format("  {} ({}{})\n", s->name(), s->kind(),
-                        sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "");
+    const double bytes = s->memory(m);
+    text += fmt::format("  {} ({}{}){}\n", s->name(), s->kind(),
+                        sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "",
+                        bytes < notable ? "" : fmt::format(", about {} of memory", deck::write_memory(bytes)));
   }
   text += changes_text(deck.changes);
   const std::vector<std::string> warnings = study::warnings(deck);
@@ -113,7 +116,7 @@ std::string list() {
 
 std::string describe(const std::string& key) {
   try {
-    return deck::reference_text(deck::structure_of<study::Deck>(), key);
+    return deck::reference_text(deck::structure_of<study::Deck>(), key, study::citations());
   } catch (core::InputError& e) {
     e.mark_agreed();
     throw;

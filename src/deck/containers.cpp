@@ -74,6 +74,7 @@ public:
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return "1"; }
   const Spec* spec() const override { return spec_of(*item_); }
+  std::vector<Choice> choices() const override { return choices_of(*item_); }
   Leaf leaf(const void* preset, std::span<const std::string> path) const override {
     const std::size_t i = index_of(path.front(), std::numeric_limits<std::size_t>::max());
     return leaf_of(*item_, preset && i < a_.size(preset) ? a_.at(mutable_part(preset), i) : nullptr, path.subspan(1));
@@ -127,6 +128,7 @@ public:
       const Option& o = *row_.option(scalar_);
       return o.codec->write(o.member(a_.at(mutable_part(value), 0)));
     }
+    if (a_.size(value) == 0) return {};  // no table has no rows
     Node n = Node::list();
     for (std::size_t i = 0; i < a_.size(value); ++i) n.push(row_.write(a_.at(mutable_part(value), i)));
     return n;
@@ -237,6 +239,7 @@ public:
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return item_->step(); }
   const Spec* spec() const override { return spec_of(*item_); }
+  std::vector<Choice> choices() const override { return choices_of(*item_); }
   Leaf leaf(const void* preset, std::span<const std::string> path) const override {
     return leaf_of(*item_, preset ? a_.get(mutable_part(preset)) : nullptr, path);
   }

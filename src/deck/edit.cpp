@@ -43,6 +43,7 @@ std::vector<std::string> steps_of(std::string_view path) {
       steps.back() += c;
   }
   if (depth != 0) throw InputError("the braces of the path do not match");
+  if (std::count(path.begin(), path.end(), '{') > 8) throw InputError("the path has more than 8 braces");
   if (std::find(steps.begin(), steps.end(), "") != steps.end()) throw InputError("a step of the path is empty");
   return steps;
 }
@@ -59,21 +60,32 @@ std::vector<std::string> alternatives(const std::string& step) {
     while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
     while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
     if (word.empty()) throw InputError(fmt::format("a name in '{}' is empty", step));
-    for (std::string& end : alternatives(step.substr(close + 1)))
+    if (all.size() > 1000) throw InputError(fmt::format("'{}' stands for more than 1000 names", step));
+    for (const std::string& end : alternatives(step.substr(close + 1)))
       all.push_back(step.substr(0, open) + std::string(word) + end);
     if (comma == std::string_view::npos) return all;
     inside.remove_prefix(comma + 1);
   }
 }
 
-// `*` stands for any run of characters.
+// `*` stands for any run of characters. A mismatch goes back to the last star only, whose run grows by one character.
 bool fits(std::string_view word, std::string_view pattern) {
-  const std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return word == pattern;
-  if (word.substr(0, star) != pattern.substr(0, star)) return false;
-  for (std::size_t i = star; i <= word.size(); ++i)
-    if (fits(word.substr(i), pattern.substr(star + 1))) return true;
-  return false;
+  std::size_t w = 0, p = 0, after_star = std::string_view::npos, run_end = 0;
+  while (w < word.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      after_star = ++p;
+      run_end = w;
+    } else if (p < pattern.size() && pattern[p] == word[w]) {
+      ++p;
+      ++w;
+    } else if (after_star != std::string_view::npos) {
+      p = after_star;
+      w = ++run_end;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
 // What a scalar asks for beyond replacing: nothing, a factor, or a sum.

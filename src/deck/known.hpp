@@ -22,6 +22,8 @@ public:
   Knows& operator=(const Knows&) = delete;
   virtual ~Knows() = default;
   [[nodiscard]] virtual const Spec* spec() const { return nullptr; }
+  /// Values of a choice, or of the items of a list of choices; empty for all else.
+  [[nodiscard]] virtual std::vector<Choice> choices() const { return {}; }
   /// What is known at the rest of a path that is not empty; `preset` is the default at the start of it, null if
   /// unknown. Throws core::InputError (without a place) if there is no such option.
   [[nodiscard]] virtual Leaf leaf(const void* preset, std::span<const std::string> path) const;
@@ -33,5 +35,7 @@ public:
 [[nodiscard]] Leaf leaf_of(const Structure& structure, const void* preset, std::span<const std::string> path);
 /// Facts of the number that `codec` reads, or of the numbers of a list or a range; null for all else.
 [[nodiscard]] const Spec* spec_of(const Codec& codec);
+/// Values of a choice, or of the items of a list of choices; empty for all else.
+[[nodiscard]] std::vector<Choice> choices_of(const Codec& codec);
 
 }  // namespace whirl::deck

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "known.hpp"
+#include "plausible.hpp"
 #include "schema.hpp"
 #include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
@@ -34,6 +35,11 @@ std::string unit_words(const std::string& unit) {
   return unit == "1" ? "number" : unit == "*" ? "quantity with the unit of the parameter" : "quantity in " + unit;
 }
 
+// The unit behind a number in messages.
+std::string_view plain_unit(std::string_view unit) {
+  return unit == "1" || unit == "*" ? "" : unit == "delta K" ? "K" : unit;
+}
+
 // Reads the quantity `node` for `spec`; false if a problem was added. `unit` is the unit as written.
 bool read_real(const Node& node, const Spec& spec, Reading& r, double& value, std::string* unit = nullptr) {
   if (!is_scalar(node, "a " + unit_words(spec.unit), r)) return false;
@@ -50,6 +56,12 @@ bool read_real(const Node& node, const Spec& spec, Reading& r, double& value, st
           spec.unit != "1" && spec.unit != "*" && spec.check.text() != "positive" && spec.check.text() != "at least 0";
       r.problems.add(node.place, fmt::format("{} must be {}{}, not {}", name_of_value(node), spec.check.text(),
                                              scaled ? " " + spec.unit : "", node.text));
+      return false;
+    }
+    if (const Magnitude size = plausible(spec.unit); !size.holds(si)) {
+      r.problems.add(node.place,
+                     fmt::format("{} cannot be as {} as {}: 0, or {} in size", name_of_value(node),
+                                 std::abs(si) < 1 ? "small" : "large", node.text, size.text(plain_unit(spec.unit))));
       return false;
     }
     value = si;
@@ -242,7 +254,7 @@ public:
   std::string type() const override { return "text"; }
 };
 
-class ChoiceCodec : public Codec {
+class ChoiceCodec : public Codec, public Knows {
 public:
   ChoiceCodec(std::vector<Choice> c, std::function<std::size_t(const void*)> get,
               std::function<void(void*, std::size_t)> set)
@@ -271,6 +283,7 @@ public:
     for (const Choice& c : choices_) valid.push_back(c.name);
     return fmt::format("one of {}", fmt::join(valid, ", "));
   }
+  std::vector<Choice> choices() const override { return choices_; }
 
 private:
   std::vector<Choice> choices_;

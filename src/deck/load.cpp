@@ -21,7 +21,7 @@ namespace {
 using core::InputError;
 
 constexpr std::size_t most_bases = 100;
-constexpr std::size_t most_bytes = std::size_t{16} << 20;  // of all files of a deck: one table may be named many times
+constexpr std::size_t most_bytes = std::size_t{256} << 20;  // of all files of a deck: one table may be named many times
 
 void require_text(const std::string& bytes, const std::string& path) {
   int line = 1;

@@ -153,7 +153,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   if (word.size() > 60) return best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   const std::string wanted = lower(word);
-  for (std::size_t k = 0; k < std::min<std::size_t>(candidates.size(), 1000); ++k) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(candidates.size(), 5000); ++k) {
     const std::string& c = candidates[k];
     const bool part = word.size() >= 4 && c.size() > word.size() && c.compare(0, word.size(), word) == 0;
     const std::size_t apart = c.size() > word.size() ? c.size() - word.size() : word.size() - c.size();

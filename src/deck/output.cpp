@@ -1,17 +1,52 @@
 #include "whirl/deck/output.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "known.hpp"
+#include "plausible.hpp"
 #include "schema.hpp"
 
 namespace whirl::deck {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// A number as YAML 1.1 reads one: digits on both sides of the point and a sign in the exponent, 1.0e-5. Readers of
+// that version (PyYAML) take 1e-5 for text.
+std::string yaml_number(const std::string& text) {
+  double value = 0;
+  const char* last = text.data() + text.size();
+  const std::size_t sign = !text.empty() && (text[0] == '-' || text[0] == '+') ? 1 : 0;
+  if (text.size() == sign || text[sign] < '0' || text[sign] > '9') return text;
+  if (const auto [end, code] = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), last, value);
+      code != std::errc() || end != last)
+    return text;
+  const std::size_t e = text.find_first_of("eE");
+  if (e == std::string::npos) return text;
+  std::string mantissa = text.substr(0, e), exponent = text.substr(e + 1);
+  if (mantissa.find('.') == std::string::npos) mantissa += ".0";
+  if (exponent[0] != '-' && exponent[0] != '+') exponent.insert(0, "+");
+  return mantissa + "e" + exponent;
+}
+
+// True if a reader of YAML 1.1 or 1.2 may take the plain scalar `s` for something else than text: numbers in all their
+// forms, dates and times begin with a digit, a sign or a point and hold no letters of words; some words are flags.
+bool may_be_no_text(const std::string& s) {
+  static const std::set<std::string, std::less<>> words{"yes", "no", "on", "off", "true", "false", "null", "~"};
+  std::string small = s;
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  if (words.contains(small)) return true;
+  return small.find_first_not_of("0123456789abcdefox_.:+-tz ") == std::string::npos &&
+         small.find_first_of("0123456789") != std::string::npos &&
+         (small.find_first_of("0123456789") < 2 || small[0] == '.');
+}
 
 // True if `s` reads back as the same string without quotes, also between flow brackets.
 bool is_plain(const std::string& s) {
@@ -26,14 +61,16 @@ bool is_plain(const std::string& s) {
   });
 }
 
+// Text that could be read as a number stands in quotes, except quantities, whose units have letters.
 std::string scalar_text(const Node& n) {
   if (n.kind == Node::Kind::none) return "null";
-  return is_plain(n.text) ? n.text : Json(n.text).dump();
+  if (!n.quoted && is_plain(n.text)) return yaml_number(n.text);
+  return is_plain(n.text) && !may_be_no_text(n.text) ? n.text : Json(n.text).dump();
 }
 
 // Keys may be paths with wildcards.
-std::string key_text(const Node& n) {
-  return is_plain(n.key) ? n.key : Json(n.key).dump();
+std::string key_text(const std::string& key) {
+  return is_plain(key) && !may_be_no_text(key) ? key : Json(key).dump();
 }
 
 bool is_leaf(const Node& n) {
@@ -50,7 +87,7 @@ std::string flow(const Node& n) {
   std::string s = map ? "{" : "[";
   for (const Node& i : n.items) {
     if (s.size() > 1) s += ", ";
-    if (map) s += key_text(i) + ": ";
+    if (map) s += key_text(i.key) + ": ";
     s += flow(i);
   }
   return s + (map ? "}" : "]");
@@ -65,7 +102,7 @@ bool on_one_line(const Node& n, bool in_list) {
 void block(const Node& n, const std::string& indent, std::string& out) {
   for (const Node& i : n.items) {
     const bool in_list = n.kind == Node::Kind::list;
-    out += indent + (in_list ? "-" : key_text(i) + ":");
+    out += indent + (in_list ? "-" : key_text(i.key) + ":");
     if (on_one_line(i, in_list)) {
       out += " " + flow(i) + "\n";
       continue;
@@ -188,33 +225,72 @@ std::string schema_text(const Structure& structure, std::string_view title) {
   return to_json(n);
 }
 
-std::string reference_text(const Structure& structure, std::string_view path) {
+namespace {
+
+// What help says of one option.
+std::string entry_text(const std::string& key, const Option& o, const Structure& s) {
+  const std::string value = default_text(o, s);
+  const Spec* spec = spec_of(*o.codec);
+  std::string out = fmt::format("{}\n    {}{}{}", key, o.codec->type(), value.empty() ? "" : "; ", value);
+  if (spec && spec->unit != "1" && spec->unit != "*")
+    out += fmt::format("; 0, or {} in size", plausible(spec->unit).text(spec->unit == "delta K" ? "K" : spec->unit));
+  out += fmt::format("\n    {}{}\n", o.text, o.source.empty() ? "" : " [" + o.source + "]");
+  for (const Alias& a : o.aliases)
+    out += a.factor == 1 ? fmt::format("    may be written '{}'\n", a.key)
+                         : fmt::format("    may be given as '{}', {} times the value\n", a.key, write_number(a.factor));
+  const std::vector<Choice> choices = choices_of(*o.codec);
+  std::size_t width = 0;
+  for (const Choice& c : choices) width = std::max(width, c.name.size());
+  for (const Choice& c : choices) out += fmt::format("      {:<{}}  {}\n", c.name, width, c.text);
+  if (!o.selector.empty())
+    out += fmt::format("    applies where {} is {}\n", o.selector, fmt::join(o.selected, " or "));
+  if (o.continuable) out += "    studies may vary it\n";
+  return out;
+}
+
+bool has_choice(const Option& o, std::string_view name) {
+  const std::vector<Choice> choices = choices_of(*o.codec);
+  return std::any_of(choices.begin(), choices.end(), [&](const Choice& c) { return c.name == name; });
+}
+
+bool has_alias(const Option& o, std::string_view name) {
+  return std::any_of(o.aliases.begin(), o.aliases.end(), [&](const Alias& a) { return a.key == name; });
+}
+
+// The sources that `text` names, each with its full reference.
+std::string sources_text(const std::string& text, std::span<const Citation> citations) {
+  std::string out;
+  for (const Citation& c : citations)
+    if (text.find("[" + std::string(c.mark)) != std::string::npos)
+      out += fmt::format("{}[{}] {}\n", out.empty() ? "\nsources\n" : "", c.mark, c.text);
+  return out;
+}
+
+}  // namespace
+
+std::string reference_text(const Structure& structure, std::string_view path, std::span<const Citation> citations) {
   std::string out;
   std::vector<std::string> keys;
-  walk(structure, {}, [&](const std::string& key, const Option&, const Structure&) { keys.push_back(key); });
+  std::vector<std::string> words;  // that one may ask for
+  walk(structure, {}, [&](const std::string& key, const Option& o, const Structure&) {
+    keys.push_back(key);
+    words.push_back(split_path(key).back());
+    for (const Choice& c : choices_of(*o.codec)) words.push_back(c.name);
+  });
   // `bearings.geometry` is an option of every bearing before it is a bearing of that name.
   const bool any_name = std::none_of(keys.begin(), keys.end(), [&](const auto& k) { return is_below(k, path, false); });
   walk(structure, {}, [&](const std::string& key, const Option& o, const Structure& s) {
-    // A single word finds every option that has it in its path.
+    // A single word finds every option that has it in its path, is written so, or takes it as a value.
     const std::vector<std::string> steps = split_path(key);
     const bool named = std::find(steps.begin(), steps.end(), path) != steps.end();
-    if (!path.empty() && !named && !is_below(key, path, any_name)) return;
-    const std::string value = default_text(o, s);
-    out += fmt::format("{}\n    {}{}{}\n    {}{}\n", key, o.codec->type(), value.empty() ? "" : "; ", value, o.text,
-                       o.source.empty() ? "" : " [" + o.source + "]");
-    if (!o.selector.empty()) {
-      out += fmt::format("    applies where {} is", o.selector);
-      for (std::size_t i = 0; i < o.selected.size(); ++i) out += (i ? " or " : " ") + o.selected[i];
-      out += "\n";
-    }
-    if (o.continuable) out += "    studies may vary it\n";
+    if (path.empty() || named || has_alias(o, path) || has_choice(o, path) || is_below(key, path, any_name))
+      out += entry_text(key, o, s);
   });
   if (out.empty()) {
-    std::vector<std::string> last = keys;
-    for (const std::string& k : keys) last.push_back(split_path(k).back());
-    throw core::InputError(fmt::format("there is no option '{}'{}", path, did_you_mean(path, last)));
+    keys.insert(keys.end(), words.begin(), words.end());
+    throw core::InputError(fmt::format("there is no option '{}'{}", path, did_you_mean(path, keys)));
   }
-  return out;
+  return out + sources_text(out, citations);
 }
 
 std::vector<std::string> undocumented(const Structure& structure) {

@@ -46,6 +46,16 @@ bool Structure::applies(const Option& o, const void* object) const {
 
 namespace {
 
+// The key that was meant, also where it was nearly another word for it.
+std::string hint_for(const Structure& s, const std::string& word) {
+  std::vector<std::string> words = s.keys();
+  for (const Option& o : s.options)
+    for (const Alias& a : o.aliases) words.push_back(a.key);
+  std::string near = nearest(word, words);
+  if (double factor = 1; const Option* o = s.aliased(near, factor)) near = o->key;
+  return near.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", near);
+}
+
 // The entry of `node` for `o`, under its key or another word for it, which goes to `meant`; null if there is none.
 const Node* given(const Option& o, const Node& node, Node& meant, Reading& r) {
   const Node* value = node.find(o.key);
@@ -85,7 +95,7 @@ void Structure::read(const Node& node, void* object, Reading& r) const {
       r.problems.add(entry.key_place, entry.key);
       continue;
     }
-    const std::string hint = did_you_mean(entry.key, keys());
+    const std::string hint = hint_for(*this, entry.key);
     r.problems.add(entry.key_place,
                    fmt::format("unknown key '{}'{}", entry.key,
                                hint.empty() ? fmt::format("; valid keys are {}", fmt::join(keys(), ", ")) : hint));
@@ -140,10 +150,15 @@ Node plain_schema(const Structure& s, bool whole, const std::string& selector, c
     p.set("description", Node::scalar(o.text, true));
     const Node value = o.codec->write(o.member(s.defaults.get()));
     if (!o.required && !selects && value.kind == Node::Kind::scalar) p.set("default", value);
+    for (const Alias& a : o.aliases) {
+      Node other = o.codec->schema(whole);
+      other.set("description", Node::scalar(fmt::format("another word for '{}'", o.key), true));
+      properties.set(a.key, std::move(other));
+    }
     properties.set(o.key, std::move(p));
     // A choice that is not the default one must be written for its keys to apply.
     const bool written = selects && o.codec->write(o.member(s.defaults.get())).text != choice;
-    if (o.required || written) required.push(Node::scalar(o.key, true));
+    if ((o.required && o.aliases.empty()) || written) required.push(Node::scalar(o.key, true));
   }
   if (whole && !required.items.empty()) n.set("required", std::move(required));
   return n;
@@ -176,6 +191,11 @@ Access Structure::find(void* object, std::span<const std::string> path) const {
 const Spec* spec_of(const Codec& codec) {
   const auto* knows = dynamic_cast<const Knows*>(&codec);
   return knows ? knows->spec() : nullptr;
+}
+
+std::vector<Choice> choices_of(const Codec& codec) {
+  const auto* knows = dynamic_cast<const Knows*>(&codec);
+  return knows ? knows->choices() : std::vector<Choice>{};
 }
 
 Leaf Knows::leaf(const void*, std::span<const std::string> path) const {

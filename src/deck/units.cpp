@@ -97,9 +97,10 @@ ut_status visit_galilean(const ut_unit*, double, const ut_unit* underlying, doub
 
 const std::vector<std::string>& common_units() {
   static const std::vector<std::string> units{
-      "m",    "mm",  "um",   "kg",    "g",      "s",   "ms",    "N",      "kN",    "Pa",    "kPa", "MPa",  "GPa",
-      "bar",  "K",   "degC", "rad",   "deg",    "rpm", "rad/s", "Hz",     "Pa s",  "mPa s", "cP",  "N/m",  "N s/m",
-      "kg m", "m/s", "mm/s", "m/s^2", "kg/m^3", "W",   "kW",    "J/kg/K", "W/m/K", "m^2/s", "N m", "g mm", "kg mm"};
+      "m",      "mm",    "um",    "kg",    "g",    "s",     "ms",   "N",     "kN",     "Pa", "kPa",
+      "MPa",    "GPa",   "bar",   "K",     "degC", "rad",   "deg",  "rpm",   "rad/s",  "Hz", "Pa s",
+      "mPa s",  "cP",    "N/m",   "N s/m", "kg m", "m/s",   "mm/s", "m/s^2", "kg/m^3", "W",  "kW",
+      "J/kg/K", "W/m/K", "m^2/s", "N m",   "g mm", "kg mm", "byte", "MB",    "GB",     "GiB"};
   return units;
 }
 
@@ -125,9 +126,23 @@ void refuse_traps(std::string_view unit) {
     throw InputError(fmt::format("'{}' is not a unit: there is a second number", unit));
 }
 
+// Units of memory: to UDUNITS a byte is a pure number and B is the bel.
+const std::map<std::string, double, std::less<>>& units_of_memory() {
+  static const std::map<std::string, double, std::less<>> units{{"byte", 1},        {"kB", 1e3},          {"MB", 1e6},
+                                                                {"GB", 1e9},        {"TB", 1e12},         {"KiB", 1024},
+                                                                {"MiB", 1048576.0}, {"GiB", 1073741824.0}};
+  return units;
+}
+
 Unit parse_unit(std::string_view text) {
   refuse_traps(text);
   if (text.empty() || text == "1") return {};
+  if (const auto memory = units_of_memory().find(text); memory != units_of_memory().end()) {
+    Unit u;
+    u.powers["byte"] = 1;
+    u.scale = memory->second;
+    return u;
+  }
   const UnitPtr unit(ut_parse(unit_system(), std::string(text).c_str(), UT_UTF8));
   if (!unit) throw InputError(fmt::format("unknown unit '{}'{}", text, did_you_mean(text, common_units())));
   Structure s;
@@ -171,7 +186,8 @@ std::string expected(std::string_view si) {
       {"N s/m", "a damping such as 1e5 N s/m"},
       {"m/s", "a velocity such as 2.5 mm/s"},
       {"m/s^2", "an acceleration such as 9.81 m/s^2"},
-      {"kg m", "an unbalance such as 50 kg mm"}};
+      {"kg m", "an unbalance such as 50 kg mm"},
+      {"byte", "a size of memory such as 8 GB"}};
   const auto it = examples.find(si);
   return it != examples.end() ? it->second : fmt::format("a value in {}", si);
 }
@@ -252,6 +268,12 @@ void check_kind(std::string_view unit, std::string_view si) {
 
 std::string write_number(double value) {
   std::string text = fmt::format("{}", value == 0 ? 0.0 : value);
+  if (const std::size_t e = text.find('e'); e != std::string::npos) {  // 1e-5 and 1e16, not 1e-05 and 1e+16
+    std::size_t digits = e + 1;
+    if (text[digits] == '+') text.erase(digits, 1);
+    if (text[digits] == '-') ++digits;
+    if (text[digits] == '0') text.erase(digits, 1);
+  }
   // 1.8e9 reads better than 1800000000.
   const std::size_t sign = text[0] == '-' ? 1 : 0, last = text.find_last_not_of('0');
   if (text.find_first_of(".en") != std::string::npos || text.size() - last < 7) return text;
@@ -259,6 +281,10 @@ std::string write_number(double value) {
   text.resize(last + 1);
   if (last > sign) text.insert(sign + 1, ".");
   return fmt::format("{}e{}", text, exponent);
+}
+
+std::string write_memory(double bytes) {
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6) : fmt::format("{:.3g} GB", bytes / 1e9);
 }
 
 std::string write_rounded(double value) {

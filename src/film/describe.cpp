@@ -93,7 +93,7 @@ std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence) {
 void describe(deck::Description<Geometry>& d) {
   using enum Geometry::Bore;
   d.add("type", &Geometry::type, "shape of the bore");
-  d.add("radius", &Geometry::radius, "m", positive, "radius of the journal").required();
+  d.add("radius", &Geometry::radius, "m", positive, "radius of the journal").required().alias("diameter", 2);
   d.add("length", &Geometry::length, "m", positive, "axial length of the pads").required();
   d.add("clearance", &Geometry::clearance, "m", positive,
         "radial clearance of the assembled bearing, the film thickness at the middle of a pad for a centred journal",
@@ -170,9 +170,11 @@ void describe(deck::Description<Options>& d) {
   d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
       .only(&Options::kind, {reynolds});
   d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
+      .isotropic()
       .continuable()
       .only(&Options::kind, {linear});
   d.add("damping", &Options::damping, "N s/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
+      .isotropic()
       .continuable()
       .only(&Options::kind, {linear});
   d.add("liner", &Options::liner, "elastic layer of the bore")

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <unordered_set>
 
 namespace whirl::rotor {
 
@@ -39,8 +39,12 @@ void describe(deck::Description<Segment>& d) {
   d.add("length", &Segment::length, "m", positive, "length of the element").required();
   d.add("outer_mass_diameter", &Segment::outer_mass_diameter, "m", positive, "outer diameter of the material",
         "004 table 2.1")
-      .required();
-  d.add("inner_mass_diameter", &Segment::inner_mass_diameter, "m", non_negative, "bore of the material");
+      .required()
+      .alias("diameter")
+      .alias("outer_diameter");
+  d.add("inner_mass_diameter", &Segment::inner_mass_diameter, "m", non_negative, "bore of the material")
+      .alias("inner_diameter")
+      .alias("bore");
   d.add("outer_stiffness_diameter", &Segment::outer_stiffness_diameter, "m", non_negative,
         "outer diameter of the part that bends; 0: both stiffness diameters are the mass diameters", "004 table 2.1");
   d.add("inner_stiffness_diameter", &Segment::inner_stiffness_diameter, "m", non_negative,
@@ -70,8 +74,8 @@ void describe(deck::Description<Disc>& d) {
   d.add("mass", &Disc::mass, "kg", non_negative, "mass, beside that of the geometry").continuable();
   d.add("polar_inertia", &Disc::polar_inertia, "kg m^2", non_negative, "moment of inertia about the shaft axis");
   d.add("diametral_inertia", &Disc::diametral_inertia, "kg m^2", non_negative, "moment of inertia about a diameter");
-  d.add("outer_diameter", &Disc::outer_diameter, "m", non_negative, "outer diameter; 0: no geometry");
-  d.add("inner_diameter", &Disc::inner_diameter, "m", non_negative, "diameter of the bore");
+  d.add("outer_diameter", &Disc::outer_diameter, "m", non_negative, "outer diameter; 0: no geometry").alias("diameter");
+  d.add("inner_diameter", &Disc::inner_diameter, "m", non_negative, "diameter of the bore").alias("bore");
   d.add("thickness", &Disc::thickness, "m", non_negative, "axial thickness");
   d.add("density", &Disc::density, "kg/m^3", non_negative, "density; 0: that of the shaft");
   d.check([](const Disc& x, const deck::Report& r) {
@@ -115,9 +119,9 @@ void describe(deck::Description<Reduction>& d) {
   d.check([](const Reduction& x, const deck::Report& r) {
     if (x.type == none) return;
     if (x.masters.size() < 2) r.fail("masters", "'masters' needs at least two nodes");
+    std::unordered_set<int> seen;
     for (std::size_t i = 0; i < x.masters.size(); ++i)
-      if (std::find(x.masters.begin(), x.masters.begin() + static_cast<std::ptrdiff_t>(i), x.masters[i]) !=
-          x.masters.begin() + static_cast<std::ptrdiff_t>(i))
+      if (!seen.insert(x.masters[i]).second)
         r.fail(fmt::format("masters.{}", i + 1), fmt::format("node {} is a master twice", x.masters[i]));
   });
 }
@@ -135,7 +139,7 @@ void describe(deck::Description<Options>& d) {
   d.table("segments", &Options::segments, "beam elements along the shaft; node k is the left end of segment k")
       .required()
       .only(&Options::type, {shaft});
-  d.add("discs", &Options::discs, "rigid discs at nodes").only(&Options::type, {shaft});
+  d.add("discs", &Options::discs, "rigid discs at nodes").alias("disks").only(&Options::type, {shaft});
   d.add("material", &Options::material, "material of the shaft").required().only(&Options::type, {shaft});
   d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5")
       .only(&Options::type, {shaft});
@@ -154,6 +158,11 @@ void describe(deck::Description<Options>& d) {
     if (o.reduction.type != Reduction::Type::none)
       for (std::size_t i = 0; i < o.reduction.masters.size(); ++i)
         node(o.reduction.masters[i], fmt::format("reduction.masters.{}", i + 1));
+    // Each inner node has a translation and a slope in a plane, each master its slope.
+    const int inner = 2 * n_nodes - static_cast<int>(o.reduction.masters.size());
+    if (o.reduction.type == Reduction::Type::craig_bampton && o.reduction.modes > inner)
+      r.fail("reduction.modes",
+             fmt::format("the shaft with its masters held has {} modes per plane, not {}", inner, o.reduction.modes));
     const auto& table = o.material.modulus;
     if (table.size() < 2) return;
     for (std::size_t i = 0; i < o.segments.size(); ++i) {

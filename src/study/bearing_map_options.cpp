@@ -12,14 +12,19 @@ void describe(deck::Description<BearingMapOptions>& d) {
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
   d.add("max_eccentricity", &O::max_eccentricity, deck::positive,
         "largest eccentricity, in clearances; that of a compliant bearing may exceed 1");
-  d.add("points", &O::points, deck::at_least(2), "eccentricities, evenly spaced");
-  d.add("grid", &O::grid, deck::at_least(3),
+  d.add("points", &O::points, deck::in(2, 1e8), "eccentricities, evenly spaced");
+  d.add("grid", &O::grid, deck::in(3, 1e4),
         "eccentricities in the impedance plot, closer together towards the wall; directions have twice as many");
   d.add("frequencies", &O::frequencies, deck::positive,
         "frequencies omega/Omega at which the stiffness and damping of a film with own states are tabulated; the first "
         "one is that of the locus");
   d.add("sommerfeld", &O::sommerfeld, deck::positive,
         "Sommerfeld numbers (loads) at which position, coefficients and the pressure around the bearing are reported");
+}
+
+double BearingMap::memory(const system::Machine&) const {
+  const double frequencies = static_cast<double>(options.frequencies.size());
+  return 600.0 * (1 + frequencies) * options.points + 130.0 * options.grid * options.grid;
 }
 
 void BearingMap::validate(const system::Machine& machine, const deck::Report& report) const {

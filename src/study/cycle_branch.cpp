@@ -45,6 +45,21 @@ private:
   solve::Cycle first_;
 };
 
+// A flip that was asked for and not found.
+class NoFlip final : public Study {
+public:
+  NoFlip(const std::string& branch, int k, std::size_t found)
+      : name_(name_of_doubled(branch, static_cast<std::size_t>(k))),
+        reason_(fmt::format("there is no flip {}: the branch '{}' has {}", k, branch, found)) {}
+  [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
+  [[nodiscard]] std::string name() const override { return name_; }
+  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
+  [[nodiscard]] StudyResult run(Context& /*context*/) override { throw core::NotConverged(reason_); }
+
+private:
+  std::string name_, reason_;
+};
+
 }  // namespace
 
 StudyResult CycleBranch::run(Context& context) {
@@ -59,22 +74,26 @@ std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result
   beside.follow_flips = false;
   for (std::size_t k = 2; auto& first : read_solutions(result))
     born.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), beside, std::move(first)));
-  if (!options.follow_flips || !result.has_group("flips")) return born;
-  const std::vector<FlipSeed> seeds = read_seeds(result.group("flips"));
+  if (!options.follow_flips) return born;
+  std::vector<FlipSeed> seeds;
+  if (result.has_group("flips")) seeds = read_seeds(result.group("flips"));
   for (std::size_t k = 1; k <= seeds.size(); ++k) {
     const auto& chosen = options.flips;
     if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k)) == chosen.end()) continue;
     born.push_back(
         std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds, k - 1));
   }
+  for (const int k : options.flips)
+    if (static_cast<std::size_t>(k) > seeds.size()) born.push_back(std::make_unique<NoFlip>(name(), k, seeds.size()));
   return born;
 }
 
 bool CycleBranch::may_add(std::string_view other) const {
   if (options.parameter.deflation && may_be_solution(name(), other)) return true;
+  if (!options.follow_flips) return false;
   const std::string first = io::plain_name(name_of_doubled(name(), 1));
   const std::string_view stem = std::string_view(first).substr(0, first.size() - 1);
-  if (!options.follow_flips || !other.starts_with(stem) || other.size() == stem.size() ||
+  if (!other.starts_with(stem) || other.size() == stem.size() ||
       other.find_first_not_of("0123456789", stem.size()) != std::string_view::npos)
     return false;
   const auto& chosen = options.flips;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cost.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
 namespace whirl::study {
@@ -71,7 +72,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
       .only(&O::method, {collocation, multiple_shooting, finite_difference, newton_picard});
   d.add("scheme", &O::scheme, "scheme of integration")
       .only(&O::method, {shooting, multiple_shooting, finite_difference, newton_picard});
-  d.add("steps", &O::steps, deck::positive,
+  d.add("steps", &O::steps, deck::in(1, 1e6),
         "steps of the scheme in each interval, in the whole period for shooting; as many as make 120 a period if not "
         "given")
       .only(&O::method, {shooting, multiple_shooting, newton_picard});
@@ -85,15 +86,15 @@ void describe(deck::Description<CycleBranchOptions>& d) {
       .only(&O::method, {collocation});
   d.add("adapt_every", &O::adapt_every, deck::positive, "points of the branch between adaptations of the time mesh")
       .only(&O::method, {collocation});
-  d.add("mesh_tolerance", &O::mesh_tolerance, deck::positive,
+  d.add("mesh_tolerance", &O::mesh_tolerance, deck::in(1e-13, 1),
         "estimated error per interval above which it is split, relative to the orbit")
       .only(&O::method, {collocation});
-  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),
+  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
         "root mean square of the scaled residual at which Newton's method stops");
   d.add("at", &O::at, "*", deck::any,
         "parameter values inside the range at which the cycle is solved and reported as at.VALUE.*");
-  d.add("multipliers", &O::multipliers, deck::positive, "Floquet multipliers to report, the largest");
-  d.add("period", &O::period, deck::positive, "revolutions per cycle");
+  d.add("multipliers", &O::multipliers, deck::in(1, 1e4), "Floquet multipliers to report, the largest");
+  d.add("period", &O::period, deck::in(1, 1e4), "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
   d.add("max_eccentricity", &O::max_eccentricity, deck::between(0, 1),
         "the branch ends, as in contact, where the journal's eccentricity per clearance reaches this; no limit if not "
@@ -119,6 +120,18 @@ void describe(deck::Description<CycleBranchOptions>& d) {
     if (o.method == newton_picard && (o.scheme == O::Stepping::radau_iia_2 || o.scheme == O::Stepping::radau_iia_3))
       r.fail("scheme", "newton_picard solves one stage after the other: sdirk_2, sdirk_4 or an explicit scheme");
   });
+}
+
+double CycleBranch::memory(const system::Machine& machine) const {
+  using enum CycleBranchOptions::Method;
+  const CycleBranchOptions& o = options;
+  const double intervals = o.method == shooting ? 1 : o.intervals, steps = o.method == collocation ? 1 : steps_of(o);
+  const double stages = o.method == collocation ? o.degree : 1;
+  // Newton-Picard never forms a dense block; the bound of a sparse one holds for it.
+  if (o.method == newton_picard) return memory_of_equilibria(machine) * (1 + intervals / 100);
+  const double stored = std::min(o.orbits, o.max_points) * 8 * intervals * stages * n_states(machine);
+  // Flips are followed on twice the intervals.
+  return memory_of_cycles(machine, intervals, stages) * (o.follow_flips ? 2 : 1) + stored + 64 * intervals * steps;
 }
 
 void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {

@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <unordered_map>
 
+#include "cost.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
@@ -13,39 +15,60 @@
 namespace whirl::study {
 namespace {
 
-// Each study has files, a group and pictures of its own, and so has each branch that it adds: what those are called
-// must differ where only what may stand in the name of a file is left.
-void check_name(const Deck& deck, std::size_t i, const deck::Report& report) {
-  constexpr std::size_t longest = 120;
-  const std::string name = deck.studies[i]->name(), file = io::plain_name(name);
-  if (name.size() > longest)
-    report.fail("name",
-                fmt::format("a name of {} bytes; files are called after it, it has {} at most", name.size(), longest));
-  if (std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }))
-    report.fail("name", "a name has no tabulators, line ends or other control characters");
+// Branches that a study adds have names of their own, which no other study may have.
+void check_added(const Deck& deck, std::size_t i, const std::vector<std::string>& files, const deck::Report& report) {
+  const Study& later = *deck.studies[i];
   for (std::size_t j = 0; j < i; ++j) {
-    const Study &earlier = *deck.studies[j], &later = *deck.studies[i];
-    if (earlier.name() == name)
-      report.fail("name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1, name));
-    else if (io::plain_name(earlier.name()) == file)
-      report.fail("name",
-                  fmt::format("study {} is called '{}', and the files of both are '{}': give each a name of its own",
-                              j + 1, earlier.name(), file));
-    else if (earlier.may_add(file))
+    const Study& earlier = *deck.studies[j];
+    if (earlier.may_add(files[i]))
       report.fail("name", fmt::format("study {}, '{}', adds a branch that it calls so: give each a name of its own",
                                       j + 1, earlier.name()));
-    else if (later.may_add(io::plain_name(earlier.name())))
+    else if (later.may_add(files[j]))
       report.fail("name", fmt::format("'{}' adds a branch that it calls '{}', as study {} is called: give each a "
                                       "name of its own",
-                                      name, earlier.name(), j + 1));
+                                      later.name(), earlier.name(), j + 1));
+  }
+}
+
+// Each study has files, a group and pictures of its own, and so has each branch that it adds: what those are called
+// must differ where only what may stand in the name of a file is left.
+void check_names(const Deck& deck, const deck::Report& r) {
+  constexpr std::size_t longest = 120;
+  std::vector<std::string> files;
+  std::unordered_map<std::string, std::size_t> first_with;  // that file
+  for (std::size_t i = 0; i < deck.studies.size(); ++i) {
+    const Study& s = *deck.studies[i];
+    const deck::Report report = r.below(fmt::format("studies.{}.{}", i + 1, s.kind()));
+    const std::string name = s.name();
+    const std::string& file = files.emplace_back(io::plain_name(name));
+    if (name.size() > longest)
+      report.fail("name", fmt::format("a name of {} bytes; files are called after it, it has {} at most", name.size(),
+                                      longest));
+    if (std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }))
+      report.fail("name", "a name has no tabulators, line ends or other control characters");
+    const auto [same, fresh] = first_with.emplace(file, i);
+    const std::size_t j = same->second;
+    if (!fresh && deck.studies[j]->name() == name)
+      report.fail("name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1, name));
+    else if (!fresh)
+      report.fail("name",
+                  fmt::format("study {} is called '{}', and the files of both are '{}': give each a name of its own",
+                              j + 1, deck.studies[j]->name(), file));
+    else
+      check_added(deck, i, files, report);
   }
 }
 
 }  // namespace
+void describe(deck::Description<Limits>& d) {
+  d.add("memory", &Limits::memory, "byte", deck::positive,
+        "of all ranks together, above which a study is refused before it begins; its need is estimated from counts");
+}
 
 void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
+  d.add("limits", &Deck::limits, "what a run may take");
   d.check([](const Deck& deck, const deck::Report& r) {
     const auto holds = [](const auto& s) { return s->needs_bearings(); };
     const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
@@ -61,8 +84,11 @@ void describe(deck::Description<Deck>& d) {
       }
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
-      check_name(deck, i, r.below(path));
+      if (const double bytes = s.memory(deck.machine); bytes > deck.limits.memory)
+        r.fail(path, fmt::format("'{}' needs about {} of memory, and limits.memory is {}", s.name(),
+                                 deck::write_memory(bytes), deck::write_memory(deck.limits.memory)));
     }
+    check_names(deck, r);
   });
 }
 

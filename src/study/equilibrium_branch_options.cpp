@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "cost.hpp"
 #include "whirl/study/equilibrium_branch.hpp"
 
 namespace whirl::study {
@@ -16,6 +17,10 @@ void describe(deck::Description<EquilibriumBranchOptions>& d) {
       if (o.detect[i] != Event::fold && o.detect[i] != Event::hopf && o.detect[i] != Event::branch_point)
         r.fail(fmt::format("detect.{}", i + 1), "equilibria have fold, hopf and branch_point");
   });
+}
+
+double EquilibriumBranch::memory(const system::Machine& machine) const {
+  return memory_of_equilibria(machine);
 }
 
 void EquilibriumBranch::validate(const system::Machine& machine, const deck::Report& report) const {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "cost.hpp"
+
 namespace whirl::study {
 
 std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
@@ -18,9 +20,9 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
   d.add("supports", &ModesOptions::supports, "what holds the journals");
   d.add("range", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
-  d.add("points", &ModesOptions::points, deck::at_least(2), "speeds in the range, evenly spaced with both ends");
+  d.add("points", &ModesOptions::points, deck::in(2, 1e8), "speeds in the range, evenly spaced with both ends");
   d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
-  d.add("count", &ModesOptions::count, deck::positive, "modes at each speed, those of lowest frequency");
+  d.add("count", &ModesOptions::count, deck::in(1, 1e5), "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
   d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
@@ -62,6 +64,11 @@ void Modes::validate(const system::Machine& machine, const deck::Report& report)
                          fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
                                      "films have coefficients at rest, too)",
                                      b.name));
+}
+
+double Modes::memory(const system::Machine& machine) const {
+  const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
+  return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
 }
 
 }  // namespace whirl::study

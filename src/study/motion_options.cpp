@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "cost.hpp"
 #include "whirl/study/motion.hpp"
 
 namespace whirl::study {
@@ -32,14 +33,14 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; none for the balanced machine");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
   d.add("start", &O::start, "state at the beginning");
-  d.add("discard", &O::discard, deck::non_negative, "revolutions before anything is recorded");
-  d.add("revolutions", &O::revolutions, deck::at_least(2), "revolutions recorded");
-  d.add("samples", &O::samples, deck::at_least(8), "samples per revolution, of orbits and spectra");
-  d.add("tolerance", &O::tolerance, deck::between(1e-13, 1e-2),
+  d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
+  d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
+  d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, of orbits and spectra");
+  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
         "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
-  d.add("exponents", &O::exponents, deck::non_negative, "Lyapunov exponents to compute, the largest; none: 0");
-  d.add("max_period", &O::max_period, deck::positive, "longest period to look for, in revolutions");
-  d.add("return_tolerance", &O::return_tolerance, deck::between(0, 1),
+  d.add("exponents", &O::exponents, deck::in(0, 1e4), "Lyapunov exponents to compute, the largest; none: 0");
+  d.add("max_period", &O::max_period, deck::in(1, 1e5), "longest period to look for, in revolutions");
+  d.add("return_tolerance", &O::return_tolerance, deck::in(1e-13, 1),
         "distance between Poincare points, relative to the size of the motion, below which it repeats itself");
   d.add("window", &O::window, "what multiplies the record before its Fourier transform");
   d.add("orbit", &O::orbit, deck::non_negative, "revolutions whose orbit is stored, the last ones");
@@ -50,6 +51,11 @@ void Motion::validate(const system::Machine& machine, const deck::Report& report
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+}
+
+double Motion::memory(const system::Machine& machine) const {
+  const double places = static_cast<double>(machine.bearings.size()) + 1;
+  return memory_of_equilibria(machine) + 70 * places * options.revolutions * options.samples;
 }
 
 }  // namespace whirl::study

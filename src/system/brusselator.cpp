@@ -12,7 +12,7 @@ using core::check;
 
 void describe(deck::Description<Brusselator>& d) {
   using O = Brusselator;
-  d.add("cells", &O::cells, deck::at_least(2), "equal intervals along the tube");
+  d.add("cells", &O::cells, deck::in(2, 1e8), "equal intervals along the tube");
   d.add("length", &O::length, "1", deck::positive, "L, length of the tube").continuable();
   d.add("a", &O::a, "1", deck::positive, "A, inflow of the first substance").continuable();
   d.add("b", &O::b, "1", deck::positive, "B, by which the first substance turns into the second one").continuable();

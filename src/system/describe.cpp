@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <unordered_map>
 
 #include "whirl/film/describe.hpp"
 #include "whirl/rotor/describe.hpp"
@@ -53,9 +54,15 @@ using deck::non_negative;
 using deck::positive;
 
 void describe(deck::Description<Pedestal>& d) {
-  d.add("mass", &Pedestal::mass, "kg", non_negative, "mass that moves in x and in y").required();
-  d.add("stiffness", &Pedestal::stiffness, "N/m", positive, "stiffness in x and in y").required().continuable();
-  d.add("damping", &Pedestal::damping, "N s/m", non_negative, "damping in x and in y").required().continuable();
+  d.add("mass", &Pedestal::mass, "kg", non_negative, "mass that moves in x and in y").required().isotropic();
+  d.add("stiffness", &Pedestal::stiffness, "N/m", positive, "stiffness in x and in y")
+      .required()
+      .isotropic()
+      .continuable();
+  d.add("damping", &Pedestal::damping, "N s/m", non_negative, "damping in x and in y")
+      .required()
+      .isotropic()
+      .continuable();
 }
 
 void describe(deck::Description<Bearing>& d) {
@@ -118,14 +125,15 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
   for (const auto& [name, l] : m.lubricants) lubricants.push_back(name);
   const auto& reduction = m.rotor.reduction;
   const bool rigid = m.rotor.type == rotor::Options::Type::rigid;
+  std::unordered_map<int, const Bearing*> bearing_at;
   for (std::size_t i = 0; i < m.bearings.size(); ++i) {
     const Bearing& b = m.bearings[i];
     const std::string path = "bearings." + b.name;
     if (b.node > n_nodes)
       r.fail(path + ".node", fmt::format("node {} does not exist: the shaft has nodes 1 to {}", b.node, n_nodes));
-    for (std::size_t j = 0; j < i && !rigid; ++j)
-      if (m.bearings[j].node == b.node)
-        r.fail(path + ".node", fmt::format("bearing {} stands at node {} already", m.bearings[j].name, b.node));
+    const auto [first, fresh] = bearing_at.emplace(b.node, &b);
+    if (!fresh && !rigid)
+      r.fail(path + ".node", fmt::format("bearing {} stands at node {} already", first->second->name, b.node));
     if (!rigid && reduction.type != rotor::Reduction::Type::none &&
         std::find(reduction.masters.begin(), reduction.masters.end(), b.node) == reduction.masters.end())
       r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));

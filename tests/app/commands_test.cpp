@@ -32,7 +32,7 @@ std::string text_of(const fs::path& path, bool comments_only) {
 
 // The overrides of `text`; those with nothing but space between them belong together.
 std::vector<std::vector<std::string>> overrides_in(const std::string& text) {
-  static const std::regex one(R"re(--set\s+([\w.]+)=("[^"]*"|[^\s"]+))re");
+  static const std::regex one(R"re((?:--set\s+)([\w.{},*]+\+?)=("[^"]*"|[^\s"]+))re");
   std::vector<std::vector<std::string>> groups;
   std::size_t end = std::string::npos;
   for (std::sregex_iterator m(text.begin(), text.end(), one), last; m != last; ++m) {
@@ -84,7 +84,7 @@ TEST(ShownCommands, ThoseOfThePagesAreAccepted) {
   for (const char* folder : {"docs", "inputs"})
     for (const auto& e : fs::recursive_directory_iterator(root / folder))
       if (e.path().extension() == ".md") pages.push_back(e.path());
-  static const std::regex command(R"re((inputs/\S+\.yaml)((?:\s+--set\s+[\w.]+=(?:"[^"]*"|[^\s"`]+))*))re");
+  static const std::regex command(R"re((inputs/\S+\.yaml)((?:\s+--set\s+[\w.{},*]+\+?=(?:"[^"]*"|[^\s"`]+))*))re");
   for (const auto& page : pages) {
     const std::string text = text_of(page, false);
     for (std::sregex_iterator m(text.begin(), text.end(), command), last; m != last; ++m) {

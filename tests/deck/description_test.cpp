@@ -34,6 +34,19 @@ void describe(deck::Description<Geometry>& d) {
   });
 }
 
+struct Stand {
+  double radius = 1;
+  std::array<double, 2> mass{1, 2};
+  std::array<double, 4> damping{1, 2, 3, 4};
+};
+void describe(deck::Description<Stand>& d) {
+  d.add("radius", &Stand::radius, "m", deck::positive, "radius of the foot", "004 table 1")
+      .alias("diameter", 2)
+      .alias("half_width");
+  d.add("mass", &Stand::mass, "kg", deck::non_negative, "mass in x and y").isotropic();
+  d.add("damping", &Stand::damping, "N s/m", deck::any, "coefficients xx, xy, yx, yy").isotropic();
+}
+
 struct Oil {
   double viscosity = 0;
 };
@@ -156,6 +169,61 @@ TEST(Description, ReadsEveryType) {
   EXPECT_FALSE(m.flag);
 }
 
+TEST(Description, OtherWordsAndOneValueForAll) {
+  const auto stand = [](const std::string& text) {
+    deck::Problems problems;
+    auto s = deck::read<Stand>(deck::parse_yaml(text, "d.yaml"), files, problems);
+    problems.raise();
+    return s;
+  };
+  const auto wrong = [&](const std::string& text) -> std::string {
+    try {
+      (void)stand(text);
+    } catch (const core::InputError& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(stand("diameter: 180 mm").radius, 0.09);
+  EXPECT_EQ(stand("half_width: 180 mm").radius, 0.18);
+  EXPECT_EQ(stand("mass: 3 t").mass, (std::array<double, 2>{3000, 3000}));
+  EXPECT_EQ(stand("mass: [3 kg, 4 kg]").mass, (std::array<double, 2>{3, 4}));
+  EXPECT_EQ(stand("damping: 5 N s/m").damping, (std::array<double, 4>{5, 0, 0, 5}));
+  EXPECT_EQ(wrong("diameter: 1 m\nradius: 2 m"),
+            "d.yaml:1:1: 'diameter' says the same as 'radius', which d.yaml:2:1 gives: keep one of them");
+  EXPECT_EQ(wrong("diametre: 1 m"), "d.yaml:1:1: unknown key 'diametre' (did you mean 'radius'?)");
+  EXPECT_EQ(wrong("diameter: -1 m"), "d.yaml:1:11: 'diameter' must be positive, not -0.5 m");
+  EXPECT_NE(wrong("mass: [1 kg]").find("'mass' must have 2 items, not 1"), std::string::npos);
+  EXPECT_EQ(wrong("mass: 1e-300 kg"),
+            "d.yaml:1:7: 'mass' cannot be as small as 1e-300 kg: 0, or 1e-12 to 1e10 kg in size");
+  const std::string help = deck::reference_text(deck::structure_of<Stand>(), "diameter", {{{"004", "the thesis"}}});
+  EXPECT_NE(help.find("radius\n"), std::string::npos) << help;
+  EXPECT_NE(help.find("may be given as 'diameter', 2 times the value"), std::string::npos) << help;
+  EXPECT_NE(help.find("[004] the thesis"), std::string::npos) << help;
+}
+
+TEST(Description, HelpSaysWhatEachValueOfAChoiceMeans) {
+  const std::string help = deck::reference_text(deck::structure_of<Machine>(), "bearings.type");
+  EXPECT_NE(help.find("      partial_arc  one pad\n      lemon_bore   two pads\n"), std::string::npos) << help;
+  EXPECT_NE(deck::reference_text(deck::structure_of<Machine>(), "lemon_bore").find("bearings.NAME.type"),
+            std::string::npos);
+}
+
+TEST(Description, ResolvedDecksAreReadAlikeByYaml11) {
+  Machine m;
+  m.title = "0x1F";
+  m.words = {"on", "2001-01-01", "1e5", "12:30:45", "plain", "1_000", ".5", "60 um"};
+  m.speeds = {{1e-5, "1"}};
+  const std::string text = deck::to_yaml(deck::write(m));
+  EXPECT_NE(text.find(R"(words: ["on", "2001-01-01", "1e5", "12:30:45", plain, "1_000", ".5", 60 um])"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(R"(title: "0x1F")"), std::string::npos) << text;
+  EXPECT_NE(text.find("speeds: [1.0e-5]"), std::string::npos) << text;
+  EXPECT_NE(deck::to_yaml(deck::parse_yaml("a: 1e9\nb: -2.5e-7\n", "d")).find("a: 1.0e+9\nb: -2.5e-7"),
+            std::string::npos);
+}
+
 TEST(Description, ResolvedDeckReadsBackIdentically) {
   const std::string resolved = deck::to_yaml(deck::write(read(everything)));
   EXPECT_EQ(deck::to_yaml(deck::write(read(resolved))), resolved);
@@ -213,11 +281,14 @@ TEST(Description, OptionsAreFoundByTheirPath) {
 
 TEST(Description, ReferenceExplainsEveryOption) {
   const std::string all = deck::reference_text(deck::structure_of<Machine>(), "");
-  EXPECT_NE(all.find("bearings.NAME.clearance\n    quantity in m, positive; required\n    radial clearance\n"
+  EXPECT_NE(all.find("bearings.NAME.clearance\n    quantity in m, positive; required; 0, or 1e-12 to 1e6 m in size\n   "
+                     " radial clearance\n"
                      "    studies may vary it\n"),
             std::string::npos)
       << all;
-  EXPECT_NE(all.find("tasks.1.wait.time\n    quantity in s, positive; default 1 s\n"), std::string::npos) << all;
+  EXPECT_NE(all.find("tasks.1.wait.time\n    quantity in s, positive; default 1 s; 0, or 1e-15 to 1e10 s in size\n"),
+            std::string::npos)
+      << all;
   const std::string one = deck::reference_text(deck::structure_of<Machine>(), "bearings.B7.preload");
   EXPECT_EQ(one.find("bearings.NAME.preload\n"), 0U);
   EXPECT_EQ(deck::reference_text(deck::structure_of<Machine>(), "bearings.preload"), one) << "the name left out";

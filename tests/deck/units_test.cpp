@@ -100,6 +100,28 @@ TEST(Units, WhatIsNoQuantity) {
   EXPECT_NE(refusal("180 uM", "m").find("did you mean 'um'?"), std::string::npos);
 }
 
+TEST(Units, OfMemory) {
+  EXPECT_EQ(to_si("8 GB", "byte"), 8e9);
+  EXPECT_EQ(to_si("512 MiB", "byte"), 536870912);
+  EXPECT_EQ(to_si("5 byte", "byte"), 5);
+  EXPECT_NE(refusal("8 kg", "byte").find("expected a size of memory"), std::string::npos);
+  EXPECT_EQ(deck::write_memory(1.234e9), "1.23 GB");
+}
+
+TEST(Units, ResultsAreFinite) {
+  EXPECT_EQ(refusal("1e308 kN", "N"), "'1e308 kN' is not a finite number in SI units");
+  EXPECT_EQ(refusal("-1e308 t", "kg"), "'-1e308 t' is not a finite number in SI units");
+  EXPECT_EQ(to_si("1e308 mN", "N"), 1e305);
+}
+
+TEST(Units, FactorsKeepTheUnit) {
+  EXPECT_EQ(deck::scaled("180 um", 1.2), "216 um");
+  EXPECT_EQ(deck::scaled("60", 1.1), "66");
+  EXPECT_EQ(deck::scaled("200 mm", 0.5), "100 mm");
+  EXPECT_THROW((void)deck::scaled("60 degC", 2), core::InputError);
+  EXPECT_THROW((void)deck::scaled("1e300 m", 1e300), core::InputError);
+}
+
 TEST(Units, WrittenQuantitiesReadBackExactly) {
   for (const char* unit : {"m", "um", "rpm", "rad/s", "K", "degC", "GPa", "mm/s", "deg"})
     for (double v : {1.0 / 3, 273.15, 1e-7, 104.71975511965977, 523.59877559829881, 2.1e11, 6.25, 377.0}) {
@@ -113,4 +135,8 @@ TEST(Units, WrittenQuantitiesReadBackExactly) {
   EXPECT_EQ(deck::write_number(-1.8e9), "-1.8e9");
   EXPECT_EQ(deck::write_number(120000), "120000");
   EXPECT_EQ(deck::write_number(0), "0");
+  EXPECT_EQ(deck::write_number(1e-5), "1e-5");
+  EXPECT_EQ(deck::write_number(-2.5e-12), "-2.5e-12");
+  EXPECT_EQ(deck::write_number(1.5e300), "1.5e300");
+  EXPECT_EQ(deck::write_number(1e16), "1e16");
 }

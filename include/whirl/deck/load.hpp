@@ -18,7 +18,7 @@ public:
   explicit Files(MPI_Comm comm) : comm_(comm) {}
   /// Bytes of the file `path`, at most `limit` of them. Collective. Throws core::InputError (agreed, without a place)
   /// if it cannot be read, is no regular file, is larger, is not UTF-8 text, or if all files read so far hold more than
-  /// 16 MiB; a byte-order mark is removed.
+  /// 256 MiB; a byte-order mark is removed.
   [[nodiscard]] std::string read_text(const std::string& path, std::size_t limit = std::size_t{1} << 20) const;
 
 private:

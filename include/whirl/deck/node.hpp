@@ -83,7 +83,7 @@ private:
 };
 
 /// The candidate closest to `word` by edit distance, empty if none is near enough to be what was meant. Looks at the
-/// first thousand candidates, and at no word above 60 characters.
+/// first 5000 candidates, and at no word above 60 characters.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 /// ` (did you mean 'x'?)`, or nothing.
 [[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);

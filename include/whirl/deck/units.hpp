@@ -58,6 +58,9 @@ void check_kind(std::string_view unit, std::string_view si);
 /// Shortest text `number unit` that reads back to exactly `value` (SI).
 [[nodiscard]] std::string write_quantity(double value, std::string_view unit);
 
+/// A size of memory in round numbers, "1.2 GB".
+[[nodiscard]] std::string write_memory(double bytes);
+
 /// Shortest decimal that reads back to exactly `value`.
 [[nodiscard]] std::string write_number(double value);
 

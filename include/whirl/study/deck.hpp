@@ -7,12 +7,20 @@
 #include <vector>
 
 #include "whirl/deck/edit.hpp"
+#include "whirl/deck/output.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
 
+/// What a run may take.
+struct Limits {
+  double memory = 8e9;  ///< in all ranks together [byte]
+};
+void describe(deck::Description<Limits>& d);
+
 struct Deck {
   system::Machine machine;
+  Limits limits;
   std::vector<std::unique_ptr<Study>> studies;
   std::vector<deck::Change> changes;  ///< what the overrides did
 };
@@ -21,6 +29,9 @@ void describe(deck::Description<Deck>& d);
 /// Reads and checks the deck at `path` after `overrides` (arguments of `--set`); nothing is solved. Collective; the
 /// same on all ranks. Throws core::InputError (agreed) with a line per problem.
 [[nodiscard]] Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides);
+
+/// Full references of the sources that help names in short.
+[[nodiscard]] std::span<const deck::Citation> citations();
 
 /// What is unusual about the deck and its variants, a line each; nothing of it keeps the deck from being computed.
 [[nodiscard]] std::vector<std::string> warnings(const Deck& deck);

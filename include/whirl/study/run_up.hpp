@@ -19,6 +19,8 @@ struct RunUpOptions {
   double tolerance = 1e-7;
   bool checkpoint = true;
 };
+/// Revolutions of the shaft on the way.
+[[nodiscard]] double revolutions(const RunUpOptions& options);
 void describe(deck::Description<RunUpOptions>& d);
 
 class RunUp final : public StudyWith<RunUpOptions> {
@@ -26,6 +28,7 @@ public:
   static constexpr std::string_view key = "run_up";
   [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
+  [[nodiscard]] double memory(const system::Machine& machine) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 };
 

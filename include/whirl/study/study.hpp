@@ -68,6 +68,9 @@ public:
   /// The same for what does not fit the studies before it in the deck.
   virtual void validate_among(std::span<const std::unique_ptr<Study>> /*before*/,
                               const deck::Report& /*report*/) const {}
+  /// Memory that it takes in all ranks together, estimated from counts [bytes]; what is always small counts as nothing.
+  /// The deck was read but may still be wrong.
+  [[nodiscard]] virtual double memory(const system::Machine& /*machine*/) const { return 0; }
   /// Name of the study whose bifurcations this one goes on from; empty if it needs none.
   [[nodiscard]] virtual std::string starts_from() const { return {}; }
   /// Computes; ends with `return context.results.finish(...)`. Throws core::NotConverged or core::DomainError if it can

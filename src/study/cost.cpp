@@ -1,0 +1,39 @@
+#include "cost.hpp"
+
+#include "whirl/film/state_model.hpp"
+
+namespace whirl::study {
+
+double n_states(const system::Machine& machine) {
+  if (!system::is_rotor(machine))
+    return machine.system.name == system::Brusselator::key
+               ? 2.0 * (static_cast<const system::Slot<system::Brusselator>&>(machine).options.cells - 1)
+               : 0;
+  const rotor::Options& r = machine.rotor;
+  const double masters = static_cast<double>(r.reduction.masters.size()), modes = r.reduction.modes,
+               nodes = static_cast<double>(r.segments.size()) + 1;
+  using enum rotor::Reduction::Type;
+  double freedoms = r.type == rotor::Options::Type::rigid ? 2
+                    : r.reduction.type == none            ? 4 * nodes
+                    : r.reduction.type == guyan           ? 2 * masters
+                                                          : 2 * (masters + modes);
+  double own = 0;
+  for (const system::Bearing& b : machine.bearings) {
+    if (b.pedestal) freedoms += 2;
+    if (!film::has_states(b.film.kind)) continue;
+    own += b.film.kind == film::Options::Kind::compliant_finite ? static_cast<double>(b.film.cells[0]) * b.film.cells[1]
+                                                                : b.film.cells[0];
+  }
+  return 2 * freedoms + own;
+}
+
+double memory_of_equilibria(const system::Machine& machine) {
+  return 3000 * n_states(machine);
+}
+
+double memory_of_cycles(const system::Machine& machine, double intervals, double stages) {
+  const double n = n_states(machine);
+  return 8 * intervals * (400 + 30 * (stages + 1) * n + n * n);
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,18 @@
+#pragma once
+// Memory that studies take, estimated from counts: fits to measured runs, good to a factor of two. They are there to
+// refuse what was not meant, not to fill a machine to its brim.
+
+#include "whirl/system/options.hpp"
+
+namespace whirl::study {
+
+/// States of the equations of `machine`, displacements and velocities, with the films' own.
+[[nodiscard]] double n_states(const system::Machine& machine);
+
+/// A branch of equilibria, or anything that factorises one sparse Jacobian [byte].
+[[nodiscard]] double memory_of_equilibria(const system::Machine& machine);
+
+/// Cycles on `intervals` intervals of `stages` time points each, condensed to one dense block an interval [byte].
+[[nodiscard]] double memory_of_cycles(const system::Machine& machine, double intervals, double stages);
+
+}  // namespace whirl::study
