@@ -54,21 +54,22 @@ std::string ModesOptions::unit() const {
   return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
 }
 
+double Modes::memory(const system::Machine& machine) const {
+  const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
+  return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
+}
+
 void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
   if (options.supports != ModesOptions::Supports::films) return;
-  const std::vector<double> speeds = options.all_speeds();
-  if (std::none_of(speeds.begin(), speeds.end(), [](double s) { return s <= 0; })) return;
+  bool at_rest = options.range && std::min(options.range->from, options.range->to) <= 0;
+  for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;
+  if (!at_rest) return;
   for (const system::Bearing& b : machine.bearings)
     if (b.film.kind != film::Options::Kind::linear)
       return report.fail(options.range ? "range" : "speeds",
                          fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
                                      "films have coefficients at rest, too)",
                                      b.name));
-}
-
-double Modes::memory(const system::Machine& machine) const {
-  const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
-  return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
 }
 
 }  // namespace whirl::study
