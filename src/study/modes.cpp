@@ -3,12 +3,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 
 #include "common.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
 #include "pieces.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
@@ -120,6 +125,30 @@ void follow(const std::vector<ShaftMode>& before, std::vector<ShaftMode>& now, i
     if (m.id < 0) m.id = next_id++;
 }
 
+// What the error bars of one speed are taken of: of each mode, in its order here, real and imaginary part and log
+// decrement of the mode that follows it in shape; not a number where there is none.
+std::vector<double> numbers_of(const std::vector<ShaftMode>& here, std::vector<ShaftMode> there) {
+  int next_id = std::numeric_limits<int>::max() / 2;
+  for (ShaftMode& m : there) m.id = -1;
+  follow(here, there, next_id);
+  std::vector<double> out;
+  for (const ShaftMode& m : here) {
+    const auto at = std::find_if(there.begin(), there.end(), [&](const ShaftMode& t) { return t.id == m.id; });
+    if (at == there.end())
+      out.insert(out.end(), 3, std::numeric_limits<double>::quiet_NaN());
+    else
+      out.insert(out.end(), {at->lambda.real(), at->lambda.imag(), spectral::log_decrement(at->lambda)});
+  }
+  return out;
+}
+
+// At most `most` of n, first and last among them.
+std::vector<std::size_t> spread(std::size_t n, std::size_t most) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < std::min(n, most); ++k) out.push_back(n <= most ? k : k * (n - 1) / (most - 1));
+  return out;
+}
+
 // Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
 StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   rotor::Options shaft = context.machine.rotor;
@@ -140,6 +169,75 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   summary.points = 1;
   return context.results.finish("completed", true);
 }
+
+// Bars of real and imaginary part and log decrement of each mode at the speeds where it was computed on other meshes.
+struct ModeBars {
+  struct Point {
+    double speed;
+    std::array<double, 3> bar;
+  };
+  std::map<int, std::vector<Point>> of;
+  bool any = false;
+
+  // The larger one of the neighbours: a difference of meshes that vanishes by chance at one speed hides nothing.
+  [[nodiscard]] std::array<double, 3> at(int id, double speed) const {
+    std::array<double, 3> out;
+    out.fill(any ? std::numeric_limits<double>::quiet_NaN() : 0);
+    const auto found = of.find(id);
+    if (found == of.end()) return out;
+    const auto& points = found->second;
+    auto right = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.speed >= speed; });
+    const auto left = right == points.begin() ? right : std::prev(right);
+    if (right == points.end()) right = left;
+    for (std::size_t k = 0; k < 3; ++k) out[k] = std::max(left->bar[k], right->bar[k]);
+    return out;
+  }
+};
+
+// One task is one mesh at all these speeds, each from its neighbour.
+ModeBars bars_of(Context& context, const Groups& groups, const ModesOptions& options, const std::vector<double>& speeds,
+                 const std::map<std::size_t, std::vector<ShaftMode>>& sampled, Pieces& pieces) {
+  ModeBars out;
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
+  const auto compute = [&](std::size_t i) {
+    std::vector<double> all;
+    try {
+      system::RotorSystem there(groups.space, with_film_mesh(system::train_of(context.machine), meshes[i].factor),
+                                speeds.front());
+      Walker walker(there);
+      for (const auto& [k, here] : sampled) {
+        const auto numbers = numbers_of(here, shaft_modes(there, walker.at(speeds[k]), options.count + 4, limit));
+        all.insert(all.end(), numbers.begin(), numbers.end());
+      }
+    } catch (const core::NotConverged&) {
+      return std::vector<double>{};
+    } catch (const core::DomainError&) {
+      return std::vector<double>{};
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      return std::vector<double>{};
+    }
+    return all;
+  };
+  const auto on_meshes = distribute(groups, meshes.size(), compute, pieces, "film mesh");
+  std::vector<double> here;
+  for (const auto& entry : sampled) {
+    const auto numbers = numbers_of(entry.second, entry.second);
+    here.insert(here.end(), numbers.begin(), numbers.end());
+  }
+  Bars bars(here, law_of(context.machine));
+  for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
+  out.any = !meshes.empty();
+  std::size_t k = 0;
+  for (const auto& [i, modes] : sampled)
+    for (const ShaftMode& m : modes) {
+      out.of[m.id].push_back({speeds[i], {bars[k].total(), bars[k + 1].total(), bars[k + 2].total()}});
+      k += 3;
+    }
+  return out;
+}
+
+constexpr std::size_t speeds_with_bars = 5;
 
 }  // namespace
 
@@ -166,10 +264,13 @@ StudyResult Modes::run(Context& context) {
   };
   const auto packed = distribute(groups, speeds.size(), compute, pieces, "speed");
 
+  const std::size_t first_mode = summary.modes.size();
   std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
   std::vector<std::string> sense_column;
   std::vector<ShaftMode> before;
+  std::map<std::size_t, std::vector<ShaftMode>> sampled;  // by the number of their speed
+  for (const std::size_t i : spread(speeds.size(), speeds_with_bars)) sampled[i];
   int next_id = 1;
   // Damped frequency meets the speed of the shaft between two speeds.
   struct Crossing {
@@ -197,6 +298,7 @@ StudyResult Modes::run(Context& context) {
         if (m.id == b.id && f0 * f1 < 0) crossings.push_back({speeds[i - 1], speed, f0, f1, m});
       }
     }
+    if (sampled.contains(i)) sampled[i] = modes;
     before = std::move(modes);
   }
   // Where the chords cross, refined by solving there and following the shape.
@@ -218,12 +320,26 @@ StudyResult Modes::run(Context& context) {
     return std::vector<double>{c.s1};
   };
   const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical");
+  const ModeBars bars = bars_of(context, groups, options, speeds, sampled, pieces);
+  std::vector<double> real_bar, frequency_bar, decrement_bar;
+  for (std::size_t k = 0; k < id_column.size() && bars.any; ++k) {
+    const auto bar = bars.at(static_cast<int>(id_column[k]), speed_column[k]);
+    real_bar.push_back(bar[0]);
+    frequency_bar.push_back(bar[1]);
+    decrement_bar.push_back(bar[2]);
+    summary.modes[first_mode + k].more = {
+        {"real_uncertainty", bar[0]}, {"imag_uncertainty", bar[1]}, {"log_decrement_uncertainty", bar[2]}};
+  }
   struct Critical {
-    double speed;
+    double speed, error;
     int id;
   };
   std::vector<Critical> criticals;
-  for (std::size_t i = 0; i < crossings.size(); ++i) criticals.push_back({refined[i][0], crossings[i].guide.id});
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const Crossing& c = crossings[i];
+    const double slope = (c.f1 - c.f0) / (c.s1 - c.s0);  // of frequency minus speed
+    criticals.push_back({refined[i][0], bars.at(c.guide.id, refined[i][0])[1] / std::abs(slope), c.guide.id});
+  }
 
   auto& spectrum = group.child("spectrum");
   spectrum.put("speed", speed_column, "rad/s", "shaft speed");
@@ -231,6 +347,11 @@ StudyResult Modes::run(Context& context) {
   spectrum.put("frequency", frequency, "rad/s", "damped frequency, imaginary part of the eigenvalue");
   spectrum.put("damping_real", real, "1/s", "real part of the eigenvalue");
   spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
+  if (bars.any) {
+    spectrum.put("damping_real_uncertainty", real_bar, "1/s", "estimated error from the film mesh");
+    spectrum.put("frequency_uncertainty", frequency_bar, "rad/s", "likewise");
+    spectrum.put("log_decrement_uncertainty", decrement_bar, "1", "likewise");
+  }
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
   spectrum.put("whirl", sense_column, "sense of whirl of the shaft's nodes");
   group.set("speed_unit", unit);
@@ -239,7 +360,9 @@ StudyResult Modes::run(Context& context) {
   std::vector<double> critical_speed;
   std::vector<std::int64_t> critical_mode;
   for (std::size_t k = 0; k < criticals.size(); ++k) {
-    summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit);
+    std::map<std::string, double> more;
+    if (bars.any) more["uncertainty"] = deck::from_si(criticals[k].error, unit);
+    summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit, more);
     critical_speed.push_back(criticals[k].speed);
     critical_mode.push_back(criticals[k].id);
   }

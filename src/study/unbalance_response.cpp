@@ -4,13 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
 #include "common.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
 #include "pieces.hpp"
+#include "summary_bars.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
@@ -55,8 +60,11 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
 
 class Machine {
 public:
-  Machine(Context& context, const Groups& groups, const UnbalanceResponseOptions& options, std::vector<int> nodes)
-      : system_(groups.space, system::train_of(context.machine, options.unbalance), options.range.from),
+  /// `cells`: of the films over those of the deck.
+  Machine(const Context& context, const Groups& groups, const UnbalanceResponseOptions& options, std::vector<int> nodes,
+          const std::array<double, 2>& cells = {1, 1})
+      : system_(groups.space, with_film_mesh(system::train_of(context.machine, options.unbalance), cells),
+                options.range.from),
         walker_(system_),
         solver_(system_),
         nodes_(std::move(nodes)) {}
@@ -131,6 +139,116 @@ double amplification(const std::vector<Response>& curve, std::size_t node, std::
   return curve[top].speed / (crossing(right - 1, right) - crossing(left + 1, left));
 }
 
+constexpr double peak_tolerance = 1e-5;  // of the speed of a peak
+
+// The top of the parabola through three points, and what its curvature says of the amplification factor: a resonance
+// has f''/f = -(2 Q/s)^2 there.
+struct Top {
+  double speed, height, quality;
+};
+Top top_of(const std::array<double, 3>& s, const std::array<double, 3>& f) {
+  const double left = (f[1] - f[0]) / (s[1] - s[0]), right = (f[2] - f[1]) / (s[2] - s[1]),
+               curvature = 2 * (right - left) / (s[2] - s[0]), slope = left + curvature * (s[1] - s[0]) / 2;
+  const double top = f[1] - slope * slope / (2 * curvature);
+  return {s[1] - slope / curvature, top, s[1] / 2 * std::sqrt(std::max(0.0, -curvature / top))};
+}
+
+// A peak in the summary: names that start with `head` are those of the peak of `node` near `speed`.
+struct Named {
+  std::string head;
+  std::size_t node;
+  double speed;
+};
+
+// Responses at `speeds` of one machine, flat.
+using Solve = std::function<std::vector<Response>(Machine&, const std::vector<double>&, const std::string& piece)>;
+
+// What the peaks are on one mesh, seen from three speeds about each; peaks of several nodes that stand together share
+// them.
+struct Tops {
+  std::vector<double> centres;
+  static constexpr double apart = 5e-3, together = 4e-3;
+
+  explicit Tops(const std::vector<Named>& peaks) {
+    for (const Named& p : peaks) {
+      const bool known = std::any_of(centres.begin(), centres.end(),
+                                     [&](double c) { return std::abs(c - p.speed) < together * c; });
+      if (!known) centres.push_back(p.speed);
+    }
+  }
+  [[nodiscard]] std::vector<double> speeds() const {
+    std::vector<double> out;
+    for (const double c : centres) out.insert(out.end(), {c * (1 - apart), c, c * (1 + apart)});
+    return out;
+  }
+  [[nodiscard]] Top of(const Named& peak, const std::vector<Response>& all) const {
+    std::size_t k = 0;
+    while (std::abs(centres[k] - peak.speed) >= together * centres[k]) ++k;
+    std::array<double, 3> s{}, f{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      s[i] = all[3 * k + i].speed;
+      f[i] = all[3 * k + i].nodes[peak.node].semi_major();
+    }
+    return top_of(s, f);
+  }
+};
+
+void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r, io::StudySummary& summary) {
+  const auto names = names_of_bearings(context.machine);
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
+    summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
+  }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+}
+
+// Bars of all that the summary says: the peaks and the response at operating speed on other film meshes, as moved from
+// what three speeds say on the mesh in use.
+void put_bars(const Context& context, const Groups& groups, const UnbalanceResponseOptions& options,
+              const std::vector<int>& nodes, Machine& machine, const std::vector<Named>& peaks, const Solve& solve) {
+  io::StudySummary& summary = context.results.summary();
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  if (meshes.empty()) return;
+  const Tops tops(peaks);
+  std::vector<double> speeds = tops.speeds();
+  if (options.operating_speed) speeds.push_back(options.operating_speed->value);
+  if (speeds.empty()) return;
+  std::map<std::string, double> known;
+  for (const auto& [name, q] : summary.values) known[name] = q.value;
+  const std::vector<Response> here = solve(machine, speeds, "bars");
+  SummaryBars bars(summary, law_of(context.machine));
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    io::StudySummary there;
+    try {
+      Machine other(context, groups, options, nodes, meshes[i].factor);
+      const std::vector<Response> moved = solve(other, speeds, fmt::format("bars {}", i + 1));
+      for (const Named& p : peaks) {
+        const Top a = tops.of(p, here), b = tops.of(p, moved);
+        const auto put = [&](const std::string& name, double value) {
+          if (known.contains(p.head + name)) there.set(p.head + name, value, "");
+        };
+        put("speed", known[p.head + "speed"] + deck::from_si(b.speed - a.speed, options.range.unit));
+        put("semi_major", known[p.head + "semi_major"] + b.height - a.height);
+        put("node", known[p.head + "node"]);
+        put("amplification_factor", known[p.head + "amplification_factor"] * b.quality / a.quality);
+        if (options.operating_speed)
+          put("separation_margin",
+              std::abs(p.speed + b.speed - a.speed - options.operating_speed->value) / options.operating_speed->value);
+      }
+      if (options.operating_speed) put_operating(context, nodes, moved.back(), there);
+    } catch (const core::NotConverged&) {
+      there = {};
+    } catch (const core::DomainError&) {
+      there = {};
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      there = {};
+    }
+    bars.add(meshes[i].axis, meshes[i].spacing, there);
+  }
+  bars.write(peak_tolerance);
+}
+
 void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place,
                 const std::string& text) {
   const io::Shape shape{curve.size(), (curve.front().*place).size()};
@@ -172,17 +290,20 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Responses at several speeds, shared between the groups of ranks.
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
-  const auto at_speeds = [&](const std::vector<double>& speeds) {
+  const auto solve_at = [&](Machine& which, const std::vector<double>& speeds, const std::string& piece) {
     const auto compute = [&](std::size_t i) {
-      auto packed = pack(machine.at(speeds[i]));
+      auto packed = pack(which.at(speeds[i]));
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
                                    deck::from_si(speeds[i], unit), unit, results.seconds()));
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls)))
+    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, piece))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
+  };
+  const auto at_speeds = [&](const std::vector<double>& speeds) {
+    return solve_at(machine, speeds, fmt::format("{} speed", ++calls));
   };
   std::vector<double> grid;
   for (int k = 0; k < options.points; ++k)
@@ -211,7 +332,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
         const double u = (s1 - s0) * (s1 - s0) * (f1 - f2), v = (s1 - s2) * (s1 - s2) * (f1 - f0),
                      w = (s1 - s0) * (f1 - f2) - (s1 - s2) * (f1 - f0);
         const double vertex = w != 0 ? s1 - 0.5 * (u - v) / w : s1;
-        if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > 1e-5 * s1) speeds.push_back(vertex);
+        if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > peak_tolerance * s1) speeds.push_back(vertex);
       }
       if (speeds.empty()) break;
       for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
@@ -219,6 +340,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
     }
 
   std::vector<Peak> peaks;
+  std::vector<Named> named;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
     for (const std::size_t k : tops(node))
@@ -228,6 +350,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
       const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
       summary.set(head + "speed", deck::from_si(own[k].speed, unit), unit);
       summary.set(head + "semi_major", own[k].amplitude, "m");
+      named.push_back({head, node, own[k].speed});
+      if (node == 0) named.push_back({fmt::format("peak.{}.", k + 1), node, own[k].speed});
     }
     if (node == 0) peaks = own;
   }
@@ -243,15 +367,9 @@ StudyResult UnbalanceResponse::run(Context& context) {
                   std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
   }
   if (options.operating_speed) {
-    const Response r = at_speeds({options.operating_speed->value}).front();
-    const auto names = names_of_bearings(context.machine);
-    for (std::size_t b = 0; b < names.size(); ++b) {
-      summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
-      summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
-    }
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-      summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+    put_operating(context, nodes, at_speeds({options.operating_speed->value}).front(), summary);
   }
+  put_bars(context, groups, options, nodes, machine, named, solve_at);
 
   auto& group = results.group();
   auto& response = group.child("response");
