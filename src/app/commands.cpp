@@ -13,6 +13,7 @@
 #include "whirl/deck/output.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
+#include "whirl/study/sweep.hpp"
 
 namespace whirl::app {
 namespace {
@@ -88,8 +89,16 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
       system::is_rotor(m) ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") : "system " + m.system.name;
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
-  for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
+  for (const auto& s : deck.studies) {
+    const auto* sweep = dynamic_cast<const study::Sweep*>(s.get());
+    text += fmt::format("  {} ({}{})\n", s->name(), s->kind(),
+                        sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "");
+  }
   text += changes_text(deck.changes);
+  const std::vector<std::string> warnings = study::warnings(deck);
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
+  if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
   return text;
 }
 

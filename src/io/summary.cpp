@@ -110,6 +110,59 @@ CodimensionTwo codimension_two(Json j) {
   return c;
 }
 
+Json numbers(const std::vector<double>& all) {
+  Json j = Json::array();
+  for (const double x : all) j.push_back(number(x));
+  return j;
+}
+
+std::vector<double> numbers(const Json& j) {
+  std::vector<double> all;
+  for (const Json& x : j) all.push_back(number(x));
+  return all;
+}
+
+Json to_json(const StudySummary& s);
+StudySummary study(const Json& j);
+
+void put_sweep(Json& j, const StudySummary& s) {
+  for (const VariantSummary& v : s.variants) {
+    Json changes = Json::object(), studies = Json::array();
+    for (const auto& [path, value] : v.changes) changes[path] = value;
+    for (const StudySummary& one : v.studies) studies.push_back(to_json(one));
+    j["variants"].push_back({{"name", v.name}, {"changes", std::move(changes)}, {"studies", std::move(studies)}});
+  }
+  for (const SweepColumn& c : s.columns)
+    j["columns"].push_back({{"name", c.name},
+                            {"unit", c.unit},
+                            {"values", numbers(c.values)},
+                            {"uncertainties", numbers(c.uncertainties)}});
+  for (const Trend& t : s.trends)
+    j["trends"].push_back({{"column", t.column},
+                           {"quantity", t.quantity},
+                           {"unit", t.unit},
+                           {"beside", t.beside},
+                           {"sign", t.sign},
+                           {"variants", t.variants},
+                           {"at", numbers(t.at)},
+                           {"difference", numbers(t.difference)},
+                           {"uncertainty", numbers(t.uncertainty)}});
+}
+
+void take_sweep(const Json& j, StudySummary& s) {
+  for (const Json& v : j.value("variants", Json::array())) {
+    VariantSummary& variant = s.variants.emplace_back();
+    variant.name = v.at("name");
+    for (const auto& [path, value] : v.at("changes").items()) variant.changes.emplace_back(path, value);
+    for (const Json& one : v.at("studies")) variant.studies.push_back(study(one));
+  }
+  for (const Json& c : j.value("columns", Json::array()))
+    s.columns.push_back({c.at("name"), c.at("unit"), numbers(c.at("values")), numbers(c.at("uncertainties"))});
+  for (const Json& t : j.value("trends", Json::array()))
+    s.trends.push_back({t.at("column"), t.at("quantity"), t.at("unit"), t.at("beside"), t.at("sign"), t.at("variants"),
+                        numbers(t.at("at")), numbers(t.at("difference")), numbers(t.at("uncertainty"))});
+}
+
 Json to_json(const StudySummary& s) {
   Json values = Json::object();
   for (const auto& [name, q] : s.values) {
@@ -138,6 +191,7 @@ Json to_json(const StudySummary& s) {
   for (const CodimensionTwo& c : s.codimension_two) j["codimension_two"].push_back(to_json(c));
   for (const Suspicion& x : s.suspected)
     j["suspected"].push_back({{"from", number(x.from)}, {"to", number(x.to)}, {"unit", x.unit}, {"reason", x.reason}});
+  put_sweep(j, s);
   return j;
 }
 
@@ -159,6 +213,7 @@ StudySummary study(const Json& j) {
                        m.value("speed_unit", std::string()),
                        others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl"})});
   s.points = j.at("points");
+  take_sweep(j, s);
   return s;
 }
 

@@ -7,6 +7,8 @@
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
+#include "whirl/rotor/advice.hpp"
+#include "whirl/study/sweep.hpp"
 
 namespace whirl::study {
 namespace {
@@ -68,6 +70,10 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   const deck::Node root = deck::load(path, overrides, files, deck::structure_of<Deck>(), &changes);
   deck::Problems problems;
   auto d = deck::read<Deck>(root, files, problems);
+  // Variants of a deck with errors would only repeat them.
+  for (std::size_t i = 0; i < d.studies.size() && problems.empty(); ++i)
+    if (auto* sweep = dynamic_cast<Sweep*>(d.studies[i].get()))
+      sweep->prepare(root, {d.studies.data(), i}, files, problems);
   try {
     problems.raise();
   } catch (core::InputError& e) {
@@ -76,6 +82,20 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   }
   d.changes = std::move(changes);
   return d;
+}
+
+std::vector<std::string> warnings(const Deck& d) {
+  std::vector<std::string> all = rotor::advice(d.machine.rotor);
+  const std::vector<std::string> own = all;
+  for (const auto& s : d.studies) {
+    const auto* sweep = dynamic_cast<const Sweep*>(s.get());
+    if (!sweep) continue;
+    for (const Variant& v : sweep->variants())
+      for (const std::string& line : warnings(*v.deck))
+        if (std::find(own.begin(), own.end(), line) == own.end())
+          all.push_back(fmt::format("variant '{}' of '{}': {}", v.name, sweep->name(), line));
+  }
+  return all;
 }
 
 std::string resolved_text(const Deck& d) {

@@ -100,7 +100,9 @@ void Writer::add(StudyResult result) {
   });
   write();
   core::agree(comm_, [&] {
-    if (rank_ == 0) io::Checkpoint(directory_ / (file + ".checkpoint.h5")).remove();
+    if (rank_ != 0) return;
+    io::Checkpoint(directory_ / (file + ".checkpoint.h5")).remove();
+    for (const auto& part : result.checkpoints) io::Checkpoint(part).remove();
   });
 }
 

@@ -58,6 +58,32 @@ struct ModeEntry {
   std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
 };
 
+struct StudySummary;
+
+/// One variant of a sweep.
+struct VariantSummary {
+  std::string name = {};
+  std::vector<std::pair<std::string, std::string>> changes = {};  ///< path and value, as text with unit
+  std::vector<StudySummary> studies;                              ///< what was asked of it
+};
+
+/// One value of all variants of a sweep, in their order; NaN where a variant has none.
+struct SweepColumn {
+  std::string name = {}, unit = {};
+  std::vector<double> values = {}, uncertainties = {};
+};
+
+/// How a value changes along one quantity of a sweep.
+struct Trend {
+  std::string column = {}, quantity = {}, unit = {};
+  std::string beside = {};                 ///< the other quantities of a grid, which are constant; else empty
+  std::string sign = {};                   ///< "+", "-", "0", "mixed", "undetermined" (the bar contains zero), "no bar"
+  std::vector<std::string> variants = {};  ///< by rising quantity
+  std::vector<double> at = {};             ///< the quantity of each
+  std::vector<double> difference = {};     ///< of the value from each to the next
+  std::vector<double> uncertainty = {};    ///< of that
+};
+
 /// What one study delivered.
 struct StudySummary {
   std::string name = {}, kind = {};
@@ -68,6 +94,9 @@ struct StudySummary {
   std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any
   std::vector<Suspicion> suspected = {};             ///< likewise
   std::vector<ModeEntry> modes = {};
+  std::vector<VariantSummary> variants = {};  ///< of a sweep; in the file only if there are any, like what follows
+  std::vector<SweepColumn> columns = {};
+  std::vector<Trend> trends = {};
   long points = 0;
 
   /// Sets values[key], replacing an earlier one.

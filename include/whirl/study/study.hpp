@@ -3,10 +3,13 @@
 
 #include <mpi.h>
 
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "whirl/deck/description.hpp"
@@ -22,10 +25,11 @@ class Study;
 
 /// What a study found; the same on all ranks.
 struct StudyResult {
-  io::Group group;                        ///< tables and fields, with units
-  io::StudySummary summary;               ///< named values, bifurcations, how it ended
-  std::vector<io::StructuredGrid> grids;  ///< meshes for ParaView; dataset paths are relative to `group`
-  bool delivered = true;                  ///< false: nothing but the reason in summary.status
+  io::Group group;                                 ///< tables and fields, with units
+  io::StudySummary summary;                        ///< named values, bifurcations, how it ended
+  std::vector<io::StructuredGrid> grids;           ///< meshes for ParaView; dataset paths are relative to `group`
+  std::vector<std::filesystem::path> checkpoints;  ///< of its parts; they go when the result is written
+  bool delivered = true;                           ///< false: nothing but the reason in summary.status
 };
 
 /// What a study gets to work with.
@@ -34,8 +38,11 @@ struct Context {
   const system::Machine& machine;
   Findings& results;                                ///< what the study has found so far
   const io::Group& earlier;                         ///< results of the studies before, by io::safe_name of their names
+  std::span<const io::StudySummary> summaries;      ///< of those
   bool resume = false;                              ///< go on from the checkpoint of this study, if there is one
   std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
+  /// Where a part of this study keeps a checkpoint of its own. Collective.
+  std::function<std::filesystem::path(const std::string& part)> checkpoint_of;
 };
 
 /// One analysis of a deck.
