@@ -39,7 +39,7 @@ def table_of(caption, labels, columns, note="", one_unit=False):
 
 
 def required_margin(factor, below):
-    """API 617 (2014), 2.6.2.10: none for an amplification factor below 2.5; else 17 (1 - 1/(AF - 1.5)) percent for a peak below
+    """API 617 and API 684 (2005), 2.5: none for an amplification factor below 2.5; else 17 (1 - 1/(AF - 1.5)) percent for a peak below
     the operating speed, ten more for one above it."""
     if factor is None:
         return None
@@ -53,34 +53,43 @@ def speed_in(unit, value):
     return value * {"rpm": np.pi / 30, "Hz": 2 * np.pi}.get(unit, 1.0)
 
 
-def operating_speed(study):
-    """In rad/s: of the study, else the service speed that the deck's unbalances name; None if there is none."""
+def operating_range(study):
+    """(lowest, highest) operating speed in rad/s: of the study, else the service speed that the deck's unbalances name; None if
+    there is none."""
+    def si(text):
+        return speed_in(str(text).split(" ", 1)[-1].strip(), number(text) or 0.0)
+
     deck = study.results.deck or {}
-    found = []
     for entry in deck.get("studies") or []:
         for options in entry.values() if isinstance(entry, dict) else []:
-            if isinstance(options, dict) and options.get("name") == study.name and "operating_speed" in options:
-                found.append(options["operating_speed"])
-    found += [u["service_speed"] for u in (deck.get("unbalance") or {}).values() if isinstance(u, dict) and "service_speed" in u]
-    for text in found:
-        value, unit = number(text), str(text).split(" ", 1)[-1].strip()
-        if value and value > 0:
-            return speed_in(unit, value)
-    return None
+            if not isinstance(options, dict) or options.get("name") != study.name:
+                continue
+            if isinstance(options.get("operating"), dict):
+                return si(options["operating"].get("from")), si(options["operating"].get("to"))
+            if "operating_speed" in options:
+                return (si(options["operating_speed"]),) * 2
+    speeds = [si(u["service_speed"]) for u in (deck.get("unbalance") or {}).values() if isinstance(u, dict) and "service_speed" in u]
+    return (min(speeds), max(speeds)) if speeds and min(speeds) > 0 else None
 
 
 def margins(speed, factor, operating):
-    """Cells: actual and required separation margin, and whether it suffices."""
+    """Cells: actual and required separation margin, as fractions of the nearer border, and whether it suffices."""
     if operating is None:
         return []
-    actual = abs(speed - operating) / operating
-    required = required_margin(factor, speed < operating)
+    low, high = operating
+    below = speed < low or (speed <= high and high - speed >= speed - low)
+    actual = (low - speed) / low if speed < low else (speed - high) / high if speed > high else 0.0
+    required = required_margin(factor, below)
     verdict = "\u2013" if required is None else "yes" if actual >= required else "no"
     return [f"{100 * actual:.1f} %", "\u2013" if required is None else "none" if required == 0 else f"{100 * required:.1f} %", verdict]
 
 
+def range_in(operating, to_unit):
+    return " to ".join(digits(float(v * to_unit), 5) for v in dict.fromkeys(operating))
+
+
 MARGIN_HEAD = ["margin", "required", "enough"]
-MARGIN_NOTE = "margin to the operating speed, required by API 617 (2014), 2.6.2.10: none below an amplification factor of 2.5"
+MARGIN_NOTE = "margin to the operating speed, required by API 617 and API 684 (2005), 2.5: none below an amplification factor of 2.5"
 
 
 def static(study):
@@ -115,7 +124,7 @@ def modes(study):
     to_speed, _, to_frequency, frequency_unit = speed_axis(unit)
     if study.has("critical/speed"):
         decrement = study.get("critical/log_decrement")
-        operating = operating_speed(study)
+        operating = operating_range(study)
         rows = []
         for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
             delta = None if decrement is None else float(np.atleast_1d(decrement)[k])
@@ -123,7 +132,7 @@ def modes(study):
             rows.append([digits(float(speed * to_speed), 5), int(mode), "\u2013" if delta is None else digits(delta, 3),
                          "\u2013" if factor is None else digits(factor, 3), *margins(speed, factor, operating)])
         head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
-        note = f"operating speed {digits(operating * to_speed, 5)} {unit}; {MARGIN_NOTE}" if operating else ""
+        note = f"operating speed {range_in(operating, to_speed)} {unit}; {MARGIN_NOTE}" if operating else ""
         out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
     if study.has("spectrum/speed", "spectrum/log_decrement"):
         rows = {k: study.get(f"spectrum/{k}") for k in ("speed", "mode", "frequency", "log_decrement", "whirl")}
@@ -143,7 +152,7 @@ def unbalance_response(study):
         return []
     unit = study.attribute("speed_unit", "rad/s")
     factor_of_speed = speed_axis(unit)[0]
-    speed, operating = study.get("response/speed"), operating_speed(study)
+    speed, operating = study.get("response/speed"), operating_range(study)
     rows = []
     places = [("response", f"node {n}", k) for k, n in enumerate(np.atleast_1d(study.get("response/node", [])))]
     if study.has("bearings/semi_major"):
@@ -160,7 +169,7 @@ def unbalance_response(study):
     at = {k.removeprefix("operating."): v for k, v in study.values.items() if k.startswith("operating.")}
     if at:
         words = {k: k.replace("node.", "node ").replace("bearing.", "").replace(".semi_major", "").replace(".", ", ") for k in at}
-        out.append(Table("At the operating speed" + (f", {digits(operating * factor_of_speed, 5)} {unit}" if operating else ""),
+        out.append(Table("At the operating speed" + (f", {digits(operating[0] * factor_of_speed, 5)} {unit}" if operating and operating[0] == operating[1] else ""),
                          ["place", "amplitude 0-peak"], [[words[k], person(v.value, v.unit, 4)] for k, v in at.items()]))
     return out
 

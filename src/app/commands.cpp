@@ -9,6 +9,7 @@
 #include "outcome.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/summary.hpp"
@@ -35,7 +36,7 @@ std::string changes_text(const std::vector<deck::Change>& changes) {
   for (std::size_t i = 0; i < std::min(most, changes.size()); ++i)
     text += fmt::format("  set {}: {}, was {}\n", changes[i].path, brief(changes[i].after), brief(changes[i].before));
   if (changes.size() > most) text += fmt::format("  and {} more values\n", changes.size() - most);
-  return text;
+  return core::printable(text);
 }
 
 // An InputError that does not depend on the rank is one that all ranks have.
@@ -76,6 +77,8 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
                           o.source.empty() ? "an unknown source" : o.source);
   for (const std::string& option : core::Session::unused_options())
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
+  if (core::rank_of(comm) == 0 && !held.locked())
+    text += fmt::format("'{}' cannot be locked: nothing would have kept a second run out\n", directory);
   text += fmt::format("results in {}\n", directory);
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }

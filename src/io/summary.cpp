@@ -178,6 +178,7 @@ Json to_json(const StudySummary& s) {
                      {"imag", number(m.imag)},
                      {"log_decrement", number(m.log_decrement)},
                      {"whirl", text_or_null(m.whirl)}});
+    if (!m.stability.empty()) modes.back()["stability"] = m.stability;
     for (const auto& [key, value] : m.more) modes.back()[key] = number(value);
   }
   Json j = {{"name", s.name},
@@ -188,6 +189,13 @@ Json to_json(const StudySummary& s) {
             {"bifurcations", std::move(bifurcations)},
             {"modes", std::move(modes)},
             {"points", s.points}};
+  if (!s.stability.empty()) j["stability"] = s.stability;
+  if (!s.warnings.empty()) j["warnings"] = s.warnings;
+  for (const Column& c : s.curve) {
+    Json column = Json::array();
+    for (const double v : c.values) column.push_back(number(v));
+    j["curve"][c.name] = {{"unit", c.unit}, {"values", std::move(column)}};
+  }
   for (const CodimensionTwo& c : s.codimension_two) j["codimension_two"].push_back(to_json(c));
   for (const Suspicion& x : s.suspected)
     j["suspected"].push_back({{"from", number(x.from)}, {"to", number(x.to)}, {"unit", x.unit}, {"reason", x.reason}});
@@ -211,7 +219,16 @@ StudySummary study(const Json& j) {
     s.modes.push_back({number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
                        m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>(),
                        m.value("speed_unit", std::string()),
-                       others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl"})});
+                       others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability"}),
+                       m.value("stability", std::string())});
+  s.stability = j.value("stability", std::string());
+  s.warnings = j.value("warnings", std::vector<std::string>());
+  const Json curve = j.value("curve", Json::object());
+  for (const auto& [name, c] : curve.items()) {
+    Column column{name, c.at("unit"), {}};
+    for (const Json& v : c.at("values")) column.values.push_back(number(v));
+    s.curve.push_back(std::move(column));
+  }
   s.points = j.at("points");
   take_sweep(j, s);
   return s;

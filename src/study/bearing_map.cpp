@@ -199,8 +199,9 @@ void put_threshold(io::StudySummary& summary, const Mapper& map, const std::opti
 }
 
 // What the locus says at one eccentricity, in the order of `with_bars`.
-constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio", "k_xx", "k_xy",
-                                                   "k_yx",     "k_yy",       "b_xx",        "b_xy",        "b_yx", "b_yy"};
+constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio",
+                                                   "k_xx",     "k_xy",       "k_yx",        "k_yy",
+                                                   "b_xx",     "b_xy",       "b_yx",        "b_yy"};
 std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vector<Point>& like) {
   std::vector<double> out;
   for (const Point& wanted : like) {

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "findings.hpp"
+#include "groups.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/newton.hpp"
+#include "whirl/study/parameter.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -19,6 +21,8 @@ public:
   explicit Walker(system::Plant& system) : system_(system) {}
   /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
   Vec at(double speed);
+  /// Where it stands, for a resumed run to go on from.
+  [[nodiscard]] Trail trail();
 
 private:
   bool attempt(double speed);
@@ -43,6 +47,11 @@ void put_places(io::Group& group, const system::Machine& machine, const system::
 /// The nondimensional groups of a rigid rotor in equal bearings, as nondimensional.*; nothing for other machines.
 void put_groups(io::StudySummary& summary, const system::Train& train);
 void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups);
+
+/// The same word of the solver.
+[[nodiscard]] inline solve::Continuation kind_of(Following f) {
+  return f == Following::natural ? solve::Continuation::natural : solve::Continuation::arclength;
+}
 
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);

@@ -42,8 +42,7 @@ double CycleFollower::normal_form(solve::CycleProblem& problem, solve::Event eve
 void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u) {
   CycleNumbers here{found.parameter, std::abs(std::arg(found.critical)), cycle.period, io::no_value};
   auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
-  const bool fold = found.event == solve::Event::cyclic_fold,
-             flip = found.event == solve::Event::flip,
+  const bool fold = found.event == solve::Event::cyclic_fold, flip = found.event == solve::Event::flip,
              // Of a flip without film mesh the branch born there tells more: see set_criticality().
       forms = cycles && found.refined && !fold && !autonomous() && (!flip || system_->has_film_mesh());
   double doubt = 0;
@@ -102,6 +101,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (found.event == solve::Event::cyclic_fold && at_simple_cycle(problem_->orbit(u))) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
+  b.more["others_unstable"] = found.others_unstable;
   if (found.event != solve::Event::cyclic_fold) {
     b.more["angle_rad"] = std::abs(std::arg(found.critical));
     b.more["multiplier_modulus"] = std::abs(found.critical);

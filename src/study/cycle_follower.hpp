@@ -10,8 +10,10 @@
 
 #include "common.hpp"
 #include "cycle_record.hpp"
+#include "film_limit.hpp"
 #include "film_mesh.hpp"
 #include "located.hpp"
+#include "node_record.hpp"
 #include "pieces.hpp"
 #include "whirl/solve/cycle_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
@@ -59,8 +61,11 @@ struct Parabola {
 class CycleFollower {
 public:
   /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
-  /// options are those of that branch: period and intervals doubled).
-  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
+  /// options are those of that branch: period and intervals doubled), with all flips of the simple branch.
+  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt,
+                std::vector<FlipSeed> siblings = {});
+  /// Follows the branch that begins at a given forced cycle.
+  CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first);
   /// Solves and records. The study that runs is finished.
   [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
@@ -82,6 +87,8 @@ private:
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed) const;
   [[nodiscard]] solve::Restart leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const;
   [[nodiscard]] core::Vector start(const solve::PeriodicProblem& problem) const;
+  /// Forced cycles beside the first one, at its parameter.
+  [[nodiscard]] std::vector<solve::Cycle> coexisting();
   [[nodiscard]] solve::Restart start_at_hopf();
   [[nodiscard]] solve::Restart start_at_flip();
   [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle);
@@ -98,6 +105,8 @@ private:
   [[nodiscard]] bool at_simple_cycle(const solve::Cycle& orbit) const;
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
+  /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
+  [[nodiscard]] double room(const solve::Cycle& orbit) const;
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   /// Name of a piece of work about the event that comes next.
@@ -134,12 +143,15 @@ private:
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(Vec u, Vec tangent);
+  void close_at_flip(double landed);
   void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
   Context& context_;
   CycleBranchOptions options_;
   std::optional<FlipSeed> seed_;
+  std::optional<solve::Cycle> first_;
+  std::vector<FlipSeed> siblings_;
   std::string unit_;
   double scale_;  // SI value of one unit of the range
   solve::NewtonOptions newton_;
@@ -147,6 +159,8 @@ private:
   std::unique_ptr<system::Plant> system_;
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
+  FilmLimit films_;
+  NodeRecord nodes_;
   std::optional<solve::Cycle> last_;
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far
@@ -155,7 +169,7 @@ private:
   std::vector<Located> located_;    // one for each bifurcation of the summary
   Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
   double largest_difference_ = 0;   // its largest norm so far
-  bool returned_ = false, contact_ = false;
+  bool returned_ = false;
 };
 
 /// Signed distance of a Floquet multiplier from the unit circle.

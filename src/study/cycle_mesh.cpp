@@ -45,9 +45,8 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMes
   if (mesh.spacing < 1) return make_problem(system, options_.period, cycle.mesh, 2);
   const int steps = steps_of(options_);
   if (options_.method == CycleBranchOptions::Method::collocation || steps == 1)
-    return cycle.mesh.size() / 2 < fewest_intervals
-               ? nullptr
-               : make_problem(system, options_.period, merged(cycle.mesh), 1);
+    return cycle.mesh.size() / 2 < fewest_intervals ? nullptr
+                                                    : make_problem(system, options_.period, merged(cycle.mesh), 1);
   return steps % 2 != 0 ? nullptr : make_problem(system, options_.period, cycle.mesh, 0.5);
 }
 
@@ -122,11 +121,10 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     const auto refined =
         solve::refine(*cycles, found, there->u.get(), solve::any_tangent(*cycles, there->u.get()).get(), newton_);
     if (refined) {
-      return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
-                          cycles->gather(refined->u.get()).period,
-                          with_coefficient
-                              ? normal_form(*cycles, found.event, refined->critical, refined->u.get(), long_step)
-                              : io::no_value};
+      return CycleNumbers{
+          refined->parameter, std::abs(std::arg(refined->critical)), cycles->gather(refined->u.get()).period,
+          with_coefficient ? normal_form(*cycles, found.event, refined->critical, refined->u.get(), long_step)
+                           : io::no_value};
     }
     solve::PeriodicProblem& problem = *there->problem;
     core::Vector row = core::duplicate(there->u.get());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "coexisting.hpp"
 #include "cycle_follower.hpp"
 #include "make_plant.hpp"
 #include "whirl/core/error.hpp"
@@ -31,6 +32,7 @@ std::vector<double> two_laps(const std::vector<double>& mesh) {
 
 // The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
 core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
+  if (first_) return problem.scatter(*first_);
   const std::vector<double> whole = system_->gather(find_rest(*system_).get());
   solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), system_->parameter()};
   guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
@@ -133,6 +135,36 @@ solve::Restart CycleFollower::start_at_hopf() {
   hopf.critical = {0, critical->lambda.imag()};
   record_hopf(hopf, at_hopf.get(), restart);
   return restart;
+}
+
+std::vector<solve::Cycle> CycleFollower::coexisting() {
+  system_->set_parameter(continuation_.from * scale_);
+  const auto made = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), false);
+  solve::PeriodicProblem& problem = *made;
+  std::vector<core::Vector> known;
+  known.push_back(start(problem));
+  core::Vector row = core::duplicate(known.front().get());
+  solve::parameter_row(problem, row.get());
+  solve::NewtonOptions newton = newton_;
+  newton.max_iterations = 40;
+  if (!solve::newton(problem, known.front().get(), row.get(), continuation_.from, newton).converged) return {};
+  const solve::Cycle first = problem.gather(known.front().get());
+  // The same motion begun some turns later is no other one.
+  const auto copies = [&](Vec u) {
+    const solve::Cycle cycle = problem.gather(u);
+    std::vector<core::Vector> out;
+    for (int turn = 1; turn < options_.period; ++turn)
+      out.push_back(problem.scatter(delayed(cycle, problem.scheme(), static_cast<double>(turn) / options_.period)));
+    return out;
+  };
+  const auto guess = [&](int k) {
+    return problem.scatter(other_vibration(first, problem.scheme(), options_.period, k));
+  };
+  std::vector<solve::Cycle> out;
+  for (const auto& u : solve::deflate(problem, state_weight(), known, guess,
+                                      deflation_options(*options_.parameter.deflation, newton), copies))
+    out.push_back(problem.gather(u.get()));
+  return out;
 }
 
 FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) {

@@ -32,14 +32,12 @@ void check_name(const Deck& deck, std::size_t i, const deck::Report& report) {
                   fmt::format("study {} is called '{}', and the files of both are '{}': give each a name of its own",
                               j + 1, earlier.name(), file));
     else if (earlier.may_add(file))
-      report.fail("name",
-                  fmt::format("study {}, '{}', follows its flips and calls a branch so: give each a name of its own",
-                              j + 1, earlier.name()));
+      report.fail("name", fmt::format("study {}, '{}', adds a branch that it calls so: give each a name of its own",
+                                      j + 1, earlier.name()));
     else if (later.may_add(io::plain_name(earlier.name())))
-      report.fail("name",
-                  fmt::format("'{}' follows its flips and calls a branch '{}', as study {} is called: give each a "
-                              "name of its own",
-                              name, earlier.name(), j + 1));
+      report.fail("name", fmt::format("'{}' adds a branch that it calls '{}', as study {} is called: give each a "
+                                      "name of its own",
+                                      name, earlier.name(), j + 1));
   }
 }
 
@@ -49,6 +47,10 @@ void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
   d.check([](const Deck& deck, const deck::Report& r) {
+    const auto holds = [](const auto& s) { return s->needs_bearings(); };
+    const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
+    if (shaft && deck.machine.bearings.size() < 2 && std::any_of(deck.studies.begin(), deck.studies.end(), holds))
+      r.fail("bearings", "a shaft needs at least two bearings");
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());

@@ -9,8 +9,8 @@ namespace whirl::study {
 namespace {
 
 constexpr double least_order = 0.5;
-constexpr double least_doubt = 0.25;   // of the largest estimate: safety factor 1.25 (Roache 1994)
-constexpr double single_factor = 3;    // two meshes alone (Roache 1994)
+constexpr double least_doubt = 0.25;  // of the largest estimate: safety factor 1.25 (Roache 1994)
+constexpr double single_factor = 3;   // two meshes alone (Roache 1994)
 constexpr double kinks_factor = 3;    // of the largest estimate of first order: meshes that show no order (Roache 1994)
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 

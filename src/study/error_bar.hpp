@@ -48,9 +48,10 @@ struct Bar {
 ///
 /// with p from theory or, where three meshes show a smaller one, as observed (not below 1/2). The finest sample gives
 /// the error. What the others say differently, and a quarter of the largest of them, is the doubt. Errors of the two
-/// film directions may cancel, and do so differently on each mesh: absolute values are added, bar = sum |e| + sum doubt,
-/// which is zero only where all meshes agree. A direction with one sample cannot show its order: its bar is three times
-/// |e| (Roache 1994). With kinks p is one and the bar three times the largest |e_i| of each direction, added up.
+/// film directions may cancel, and do so differently on each mesh: absolute values are added, bar = sum |e| + sum
+/// doubt, which is zero only where all meshes agree. A direction with one sample cannot show its order: its bar is
+/// three times |e| (Roache 1994). With kinks p is one and the bar three times the largest |e_i| of each direction,
+/// added up.
 [[nodiscard]] Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& law);
 
 /// Bars of many numbers at once, from the same numbers computed on one mesh after another.

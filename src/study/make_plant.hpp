@@ -13,10 +13,10 @@ namespace whirl::study {
 
 /// Which system is wanted.
 struct PlantRequest {
-  std::vector<std::string> unbalance;    ///< of a rotor, applied together
-  const Parameter* parameter = nullptr;  ///< that of a branch; null: a rotor's speed, and none of another system
-  double value = 0;                      ///< of the parameter, SI
-  double speed = 0;                      ///< of a rotor, where the parameter is another one [rad/s]
+  std::vector<std::string> unbalance;      ///< of a rotor, applied together
+  const Parameter* parameter = nullptr;    ///< that of a branch; null: a rotor's speed, and none of another system
+  double value = 0;                        ///< of the parameter, SI
+  double speed = 0;                        ///< of a rotor, where the parameter is another one [rad/s]
   std::array<double, 2> film_cells{1, 1};  ///< cells of its films over those of the deck
 };
 

@@ -44,8 +44,10 @@ StudyResult converge(Context& context, const MeshConvergenceOptions& options, co
     system->set_parameter(origin.cycle.parameter);
     const std::vector<double> whole(origin.cycle.x.data(), origin.cycle.x.data() + origin.cycle.x.size());
     const core::Vector x = resampled(*system, *system, whole);
-    const EquilibriumEvent event{*system, x.get(), found, scale, state_weight_of(branch), newton, {}, {},
-                                 [&](const auto& cells) { return plant_of(context, branch, cells); }};
+    const EquilibriumEvent event{
+        *system, x.get(), found, scale, state_weight_of(branch), newton, {}, {}, [&](const auto& cells) {
+          return plant_of(context, branch, cells);
+        }};
     std::vector<double> value{found.parameter}, frequency{std::abs(found.critical.imag())}, seconds{0};
     for (int level = 1; level <= options.doublings; ++level) {
       const double times = std::exp2(level), begin = results.seconds();

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "film_mesh.hpp"
 #include "groups.hpp"
 #include "summary_bars.hpp"
@@ -49,6 +50,7 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
   const auto journals = system.journals(x.data());
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
+  const std::vector<double> thickness = system.film_thickness(x.data());
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
@@ -63,8 +65,11 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
         summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
       film::Summary report;
       core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
-      summary.set(head + "min_thickness", report.min_thickness, "m");
-      summary.set(head + "min_thickness_ratio", report.min_thickness / support.geometry.clearance, "1");
+      // Between the nodes of a mesh, too.
+      const double thinnest = std::min(report.min_thickness, thickness[b]);
+      summary.set(head + "min_thickness", thinnest, "m");
+      summary.set(head + "min_thickness_ratio", thinnest / support.geometry.clearance, "1");
+      summary.set(head + "minimum_film", support.minimum_film, "m");
       summary.set(head + "max_pressure", report.max_pressure, "Pa");
       summary.set(head + "side_flow", report.side_flow, "m^3/s");
       summary.set(head + "power_loss", report.power_loss, "W");
@@ -130,6 +135,7 @@ StudyResult Static::run(Context& context) {
     if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
   }
   summary.set("length.total", rotor::node_positions(rotor).back(), "m");
+  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
   put_values(context, system, x, summary);
   put_bars(context, system, options.speed.value, x);
   std::vector<double> px, py, load;

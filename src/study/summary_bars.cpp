@@ -23,10 +23,7 @@ std::string stem_of(const std::string& name) {
 }
 
 SummaryBars::SummaryBars(io::StudySummary& summary, MeshLaw law)
-    : summary_(summary),
-      values_(values_of(summary)),
-      moved_(values_.size(), false),
-      bars_(values_, law) {
+    : summary_(summary), values_(values_of(summary)), moved_(values_.size(), false), bars_(values_, law) {
   for (const auto& entry : summary.values) names_.push_back(entry.first);
 }
 

@@ -6,19 +6,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <set>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "film_mesh.hpp"
 #include "groups.hpp"
 #include "pieces.hpp"
-#include "summary_bars.hpp"
-#include "whirl/core/error.hpp"
+#include "response_bars.hpp"
 #include "whirl/deck/units.hpp"
+#include "whirl/film/state_model.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
+#include "whirl/study/separation.hpp"
 
 namespace whirl::study {
 namespace {
@@ -39,12 +42,14 @@ struct Motion {
 struct Response {
   double speed = 0;
   std::vector<Motion> nodes, bearings;
+  std::vector<double> films;  // smallest thickness that the linear motion leaves each bearing [m]
 };
 
 std::vector<double> pack(const Response& r) {
   std::vector<double> flat{r.speed};
   for (const auto* place : {&r.nodes, &r.bearings})
     for (const Motion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
+  flat.insert(flat.end(), r.films.begin(), r.films.end());
   return flat;
 }
 
@@ -55,7 +60,23 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
     const double* v = flat.data() + 1 + 4 * k;
     (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
   }
+  r.films.assign(flat.end() - static_cast<std::ptrdiff_t>(n_bearings), flat.end());
   return r;
+}
+
+// The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
+// gives way; there the motion counts against the clearance.
+double film_left(const system::Support& s, const std::array<double, 2>& at, const Motion& m) {
+  if (s.film.kind == film::Options::Kind::linear) return std::numeric_limits<double>::infinity();
+  if (film::has_states(s.film.kind)) return s.geometry.clearance - m.semi_major();
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int samples = 90;
+  for (int k = 0; k < samples; ++k) {
+    const Complex turn = std::exp(Complex(0, 2 * std::numbers::pi * k / samples));
+    least = std::min(
+        least, film::minimum_thickness(s.geometry, {at[0] + (m.x * turn).real(), at[1] + (m.y * turn).real(), 0, 0}));
+  }
+  return least;
 }
 
 class Machine {
@@ -74,9 +95,9 @@ public:
     PetscInt begin = 0, end = 0;
     core::check(VecGetOwnershipRange(x, &begin, &end));
     // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum
-    // rows.
+    // rows; own states of films, behind all pairs of coordinate and rate, are not forced.
     std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
-    for (PetscInt row = begin; row < end; row += 2) {
+    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); row += 2) {
       const auto q = static_cast<std::size_t>(row / 2), at = static_cast<std::size_t>(2 * (row - begin));
       right[at] = speed * speed * system_.unbalance_cosine()[q];
       right[at + 1] = -speed * speed * system_.unbalance_sine()[q];
@@ -109,8 +130,14 @@ public:
       }
       r.bearings.push_back({z[0], z[1]});
     }
+    const auto rest = system_.journals(system_.gather(x).data());
+    for (std::size_t b = 0; b < rest.size(); ++b)
+      r.films.push_back(film_left(system_.train().supports[b], rest[b].position, r.bearings[b]));
     return r;
   }
+
+  [[nodiscard]] system::Places places() const { return system_.places(); }
+  [[nodiscard]] Trail trail() { return walker_.trail(); }
 
 private:
   system::RotorSystem system_;
@@ -139,61 +166,8 @@ double amplification(const std::vector<Response>& curve, std::size_t node, std::
   return curve[top].speed / (crossing(right - 1, right) - crossing(left + 1, left));
 }
 
-constexpr double peak_tolerance = 1e-5;  // of the speed of a peak
-
-// The top of the parabola through three points, and what its curvature says of the amplification factor: a resonance
-// has f''/f = -(2 Q/s)^2 there.
-struct Top {
-  double speed, height, quality;
-};
-Top top_of(const std::array<double, 3>& s, const std::array<double, 3>& f) {
-  const double left = (f[1] - f[0]) / (s[1] - s[0]), right = (f[2] - f[1]) / (s[2] - s[1]),
-               curvature = 2 * (right - left) / (s[2] - s[0]), slope = left + curvature * (s[1] - s[0]) / 2;
-  const double top = f[1] - slope * slope / (2 * curvature);
-  return {s[1] - slope / curvature, top, s[1] / 2 * std::sqrt(std::max(0.0, -curvature / top))};
-}
-
-// A peak in the summary: names that start with `head` are those of the peak of `node` near `speed`.
-struct Named {
-  std::string head;
-  std::size_t node;
-  double speed;
-};
-
-// Responses at `speeds` of one machine, flat.
-using Solve = std::function<std::vector<Response>(Machine&, const std::vector<double>&, const std::string& piece)>;
-
-// What the peaks are on one mesh, seen from three speeds about each; peaks of several nodes that stand together share
-// them.
-struct Tops {
-  std::vector<double> centres;
-  static constexpr double apart = 5e-3, together = 4e-3;
-
-  explicit Tops(const std::vector<Named>& peaks) {
-    for (const Named& p : peaks) {
-      const bool known = std::any_of(centres.begin(), centres.end(),
-                                     [&](double c) { return std::abs(c - p.speed) < together * c; });
-      if (!known) centres.push_back(p.speed);
-    }
-  }
-  [[nodiscard]] std::vector<double> speeds() const {
-    std::vector<double> out;
-    for (const double c : centres) out.insert(out.end(), {c * (1 - apart), c, c * (1 + apart)});
-    return out;
-  }
-  [[nodiscard]] Top of(const Named& peak, const std::vector<Response>& all) const {
-    std::size_t k = 0;
-    while (std::abs(centres[k] - peak.speed) >= together * centres[k]) ++k;
-    std::array<double, 3> s{}, f{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      s[i] = all[3 * k + i].speed;
-      f[i] = all[3 * k + i].nodes[peak.node].semi_major();
-    }
-    return top_of(s, f);
-  }
-};
-
-void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r, io::StudySummary& summary) {
+void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r,
+                   io::StudySummary& summary) {
   const auto names = names_of_bearings(context.machine);
   for (std::size_t b = 0; b < names.size(); ++b) {
     summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
@@ -201,52 +175,6 @@ void put_operating(const Context& context, const std::vector<int>& nodes, const 
   }
   for (std::size_t k = 0; k < nodes.size(); ++k)
     summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
-}
-
-// Bars of all that the summary says: the peaks and the response at operating speed on other film meshes, as moved from
-// what three speeds say on the mesh in use.
-void put_bars(const Context& context, const Groups& groups, const UnbalanceResponseOptions& options,
-              const std::vector<int>& nodes, Machine& machine, const std::vector<Named>& peaks, const Solve& solve) {
-  io::StudySummary& summary = context.results.summary();
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
-  if (meshes.empty()) return;
-  const Tops tops(peaks);
-  std::vector<double> speeds = tops.speeds();
-  if (options.operating_speed) speeds.push_back(options.operating_speed->value);
-  if (speeds.empty()) return;
-  std::map<std::string, double> known;
-  for (const auto& [name, q] : summary.values) known[name] = q.value;
-  const std::vector<Response> here = solve(machine, speeds, "bars");
-  SummaryBars bars(summary, law_of(context.machine));
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    io::StudySummary there;
-    try {
-      Machine other(context, groups, options, nodes, meshes[i].factor);
-      const std::vector<Response> moved = solve(other, speeds, fmt::format("bars {}", i + 1));
-      for (const Named& p : peaks) {
-        const Top a = tops.of(p, here), b = tops.of(p, moved);
-        const auto put = [&](const std::string& name, double value) {
-          if (known.contains(p.head + name)) there.set(p.head + name, value, "");
-        };
-        put("speed", known[p.head + "speed"] + deck::from_si(b.speed - a.speed, options.range.unit));
-        put("semi_major", known[p.head + "semi_major"] + b.height - a.height);
-        put("node", known[p.head + "node"]);
-        put("amplification_factor", known[p.head + "amplification_factor"] * b.quality / a.quality);
-        if (options.operating_speed)
-          put("separation_margin",
-              std::abs(p.speed + b.speed - a.speed - options.operating_speed->value) / options.operating_speed->value);
-      }
-      if (options.operating_speed) put_operating(context, nodes, moved.back(), there);
-    } catch (const core::NotConverged&) {
-      there = {};
-    } catch (const core::DomainError&) {
-      there = {};
-    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-      there = {};
-    }
-    bars.add(meshes[i].axis, meshes[i].spacing, there);
-  }
-  bars.write(peak_tolerance);
 }
 
 void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place,
@@ -266,6 +194,37 @@ void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Mo
     const bool phase = name.ends_with("phase");
     g.put(name, shape, std::move(values), phase ? "rad" : "m",
           text + (phase ? ", phase ahead of the shaft angle" : ", 0-peak"));
+  }
+}
+
+// Linear motions know no bore: where they leave less film than the surfaces bear they are none.
+void put_films(io::Group& group, io::StudySummary& summary, const system::Places& places,
+               const std::vector<Response>& curve, const std::string& unit) {
+  std::vector<double> all;
+  for (const Response& r : curve) {
+    const auto films = film_column(r.films, places.names.size());
+    all.insert(all.end(), films.begin(), films.end());
+  }
+  group.child("bearings")
+      .put("film_min", {curve.size(), places.names.size()}, all, "m",
+           "smallest film thickness that the linear motion leaves, not a number without a film");
+  for (std::size_t b = 0; b < places.names.size(); ++b) {
+    const Response *worst = nullptr, *first = nullptr, *last = nullptr;
+    for (const Response& r : curve) {
+      if (!std::isfinite(r.films[b])) continue;
+      if (!worst || r.films[b] < worst->films[b]) worst = &r;
+      if (r.films[b] > 0 && r.films[b] >= places.least_films[b]) continue;
+      if (!first) first = &r;
+      last = &r;
+    }
+    if (!worst) continue;
+    summary.set("bearing." + places.names[b] + ".film_min", worst->films[b], "m");
+    if (first)
+      summary.warnings.push_back(fmt::format(
+          "the linear motion leaves bearing {} {:.3g} um of film at {:.6g} {}, less than the {:.3g} um below which the "
+          "surfaces touch (minimum_film): no answer between {:.6g} and {:.6g} {}",
+          places.names[b], worst->films[b] * 1e6, deck::from_si(worst->speed, unit), unit, places.least_films[b] * 1e6,
+          deck::from_si(first->speed, unit), deck::from_si(last->speed, unit), unit));
   }
 }
 
@@ -298,7 +257,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, piece))
+    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, piece, which.trail()))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };
@@ -339,8 +298,19 @@ StudyResult UnbalanceResponse::run(Context& context) {
       std::sort(curve.begin(), curve.end(), by_speed);
     }
 
+  const auto put_peak = [&](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {
+    to.set(head + "speed", deck::from_si(speed, unit), unit);
+    to.set(head + "semi_major", height, "m");
+    to.set(head + "amplification_factor", factor, "1");
+    if (!options.operating && !options.operating_speed) return;
+    const double lowest = options.operating ? options.operating->from : options.operating_speed->value,
+                 highest = options.operating ? options.operating->to : lowest;
+    const Separation margin = separation(speed, factor, lowest, highest);
+    to.set(head + "separation_margin", margin.actual, "1");
+    to.set(head + "required_margin", margin.required, "1");
+  };
   std::vector<Peak> peaks;
-  std::vector<Named> named;
+  std::vector<NamedPeak> named;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
     for (const std::size_t k : tops(node))
@@ -348,10 +318,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
     std::stable_sort(own.begin(), own.end(), [](const Peak& a, const Peak& b) { return a.amplitude > b.amplitude; });
     for (std::size_t k = 0; k < own.size(); ++k) {
       const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
-      summary.set(head + "speed", deck::from_si(own[k].speed, unit), unit);
-      summary.set(head + "semi_major", own[k].amplitude, "m");
-      named.push_back({head, node, own[k].speed});
-      if (node == 0) named.push_back({fmt::format("peak.{}.", k + 1), node, own[k].speed});
+      put_peak(summary, head, own[k].speed, own[k].amplitude, own[k].amplification);
+      named.push_back({head, node, own[k].speed, own[k].amplitude, own[k].amplification});
+      if (node == 0)
+        named.push_back({fmt::format("peak.{}.", k + 1), node, own[k].speed, own[k].amplitude, own[k].amplification});
     }
     if (node == 0) peaks = own;
   }
@@ -359,19 +329,31 @@ StudyResult UnbalanceResponse::run(Context& context) {
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const std::string head = fmt::format("peak.{}.", k + 1);
     summary.set(head + "node", peaks[k].node, "1");
-    summary.set(head + "speed", deck::from_si(peaks[k].speed, unit), unit);
-    summary.set(head + "semi_major", peaks[k].amplitude, "m");
-    summary.set(head + "amplification_factor", peaks[k].amplification, "1");
-    if (options.operating_speed)
-      summary.set(head + "separation_margin",
-                  std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
+    put_peak(summary, head, peaks[k].speed, peaks[k].amplitude, peaks[k].amplification);
   }
   if (options.operating_speed) {
     put_operating(context, nodes, at_speeds({options.operating_speed->value}).front(), summary);
   }
-  put_bars(context, groups, options, nodes, machine, named, solve_at);
+  put_response_bars(context, named, put_peak,
+                    [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
+                      std::optional<Machine> other;
+                      if (cells != std::array<double, 2>{1, 1}) other.emplace(context, groups, options, nodes, cells);
+                      if (options.operating_speed) at.push_back(options.operating_speed->value);
+                      std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
+                      MeshResponse out;
+                      if (options.operating_speed) {
+                        put_operating(context, nodes, all.back(), out.operating);
+                        all.pop_back();
+                      }
+                      for (const Response& r : all) {
+                        out.height.emplace_back();
+                        for (const Motion& m : r.nodes) out.height.back().push_back(m.semi_major());
+                      }
+                      return out;
+                    });
 
   auto& group = results.group();
+  put_films(group, summary, machine.places(), curve, unit);
   auto& response = group.child("response");
   std::vector<double> speeds;
   for (const Response& r : curve) speeds.push_back(r.speed);

@@ -72,7 +72,8 @@ TEST(ErrorBar, IsUnknownWhereNoOtherMeshHasTheNumber) {
 }
 
 TEST(ErrorBar, KeepsTimeApart) {
-  const Bar bar = error_bar(1, {{Axis::time, 0.5, 1.07}, {Axis::time, 2, 0.44}, {Axis::around, 0.5, 1.0}}, {2, 3, false});
+  const Bar bar =
+      error_bar(1, {{Axis::time, 0.5, 1.07}, {Axis::time, 2, 0.44}, {Axis::around, 0.5, 1.0}}, {2, 3, false});
   EXPECT_NEAR(bar.time_mesh, 0.08 * 1.25, 1e-12);  // 1.08 - 0.08 r^3
   EXPECT_EQ(bar.film_mesh, 0);
 }

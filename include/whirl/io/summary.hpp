@@ -56,6 +56,13 @@ struct ModeEntry {
   std::string whirl = {};  ///< forward, backward, mixed, planar
   std::string speed_unit = "rad/s";
   std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
+  std::string stability = {};               ///< stable, undamped (its real part is rounding), unstable; or empty
+};
+
+/// A column of numbers over the points of a curve.
+struct Column {
+  std::string name = {}, unit = {};
+  std::vector<double> values = {};
 };
 
 struct StudySummary;
@@ -93,6 +100,9 @@ struct StudySummary {
   std::vector<Bifurcation> bifurcations = {};
   std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any
   std::vector<Suspicion> suspected = {};             ///< likewise
+  std::string stability = {};                        ///< verdict on the whole branch; likewise
+  std::vector<std::string> warnings = {};            ///< what its numbers must not be taken for; likewise
+  std::vector<Column> curve = {};                    ///< a curve, column by column of equal length; likewise
   std::vector<ModeEntry> modes = {};
   std::vector<VariantSummary> variants = {};  ///< of a sweep; in the file only if there are any, like what follows
   std::vector<SweepColumn> columns = {};

@@ -61,6 +61,8 @@ public:
   [[nodiscard]] virtual bool may_add(std::string_view /*other*/) const { return false; }
   /// True if it asks about a rotor in bearings, so that a deck of another system cannot have it.
   [[nodiscard]] virtual bool needs_rotor() const { return true; }
+  /// True if the shaft of a rotor has to stand in bearings for it.
+  [[nodiscard]] virtual bool needs_bearings() const { return true; }
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
   virtual void validate(const system::Machine& machine, const deck::Report& report) const = 0;
   /// The same for what does not fit the studies before it in the deck.
