@@ -13,10 +13,9 @@ namespace whirl::study {
 void describe(deck::Description<MeshConvergenceOptions>& d) {
   using O = MeshConvergenceOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add(
-       "of", &O::of,
-       "name of an earlier equilibrium_branch or cycle_branch, or 'NAME flip K' for the branch born at its K-th flip, "
-       "whose bifurcations are located anew on finer films")
+  d.add("of", &O::of,
+        "name of an earlier equilibrium_branch or cycle_branch, or 'NAME flip K' for the branch born at its K-th flip, "
+        "whose bifurcations are located anew on finer films")
       .required();
   d.add("bifurcations", &O::bifurcations, deck::positive,
         "which ones: 1 is the first that the summary of the branch lists; all if not given");
