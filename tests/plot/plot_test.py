@@ -25,6 +25,7 @@ EXPECTED = {
     "hard": ["impedance"],
     "soft": ["frequencies"],
     "period_two": ["motion"],
+    "clearances": ["trends", "balanced"],
 }
 TOGETHER = ["bifurcations", "map-locus", "map-stiffness", "map-damping", "map-stability", "map-pressure"]
 

@@ -171,6 +171,17 @@ def motion(root):
     put(g.create_group("bearings"), name=["left", "right"], node=[1, 1], clearance=[25e-6, 25e-6], preload=[0, 0], offset=[0, 0], arc=[2 * np.pi] * 2)
 
 
+def sweep(root):
+    g = study(root, "clearances", "sweep")
+    for k, name in enumerate(("narrow", "wide")):
+        variant = g.create_group(f"variants/{name}")
+        variant.attrs.update({"title": name, "order": k + 1})
+        root.copy(root["studies/balanced"], variant, "balanced")
+        variant["balanced/branch/y"][...] *= 1 + 0.2 * k
+    rows = {"variant": ["as given", "narrow", "wide"], "clearance": [1.0, 0.8, 1.2]}
+    put(g.create_group("table"), **rows, **{"balanced.hopf.1": [5025.0, 4000.0, 6500.0]})
+
+
 def make(directory):
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
@@ -185,6 +196,7 @@ def make(directory):
         bearing_map(root, "hard", 0)
         bearing_map(root, "soft", 0.5)
         motion(root)
+        sweep(root)
     studies = [
         {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
          "values": {"mass.total": {"value": 42165.66, "unit": "kg"}, "load.B3": {"value": None, "unit": "N"}},
@@ -196,6 +208,13 @@ def make(directory):
         {"name": "balanced", "kind": "equilibrium_branch", "status": "completed", "wall_seconds": 5.0, "values": {},
          "bifurcations": [{"type": "hopf", "parameter": "speed", "value": 5025.0, "unit": "rpm", "period_s": 0.0733,
                            "uncertainty": 12.0, "criticality": None}], "modes": [], "points": 70},
+        {"name": "clearances", "kind": "sweep", "status": "completed", "wall_seconds": 9.0, "values": {}, "bifurcations": [], "modes": [], "points": 2,
+         "variants": [{"name": n, "changes": {}, "studies": []} for n in ("narrow", "wide")],
+         "columns": [{"name": f"balanced.hopf.{k}", "unit": u, "values": v, "uncertainties": e}
+                     for k, u, v, e in (("1", "rpm", [5025.0, 4000.0, 6500.0], [12.0, None, 9.0]), ("count", "1", [1, 1, 1], [0, 0, 0]))],
+         "trends": [{"column": "balanced.hopf.1", "quantity": "clearance", "unit": "1", "beside": "", "sign": "+",
+                     "variants": ["narrow", "as given", "wide"], "at": [0.8, 1.0, 1.2], "difference": [1025.0, 1475.0],
+                     "uncertainty": [24.0, 21.0]}]},
     ]
     summary = {"title": "Turbine-generator train <A & B>", "version": "0.1.0", "ranks": 2, "wall_seconds": 9.4, "studies": studies}
     (directory / "summary.json").write_text(json.dumps(summary))

@@ -58,7 +58,7 @@ def variants(h):
         alone = h.run("train.yaml", f"alone {change}", COARSE + [STUDIES, f"{CLEARANCE}={change}"])
         for study in variant["studies"]:
             worst = max(worst, apart(plain(study), plain(alone[study["name"]])))
-    h.close("variants and runs of their own, worst", worst, 0, 1e-12)
+    h.close("variants and runs of their own, worst", worst, 0, 1e-10)
     first = column(sweep, "balanced.hopf.1")
     h.close("as given, in the table", first["values"][0], found["balanced"]["bifurcations"][0]["value"], 0)
     h.true("bars in the table", all(b and b > 0 for b in first["uncertainties"]))
@@ -76,7 +76,9 @@ def ranks(h):
     one = plain(h.run("train.yaml", "1 rank", SHORT, launcher=[]))
     for n, more in ((2, []), (3, []), (3, ["studies.3.sweep.ranks=2"])):
         other = plain(h.run("train.yaml", f"{n} ranks {len(more)}", SHORT + more, launcher=[*h.launcher, "-n", str(n)]))
-        h.close(f"{n} ranks{', two for each variant' if more else ''}, worst", apart(one, other), 0, 1e-9 if more else 1e-12)
+        h.close(f"{n} ranks{', two for each variant' if more else ''}, worst", apart(one, other), 0, 1e-9)
+        if not more:
+            h.close(f"{n} ranks, variants", apart(one["clearance"]["variants"], other["clearance"]["variants"]), 0, 0)
 
 
 def resume(h):
@@ -211,9 +213,11 @@ def design(h, whole=False):
         rows = ["as given"] + [v["name"] for v in found[name]["variants"]]
         for row, (fine, error) in values.items():
             k = rows.index(row)
-            h.close(f"{name}, {row}: threshold [rpm]", first["values"][k], fine, first["uncertainties"][k] + error + 2)
+            # On 40 x 12 cells the threshold is up to 1.4 % too low (reference: 4957 of 5025 rpm).
+            within = first["uncertainties"][k] + error + 2 if whole else 0.016 * fine
+            h.close(f"{name}, {row}: threshold [rpm]", first["values"][k], fine, within)
         found_sign = trend(found[name], "balanced.hopf.1")["sign"]
-        h.true(f"{name}: sign of the trend is {found_sign}", sign in (None, found_sign))
+        h.true(f"{name}: sign of the trend is {found_sign}", found_sign in ((sign, "undetermined") if sign is None or not whole else (sign,)))
     if whole:
         for name in THRESHOLDS:
             for variant in found[name]["variants"]:

@@ -1,0 +1,220 @@
+"""Sweeps: what was asked of all variants on one picture, and values over what changes."""
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .bifurcation import Followed
+from .style import COLOURS, INK, MARKS, branch_legend, grid_of, length_unit, save, speed_axis
+
+BAR = dict(capsize=2.5, elinewidth=0.9, linewidth=1.3, markersize=4.5)
+
+
+def variants(study):
+    """(name, colour, {study: Subject}) of the deck as it stands, if it was computed, and of all variants in their order."""
+    groups = sorted(study.group["variants"].values(), key=lambda g: int(g.attrs.get("order", 0)))
+    entries = {v["name"]: v for v in study.summary.get("variants", [])}
+    found = []
+    for group in groups:
+        name = str(group.attrs["title"])
+        summaries = {s["name"]: s for s in entries.get(name, {}).get("studies", [])}
+        members = {}
+        for one in group.values():
+            subject = type(study)(study.results, one, {})
+            subject.summary = summaries.get(subject.name, {})
+            members[subject.name] = subject
+        found.append((name, members))
+    asked = set().union(*(m for _, m in found)) if found else set()
+    given = {s.name: s for s in study.results.studies if s.name in asked}
+    if given:
+        found.insert(0, ("as given", given))
+    colours = [INK] + COLOURS if given else COLOURS
+    return [(name, colours[i % len(colours)], members) for i, (name, members) in enumerate(found)]
+
+
+def each(study, kind, *needed):
+    """(name of a study of that kind, [(variant, colour, Subject)]) for those that hold what a picture needs."""
+    rows = variants(study)
+    names = list(dict.fromkeys(n for _, _, members in rows for n, s in members.items() if s.kind == kind))
+    for name in names:
+        having = [(v, c, m[name]) for v, c, m in rows if name in m and m[name].has(*needed)]
+        if len(having) > 1:
+            yield name, having
+
+
+def legend(rows):
+    return [Line2D([], [], color=c, label=v) for v, c, _ in rows]
+
+
+def plain(text):
+    return "".join(c if c.isalnum() or c in ".+-" else "_" for c in text).strip("_.") or "study"
+
+
+def draw_branches(study):
+    """Vertical position of every journal: equilibria, or the highest and the lowest point of cycles."""
+    files = []
+    for kind, columns in (("equilibrium_branch", ("y",)), ("cycle_branch", ("y_max", "y_min"))):
+        for name, rows in each(study, kind, "branch/parameter", *(f"branch/{c}" for c in columns)):
+            followed = [(c, Followed(s)) for _, c, s in rows]
+            first = rows[0][2]
+            unit = first.attribute("parameter_unit", "")
+            clearance = first.get("bearings/clearance")
+            places = first.bearings(followed[0][1].column(columns[0]).shape[1])
+            figure, axes, _ = grid_of(len(places), width=4.2, height=3.0, columns=2 if len(places) < 5 else 3)
+            for b, (axis, place) in enumerate(zip(axes, places)):
+                for (colour, branch), (_, _, subject) in zip(followed, rows):
+                    own = subject.get("bearings/clearance")
+                    scale = 1 / own[b] if own is not None and len(own) > b and own[b] > 0 else 1
+                    curves = [branch.column(c)[:, b] for c in columns]
+                    for values in curves:
+                        branch.draw(axis, values, colour, scale, linewidth=1.3)
+                    branch.mark(axis, curves, scale, size=4.5)
+                axis.set_title(place)
+                axis.set_xlabel(f"{first.attribute('parameter', 'parameter')} [{unit}]")
+                axis.set_ylabel("y / c" if clearance is not None else "y [m]")
+            note = "journal relative to the bearing centre, in clearances of each variant; all points of a cycle lie between its two curves"
+            files += save(figure, study, plain(name), note if len(columns) > 1 else "",
+                          branch_legend([k for _, f in followed for k in f.kinds], legend(rows), [e for _, f in followed for e in f.ends]))
+    return files
+
+
+def draw_response(study):
+    """Amplitude of the linear response, and of the cycles under the same unbalance, relative to the bearings."""
+    files = []
+    cycles = {name: rows for name, rows in nonlinear(study)}
+    for name, rows in each(study, "unbalance_response", "response/speed", "bearings/x_amplitude", "bearings/y_amplitude"):
+        first = rows[0][2]
+        factor, label, _, _ = speed_axis(first.attribute("speed_unit", "rad/s"))
+        x = first.get("bearings/x_amplitude").reshape(len(first.get("response/speed")), -1)
+        scale, unit = length_unit(x)
+        places = first.bearings(x.shape[1])
+        figure, _, axes = grid_of(2 * len(places), width=3.0, height=2.5, columns=len(places), sharex=True)
+        handles = [Line2D([], [], color=c, label=f"linear, {v}") for v, c, _ in rows]
+        for row, direction in enumerate("xy"):
+            for b, place in enumerate(places):
+                axis = axes[row, b]
+                for _, colour, s in rows:
+                    speed = s.get("response/speed") * factor
+                    axis.plot(speed, s.get(f"bearings/{direction}_amplitude").reshape(len(speed), -1)[:, b] * scale, color=colour, linewidth=1.3)
+                for k, (_, s) in enumerate(cycles.get(first.attribute("unbalance", ""), [])):
+                    half = (s.get(f"branch/{direction}_max") - s.get(f"branch/{direction}_min")) / 2
+                    axis.plot(s.get("branch/parameter"), half.reshape(len(half), -1)[:, b] * scale, color=COLOURS[1 + k], linestyle="--", linewidth=1.2)
+                if row == 0:
+                    axis.set_title(place)
+                else:
+                    axis.set_xlabel(label)
+                if b == 0:
+                    axis.set_ylabel(f"{direction}, half of peak to peak [{unit}]")
+                axis.set_ylim(bottom=0)
+        handles += [Line2D([], [], color=COLOURS[1 + k], linestyle="--", label=f"nonlinear, {v}")
+                    for k, (v, _) in enumerate(cycles.get(first.attribute("unbalance", ""), []))]
+        files += save(figure, study, plain(name), "journal relative to the bearing centre", handles)
+    return files
+
+
+def nonlinear(study):
+    """(unbalance, [(words, Subject)]) of branches of forced cycles over speed beside the sweep, and of its own."""
+    found = {}
+    own = [(f"{v}", s) for v, _, m in variants(study) for s in m.values()]
+    beside = [("as given", s) for s in study.results.studies if s.name not in {o.name for _, o in own}]
+    for words, s in own + beside:
+        if s.kind == "cycle_branch" and s.attribute("parameter") == "speed" and s.attribute("parameter_unit") == "rpm" \
+                and s.attribute("unbalance", "") and s.attribute("period_turns", 1) == 1 and s.has("branch/x_max", "branch/x_min"):
+            found.setdefault(s.attribute("unbalance"), []).append((words, s))
+    return found.items()
+
+
+def draw_films(study):
+    """Pressure of each bearing's first pad in its middle, and along the bearing where it is highest."""
+    files = []
+    for name, rows in each(study, "static", "films"):
+        for bearing in rows[0][2].fields:
+            figure, axes, _ = grid_of(2, width=4.6, height=3.4, columns=2)
+            for _, colour, s in rows:
+                pad = s.fields[bearing]["pad1"]
+                theta, z, p = np.degrees(pad["theta"]), pad["z"] * 1e3, pad["pressure"] / 1e6
+                middle, top = int(np.argmin(np.abs(z))), int(np.argmax(p.max(axis=1)))
+                mark = "o" if len(theta) <= 41 else None
+                axes[0].plot(theta, p[:, middle], color=colour, marker=mark, markersize=2.5, linewidth=1.2)
+                axes[1].plot(z, p[top], color=colour, marker=mark, markersize=2.5, linewidth=1.2)
+            axes[0].set_xlabel("angle from +x [deg]")
+            axes[1].set_xlabel("z from the middle of the bearing [mm]")
+            axes[0].set_ylabel("pressure [MPa]")
+            axes[0].set_title("around, at the middle")
+            axes[1].set_title("along, at the highest pressure")
+            files += save(figure, study, f"{plain(name)}.{plain(bearing)}", f"{bearing}, first pad", legend(rows))
+    return files
+
+
+def draw_coefficients(study):
+    """Stiffness and damping of the films over what the sweep changes, where there are enough variants for a curve."""
+    quantity = axis_of(study)
+    if quantity is None or not study.has("table"):
+        return []
+    label, at = quantity
+    columns = list(study.group["table"])
+    heads = dict.fromkeys(c.rsplit(".K.", 1)[0] for c in columns if c.endswith(".K.xx"))
+    if len(at) < 5 or not heads:
+        return []
+    order = np.argsort(at)
+    files = []
+    for letter, unit, words in (("K", "N/m", "stiffness"), ("C", "N s/m", "damping")):
+        figure, axes, _ = grid_of(len(heads), width=3.4, height=2.9, columns=min(3, len(heads)))
+        for axis, head in zip(axes, heads):
+            for k, c in enumerate(("xx", "xy", "yx", "yy")):
+                axis.plot(np.array(at)[order], study.get(f"table/{head}.{letter}.{c}")[order], color=COLOURS[k], linewidth=1.4)
+            axis.set_title(head.split(".bearing.")[-1])
+            axis.set_xlabel(label)
+            axis.set_ylabel(f"{words} [{unit}]")
+            axis.axhline(0, color=INK, linewidth=0.6)
+            axis.ticklabel_format(axis="y", scilimits=(-2, 3))
+        handles = [Line2D([], [], color=COLOURS[k], label=f"{letter} {c}") for k, c in enumerate(("xx", "xy", "yx", "yy"))]
+        files += save(figure, study, words, "minus the derivatives of the film's force on the journal", handles)
+    return files
+
+
+def axis_of(study):
+    """Label and place of every row on the first quantity that changes as a number."""
+    trends = study.summary.get("trends", [])
+    if not trends:
+        return None
+    name, unit = trends[0]["quantity"], trends[0]["unit"]
+    at = study.get("table/" + name.replace("/", "_"))
+    short = name.split(".")[-1] if name != "at" else study.name
+    return None if at is None else (short + (f" [{unit}]" if unit != "1" else ""), at)
+
+
+def draw_trends(study):
+    """Where bifurcations lie over what the sweep changes, with their bars. Lines join variants that have as many of them."""
+    where = axis_of(study)
+    columns = {c["name"]: c for c in study.summary.get("columns", [])}
+    if where is None or any(t["beside"] for t in study.summary["trends"]):
+        return []
+    label, at = where
+    panels = {}
+    for name in columns:
+        head, kind, number = (name.rsplit(".", 2) + ["", ""])[:3]
+        if kind in MARKS and number.isdigit():
+            panels.setdefault((head, kind), []).append(int(number))
+    if not panels:
+        return []
+    rows = [r for r in np.argsort(at, kind="stable") if np.isfinite(at[r])]
+    figure, axes, _ = grid_of(len(panels), width=3.6, height=2.9, columns=3)
+    for axis, ((head, kind), numbers) in zip(axes, panels.items()):
+        counts = columns[f"{head}.{kind}.count"]["values"]
+        for number in numbers:
+            c, colour = columns[f"{head}.{kind}.{number}"], COLOURS[(number - 1) % len(COLOURS)]
+            there = [r for r in rows if c["values"][r] is not None]
+            for r in there:
+                axis.errorbar(at[r], c["values"][r], yerr=c["uncertainties"][r] or 0, marker=MARKS[kind][1], color=colour, **BAR)
+            for a, b in zip(there, there[1:]):
+                if counts[a] == counts[b] or number == 1:
+                    axis.plot([at[a], at[b]], [c["values"][a], c["values"][b]], color=colour, linewidth=1.2)
+        axis.set_title(f"{head}: {MARKS[kind][0]}")
+        axis.set_xlabel(label)
+        axis.set_ylabel(columns[f"{head}.{kind}.1"]["unit"])
+        known = [at[r] for r in rows]
+        if known[0] > 0 and known[-1] / known[0] > 20:
+            axis.set_xscale("log")
+    numbers = sorted({n for all_numbers in panels.values() for n in all_numbers})
+    handles = [Line2D([], [], color=COLOURS[(n - 1) % len(COLOURS)], label=f"number {n} along the branch") for n in numbers]
+    return save(figure, study, "trends", "bars: uncertainty; lines join variants that have equally many", handles)
+
