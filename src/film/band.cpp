@@ -15,12 +15,26 @@ void Band::clear() {
   std::fill(data_.begin(), data_.end(), Pack::zero());
 }
 
-void Band::factor() {
+void Band::factor(const Band& base, std::span<const double> extra, int first, int mark) {
+  const auto row_packs = stride_ / kLanes;
+  const auto rows = [&](int i) { return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * row_packs); };
+  const int kept = first == 0 ? 0 : std::min(size_, first + width_ + 1);
+  if (kept > 0) std::copy(marked_.begin(), marked_.begin() + rows(kept - first), data_.begin() + rows(first));
+  std::copy(base.data_.begin() + rows(kept), base.data_.end(), data_.begin() + rows(kept));
+  eliminate(extra, first, first == 0 ? mark : size_);
+}
+
+void Band::eliminate(std::span<const double> extra, int first, int mark) {
   const auto row_packs = stride_ / kLanes;
   double* const pivot = scalars(pivot_);  // the pivot row followed by zeros, so that shifted loads stay in bounds
-  for (int i = 0; i < size_; ++i) {
+  for (int i = first; i < size_; ++i) {
     Pack* const own = &data_[static_cast<std::size_t>(i) * row_packs];
+    if (i == mark) {
+      const int last = std::min(size_, mark + width_ + 1);
+      marked_.assign(own, &data_[0] + static_cast<std::size_t>(last) * row_packs);
+    }
     std::copy(own, own + row_packs, pivot_.begin());
+    if (!extra.empty()) pivot[0] += extra[static_cast<std::size_t>(i)];
     const double inverse = 1.0 / pivot[0];
     const int reach = std::min(width_, size_ - 1 - i);
     for (int r = 1; r <= reach; ++r) {

@@ -15,14 +15,20 @@ public:
   [[nodiscard]] const double* row(int i) const { return scalars(data_) + static_cast<std::size_t>(i) * stride_; }
   void clear();
   /// Replaces A by 1/D (diagonal) and the columns of L (right of it). Cost about size * width^2 multiplications.
-  void factor();
+  void factor() { eliminate({}, 0, size_); }
+  /// The same of A + diag(extra), which starts again where only `extra` changed: the first call takes all rows and
+  /// remembers what it finds in those from `mark` on; later ones, with first = mark, only do these. An infinite extra
+  /// holds its unknown at zero. `base` is A.
+  void factor(const Band& base, std::span<const double> extra, int first, int mark);
   /// x := A^-1 x for four right-hand sides side by side, after factor().
   void solve(std::span<Quad> x) const;
 
 private:
+  void eliminate(std::span<const double> extra, int first, int mark);
   int size_, width_;
   std::size_t stride_;
   std::vector<Pack> data_, pivot_;
+  std::vector<Pack> marked_;  // rows mark .. mark + width when those before were eliminated
 };
 
 }  // namespace whirl::film

@@ -23,7 +23,8 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
       last_share_(!tilt_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
       stiffen_(1.0 + std::pow(4.0 * pad.radius * grid_.dtheta / pad.length, 4)),
       first_(pad.closed ? 0 : 1),
-      band_((grid_.n_theta - first_) * rows_, (pad.closed ? 2 : 1) * rows_) {
+      band_((grid_.n_theta - first_) * rows_, (pad.closed ? 2 : 1) * rows_),
+      base_(band_) {
   const auto n = static_cast<std::size_t>(grid_.n_theta);
   a_.resize(tilt_ ? n * static_cast<std::size_t>(rows_) : n);
   b_.resize(tilt_ ? n * static_cast<std::size_t>(z_faces_) : n);
@@ -84,11 +85,11 @@ void BandedPad::coefficients(const Motion& motion) {
 }
 
 void BandedPad::assemble() {
-  const bool ruptured = cavitation_ == Options::Cavitation::reynolds;
+  Band& band = cavitation_ == Options::Cavitation::reynolds ? base_ : band_;
   for (int i = first_; i < grid_.n_theta; ++i) {
     for (int j = 0; j < rows_; ++j) {
       const std::size_t here = at(i, j);
-      double* row = band_.row(static_cast<int>(here));
+      double* row = band.row(static_cast<int>(here));
       std::fill(row, row + (pad_.closed ? 2 : 1) * rows_ + 1, 0.0);
       if (cavitated_[here]) {
         row[0] = 1.0;
@@ -97,7 +98,6 @@ void BandedPad::assemble() {
       const double left = share(j) * a_.value[around(wrap(i - 1), j)], right = share(j) * a_.value[around(i, j)];
       const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
       row[0] = left + right + b_.value[along(i, j)] + up;
-      if (ruptured) row[0] += cut_[here];
       if (j + 1 < rows_ && !cavitated_[here + 1]) row[1] -= up;
       // Of two neighbours the one that comes first holds the entry.
       for (const auto& [side, value] : {std::pair{i + 1, right}, std::pair{i - 1, left}}) {

@@ -80,12 +80,12 @@ private:
   double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
   Faces a_, b_;                  // [n_theta][rows], [n_theta][z_faces]; one column if aligned
   std::vector<double> source_;   // v_j src_ij
-  std::vector<char> cavitated_;  // nodes with p = 0: in a groove or in the cavity
-  Band band_;
-  std::vector<Quad> x_, load_;  // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
-  // Reynolds cavitation only: distance of the rupture from each node, kept as the start of the next evaluation; what a
-  // cut cell adds to the diagonal; dF = -(by_source_ d src + by_mobility_ da) beside the adjoint of A.
-  std::vector<double> u_, cut_;
+  std::vector<char> cavitated_;  // nodes that are held at p = 0: in a groove
+  Band band_, base_;             // factorised; of ruptured films the equations of a full one
+  std::vector<Quad> x_, load_;   // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
+  // Reynolds cavitation only: distance of the rupture from each node, kept as the start of the next evaluation; what
+  // cells cut or in the cavity add to the diagonal; dF = -(by_source_ d src + by_mobility_ da) beside the adjoint of A.
+  std::vector<double> u_, more_;
   std::vector<Quad> by_source_, by_mobility_;
 };
 

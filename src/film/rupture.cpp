@@ -12,7 +12,7 @@ namespace whirl::film {
 
 void BandedPad::enter_ruptured() {
   u_.assign(source_.size(), std::numeric_limits<double>::infinity());
-  cut_.assign(source_.size(), 0.0);
+  more_.assign(source_.size(), 0.0);
   by_source_.assign(source_.size(), Quad::zero());
   by_mobility_.assign(source_.size(), Quad::zero());
 }
@@ -63,17 +63,28 @@ void BandedPad::solve_ruptured(Need need) {
     else if (u_[k] == std::numeric_limits<double>::infinity())
       u_[k] = 1.0;
   }
+  assemble();
+  int mark = static_cast<int>(u_.size()) + 1;  // nothing is factorised yet
   const auto factor = [&] {
+    constexpr double kOut = std::numeric_limits<double>::infinity();
+    int first = static_cast<int>(u_.size()), changed = first;
     for (int i = first_; i < grid_.n_theta; ++i) {
       if (wall(i)) continue;
       for (int j = 0; j < rows_; ++j) {
         const std::size_t k = at(i, j);
-        cavitated_[k] = rupture::in_cavity(u_[k]);
-        cut_[k] = rupture::cut(u_[k]) ? share(j) * mobility_at(i, j) * rupture::slope(u_[k]) : 0.0;
+        const double u = u_[k];
+        const double more = rupture::in_cavity(u) ? kOut
+                            : rupture::cut(u)     ? share(j) * mobility_at(i, j) * rupture::slope(u)
+                                                  : 0.0;
+        if (more != 0.0) first = std::min(first, static_cast<int>(k));
+        if (more != more_[k]) changed = std::min(changed, static_cast<int>(k));
+        more_[k] = more;
       }
     }
-    assemble();
-    band_.factor();
+    // In front of the rupture the equations stay as they are while it moves.
+    if (changed >= mark) return band_.factor(base_, more_, mark, mark);
+    mark = std::max(1, first - 2 * rows_);
+    band_.factor(base_, more_, 0, mark);
   };
   double moved = 0.0;
   int iteration = 0;

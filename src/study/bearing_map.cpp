@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -65,10 +66,14 @@ public:
     return std::nullopt;
   }
 
+  // A load that the map does not reach is refused: whoever asked for it would look for its values in vain.
   void load() {
     for (const double s : options_.sommerfeld) {
       const auto point = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
-      if (point) loaded.push_back({s, *point, bearing_.profile()});
+      if (point)
+        loaded.push_back({s, *point, bearing_.profile()});
+      else
+        refuse(s);
     }
   }
 
@@ -101,8 +106,26 @@ public:
   std::vector<Loaded> loaded;
   std::optional<BearingEquilibrium> threshold;
   std::vector<double> radii, angles, along, across;
+  std::string refused;  // loads that the map does not reach, with the reason
+
+  // The last eccentricity carries the next load only if the film exists there.
+  [[nodiscard]] bool touches() const { return locus.back().at.eccentricity < options_.max_eccentricity * (1 - 1e-12); }
 
 private:
+  void refuse(double s) {
+    if (locus.empty()) return;
+    const auto [low, high] = std::minmax_element(
+        locus.begin(), locus.end(), [](const Point& a, const Point& b) { return a.at.sommerfeld < b.at.sommerfeld; });
+    const bool small = s < low->at.sommerfeld;
+    refused += fmt::format(
+        "{}the load {:.6g} of 'sommerfeld' lies beyond the map, which reaches from {:.6g} at eccentricity {:.4g} to "
+        "{:.6g} at {:.4g}: {}",
+        refused.empty() ? "" : "; ", s, low->at.sommerfeld, low->at.eccentricity, high->at.sommerfeld,
+        high->at.eccentricity,
+        small       ? "give more 'points', which begin at smaller eccentricities"
+        : touches() ? "there journal and bearing touch"
+                    : "raise 'max_eccentricity'");
+  }
   Point complete(const BearingEquilibrium& e) {
     Point p{e, {}};
     for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_.coefficients(ratio));
@@ -226,11 +249,10 @@ StudyResult BearingMap::run(Context& context) {
     summary.set("threshold.whirl_ratio", map->threshold->whirl_ratio, "1");
   }
   summary.points = static_cast<long>(map->locus.size());
-  // The last eccentricity carries the next load only if the film exists there.
-  const bool touches = map->locus.back().at.eccentricity < options.max_eccentricity * (1 - 1e-12);
-  return results.finish(touches ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
-                                              map->locus.back().at.eccentricity)
-                                : "completed",
+  if (!map->refused.empty()) return results.finish(map->refused, false);
+  return results.finish(map->touches() ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
+                                                     map->locus.back().at.eccentricity)
+                                       : "completed",
                         true);
 }
 

@@ -267,6 +267,7 @@ void write_stability(io::Group& group, const solve::Stability& stability) {
   group.put("real", re, "1", "eigenvalues or multipliers");
   group.put("imag", im, "1", "their imaginary parts");
   group.put("distance", stability.distance, "1", "from the border of stability");
+  group.set("neutral", stability.neutral);
 }
 
 solve::Stability read_stability(const io::Group& group) {
@@ -274,6 +275,7 @@ solve::Stability read_stability(const io::Group& group) {
   const auto &re = group.reals("real"), &im = group.reals("imag");
   for (std::size_t k = 0; k < re.size(); ++k) s.values.emplace_back(re[k], im[k]);
   s.distance = group.reals("distance");
+  s.neutral = static_cast<int>(group.integer("neutral"));
   return s;
 }
 

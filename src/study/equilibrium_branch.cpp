@@ -133,8 +133,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
                                        context.machine, {}, *system);
     problem.to_state(v, x.get());
-    describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
-                 law_of(context.machine), [&](const auto& cells) { return make_system(context, options, cells); }});
+    pieces.complete(fmt::format("event {}", results.summary().bifurcations.size() + 1), b, [&] {
+      describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
+                   law_of(context.machine), [&](const auto& cells) { return make_system(context, options, cells); }});
+    });
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});
     results.summary().bifurcations.push_back(b);

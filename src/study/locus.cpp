@@ -10,6 +10,7 @@
 #include "bifurcation.hpp"
 #include "common.hpp"
 #include "cycle_follower.hpp"
+#include "cycle_record.hpp"
 #include "film_limit.hpp"
 #include "film_mesh.hpp"
 #include "groups.hpp"
@@ -220,6 +221,14 @@ std::vector<double> LocusFollower::films(Vec whole) const {
 }
 
 std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd& end) {
+  // An interrupted run goes on from where it was; what it started from is put back below.
+  const Located born = seed_;
+  const double start_second = start_second_;
+  const std::optional<io::Group> left = interrupted();
+  if (left) {
+    seed_.cycle = read_cycle(left->group("cycle"));
+    start_second_ = left->real("second");
+  }
   begin();
   core::Vector u = core::duplicate(branch_->weights());
   if (cycles_) {
@@ -236,15 +245,22 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), second(*system_));
   core::Vector start = problem_->make_unknown();
   problem_->join(u.get(), condition_->start(), start_second_ / second_scale_, start.get());
+  seed_ = born;
+  start_second_ = start_second;
+  rows_.clear();
+  inner_sign_ = 0;
+  std::optional<solve::Restart> restart;
+  if (left) {
+    restart = restore(*left, start.get());
+    core::check(VecCopy(restart->u.get(), start.get()));
+  }
   problem_->prime(start.get());
 
-  std::vector<Row> rows;
   solve::ContinuationOptions continuation = continuation_;
   continuation.from = start_second_ / second_scale_;
   continuation.to = to;
   continuation.back = back;
   std::vector<const char*> names;
-  double inner_sign = 0;
   left_ = ended_ = false;
   solve::BranchCallbacks callbacks;
   callbacks.monitors = [&](Vec whole, Vec tangent) {
@@ -274,15 +290,15 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     last_ = row_at(whole, point.parameter);
     last_.others_unstable = others_unstable(whole);
     if (point.index > 0)
-      rows.push_back(last_);
+      rows_.push_back(last_);
     else
       start_ = last_;
     // Beyond a Bogdanov-Takens point a Hopf curve runs back on itself; beyond the strong resonances 1:1 and 1:2 a
     // Neimark-Sacker curve is one of two real multipliers with product one.
     const Eigen::VectorXd inner = problem_->inner(whole);
     if (seed_.event == solve::Event::hopf) {
-      if (inner_sign == 0) inner_sign = inner(0);
-      ended_ = inner(0) * inner_sign < 0;
+      if (inner_sign_ == 0) inner_sign_ = inner(0);
+      ended_ = inner(0) * inner_sign_ < 0;
     }
     if (seed_.event == solve::Event::neimark_sacker) ended_ = std::abs(inner(0)) > 1;
     problem_->update();
@@ -292,17 +308,26 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
                                           options_.second.path, deck::from_si(last_.second, options_.second.range.unit),
                                           options_.second.range.unit, point.step, context_.results.seconds()));
   };
-  callbacks.checkpoint = [&](const solve::BranchPoint&, Vec whole, Vec, double) {
+  callbacks.checkpoint = [&](const solve::BranchPoint& point, Vec whole, Vec tangent, double next_step) {
     if (cycles_ && cycles_->options().autonomous)
       cycles_->set_phase_reference(cycles_->gather(problem_->branch_part(whole).get()));
     const double low = std::min(first_range_.from, first_range_.to),
                  high = std::max(first_range_.from, first_range_.to);
     left_ = last_.first < low || last_.first > high;
+    if (!left_ && !ended_) save(point, whole, tangent, next_step);
     return !left_ && !ended_;
   };
-  end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks);
+  if (restart) {
+    // The signs of the tests are those of the borders, which are other ones than those of the interrupted run.
+    const core::Vector row = core::duplicate(start.get());
+    solve::weighted_row(*problem_, restart->tangent.get(), row.get());
+    problem_->linearise(restart->u.get(), row.get());
+    restart->point.monitors = callbacks.monitors(restart->u.get(), restart->tangent.get());
+    problem_->update();
+  }
+  end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks, std::move(restart));
   end.completed = end.completed || left_ || ended_;
-  return rows;
+  return std::move(rows_);
 }
 
 namespace {
@@ -339,9 +364,21 @@ void put_curve(io::StudySummary& summary, const std::vector<Row>& rows, const st
 StudyResult LocusFollower::run() {
   const deck::Range& range = options_.second.range;
   const double from = range.from / second_scale_, to = range.to / second_scale_;
-  solve::BranchEnd there, here;
-  const std::vector<Row> rows = follow(to, from, there);
-  if (there.points == 0) throw core::NotConverged(there.reason);
+  solve::BranchEnd here;
+  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume);
+  const io::Group& kept = pieces_->state();
+  second_way_ = kept.has_group("done");
+  if (second_way_) {
+    done_ = read_rows(kept.group("done"));
+    done_end_ = {kept.text("done_reason"), kept.integer("done_completed") != 0,
+                 static_cast<int>(kept.integer("done_points")), kept.real("done_parameter")};
+  } else {
+    done_ = follow(to, from, done_end_);
+    if (done_end_.points == 0) throw core::NotConverged(done_end_.reason);
+  }
+  second_way_ = true;
+  const std::vector<Row>& rows = done_;
+  const solve::BranchEnd& there = done_end_;
   const std::vector<Row> back = follow(from, to, here);
   std::vector<Row> all(back.rbegin(), back.rend());
   all.push_back(start_);

@@ -11,6 +11,7 @@
 
 #include "common.hpp"
 #include "located.hpp"
+#include "pieces.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 #include "whirl/study/equilibrium_branch.hpp"
@@ -26,6 +27,9 @@ struct Row {
   double first = 0, second = 0, period = 0, angle = 0;
   int others_unstable = 0;
 };
+
+void write_rows(io::Group& group, const std::vector<Row>& rows);
+[[nodiscard]] std::vector<Row> read_rows(const io::Group& group);
 
 /// Coefficients of normal forms on the curve, a little behind and ahead of a point of it, and what lies between the two
 /// in the scaled parameters.
@@ -73,6 +77,10 @@ private:
   void suspect(double from, double to, const std::string& reason);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
+  // What the checkpoint of an interrupted run holds of the present direction.
+  [[nodiscard]] std::optional<io::Group> interrupted() const;
+  [[nodiscard]] solve::Restart restore(const io::Group& state, Vec like);
+  void save(const solve::BranchPoint& point, Vec whole, Vec tangent, double next_step);
 
   Context& context_;
   const LocusOptions& options_;
@@ -91,6 +99,13 @@ private:
   solve::ExtendedProblem* branch_ = nullptr;
   std::unique_ptr<solve::Condition> condition_;
   std::unique_ptr<solve::AugmentedProblem> problem_;
+  std::unique_ptr<Pieces> pieces_;
+  bool second_way_ = false;  // the first direction is done:
+  std::vector<Row> done_;    // its points
+  solve::BranchEnd done_end_;
+  std::vector<Row> rows_;  // of the present one
+  double inner_sign_ = 0;  // of the inner unknown at its first point
+  int zeros_ = 0;          // generalised points looked at so far
   Row start_, last_;
   // Generalised points that are confirmed: second parameter, and how far around it was looked at, scaled.
   std::vector<std::pair<double, double>> generalised_;

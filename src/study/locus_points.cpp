@@ -128,21 +128,27 @@ void LocusFollower::record_generalised(const std::string& type, double second_he
   const double first_here = row_at(whole, second_here).first;
   Verdict verdict;
   double reach = continuation_.max_step / 100;
-  try {
-    verdict = judge(whole, reach);
-    // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
-    if (std::isnan(verdict.error)) {
-      const bool unclear = verdict.unclear;
-      verdict = judge(whole, reach *= 10);
-      verdict.unclear = verdict.unclear || unclear;
+  const auto look = [&]() -> std::vector<double> {
+    try {
+      verdict = judge(whole, reach);
+      // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
+      if (std::isnan(verdict.error)) {
+        const bool unclear = verdict.unclear;
+        verdict = judge(whole, reach *= 10);
+        verdict.unclear = verdict.unclear || unclear;
+      }
+    } catch (const core::NotConverged&) {
+      verdict.unclear = true;
+    } catch (const core::DomainError&) {
+      verdict.unclear = true;
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      verdict.unclear = true;
     }
-  } catch (const core::NotConverged&) {
-    verdict.unclear = true;
-  } catch (const core::DomainError&) {
-    verdict.unclear = true;
-  } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-    verdict.unclear = true;
-  }
+    return {verdict.error, verdict.unclear ? 1.0 : 0.0, reach};
+  };
+  const std::vector<double> seen = pieces_->numbers(fmt::format("generalised {}", ++zeros_), look);
+  verdict = {seen[0], seen[1] != 0};
+  reach = seen[2];
   core::agree(context_.comm, [&] {
     second_value_ = second_here * second_scale_;
     system_->set_parameter(first_here);

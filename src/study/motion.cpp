@@ -39,7 +39,9 @@ public:
         system_(*plant_),
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
-        integrator_(system_, {options_.speed.value}, start_.x.get(), {.tolerance = options_.tolerance}),
+        integrator_(system_, {options_.speed.value}, start_.x.get(),
+                    {.tolerance = options_.tolerance,
+                     .after_step = [this](double time, double step) { progress(time, step); }}),
         record_(options_, system_.places()),
         films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
@@ -54,7 +56,6 @@ public:
         // Directions need time to turn to those that grow most, before their growth counts.
         if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
         revolve(done_ >= options_.discard);
-        progress(total);
         save();
       }
     } catch (const core::DomainError& e) {
@@ -84,11 +85,14 @@ private:
     integrator_.restart(0, integrator_.step());
   }
 
-  void progress(int total) {
+  // A revolution may take minutes: each step says where it ended.
+  void progress(double time, double step) {
+    if (!context_.results.shows_progress()) return;
+    const double turn = options_.speed.value * 180 / std::numbers::pi;
     context_.results.progress(
-        fmt::format("{}: revolution {} of {}{}, step {:.3g} of a revolution, {:.1f} s", context_.results.summary().name,
-                    done_ + 1, total, done_ < options_.discard ? " (discarded)" : "",
-                    integrator_.step() * options_.speed.value / (2 * std::numbers::pi), context_.results.seconds()));
+        fmt::format("{}: revolution {} of {}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
+                    done_ + 1, options_.discard + options_.revolutions, done_ < options_.discard ? " (discarded)" : "",
+                    turn * time, turn * step, context_.results.seconds()));
   }
 
   void save() {

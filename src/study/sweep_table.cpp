@@ -101,7 +101,10 @@ std::vector<io::SweepColumn> columns_of(const io::StudySummary& study) {
   const auto add = [&](const std::string& name, const std::string& unit, double value, double uncertainty) {
     all.push_back({study.name + "." + name, unit, {value}, {uncertainty}});
   };
-  for (const auto& [name, q] : study.values) add(name, q.unit, q.value, no_value);
+  for (const auto& [name, q] : study.values) {
+    const auto bar = q.more.find("uncertainty");
+    add(name, q.unit, q.value, bar == q.more.end() ? no_value : bar->second);
+  }
   std::map<io::BifurcationType, int> count;
   std::map<io::BifurcationType, const io::Bifurcation*> last;
   for (const io::Bifurcation& b : study.bifurcations) {

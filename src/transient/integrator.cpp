@@ -210,6 +210,7 @@ void Integrator::advance(double time) {
     p.step = proposed > 9.9 * length ? std::max(p.step, proposed) : proposed;
     p.time = whole && parts == 1 ? time : now;
     ++p.work.steps;
+    if (p.options.after_step) p.options.after_step(p.time, length);
   }
 }
 

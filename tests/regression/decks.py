@@ -126,6 +126,13 @@ def balanced(h):
     calm = h.run("balanced.yaml", "laminar", laminar)["balanced"]
     h.true("laminar: no Hopf bifurcation below 9000 rpm", calm["status"] == "completed" and not hopf(calm),
            f"{calm['status']}, {calm['points']} points, {[b['value'] for b in hopf(calm)]}")
+    ruptured = ["studies.1.equilibrium_branch.range={from: 6800 rpm, to: 7400 rpm}", *GUYAN,
+                *every_bearing("film.cavitation", "reynolds"), *every_bearing("film.cells", "[84, 20]")]
+    late = hopf(h.run("balanced.yaml", "reynolds", ruptured)["balanced"])
+    # An independent computation in which whole cells are in the cavity or out of it (004 errata, section 6).
+    h.true("Reynolds cavitation: a threshold", bool(late))
+    h.close("Reynolds cavitation, 84 x 20: threshold [rpm]", late[0]["value"], 7190, 200)
+    h.close("Reynolds cavitation, 84 x 20: whirl [rpm]", late[0]["whirl_frequency_rpm"], 1686, 10)
 
 
 if __name__ == "__main__":

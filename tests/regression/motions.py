@@ -4,6 +4,9 @@
 motions.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
 import math
+import re
+import resource
+import subprocess
 import sys
 
 from compare import same_results
@@ -177,7 +180,31 @@ def resume(h):
         h.close(f"resumed: {what}", difference, 0, within)
 
 
+def pump(h):
+    """A film that ruptures costs little more than one that is cut off, a finer tolerance changes nothing, and progress says
+    where the motion is within a revolution."""
+    path = h.source / "inputs/pump/pump.yaml"
+    few = ["studies.2.motion.discard=0", "studies.2.motion.revolutions=2"]
+    cost = {}
+    for cavitation in ("reynolds", "half_sommerfeld"):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        h.run(path, cavitation, [*few, "bearings.*.film.inlet.type=free", f"bearings.*.film.cavitation={cavitation}"])
+        cost[cavitation] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    ratio = cost["reynolds"] / cost["half_sommerfeld"]
+    h.true("a revolution with Reynolds cavitation costs at most 3 of half-Sommerfeld", ratio < 3, f"{ratio:.2f}")
+    usual = h.run(path, "usual", few)["running"]
+    done = subprocess.run(h.command(path, h.work / "fine", [*few, "studies.2.motion.tolerance=1e-6"], ["--progress"]),
+                          capture_output=True, text=True)
+    fine = h.studies("fine")["running"]
+    for name in ("dry", "wet"):
+        for axis in "xy":
+            key = f"peak_to_peak.{name}.{axis}"
+            h.close(f"{key}, a tolerance ten times finer [m]", value(usual, key), value(fine, key), 2e-3 * value(fine, key))
+    where = re.findall(r"running: revolution \d+ of 2, (\d+\.\d) deg, step \S+ deg, \d+\.\d s", done.stderr)
+    h.true("progress names revolution, angle, step and time within the revolutions", len(set(where)) >= 3, f"{where[:5]}")
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
+    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "ranks": ranks, "resume": resume, "pump": pump}[sys.argv[3]](harness)
     harness.finish()

@@ -21,7 +21,7 @@ COARSE = [f"bearings.B{k}.film.cells=[30, 8]" for k in range(1, 6)]
 CASES = {
     "modes": ("modes.yaml", ["studies=[{modes: {name: s, supports: films, range: {from: 600 rpm, to: 5000 rpm}, points: 12, count: 14}}]"]),
     "response": ("response.yaml", ["studies.1.unbalance_response.points=22"]),
-    "equilibria": ("balanced.yaml", COARSE),
+    "equilibria": ("balanced.yaml", [*COARSE, "studies.1.equilibrium_branch.range={from: 4000 rpm, to: 5400 rpm}"]),
     "locus": (str(h.source / "inputs/rigid_rotor/loci.yaml"), []),
 }
 deck, overrides = CASES[case]

@@ -24,7 +24,8 @@ struct Map {
 };
 
 // The studies of a deck by name.
-std::map<std::string, Map> run_all(const std::string& name, const std::vector<std::string>& overrides) {
+std::map<std::string, Map> run_all(const std::string& name, const std::vector<std::string>& overrides,
+                                   bool delivered = true) {
   const study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/" + name, overrides);
   const std::filesystem::path directory = std::filesystem::temp_directory_path() / "whirl_bearing_map";
   const bool first = core::rank_of(MPI_COMM_WORLD) == 0;
@@ -33,7 +34,7 @@ std::map<std::string, Map> run_all(const std::string& name, const std::vector<st
     std::filesystem::create_directories(directory);
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  EXPECT_TRUE(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty());
+  EXPECT_EQ(study::run(MPI_COMM_WORLD, deck, {directory.string(), "test", {}, false}).empty(), delivered);
   MPI_Barrier(MPI_COMM_WORLD);
   std::map<std::string, Map> maps;
   const io::Group root = io::read_hdf5(directory / "results.h5");
@@ -48,11 +49,22 @@ std::map<std::string, Map> run_all(const std::string& name, const std::vector<st
   return maps;
 }
 
-Map run(const std::vector<std::string>& overrides) {
-  return run_all("rigid_rotor/bearing_map.yaml", overrides).at("bearing_map");
+Map run(const std::vector<std::string>& overrides, bool delivered = true) {
+  return run_all("rigid_rotor/bearing_map.yaml", overrides, delivered).at("bearing_map");
 }
 
 }  // namespace
+
+// Loads on either side of the map are refused with its bounds; those within it and the map itself are there.
+TEST(BearingMap, LoadsBeyondTheMapAreRefused) {
+  const Map m = run({"studies.1.bearing_map.sommerfeld=[1e-6, 1, 1e6]"}, false);
+  EXPECT_NE(m.status.find("the load 1e-06 of 'sommerfeld' lies beyond the map"), std::string::npos) << m.status;
+  EXPECT_NE(m.status.find("the load 1e+06 of 'sommerfeld' lies beyond the map"), std::string::npos) << m.status;
+  EXPECT_NE(m.status.find("raise 'max_eccentricity'"), std::string::npos) << m.status;
+  EXPECT_EQ(m.values.count("sommerfeld.1.eccentricity"), 1U);
+  EXPECT_EQ(m.values.count("sommerfeld.1e-06.eccentricity"), 0U);
+  EXPECT_EQ(m.group.group("locus").reals("eccentricity").size(), 95U);
+}
 
 TEST(BearingMap, ShortBearing) {
   const Map m = run({});

@@ -204,6 +204,20 @@ TEST(SweepTable, ASignCountsIfItsBarDoesNotContainZero) {
   EXPECT_NE(csv.find("\nnarrow,0.8,4000,20,5590,1,"), std::string::npos) << csv;
 }
 
+// Values carry their bars into the table where their study gives them.
+TEST(SweepTable, ValuesHaveTheBarsOfTheirStudy) {
+  io::StudySummary s;
+  s.name = "static";
+  s.set("load.B1", 12.4e3, "N");
+  s.set("load.B2", 47.8e3, "N");
+  s.values[0].second.more["uncertainty"] = 3.0;
+  const auto columns = study::columns_of(s);
+  ASSERT_EQ(columns.size(), 2U);
+  EXPECT_EQ(columns[0].name, "static.load.B1");
+  EXPECT_EQ(columns[0].uncertainties[0], 3.0);
+  EXPECT_TRUE(std::isnan(columns[1].uncertainties[0]));
+}
+
 TEST(SweepTable, LinesOfAGridKeepTheOtherQuantities) {
   std::vector<study::SweepRow> rows{{"as given", {}, {with_hopf({{100, 1}})}}};
   for (const double a : {1.0, 2.0})

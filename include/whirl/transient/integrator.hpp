@@ -16,6 +16,8 @@ struct IntegratorOptions {
   double tolerance = 1e-8;
   double first_step = 0;           ///< [s]; 0: a thousandth of a revolution
   std::string prefix = "motion_";  ///< of the PETSc options
+  /// Called after every step with the time reached [s] and the length of the step [s]; on every rank.
+  std::function<void(double time, double step)> after_step{};
 };
 
 /// The motion of one system from a state at t = 0.
