@@ -14,10 +14,6 @@ namespace {
 
 using core::InputError;
 
-std::string name_of_value(const Node& n) {
-  return n.key.empty() ? std::string("this value") : fmt::format("'{}'", n.key);
-}
-
 // Item `step` (1-based) of a list of n; throws if there is none.
 std::size_t index_of(const std::string& step, std::size_t n) {
   std::size_t k = 0;
@@ -36,10 +32,10 @@ public:
   ListCodec(CodecPtr item, ListAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (node.kind != Node::Kind::list)
-      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+      return r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
     if (!a_.resize(value, node.items.size()))
-      return r.problems.add(
-          node.place, fmt::format("{} must have {} items, not {}", name_of_value(node), a_.fixed, node.items.size()));
+      return r.problems.add(node.place,
+                            fmt::format("{} must have {} items, not {}", node.name(), a_.fixed, node.items.size()));
     for (std::size_t i = 0; i < node.items.size(); ++i) {
       Node item = node.items[i];
       if (item.key.empty()) item.key = node.key;
@@ -94,7 +90,7 @@ public:
       const Option& o = *row_.option(scalar_);
       o.codec->read(node, o.member(a_.at(value, 0)), r);
     } else {
-      r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+      r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
     }
   }
   Node write(const void* value) const override {
@@ -130,7 +126,7 @@ private:
     const std::size_t before = r.problems.size();
     for (std::size_t i = 0; i < rows.items.size() && r.problems.size() == before; ++i)
       row_.read(rows.items[i], a_.at(value, i), r);
-    if (rows.items.empty()) r.problems.add(rows.place, fmt::format("{} has no rows", name_of_value(rows)));
+    if (rows.items.empty()) r.problems.add(rows.place, fmt::format("{} has no rows", rows.name()));
   }
   const Structure& row_;
   ListAccess a_;
@@ -149,7 +145,7 @@ public:
   MapCodec(CodecPtr item, MapAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (node.kind != Node::Kind::map)
-      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+      return r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
     a_.clear(value);
     for (const Node& i : node.items) {
       if (!is_name(i.key))
@@ -247,7 +243,7 @@ public:
   ChoicesCodec(std::vector<ChoiceKind> k, ChoiceAccess a) : kinds_(std::move(k)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (node.kind != Node::Kind::list)
-      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
+      return r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
     a_.clear(value);
     std::vector<std::string> names;
     for (const ChoiceKind& k : kinds_) names.push_back(k.name);

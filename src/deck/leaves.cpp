@@ -13,17 +13,13 @@ namespace {
 
 using core::InputError;
 
-std::string name_of_value(const Node& n) {
-  return n.key.empty() ? std::string("this value") : fmt::format("'{}'", n.key);
-}
-
 // True if `node` is a scalar; otherwise says what was wanted.
 bool is_scalar(const Node& node, const std::string& wanted, Reading& r) {
   if (node.kind == Node::Kind::scalar) return true;
   if (node.kind == Node::Kind::none)
-    r.problems.add(node.place, fmt::format("{} has no value: expected {}", name_of_value(node), wanted));
+    r.problems.add(node.place, fmt::format("{} has no value: expected {}", node.name(), wanted));
   else
-    r.problems.add(node.place, fmt::format("{} is a {}: expected {}", name_of_value(node),
+    r.problems.add(node.place, fmt::format("{} is a {}: expected {}", node.name(),
                                            node.kind == Node::Kind::list ? "list" : "map", wanted));
   return false;
 }
@@ -46,7 +42,7 @@ bool read_real(const Node& node, const Spec& spec, Reading& r, double& value, st
     if (!spec.check.holds(si)) {
       const bool scaled =
           spec.unit != "1" && spec.unit != "*" && spec.check.text() != "positive" && spec.check.text() != "at least 0";
-      r.problems.add(node.place, fmt::format("{} must be {}{}, not {}", name_of_value(node), spec.check.text(),
+      r.problems.add(node.place, fmt::format("{} must be {}{}, not {}", node.name(), spec.check.text(),
                                              scaled ? " " + spec.unit : "", node.text));
       return false;
     }
@@ -54,7 +50,7 @@ bool read_real(const Node& node, const Spec& spec, Reading& r, double& value, st
     if (unit) *unit = split.unit;
     return true;
   } catch (const InputError& e) {
-    r.problems.add(node.place, fmt::format("{}: {}", name_of_value(node), e.what()));
+    r.problems.add(node.place, fmt::format("{}: {}", node.name(), e.what()));
     return false;
   }
 }
@@ -126,7 +122,7 @@ public:
   explicit RangeCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     auto& range = *static_cast<Range*>(value);
-    const std::string wanted = fmt::format("{} is written {{from: ..., to: ...}}", name_of_value(node));
+    const std::string wanted = fmt::format("{} is written {{from: ..., to: ...}}", node.name());
     if (node.kind != Node::Kind::map) return r.problems.add(node.place, wanted);
     for (const Node& i : node.items)
       if (i.key != "from" && i.key != "to")
@@ -139,7 +135,7 @@ public:
     if (!same_kind(range.unit, to_unit))
       return r.problems.add(to->place, fmt::format("'{}' and '{}' are not of the same kind", from->text, to->text));
     if (range.unit.empty()) range.unit = "1";
-    if (range.from == range.to) r.problems.add(to->place, fmt::format("{} is empty", name_of_value(node)));
+    if (range.from == range.to) r.problems.add(to->place, fmt::format("{} is empty", node.name()));
   }
   Node write(const void* value) const override {
     const auto& range = *static_cast<const Range*>(value);
@@ -179,11 +175,9 @@ public:
     const char* last = first + node.text.size();
     const auto [end, code] = std::from_chars(first, last, v);
     if (code != std::errc() || end != last)
-      return r.problems.add(node.place,
-                            fmt::format("{} must be a whole number, not {}", name_of_value(node), node.text));
+      return r.problems.add(node.place, fmt::format("{} must be a whole number, not {}", node.name(), node.text));
     if (!spec_.check.holds(v))
-      return r.problems.add(node.place,
-                            fmt::format("{} must be {}, not {}", name_of_value(node), spec_.check.text(), v));
+      return r.problems.add(node.place, fmt::format("{} must be {}, not {}", node.name(), spec_.check.text(), v));
     *static_cast<int*>(value) = v;
   }
   Node write(const void* value) const override {
@@ -206,8 +200,7 @@ public:
   void read(const Node& node, void* value, Reading& r) const override {
     if (!is_scalar(node, "true or false", r)) return;
     if (node.text != "true" && node.text != "false")
-      return r.problems.add(node.place,
-                            fmt::format("{} must be true or false, not {}", name_of_value(node), node.text));
+      return r.problems.add(node.place, fmt::format("{} must be true or false, not {}", node.name(), node.text));
     *static_cast<bool*>(value) = node.text == "true";
   }
   Node write(const void* value) const override {
@@ -240,7 +233,7 @@ public:
       valid.push_back(c.name);
     }
     const std::string hint = did_you_mean(node.text, valid);
-    r.problems.add(node.place, fmt::format("{} cannot be '{}'{}", name_of_value(node), node.text,
+    r.problems.add(node.place, fmt::format("{} cannot be '{}'{}", node.name(), node.text,
                                            hint.empty() ? fmt::format("; {}", type()) : hint));
   }
   Node write(const void* value) const override { return Node::scalar(choices_[get_(value)].name, true); }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include "common.hpp"
@@ -16,7 +15,6 @@
 namespace whirl::study {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
 
 /// A point of the locus with its coefficients at all frequencies.
