@@ -6,6 +6,7 @@ import re
 import sys
 
 from .data import open_results, results_directory
+from .manifest import register
 
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:1120px;margin:2em auto;padding:0 1em}
@@ -95,7 +96,7 @@ def main(argv):
             f"<style>{STYLE}</style><h1>{title}</h1><p class=note>{made}</p><nav>{links}</nav>",
             *(picture(p) for p in general), *(section(s, p) for s, p in studies), "</html>"]
     target = directory / "report.html"
-    target.write_text("\n".join(page), encoding="utf-8")
+    register(target).write_text("\n".join(page), encoding="utf-8")
     print(target)
     return 0
 

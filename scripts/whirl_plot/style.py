@@ -9,6 +9,8 @@ import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 from cycler import cycler  # noqa: E402
 
+from .manifest import register  # noqa: E402
+
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
 COLOURS = ["#0b62a4", "#d1670c", "#2a8c55", "#8e4b9e", "#b8860b", "#12868f", "#a83250", "#5b6770"]
 GOOD, WARN, BAD = "#0b62a4", "#e69f00", "#c8102e"
@@ -84,7 +86,7 @@ def write(figure, path):
     """As a PNG of 256 colours, a third of the size of one of all: lines on white need no more."""
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png", facecolor="white")
-    few_colours(Image.open(drawn).convert("RGB")).save(path, format="PNG", optimize=True)
+    few_colours(Image.open(drawn).convert("RGB")).save(register(path), format="PNG", optimize=True)
 
 
 def few_colours(image):

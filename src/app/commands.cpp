@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "directory.hpp"
@@ -23,6 +24,19 @@ std::string count(std::size_t n, const std::string& what, const std::string& plu
   return fmt::format("{} {}", n, n == 1 ? what : plural);
 }
 
+// What `--set` did, a line per value.
+std::string changes_text(const std::vector<deck::Change>& changes) {
+  constexpr std::size_t most = 20;
+  auto brief = [](const std::string& s) {
+    return s.empty() ? std::string("nothing") : s.size() > 60 ? s.substr(0, 57) + "..." : s;
+  };
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, changes.size()); ++i)
+    text += fmt::format("  set {}: {}, was {}\n", changes[i].path, brief(changes[i].after), brief(changes[i].before));
+  if (changes.size() > most) text += fmt::format("  and {} more values\n", changes.size() - most);
+  return text;
+}
+
 // An InputError that does not depend on the rank is one that all ranks have.
 [[noreturn]] void refuse(const std::string& text) {
   core::InputError e(text);
@@ -40,14 +54,25 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   const std::string directory =
       request.directory.empty() ? "results/" + fs::path(request.deck.path).stem().string() : request.directory;
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
-  prepare_directory(comm, directory, study::resolved_text(deck), earlier);
+  Directory held(comm, directory, study::resolved_text(deck), earlier);
   study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };
-  const std::vector<std::string> undelivered = study::run(comm, deck, options);
+  std::vector<std::string> undelivered;
+  try {
+    undelivered = study::run(comm, deck, options);
+  } catch (const core::InputError&) {
+    held.abandon();
+    throw;
+  }
+  text += changes_text(deck.changes);
   core::agree(comm, [&] {
     if (core::rank_of(comm) == 0) text += outcome_text(io::Summary::read(fs::path(directory) / "summary.json"));
   });
+  for (const auto& o : core::Session::options_in_force())
+    if (o.source != "command line")
+      text += fmt::format("PETSc option {}{} from {} was in force\n", o.name, o.value.empty() ? "" : " " + o.value,
+                          o.source.empty() ? "an unknown source" : o.source);
   for (const std::string& option : core::Session::unused_options())
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
   text += fmt::format("results in {}\n", directory);
@@ -64,6 +89,7 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
   for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
+  text += changes_text(deck.changes);
   return text;
 }
 

@@ -1,19 +1,32 @@
 #include "directory.hpp"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <fstream>
 #include <iterator>
+#include <thread>
+#include <utility>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/io/manifest.hpp"
 
 namespace whirl::app {
 namespace {
 
 namespace fs = std::filesystem;
 using core::InputError;
+
+constexpr const char* deck_name = "resolved.yaml";
+// Those of every run; a folder of a version without manifest has them, too.
+constexpr const char* always[] = {"results.h5", "summary.json"};
 
 std::string contents(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -33,55 +46,93 @@ void write_whole(const fs::path& path, const std::string& text) {
   fs::rename(temporary, path);
 }
 
-// True for the kinds of files that a run and its pictures leave; others in a directory of results are the user's.
-bool is_ours(const fs::path& file) {
-  const std::string name = file.filename().string(), kind = file.extension().string();
-  return name == "resolved.yaml" || name == "summary.json" || name == "results.h5" || name == "report.html" ||
-         kind == ".xdmf" || kind == ".png" || kind == ".part" || name == "resolved.yaml.new" ||
-         name.find(".checkpoint.h5") != std::string::npos;
-}
-
-void prepare(const fs::path& directory, const std::string& resolved, Earlier earlier) {
-  if (fs::exists(directory) && !fs::is_directory(directory))
-    throw InputError(fmt::format("'{}' is a file; -o names a directory", directory.string()));
-  const fs::path deck = directory / "resolved.yaml", unfinished = unfinished_name(deck);
-  // A run killed while it wrote its deck leaves only that.
-  bool used = false;
-  if (fs::exists(directory))
-    for (const auto& entry : fs::directory_iterator(directory)) used = used || entry.path() != unfinished;
-  if (used) {
-    if (!fs::exists(deck))
-      throw InputError(fmt::format("'{}' holds files that are not results of whirl", directory.string()));
-    if (earlier == Earlier::refuse)
-      throw InputError(
-          fmt::format("'{}' holds results already: choose another directory with -o, go on with --resume, or "
-                      "replace them with --force",
-                      directory.string()));
-    if (earlier == Earlier::resume && contents(deck) != resolved)
-      throw InputError(
-          fmt::format("'{}' holds results of another deck: --resume needs the same one", directory.string()));
-    // The deck goes last (it is replaced below): it says whose directory this is.
-    if (earlier == Earlier::replace)
-      for (const auto& entry : fs::directory_iterator(directory))
-        if (entry.is_regular_file() && is_ours(entry.path()) && entry.path() != deck) fs::remove(entry.path());
-  }
-  fs::create_directories(directory);
-  write_whole(deck, resolved);
+bool holds_results(const fs::path& directory, const io::Manifest& manifest) {
+  const auto there = [&](const std::string& name) { return name != deck_name && fs::exists(directory / name); };
+  return std::any_of(std::begin(always), std::end(always), there) ||
+         std::any_of(manifest.names().begin(), manifest.names().end(), there);
 }
 
 }  // namespace
 
-void prepare_directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
+void Directory::lock() {
+  lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) return;
+  // The ranks of a run that has just been killed need a moment to vanish.
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+    if (errno != EWOULDBLOCK) {
+      ::close(lock_);
+      lock_ = -1;
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  ::close(std::exchange(lock_, -1));
+  throw InputError(fmt::format("another run is at work in '{}': wait for its end or choose another directory with -o",
+                               path_.string()));
+}
+
+void Directory::prepare(const std::string& resolved, Earlier earlier) {
+  if (fs::exists(path_) && !fs::is_directory(path_))
+    throw InputError(fmt::format("'{}' is a file; -o names a directory", path_.string()));
+  made_ = fs::create_directories(path_);
+  lock();
+  io::Manifest manifest(path_);
+  const fs::path deck = path_ / deck_name, unfinished = unfinished_name(deck);
+  const bool ours = fs::exists(deck) || manifest.exists();
+  // A run killed while it wrote its deck leaves only that.
+  const bool empty = std::all_of(fs::directory_iterator(path_), fs::directory_iterator(),
+                                 [&](const fs::directory_entry& e) { return e.path() == unfinished; });
+  fresh_ = empty;
+  if (!empty && !ours) throw InputError(fmt::format("'{}' holds files that are not results of whirl", path_.string()));
+  // A deck by itself that a manifest names is what a run left that came to nothing.
+  const bool used = holds_results(path_, manifest) || (fs::exists(deck) && !manifest.has(deck_name));
+  if (used && earlier == Earlier::refuse)
+    throw InputError(
+        fmt::format("'{}' holds results already: choose another directory with -o, go on with --resume, or "
+                    "replace them with --force",
+                    path_.string()));
+  if (used && earlier == Earlier::resume && contents(deck) != resolved)
+    throw InputError(fmt::format("'{}' holds results of another deck: --resume needs the same one", path_.string()));
+  if (earlier == Earlier::replace) {
+    // The deck stays until it is replaced below: it says whose directory this is.
+    manifest.remove_files(deck_name);
+    for (const char* name : always) fs::remove(path_ / name);
+  }
+  manifest.add(deck_name);
+  write_whole(deck, resolved);
+}
+
+Directory::Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier)
+    : path_(directory) {
   core::agree(comm, [&] {
-    if (rank != 0) return;
+    if (core::rank_of(comm) != 0) return;
     try {
-      prepare(directory, resolved, earlier);
+      prepare(resolved, earlier);
     } catch (const fs::filesystem_error& e) {
       throw InputError(fmt::format("cannot use '{}' for results: {}", directory, e.code().message()));
     }
   });
+}
+
+Directory::~Directory() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void Directory::abandon() noexcept {
+  if (lock_ < 0) return;  // not rank 0, or somebody else may be at work here
+  std::error_code ignored;
+  try {
+    io::Manifest manifest(path_);
+    if (holds_results(path_, manifest)) return;
+    fs::remove(path_ / deck_name, ignored);
+    // An empty folder of ours stays ours: files of the user beside the results must not make it a stranger.
+    if (!fresh_) return;
+    manifest.remove_files();
+    if (made_) fs::remove(path_, ignored);
+  } catch (const std::exception&) {  // it could not be read or removed: the error that led here is told
+    return;
+  }
 }
 
 }  // namespace whirl::app

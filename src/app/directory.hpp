@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <filesystem>
 #include <string>
 
 namespace whirl::app {
@@ -10,9 +11,33 @@ namespace whirl::app {
 /// What to do with results of an earlier run.
 enum class Earlier { refuse, resume, replace };
 
-/// Makes `directory` ready for a run and writes `resolved.yaml` into it under a temporary name, then renames it.
-/// Collective. Throws core::InputError (agreed) if there are earlier results and `earlier` does not say what to do with
-/// them, if they belong to another deck, or if the directory is not one of ours.
-void prepare_directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier);
+/// A directory of results, held by one run at a time.
+///
+/// The lock is the kernel's (flock on the directory), held by rank 0: it ends with the process, however that ends, and
+/// leaves no file. On file systems that cannot lock a directory nobody is kept out, and `locked()` says so.
+class Directory {
+public:
+  /// Makes `directory` ready for a run and writes `resolved.yaml` into it under a temporary name, then renames it.
+  /// Collective. Throws core::InputError (agreed) if another run holds it, if there are earlier results and `earlier`
+  /// does not say what to do with them, if they belong to another deck, or if the directory is not one of ours.
+  /// `Earlier::replace` removes what the manifest names and nothing else.
+  Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier);
+  Directory(const Directory&) = delete;
+  Directory& operator=(const Directory&) = delete;
+  ~Directory();
+
+  /// Takes back what the constructor made, if no study has left a result since: a deck that turned out to be wrong must
+  /// not stand in the way of the right one. Rank 0 acts; throws nothing.
+  void abandon() noexcept;
+  [[nodiscard]] bool locked() const { return lock_ >= 0; }
+
+private:
+  void lock();
+  void prepare(const std::string& resolved, Earlier earlier);
+
+  std::filesystem::path path_;
+  int lock_ = -1;
+  bool made_ = false, fresh_ = false;  // the directory was not there before, or held nothing
+};
 
 }  // namespace whirl::app

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,15 +26,26 @@ struct CommandLine {
   std::vector<std::string> petsc;  // behind `--`
 };
 
+// True for `bearings.B1.node=3`: a path of a deck before the first sign of equality.
+bool is_assignment(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  return equals != std::string::npos && equals > 0 && word[0] != '-' && word.find('/') > equals;
+}
+
 CommandLine split(int argc, char** argv) {
   CommandLine c;
-  bool ours = true;
+  bool ours = true, sets = false;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    if (ours && word == "--")
+    if (ours && word == "--") {
       ours = false;
-    else
-      (ours ? c.words : c.petsc).push_back(word);
+      continue;
+    }
+    // Several assignments may follow one `--set`; the deck may follow them.
+    if (ours && sets && is_assignment(word) && std::string(argv[i - 1]) != "--set") c.words.push_back("--set");
+    if (ours && word != "--set" && !is_assignment(word)) sets = false;
+    if (ours && word == "--set") sets = true;
+    (ours ? c.words : c.petsc).push_back(word);
   }
   std::reverse(c.words.begin(), c.words.end());
   return c;
@@ -76,14 +88,18 @@ core::Exit dispatch(CommandLine line, bool prints) {
   cli.require_subcommand(1);
   cli.footer(
       "`whirl help COMMAND` explains a command, `whirl help KEY` an option of decks.\n"
-      "Words behind `--` are options of PETSc: whirl run deck.yaml -- -eq_snes_monitor");
+      "Words behind `--` are options of PETSc: whirl run deck.yaml -- -newton_snes_monitor");
 
   app::RunRequest run;
   app::DeckRequest check;
   std::string key;
   auto deck_options = [](CLI::App* c, app::DeckRequest& r) {
     c->add_option("DECK", r.path, "input deck (YAML)")->required();
-    c->add_option("--set", r.overrides, "PATH=VALUE: override a value; list items count from 1")
+    c->add_option("--set", r.overrides,
+                  "PATH=VALUE...: change values. PATH may hold wildcards (bearings.{B2,B3}.geometry.clearance, "
+                  "bearings.*.node); "
+                  "list items count from 1. VALUE replaces, x1.2 multiplies, '+500 um' and '-20 um' add, '+20 %' too, "
+                  "'=-5 um' is -5 um itself; PATH+=VALUE appends to a list (studies+='{static: {}}')")
         ->allow_extra_args(false)
         ->type_name("PATH=VALUE");
   };
@@ -153,11 +169,18 @@ int leave(const std::string& text, core::Exit exit, bool agreed, bool prints) {
 
 int main(int argc, char** argv) {
   CommandLine line = split(argc, argv);
-  const core::Session session(argc, argv, line.petsc);
+  std::optional<core::Session> session;
+  try {
+    session.emplace(argc, argv);
+  } catch (const std::exception& e) {  // every rank reads the same files and environment
+    (void)std::fprintf(stderr, "whirl: %s\n", e.what());
+    return static_cast<int>(core::Exit::failure);
+  }
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   const bool prints = rank == 0;
   try {
+    core::Session::set_options(line.petsc);
     return static_cast<int>(dispatch(std::move(line), prints));
   } catch (const core::Error& e) {
     return leave(e.what(), e.exit(), e.agreed(), prints);

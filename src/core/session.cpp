@@ -1,5 +1,6 @@
 #include "whirl/core/session.hpp"
 
+#include <dlfcn.h>
 #include <fmt/core.h>
 #include <petscsys.h>
 #include <slepcsys.h>
@@ -7,7 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <sstream>
 
+#include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::core {
@@ -34,21 +41,61 @@ std::vector<std::string>& given_options() {
   return names;
 }
 
+// Whether PETSc takes a word for the name of an option; negative numbers are values.
+bool names_option(const std::string& word) {
+  PetscBool valid = PETSC_FALSE;
+  check(PetscOptionsValidKey(word.c_str(), &valid));
+  return valid == PETSC_TRUE;
+}
+
+// PETSc takes --NAME for -NAME.
+std::string plain_option(const std::string& name) {
+  return name.starts_with("--") ? name.substr(1) : name;
+}
+
+// The options of a database that `fill` fills, or of the process (nothing to fill).
+std::vector<OptionInForce> options_of(const std::function<void(PetscOptions)>& fill) {
+  PetscOptions own = nullptr;
+  if (fill) {
+    check(PetscOptionsCreate(&own));
+    fill(own);
+  }
+  char* text = nullptr;
+  check(PetscOptionsGetAll(own, &text));
+  std::istringstream words(text);
+  check(PetscFree(text));
+  if (own) check(PetscOptionsDestroy(&own));
+  std::vector<OptionInForce> all;
+  for (std::string word; words >> word;)
+    if (names_option(word))
+      all.push_back({plain_option(word), "", ""});
+    else if (!all.empty())
+      all.back().value += (all.back().value.empty() ? "" : " ") + word;
+  return all;
+}
+
 // Options for the end of a process, which PETSc asks for when it is there.
 constexpr std::array at_end = {"-log_", "-malloc_", "-memory_", "-objects_", "-options_"};
 
 }  // namespace
 
-Session::Session(int argc, char** argv, const std::vector<std::string>& petsc_options) {
+// The ranks are our parallelism. More BLAS threads than one have nothing to do in our small products and spin while
+// they wait. The library has read its environment before main, so it is told; what the user set there stays.
+void Session::one_blas_thread() {
+  for (const char* name : {"OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS", "BLIS_NUM_THREADS"})
+    if (std::getenv(name)) return;
+  for (const char* name : {"openblas_set_num_threads", "omp_set_num_threads"})
+    if (void* found = ::dlsym(RTLD_DEFAULT, name)) {
+      void (*set)(int) = nullptr;
+      std::memcpy(&set, &found, sizeof set);
+      set(1);
+    }
+}
+
+Session::Session(int argc, char** argv) {
+  one_blas_thread();
   int one = argc > 0 ? 1 : 0;
   check(SlepcInitialize(&one, &argv, nullptr, nullptr));
-  given_options() = petsc_options;
-  for (std::size_t i = 0; i < petsc_options.size(); ++i) {
-    const bool has_value =
-        i + 1 < petsc_options.size() && (petsc_options[i + 1].empty() || petsc_options[i + 1][0] != '-');
-    check(PetscOptionsSetValue(nullptr, petsc_options[i].c_str(), has_value ? petsc_options[i + 1].c_str() : nullptr));
-    if (has_value) ++i;
-  }
   check(PetscPushErrorHandler(keep_text, nullptr));
   // A reader who has seen enough (`whirl describe | head`) is no error to report.
   (void)std::signal(SIGPIPE, SIG_DFL);
@@ -57,6 +104,46 @@ Session::Session(int argc, char** argv, const std::vector<std::string>& petsc_op
 Session::~Session() {
   (void)PetscPopErrorHandler();
   (void)SlepcFinalize();
+}
+
+void Session::set_options(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!names_option(words[i])) {
+      InputError wrong(fmt::format("'{}' behind '--' is neither an option of PETSc (-NAME) nor the value of one{}",
+                                   words[i], i == 0 ? "; did you mean '-" + words[i] + "'?" : ""));
+      wrong.mark_agreed();  // all ranks have the same words
+      throw wrong;
+    }
+    const std::string& name = words[i];
+    const bool has_value = i + 1 < words.size() && !names_option(words[i + 1]);
+    check(PetscOptionsSetValue(nullptr, name.c_str(), has_value ? words[++i].c_str() : nullptr));
+    given_options().push_back(plain_option(name));
+  }
+}
+
+// Later sources win: ~/.petscrc, the two files of the working directory, the environment, the command line.
+std::vector<OptionInForce> Session::options_in_force() {
+  std::vector<OptionInForce> all = options_of(nullptr);
+  const auto say = [&](const std::vector<OptionInForce>& some, const std::string& source) {
+    for (const auto& o : some)
+      for (auto& known : all)
+        if (known.name == o.name) known.source = source;
+  };
+  const auto of_file = [&](const std::string& path, const std::string& shown) {
+    if (!std::filesystem::exists(path)) return;
+    say(options_of(
+            [&](PetscOptions o) { check(PetscOptionsInsertFile(PETSC_COMM_SELF, o, path.c_str(), PETSC_FALSE)); }),
+        shown);
+  };
+  if (const char* home = std::getenv("HOME")) of_file(std::string(home) + "/.petscrc", "~/.petscrc");
+  of_file(".petscrc", ".petscrc");
+  of_file("petscrc", "petscrc");
+  if (const char* text = std::getenv("PETSC_OPTIONS"))
+    say(options_of([&](PetscOptions o) { check(PetscOptionsInsertString(o, text)); }), "PETSC_OPTIONS");
+  for (auto& known : all)
+    if (std::find(given_options().begin(), given_options().end(), known.name) != given_options().end())
+      known.source = "command line";
+  return all;
 }
 
 std::vector<std::string> Session::unused_options() {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
+#include "known.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/load.hpp"
@@ -27,7 +29,7 @@ void* mutable_part(const void* value) {
   return const_cast<void*>(value);
 }
 
-class ListCodec : public Codec {
+class ListCodec : public Codec, public Knows {
 public:
   ListCodec(CodecPtr item, ListAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -62,6 +64,11 @@ public:
   }
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return "1"; }
+  const Spec* spec() const override { return spec_of(*item_); }
+  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+    const std::size_t i = index_of(path.front(), std::numeric_limits<std::size_t>::max());
+    return leaf_of(*item_, preset && i < a_.size(preset) ? a_.at(mutable_part(preset), i) : nullptr, path.subspan(1));
+  }
   Access find(void* value, std::span<const std::string> path) const override {
     if (path.empty()) return {};
     return item_->find(a_.at(value, index_of(path.front(), a_.size(value))), path.subspan(1));
@@ -72,7 +79,7 @@ private:
   ListAccess a_;
 };
 
-class TableCodec : public Codec {
+class TableCodec : public Codec, public Knows {
 public:
   TableCodec(const Structure& row, ListAccess a, std::string scalar)
       : row_(row), a_(std::move(a)), scalar_(std::move(scalar)) {}
@@ -117,6 +124,10 @@ public:
   }
   const Structure* structure() const override { return &row_; }
   std::string step() const override { return "1"; }
+  const Spec* spec() const override { return scalar_.empty() ? nullptr : spec_of(*row_.option(scalar_)->codec); }
+  Leaf leaf(const void*, std::span<const std::string> path) const override {
+    return leaf_of(row_, nullptr, path.subspan(1));
+  }
   Access find(void*, std::span<const std::string>) const override { return {}; }
 
 private:
@@ -140,7 +151,7 @@ bool is_name(const std::string& s) {
          std::all_of(s.begin(), s.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-'; });
 }
 
-class MapCodec : public Codec {
+class MapCodec : public Codec, public Knows {
 public:
   MapCodec(CodecPtr item, MapAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -168,6 +179,9 @@ public:
   std::string type() const override { return fmt::format("a map NAME: {}", item_->type()); }
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return "NAME"; }
+  Leaf leaf(const void*, std::span<const std::string> path) const override {
+    return leaf_of(*item_, nullptr, path.subspan(1));
+  }
   Access find(void* value, std::span<const std::string> path) const override {
     if (path.empty()) return {};
     std::vector<std::string> names;
@@ -183,7 +197,7 @@ private:
   MapAccess a_;
 };
 
-class OptionalCodec : public Codec {
+class OptionalCodec : public Codec, public Knows {
 public:
   OptionalCodec(CodecPtr item, OptionalAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -200,6 +214,10 @@ public:
   std::string type() const override { return item_->type(); }
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return item_->step(); }
+  const Spec* spec() const override { return spec_of(*item_); }
+  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+    return leaf_of(*item_, preset ? a_.get(mutable_part(preset)) : nullptr, path);
+  }
   Access find(void* value, std::span<const std::string> path) const override {
     void* v = a_.get(value);
     if (!v) throw InputError("the deck does not give this option");
@@ -211,7 +229,7 @@ private:
   OptionalAccess a_;
 };
 
-class NameOrCodec : public Codec {
+class NameOrCodec : public Codec, public Knows {
 public:
   NameOrCodec(CodecPtr value, NameOrAccess a) : value_(std::move(value)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -227,6 +245,9 @@ public:
   Node schema(bool whole) const override { return either_schema(typed_schema("string"), value_->schema(whole)); }
   std::string type() const override { return "a name, or a map"; }
   const Structure* structure() const override { return value_->structure(); }
+  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+    return leaf_of(*value_, preset && !a_.name(preset) ? a_.value(mutable_part(preset)) : nullptr, path);
+  }
   Access find(void* value, std::span<const std::string> path) const override {
     if (const std::string* name = a_.name(value))
       throw InputError(fmt::format("it is the name '{}'; vary what it names", *name));
@@ -238,7 +259,7 @@ private:
   NameOrAccess a_;
 };
 
-class ChoicesCodec : public Codec {
+class ChoicesCodec : public Codec, public Knows {
 public:
   ChoicesCodec(std::vector<ChoiceKind> k, ChoiceAccess a) : kinds_(std::move(k)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -307,6 +328,15 @@ public:
     return all;
   }
   std::string step() const override { return "1"; }
+  Leaf leaf(const void*, std::span<const std::string> path) const override {
+    if (path.size() < 2) return {};
+    std::vector<std::string> names;
+    for (const ChoiceKind& k : kinds_) {
+      if (path[1] == k.name) return leaf_of(*k.options, nullptr, path.subspan(2));
+      names.push_back(k.name);
+    }
+    throw InputError(fmt::format("there is no kind '{}'{}", path[1], did_you_mean(path[1], names)));
+  }
   Access find(void* value, std::span<const std::string> path) const override {
     if (path.size() < 2) return {};
     const std::size_t i = index_of(path.front(), a_.size(value));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "known.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 
@@ -76,7 +77,7 @@ Node quantity_schema(const Spec& spec) {
   return n;
 }
 
-class RealCodec : public Codec {
+class RealCodec : public Codec, public Knows {
 public:
   explicit RealCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -89,6 +90,7 @@ public:
   }
   Node schema(bool) const override { return quantity_schema(spec_); }
   std::string type() const override { return with_bounds(unit_words(spec_.unit), spec_.check); }
+  const Spec* spec() const override { return &spec_; }
   Access find(void* value, std::span<const std::string> path) const override {
     if (!path.empty()) return {};
     return {static_cast<double*>(value), spec_.unit, false, spec_.check};
@@ -98,7 +100,7 @@ private:
   Spec spec_;
 };
 
-class QuantityCodec : public Codec {
+class QuantityCodec : public Codec, public Knows {
 public:
   explicit QuantityCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -112,12 +114,13 @@ public:
   }
   Node schema(bool) const override { return quantity_schema(spec_); }
   std::string type() const override { return with_bounds(unit_words(spec_.unit), spec_.check); }
+  const Spec* spec() const override { return &spec_; }
 
 private:
   Spec spec_;
 };
 
-class RangeCodec : public Codec {
+class RangeCodec : public Codec, public Knows {
 public:
   explicit RangeCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -160,12 +163,18 @@ public:
   std::string type() const override {
     return with_bounds(fmt::format("range {{from, to}}, each a {}", unit_words(spec_.unit)), spec_.check);
   }
+  const Spec* spec() const override { return &spec_; }
+  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+    if (path.size() > 1 || (path[0] != "from" && path[0] != "to"))
+      throw InputError(fmt::format("a range has no '{}'{}", path[0], did_you_mean(path[0], {"from", "to"})));
+    return {&spec_, preset ? *write(preset).find(path[0]) : Node{}};
+  }
 
 private:
   Spec spec_;
 };
 
-class IntegerCodec : public Codec {
+class IntegerCodec : public Codec, public Knows {
 public:
   explicit IntegerCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
@@ -190,6 +199,7 @@ public:
     return n;
   }
   std::string type() const override { return with_bounds("whole number", spec_.check); }
+  const Spec* spec() const override { return &spec_; }
 
 private:
   Spec spec_;

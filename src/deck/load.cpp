@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/deck/description.hpp"
 
 namespace whirl::deck {
 namespace {
@@ -91,12 +91,6 @@ Node load_chain(const std::string& path, std::vector<std::string>& chain, const 
   return merge(std::move(below), std::move(deck));
 }
 
-// Every value below gets the argument as its place.
-void relocate(Node& n, const Place& place) {
-  n.place = n.key_place = place;
-  for (Node& i : n.items) relocate(i, place);
-}
-
 }  // namespace
 
 std::string Files::read_text(const std::string& path, std::size_t limit) const {
@@ -139,77 +133,24 @@ Node merge(Node base, Node over) {
   return merged;
 }
 
-void override_value(Node& root, const std::string& argument, const Files& files) {
-  const Place place{std::make_shared<const std::string>("--set " + argument), 0, 0};
-  auto fail = [&](const std::string& m) { throw InputError(place.text() + ": " + m); };
-  const std::size_t equals = argument.find('=');
-  if (equals == std::string::npos || equals == 0) fail("expected PATH=VALUE");
-  Node value;
-  try {
-    value = parse_yaml(std::string_view(argument).substr(equals + 1), "value");
-  } catch (const InputError& e) {
-    const std::string_view what = e.what();
-    fail(std::string(what.substr(what.find(": ") + 2)));
-  }
-  relocate(value, place);
-  const std::vector<std::string> steps = split_path(std::string_view(argument).substr(0, equals));
-  Node *at = &root, *parent = nullptr;
-  std::string walked;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (steps[i].empty()) fail("a step of the path is empty");
-    if (names_table(*at)) {
-      Node table = load_table(*at, files);
-      *at = std::move(table);
-    }
-    if (at->kind == Node::Kind::scalar) fail(fmt::format("'{}' is a value and has no '{}'", walked, steps[i]));
-    const bool last = i + 1 == steps.size();
-    if (at->kind == Node::Kind::list) {
-      std::size_t k = 0;
-      const auto [end, code] = std::from_chars(steps[i].data(), steps[i].data() + steps[i].size(), k);
-      if (code != std::errc() || *end != '\0' || k < 1 || k > at->items.size())
-        fail(fmt::format("'{}' has items 1 to {}, not '{}'", walked, at->items.size(), steps[i]));
-      parent = at;
-      at = &at->items[k - 1];
-    } else {
-      if (at->kind == Node::Kind::none) at->kind = Node::Kind::map;
-      Node* next = at->find(steps[i]);
-      if (!next) {
-        // A part of something new beside something of nearly this name is a slip where all are of a kind: a bearing is
-        // not begun by its clearance.
-        std::vector<std::string> names;
-        for (const Node& n : at->items) names.push_back(n.key);
-        const bool of_a_kind =
-            std::all_of(at->items.begin(), at->items.end(), [](const Node& n) { return n.kind == Node::Kind::map; });
-        if (const std::string hint = did_you_mean(steps[i], names); !last && of_a_kind && !hint.empty())
-          fail(fmt::format("there is no '{}'{}; a new one is given whole: --set {}{}{}={{...}}", steps[i], hint, walked,
-                           walked.empty() ? "" : ".", steps[i]));
-        next = &at->set(steps[i], Node{});
-        next->place = next->key_place = place;
-      }
-      parent = at;
-      at = next;
-    }
-    walked += (walked.empty() ? "" : ".") + steps[i];
-    if (last && value.kind == Node::Kind::none && parent->kind == Node::Kind::map) {
-      std::erase_if(parent->items, [&](const Node& n) { return n.key == steps[i]; });
-    } else if (last) {
-      value.key = at->key;
-      value.key_place = place;
-      *at = std::move(value);
-    }
-  }
-}
-
-Node load(const std::string& path, const std::vector<std::string>& overrides, const Files& files) {
+Node load(const std::string& path, const std::vector<std::string>& overrides, const Files& files,
+          const Structure& structure, std::vector<Change>* changes) {
   try {
     std::vector<std::string> chain;
     Node root = load_chain(path, chain, files);
-    for (const std::string& o : overrides) override_value(root, o, files);
+    for (const std::string& o : overrides) {
+      const std::vector<Change> done = apply(parse_edit(o), root, structure, files);
+      if (changes) changes->insert(changes->end(), done.begin(), done.end());
+    }
     return root;
   } catch (InputError& e) {
     e.mark_agreed();  // every rank read the same bytes and comes to the same end
     throw;
   }
+}
+
+Node load(const std::string& path, const std::vector<std::string>& overrides, const Files& files) {
+  return load(path, overrides, files, Structure{});
 }
 
 }  // namespace whirl::deck

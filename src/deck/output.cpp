@@ -154,6 +154,10 @@ std::string to_yaml(const Node& node) {
   return out;
 }
 
+std::string to_line(const Node& node) {
+  return node.kind == Node::Kind::none ? std::string() : flow(node);
+}
+
 std::string to_json(const Node& node) {
   return json_of(node).dump(2) + "\n";
 }

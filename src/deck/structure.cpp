@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "known.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 
@@ -129,6 +130,31 @@ Access Structure::find(void* object, std::span<const std::string> path) const {
   return a;
 }
 
+const Spec* spec_of(const Codec& codec) {
+  const auto* knows = dynamic_cast<const Knows*>(&codec);
+  return knows ? knows->spec() : nullptr;
+}
+
+Leaf Knows::leaf(const void*, std::span<const std::string> path) const {
+  throw InputError(fmt::format("'{}' leads into a value that has no parts", path.front()));
+}
+
+Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path) {
+  if (path.empty()) return {spec_of(codec), preset ? codec.write(preset) : Node{}};
+  const auto* knows = dynamic_cast<const Knows*>(&codec);
+  if (!knows) throw InputError(fmt::format("'{}' leads into a value that has no parts", path.front()));
+  return knows->leaf(preset, path);
+}
+
+Leaf leaf_of(const Structure& s, const void* preset, std::span<const std::string> path) {
+  if (path.empty()) return {};
+  const Option* o = s.option(path.front());
+  if (!o)
+    throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), s.keys())));
+  void* object = const_cast<void*>(preset ? preset : s.defaults.get());
+  return leaf_of(*o->codec, object ? o->member(object) : nullptr, path.subspan(1));
+}
+
 Access find_in(const Structure& structure, void* object, std::string_view path) {
   const std::vector<std::string> steps = split_path(path);
   Access a;
@@ -143,7 +169,7 @@ Access find_in(const Structure& structure, void* object, std::string_view path) 
 
 namespace {
 
-class StructCodec : public Codec {
+class StructCodec : public Codec, public Knows {
 public:
   explicit StructCodec(const Structure& s) : structure_(s) {}
   void read(const Node& node, void* value, Reading& r) const override { structure_.read(node, value, r); }
@@ -151,6 +177,9 @@ public:
   Node schema(bool whole) const override { return structure_.schema(whole); }
   std::string type() const override { return "map"; }
   const Structure* structure() const override { return &structure_; }
+  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+    return leaf_of(structure_, preset, path);
+  }
   Access find(void* value, std::span<const std::string> path) const override { return structure_.find(value, path); }
 
 private:

@@ -167,6 +167,20 @@ std::string safe_name(const std::string& text) {
   return name;
 }
 
+std::string plain_name(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';
+    if (plain)
+      name += c;
+    else if (!name.ends_with('_'))
+      name += '_';
+  }
+  const auto first = name.find_first_not_of("_."), last = name.find_last_not_of("_.");
+  return first == std::string::npos ? "study" : name.substr(first, last - first + 1);
+}
+
 std::uint64_t checksum(const Group& group) {
   Fnv fnv;
   fnv.value(group);

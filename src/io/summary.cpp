@@ -173,10 +173,14 @@ void Summary::set(StudySummary study) {
 std::string Summary::to_json() const {
   Json list = Json::array();
   for (const StudySummary& s : studies) list.push_back(io::to_json(s));
+  Json given = Json::array();
+  for (const LibraryOption& o : options)
+    given.push_back({{"name", o.name}, {"value", o.value}, {"source", text_or_null(o.source)}});
   const Json j = {{"title", title},
                   {"version", version},
                   {"ranks", ranks},
                   {"wall_seconds", number(wall_seconds)},
+                  {"options", std::move(given)},
                   {"studies", std::move(list)}};
   // Texts come from users' decks; a byte that is not UTF-8 must not cost the results.
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -194,6 +198,9 @@ Summary Summary::from_json(const std::string& text) {
     s.version = j.at("version");
     s.ranks = j.at("ranks");
     s.wall_seconds = number(j.at("wall_seconds"));
+    for (const Json& o : j.value("options", Json::array()))
+      s.options.push_back(
+          {o.at("name"), o.at("value"), o.at("source").is_null() ? "" : o.at("source").get<std::string>()});
     for (const Json& one : j.at("studies")) s.studies.push_back(study(one));
     return s;
   } catch (const Json::exception& e) {

@@ -48,6 +48,9 @@ const std::vector<double>& Table::column(const std::string& name) const {
 }
 
 void Table::write(Group& group) const {
+  std::string names;
+  for (const Column& c : columns_) names += (names.empty() ? "" : " ") + c.name;
+  group.set("columns", names);
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const Column& c = columns_[k];
     group.put(c.name, full_shape(c, rows_), values_[k], c.unit, c.description);

@@ -205,7 +205,7 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     before = std::move(here);
     if (!comparable) earlier = {}, before = {};
     here = std::move(next);
-    const int k = result.iterations;
+    const int k = result.effort;
     ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
     ds = std::max(ds, options_.min_step);
     if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());

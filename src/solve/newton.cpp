@@ -3,7 +3,10 @@
 #include <petscksp.h>
 #include <petscsnes.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "whirl/core/error.hpp"
 #include "whirl/core/gate.hpp"
@@ -98,6 +101,25 @@ const char* text_of(SNESConvergedReason reason) {
   }
 }
 
+// How many iterations residuals r_0, r_1, ... took. Near the wall large forces cancel, and their rounding stays above
+// the tolerance: whether the last iteration is made is then chance. There r_{j+1} = (r_j / r_{j-1}^2) r_j^2 goes on
+// from the last two residuals that are far above rounding.
+int effort_of(std::span<const double> residuals, double tolerance, bool below_tolerance) {
+  constexpr double far_above_rounding = 1e4;
+  const int taken = static_cast<int>(residuals.size()) - 1;
+  if (taken < 1 || (below_tolerance && residuals.back() <= 0.01 * tolerance)) return taken;
+  int last = taken;
+  while (last > 0 && !(residuals[static_cast<std::size_t>(last)] > far_above_rounding * tolerance)) --last;
+  if (last == 0) return std::min(taken, 2);
+  const auto j = static_cast<std::size_t>(last);
+  double r = residuals[j];
+  const double c = r / (residuals[j - 1] * residuals[j - 1]);
+  int n = last;
+  // One that falls more slowly than that says nothing of what is to come.
+  for (; r > tolerance && n < taken + 1; ++n) r = std::min(c * r * r, r);
+  return n;
+}
+
 }  // namespace
 
 struct Newton::Objects {
@@ -115,6 +137,7 @@ struct Newton::Objects {
   core::Vector residual;
   core::NonlinearSolver snes;
   core::LinearSolver ksp;
+  std::vector<double> residuals;  // of the last nonlinear solve, which writes them
 };
 
 void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
@@ -128,6 +151,9 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
                           1000));
   check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
   check(SNESSetCheckJacobianDomainError(snes.get(), PETSC_TRUE));  // PETSc looks in debug builds only
+  residuals.resize(static_cast<std::size_t>(options.max_iterations) + 2);
+  check(SNESSetConvergenceHistory(snes.get(), residuals.data(), nullptr, static_cast<PetscInt>(residuals.size()),
+                                  PETSC_TRUE));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
@@ -179,8 +205,13 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
   check(SNESGetIterationNumber(snes, &iterations));
   check(SNESGetLinearSolveIterations(snes, &linear));
   check(SNESGetFunctionNorm(snes, &norm));
-  NewtonResult result{reason > 0, static_cast<int>(iterations), static_cast<int>(linear),
-                      norm / std::sqrt(static_cast<double>(o.global)), text_of(reason)};
+  PetscInt known = 0;
+  check(SNESGetConvergenceHistory(snes, nullptr, nullptr, &known));
+  const double root_n = std::sqrt(static_cast<double>(o.global));
+  const int effort = effort_of({o.residuals.data(), static_cast<std::size_t>(known)}, options_.tolerance * root_n,
+                               reason == SNES_CONVERGED_FNORM_ABS);
+  NewtonResult result{reason > 0,     static_cast<int>(iterations), effort, static_cast<int>(linear), norm / root_n,
+                      text_of(reason)};
   // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls
   // there has arrived.
   if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options_.tolerance)

@@ -9,7 +9,7 @@
 
 namespace whirl::study {
 
-void Alignment::run(Context& context) {
+StudyResult Alignment::run(Context& context) {
   const auto names = names_of_bearings(context.machine);
   const auto position = [&](const std::string& name) {
     return static_cast<int>(*system::find_bearing(context.machine, name)) + 1;
@@ -47,7 +47,7 @@ void Alignment::run(Context& context) {
   nodes.put("y", aligned.deflection, "m", "aligned shaft on rigid supports, positive up");
   nodes.put("moment", aligned.moment, "N m", "bending moment of the aligned shaft, sagging positive");
   summary.points = 1;
-  context.results.finish("completed", true);
+  return context.results.finish("completed", true);
 }
 
 }  // namespace whirl::study

@@ -185,7 +185,7 @@ void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<L
 
 }  // namespace
 
-void BearingMap::run(Context& context) {
+StudyResult BearingMap::run(Context& context) {
   const system::Train train = system::train_of(context.machine);
   const std::size_t which = options.bearing.empty() ? 0 : *system::find_bearing(context.machine, options.bearing);
   auto& results = context.results;
@@ -226,10 +226,10 @@ void BearingMap::run(Context& context) {
   summary.points = static_cast<long>(map->locus.size());
   // The last eccentricity carries the next load only if the film exists there.
   const bool touches = map->locus.back().at.eccentricity < options.max_eccentricity * (1 - 1e-12);
-  results.finish(touches ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
-                                       map->locus.back().at.eccentricity)
-                         : "completed",
-                 true);
+  return results.finish(touches ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
+                                              map->locus.back().at.eccentricity)
+                                : "completed",
+                        true);
 }
 
 }  // namespace whirl::study

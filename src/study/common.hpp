@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "results.hpp"
+#include "findings.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/newton.hpp"
 #include "whirl/study/study.hpp"

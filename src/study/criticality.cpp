@@ -72,7 +72,8 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, const solve::Re
   b.period_s = 2 * std::numbers::pi / omega;
   b.more["whirl_frequency_rad_s"] = omega;
   if (!system_->has_film_mesh()) b.uncertainty = hopf.bracket;
-  set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity);
+  pieces_->complete("hopf criticality", b,
+                    [&] { set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity); });
   context_.results.summary().bifurcations.push_back(b);
   // The equilibrium has no cycle for a locus to start from; its place in the list is kept.
   if (keeps_located_) located_.push_back({solve::Event::branch_point, 0, {}});

@@ -7,26 +7,54 @@
 #include "cycle_follower.hpp"
 
 namespace whirl::study {
+namespace {
 
-// The branch asked for, and the branches of twice the period that are born at its flips, each a study of its own in the
-// results. A resumed run takes the flips of a finished branch from its results.
-void CycleBranch::run(Context& context) {
-  std::vector<FlipSeed> seeds;
-  if (context.resume && context.results.finished(name())) {
-    if (options.follow_flips) seeds = read_seeds(context.results.group_of(name()).group("flips"));
-  } else {
-    CycleFollower follower(context, options);
-    follower.run();
-    seeds = follower.seeds();
-  }
-  for (std::size_t k = 0; k < seeds.size(); ++k) {
+// The branch born at one flip of another one.
+class DoubledBranch final : public Study {
+public:
+  DoubledBranch(std::string name, CycleBranchOptions options, FlipSeed seed)
+      : name_(std::move(name)), options_(std::move(options)), seed_(std::move(seed)) {}
+  [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
+  [[nodiscard]] std::string name() const override { return name_; }
+  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
+  [[nodiscard]] StudyResult run(Context& context) override { return CycleFollower(context, options_, seed_).run(); }
+
+private:
+  std::string name_;
+  CycleBranchOptions options_;
+  FlipSeed seed_;
+};
+
+}  // namespace
+
+StudyResult CycleBranch::run(Context& context) {
+  return CycleFollower(context, options).run();
+}
+
+// A resumed run takes the flips of a finished branch from its results, and so does any other.
+std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result) const {
+  std::vector<std::unique_ptr<Study>> born;
+  if (!options.follow_flips || !result.has_group("flips")) return born;
+  const std::vector<FlipSeed> seeds = read_seeds(result.group("flips"));
+  for (std::size_t k = 1; k <= seeds.size(); ++k) {
     const auto& chosen = options.flips;
-    if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k) + 1) == chosen.end()) continue;
-    const std::string born = name_of_doubled(name(), k + 1);
-    if (context.resume && context.results.finished(born)) continue;
-    context.results.begin(born, std::string(kind()));
-    CycleFollower(context, of_twice_the_period(options), seeds[k]).run();
+    if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k)) == chosen.end()) continue;
+    born.push_back(
+        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds[k - 1]));
   }
+  return born;
+}
+
+bool CycleBranch::may_add(std::string_view other) const {
+  const std::string first = io::plain_name(name_of_doubled(name(), 1));
+  const std::string_view stem = std::string_view(first).substr(0, first.size() - 1);
+  if (!options.follow_flips || !other.starts_with(stem) || other.size() == stem.size() ||
+      other.find_first_not_of("0123456789", stem.size()) != std::string_view::npos)
+    return false;
+  const auto& chosen = options.flips;
+  return chosen.empty() || std::any_of(chosen.begin(), chosen.end(), [&](int k) {
+           return other == io::plain_name(name_of_doubled(name(), static_cast<std::size_t>(k)));
+         });
 }
 
 CycleBranchOptions of_twice_the_period(const CycleBranchOptions& options) {

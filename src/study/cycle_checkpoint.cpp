@@ -9,6 +9,7 @@ namespace whirl::study {
 
 void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds) {
   group.set("count", static_cast<int>(seeds.size()));
+  group.set("restart", 1);
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     auto& g = group.child(fmt::format("{}", k + 1));
     write_cycle(g.child("cycle"), seeds[k].cycle);
@@ -46,11 +47,7 @@ void CycleFollower::renew_phase(Vec u, Vec tangent) {
 
 void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step) {
   if (autonomous()) renew_phase(u, tangent);
-  if (!options_.checkpoint) return;
-  // At least once a second of work, so that a kill costs no more than that; the decision is rank 0's, for all.
-  int due = context_.results.seconds() - last_saved_ >= 1;
-  MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
-  if (!due) return;
+  if (!pieces_->due()) return;
   const solve::Cycle cycle = problem_->gather(u), direction = problem_->gather(tangent);
   io::Group state;
   record_.write(state.child("record"), true);
@@ -61,23 +58,23 @@ void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, do
   write_point(state.child("point"), now);
   state.set("next_step", next_step);
   state.set("largest_difference", largest_difference_);
-  state.set("seconds", context_.results.seconds());
+  state.set("events", events_);
   write_summary(state.child("summary"), context_.results.summary());
   write_seeds(state.child("flips"), seeds_);
   write_located(state.child("located"), located_);
-  context_.results.save_checkpoint(state);
-  last_saved_ = context_.results.seconds();
+  pieces_->save(std::move(state));
 }
 
 std::optional<solve::Restart> CycleFollower::restore() {
-  if (!context_.resume || !context_.results.has_checkpoint()) return std::nullopt;
-  const io::Group state = context_.results.load_checkpoint();
+  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint);
+  if (!pieces_->state().has_group("cycle")) return std::nullopt;
+  const io::Group state = pieces_->state();
   record_.read(state.group("record"));
   const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
   problem_ = make_problem(*system_, options_.period, cycle.mesh, false);
   if (autonomous()) problem_->set_phase_reference(cycle);
   read_summary(state.group("summary"), context_.results.summary());
-  context_.results.add_earlier_seconds(state.real("seconds"));
+  events_ = static_cast<int>(state.integer("events"));
   solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
                          read_point(state.group("point"))};
   restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);

@@ -1,5 +1,7 @@
 // What is recorded of a bifurcation of cycles, and how uncertain it is.
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
 
@@ -75,6 +77,10 @@ io::Bifurcation CycleFollower::bifurcation_here(io::BifurcationType type, double
   return bifurcation_at(type, value, options_.parameter.path, unit_, context_.machine, options_.unbalance, *system_);
 }
 
+std::string CycleFollower::piece(const std::string& what) const {
+  return fmt::format("event {} {}", events_ + 1, what);
+}
+
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
@@ -86,7 +92,8 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     if (options_.follow_flips) seeds_.push_back(seed);
     const auto twice = twice_the_period(seed);
     const solve::Restart leaving = leave_flip(*twice, seed);
-    set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity);
+    pieces_->complete(piece("criticality"), b,
+                      [&] { set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity); });
   }
   if (found.event != solve::Event::cyclic_fold) {
     b.more["angle_rad"] = std::abs(std::arg(found.critical));
@@ -109,8 +116,9 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
         return std::numeric_limits<double>::quiet_NaN();
       }
     };
-    const double time = estimate(true, false);
-    const double film = system_->has_film_mesh() ? estimate(false, true) : 0;
+    const double time = pieces_->number(piece("time mesh"), [&] { return estimate(true, false); });
+    const double film =
+        system_->has_film_mesh() ? pieces_->number(piece("film mesh"), [&] { return estimate(false, true); }) : 0;
     // Twice the change to the doubled time mesh: the rest that a yet finer one would bring is smaller than that change.
     b.more["uncertainty_time_mesh"] = 2 * time;
     b.more["uncertainty_film_mesh"] = film;
@@ -120,7 +128,8 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.criticality_by = "not located: lies within the bracket";
     b.uncertainty = found.bracket;
   }
-  set_normal_form(b, found, u);
+  pieces_->complete(piece("normal form"), b, [&] { set_normal_form(b, found, u); });
+  ++events_;
   context_.results.summary().bifurcations.push_back(b);
   if (keeps_located_)
     located_.push_back(

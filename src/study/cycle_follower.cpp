@@ -95,7 +95,7 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
   }
 }
 
-void CycleFollower::run() {
+StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
   if (!restart) {
@@ -144,7 +144,7 @@ void CycleFollower::run() {
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
   if (contact_) results.summary().set("contact", end.parameter, unit_);
-  results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
+  return results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
 }
 
 }  // namespace whirl::study

@@ -10,6 +10,7 @@
 #include "common.hpp"
 #include "cycle_record.hpp"
 #include "located.hpp"
+#include "pieces.hpp"
 #include "whirl/solve/periodic_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
@@ -36,10 +37,8 @@ public:
   /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
   /// options are those of that branch: period and intervals doubled).
   CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt);
-  /// Solves, records, and finishes the study that runs in the results.
-  void run();
-  /// The flips located on the way.
-  [[nodiscard]] const std::vector<FlipSeed>& seeds() const { return seeds_; }
+  /// Solves and records. The study that runs is finished.
+  [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
   /// Finds the bifurcation that `other` found on another film mesh. Throws core::NotConverged or core::DomainError.
   [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other);
@@ -78,6 +77,8 @@ private:
   [[nodiscard]] solve::Stability stability();
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
+  /// Name of a piece of work about the event that comes next.
+  [[nodiscard]] std::string piece(const std::string& what) const;
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
   [[nodiscard]] double shift(const solve::LocatedEvent& found, const solve::Cycle& cycle, bool doubled_mesh,
                              bool half_film) const;
@@ -101,7 +102,8 @@ private:
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   std::optional<solve::Cycle> last_;
-  double last_saved_ = -1e9;
+  std::unique_ptr<Pieces> pieces_;  // of the study that runs
+  int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;
   bool keeps_located_;              // a locus of the deck starts from one of them
   std::vector<Located> located_;    // one for each bifurcation of the summary

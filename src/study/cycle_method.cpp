@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "cycle_follower.hpp"
+#include "groups.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/solve/newton_picard.hpp"
 #include "whirl/solve/shooting_problem.hpp"
@@ -69,6 +70,9 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
     o.constant_rates = system.constant_rates();
     return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
   }
+  // Single shooting has nothing to share: every rank computes the same.
+  const MPI_Comm time =
+      options_.method == Method::shooting ? PETSC_COMM_SELF : sharing_time(context_.comm, mesh.size() - 1);
   solve::CycleOptions o;
   o.degree = options_.degree;
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
@@ -79,9 +83,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
   o.base_intervals = options_.intervals * laps;
   o.mesh_tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
   if (options_.method == Method::collocation)
-    return std::make_unique<solve::CycleProblem>(context_.comm, system, o, std::move(mesh));
-  // Single shooting has nothing to share: every rank computes the same.
-  const MPI_Comm time = options_.method == Method::shooting ? PETSC_COMM_SELF : context_.comm;
+    return std::make_unique<solve::CycleProblem>(time, system, o, std::move(mesh));
   return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh),
                                                   system.constant_rates());
 }

@@ -67,11 +67,29 @@ solve::Restart CycleFollower::start_at_hopf() {
     hopf = found;
   };
   callbacks.checkpoint = [&](const solve::BranchPoint&, Vec, Vec, double) { return !at_hopf; };
-  solve::ContinuationOptions search = continuation_;
-  search.initial_step = search.max_step;
-  search.newton.max_iterations = 20;
-  const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), search, callbacks);
-  if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
+  const auto search = [&] {
+    solve::ContinuationOptions o = continuation_;
+    o.initial_step = o.max_step;
+    o.newton.max_iterations = 20;
+    const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), o, callbacks);
+    if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
+    std::vector<double> found{parameter, hopf.parameter, hopf.bracket, hopf.sensitivity};
+    const auto rest = system_->gather(at_hopf.get());
+    found.insert(found.end(), rest.begin(), rest.end());
+    return found;
+  };
+  const std::vector<double> known = pieces_->numbers("hopf", search);
+  parameter = known[0];
+  hopf.parameter = known[1];
+  hopf.bracket = known[2];
+  hopf.sensitivity = known[3];
+  at_hopf = core::duplicate(x.get());
+  {
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(at_hopf.get(), &begin, nullptr));
+    const core::WriteArray a(at_hopf.get());
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = known[static_cast<std::size_t>(4 + begin + i)];
+  }
 
   system_->set_parameter(parameter);
   const auto modes = spectral::modes(*system_, at_hopf.get(), {});

@@ -2,11 +2,46 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
 
 namespace whirl::study {
+namespace {
+
+// Each study has files, a group and pictures of its own, and so has each branch that it adds: what those are called
+// must differ where only what may stand in the name of a file is left.
+void check_name(const Deck& deck, std::size_t i, const deck::Report& report) {
+  constexpr std::size_t longest = 120;
+  const std::string name = deck.studies[i]->name(), file = io::plain_name(name);
+  if (name.size() > longest)
+    report.fail("name",
+                fmt::format("a name of {} bytes; files are called after it, it has {} at most", name.size(), longest));
+  if (std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }))
+    report.fail("name", "a name has no tabulators, line ends or other control characters");
+  for (std::size_t j = 0; j < i; ++j) {
+    const Study &earlier = *deck.studies[j], &later = *deck.studies[i];
+    if (earlier.name() == name)
+      report.fail("name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1, name));
+    else if (io::plain_name(earlier.name()) == file)
+      report.fail("name",
+                  fmt::format("study {} is called '{}', and the files of both are '{}': give each a name of its own",
+                              j + 1, earlier.name(), file));
+    else if (earlier.may_add(file))
+      report.fail("name",
+                  fmt::format("study {}, '{}', follows its flips and calls a branch so: give each a name of its own",
+                              j + 1, earlier.name()));
+    else if (later.may_add(io::plain_name(earlier.name())))
+      report.fail("name",
+                  fmt::format("'{}' follows its flips and calls a branch '{}', as study {} is called: give each a "
+                              "name of its own",
+                              name, earlier.name(), j + 1));
+  }
+}
+
+}  // namespace
 
 void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
@@ -22,17 +57,15 @@ void describe(deck::Description<Deck>& d) {
       }
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
-      for (std::size_t j = 0; j < i; ++j)
-        if (io::safe_name(deck.studies[j]->name()) == io::safe_name(s.name()))
-          r.fail(path + ".name", fmt::format("study {} is called '{}' already: give each a name of its own", j + 1,
-                                             deck.studies[j]->name()));
+      check_name(deck, i, r.below(path));
     }
   });
 }
 
 Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides) {
   const deck::Files files(comm);
-  const deck::Node root = deck::load(path, overrides, files);
+  std::vector<deck::Change> changes;
+  const deck::Node root = deck::load(path, overrides, files, deck::structure_of<Deck>(), &changes);
   deck::Problems problems;
   auto d = deck::read<Deck>(root, files, problems);
   try {
@@ -41,6 +74,7 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
     e.mark_agreed();  // every rank read the same bytes
     throw;
   }
+  d.changes = std::move(changes);
   return d;
 }
 

@@ -43,7 +43,7 @@ void set_lyapunov(io::Bifurcation& b, system::Plant& system, Vec x, double omega
 
 }  // namespace
 
-void EquilibriumBranch::run(Context& context) {
+StudyResult EquilibriumBranch::run(Context& context) {
   const auto& range = options.parameter.range;
   const std::string unit = range.unit;
   const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
@@ -194,7 +194,7 @@ void EquilibriumBranch::run(Context& context) {
       results.summary().set("whirl_frequency", b.more.at("whirl_frequency_rad_s"), "rad/s");
     }
   results.summary().points = end.points;
-  results.finish(branch_status(end, unit), end.points > 0);
+  return results.finish(branch_status(end, unit), end.points > 0);
 }
 
 }  // namespace whirl::study

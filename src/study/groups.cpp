@@ -1,5 +1,12 @@
 #include "groups.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 
@@ -19,25 +26,80 @@ Groups Groups::split(MPI_Comm world, const system::Machine& machine) {
   return g;
 }
 
-std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
-                                            const std::function<std::vector<double>(std::size_t)>& work) {
-  std::vector<std::vector<double>> all(n);
-  if (groups.count == 1) {
-    for (std::size_t i = 0; i < n; ++i) all[i] = work(i);
-    return all;
-  }
-  const auto count = static_cast<std::size_t>(groups.count), index = static_cast<std::size_t>(groups.index);
-  const auto first = [&](std::size_t group) { return n * group / count; };
-  core::agree(groups.world, [&] {
-    for (std::size_t i = first(index); i < first(index + 1); ++i) all[i] = work(i);
-  });
-  for (std::size_t group = 0; group < count; ++group)
-    for (std::size_t i = first(group); i < first(group + 1); ++i) {
-      auto length = static_cast<unsigned long>(all[i].size());
-      MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, static_cast<int>(group), groups.world);
-      all[i].resize(length);
-      MPI_Bcast(all[i].data(), static_cast<int>(length), MPI_DOUBLE, static_cast<int>(group), groups.world);
+MPI_Comm sharing_time(MPI_Comm comm, std::size_t intervals) {
+  return intervals < static_cast<std::size_t>(core::size_of(comm)) ? MPI_COMM_SELF : comm;
+}
+
+namespace {
+
+using Answers = std::vector<std::vector<double>>;
+using Work = std::function<std::vector<double>(std::size_t)>;
+
+// Of n items, the first that a group has.
+std::size_t first_of(const Groups& groups, std::size_t n, std::size_t group) {
+  return n * group / static_cast<std::size_t>(groups.count);
+}
+
+// The items from `begin` on of each group's run of `wanted`, `most` of them, into `all` on every rank.
+void round(const Groups& groups, const std::vector<std::size_t>& wanted, std::size_t begin, std::size_t most,
+           const Work& work, Answers& all) {
+  const auto run = [&](std::size_t group, const std::function<void(std::size_t)>& visit) {
+    const std::size_t from = first_of(groups, wanted.size(), group) + begin,
+                      to = std::min(from + most, first_of(groups, wanted.size(), group + 1));
+    for (std::size_t i = from; i < to; ++i) visit(wanted[i]);
+  };
+  const auto own = [&] {
+    run(static_cast<std::size_t>(groups.index), [&](std::size_t item) { all[item] = work(item); });
+  };
+  if (groups.count == 1) return own();
+  core::agree(groups.world, own);
+  for (int group = 0; group < groups.count; ++group)
+    run(static_cast<std::size_t>(group), [&](std::size_t item) {
+      auto length = static_cast<unsigned long>(all[item].size());
+      MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, group, groups.world);
+      all[item].resize(length);
+      MPI_Bcast(all[item].data(), static_cast<int>(length), MPI_DOUBLE, group, groups.world);
+    });
+}
+
+}  // namespace
+
+Answers distribute(const Groups& groups, std::size_t n, const Work& work) {
+  Answers all(n);
+  std::vector<std::size_t> wanted(n);
+  std::iota(wanted.begin(), wanted.end(), 0);
+  round(groups, wanted, 0, n, work, all);
+  return all;
+}
+
+Answers distribute(const Groups& groups, std::size_t n, const Work& work, Pieces& kept, const std::string& name) {
+  const auto piece = [&](std::size_t item) { return fmt::format("{} {}", name, item + 1); };
+  const auto known = [] { return std::vector<double>(); };
+  Answers all(n);
+  std::vector<std::size_t> wanted;
+  for (std::size_t item = 0; item < n; ++item)
+    if (kept.known(piece(item)))
+      all[item] = kept.numbers(piece(item), known);
+    else
+      wanted.push_back(item);
+  const std::size_t longest =
+      (wanted.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count);
+  unsigned long most = 1;
+  for (std::size_t begin = 0, size = 1; begin < longest; begin += size) {
+    size = most;
+    const auto started = std::chrono::steady_clock::now();
+    round(groups, wanted, begin, size, work, all);
+    for (std::size_t group = 0; group < static_cast<std::size_t>(groups.count); ++group) {
+      const std::size_t from = first_of(groups, wanted.size(), group) + begin,
+                        to = std::min(from + size, first_of(groups, wanted.size(), group + 1));
+      for (std::size_t i = from; i < to; ++i) kept.keep(piece(wanted[i]), all[wanted[i]]);
     }
+    kept.save_if_due();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+    most = std::clamp<unsigned long>(
+        static_cast<unsigned long>(0.5 * static_cast<double>(size) / std::max(seconds, 1e-6)), 1, 2 * size);
+    MPI_Bcast(&most, 1, MPI_UNSIGNED_LONG, 0, groups.world);
+  }
   return all;
 }
 

@@ -5,11 +5,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "whirl/system/options.hpp"
 
 namespace whirl::study {
+
+class Pieces;
 
 /// Groups of ranks, each of which holds a whole system on its `space` communicator; independent work (speeds,
 /// collocation intervals) is shared between groups.
@@ -24,9 +27,19 @@ struct Groups {
   [[nodiscard]] static Groups split(MPI_Comm world, const system::Machine& machine);
 };
 
+/// Who shares the intervals of a cycle: the ranks of `comm`, or each rank by itself where there are more ranks than
+/// intervals; then all of them compute the same.
+[[nodiscard]] MPI_Comm sharing_time(MPI_Comm comm, std::size_t intervals);
+
 /// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
 /// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.
 [[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
                                                           const std::function<std::vector<double>(std::size_t)>& work);
+
+/// The same in rounds of about half a second, after which the answers are `kept` as pieces `name 1`, ..., `name n`:
+/// those of an interrupted run are not computed again.
+[[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
+                                                          const std::function<std::vector<double>(std::size_t)>& work,
+                                                          Pieces& kept, const std::string& name);
 
 }  // namespace whirl::study

@@ -15,6 +15,7 @@ bool is_followed(const Context& context, const std::string& name) {
 
 void write_located(io::Group& group, const std::vector<Located>& all) {
   group.set("count", static_cast<int>(all.size()));
+  group.set("restart", 1);
   for (std::size_t k = 0; k < all.size(); ++k) {
     auto& g = group.child(fmt::format("{}", k + 1));
     g.set("event", static_cast<int>(all[k].event));

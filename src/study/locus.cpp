@@ -10,6 +10,7 @@
 #include "bifurcation.hpp"
 #include "common.hpp"
 #include "cycle_follower.hpp"
+#include "groups.hpp"
 #include "located.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -47,7 +48,7 @@ struct FlipsBeside {
 class LocusFollower {
 public:
   LocusFollower(Context& context, const LocusOptions& options);
-  void run();
+  StudyResult run();
 
 private:
   // System, branch problem and condition at the start of the curve.
@@ -105,9 +106,9 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
     if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest && s->name() == options.of)
       of_rest_ = &rest->options;
   }
-  if (!context.results.root().child("studies").has_group(io::safe_name(options.of)))
+  if (!context.earlier.has_group(io::safe_name(options.of)))
     throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
-  const io::Group& group = context.results.group_of(options.of);
+  const io::Group& group = context.earlier.group(io::safe_name(options.of));
   if (!group.has_group("located"))
     throw core::NotConverged(
         fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
@@ -183,7 +184,8 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
   continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
   continuation_.newton.tolerance = o.tolerance;
-  cycles_ = std::make_unique<solve::CycleProblem>(context_.comm, *system_, c, seed_.cycle.mesh);
+  cycles_ = std::make_unique<solve::CycleProblem>(sharing_time(context_.comm, seed_.cycle.mesh.size() - 1), *system_, c,
+                                                  seed_.cycle.mesh);
   if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
@@ -254,12 +256,12 @@ void LocusFollower::record(const std::string& type, double second, double error,
 FlipsBeside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, double reach) {
   const core::Vector at = problem_->branch_part(whole);
   const auto cycle = cycles_->gather(at.get());
-  solve::CycleProblem cycles(context_.comm, *system_, cycles_->options(), mesh);
+  solve::CycleProblem cycles(sharing_time(context_.comm, mesh.size() - 1), *system_, cycles_->options(), mesh);
   const core::Vector u = cycles.scatter(cycle), along = solve::any_tangent(cycles, u.get());
   const auto condition = solve::make_flip(cycles);
   solve::AugmentedProblem problem(cycles, *condition, along.get(), second());
   core::Vector here = problem.make_unknown(), row = core::duplicate(here.get());
-  problem.join(u.get(), condition->start(), solve::last_entry(context_.comm, whole), here.get());
+  problem.join(u.get(), condition->start(), solve::last_entry(cycles_->comm(), whole), here.get());
   problem.prime(here.get());
   const core::Vector tangent = solve::any_tangent(problem, here.get());
   solve::weighted_row(problem, tangent.get(), row.get());
@@ -273,7 +275,7 @@ FlipsBeside LocusFollower::flips_beside(Vec whole, const std::vector<double>& me
     if (!result.converged) throw core::NotConverged(result.reason);
     problem.linearise(here.get(), row.get());
     (ahead ? out.ahead : out.behind) = solve::flip_coefficient(cycles, problem.branch_part(here.get()).get());
-    const Eigen::Vector2d place(problem.first_parameter(here.get()), solve::last_entry(context_.comm, here.get()));
+    const Eigen::Vector2d place(problem.first_parameter(here.get()), solve::last_entry(problem.comm(), here.get()));
     out.moved += ahead ? place : Eigen::Vector2d(-place);
   }
   return out;
@@ -415,7 +417,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   return rows;
 }
 
-void LocusFollower::run() {
+StudyResult LocusFollower::run() {
   const deck::Range& range = options_.second.range;
   const double from = range.from / second_scale_, to = range.to / second_scale_;
   solve::BranchEnd there, here;
@@ -460,13 +462,13 @@ void LocusFollower::run() {
     return fmt::format("ended at {:.6g} {} of {}: {}", deck::from_si(end.parameter * second_scale_, range.unit),
                        range.unit, options_.second.path, end.reason);
   };
-  results.finish(!there.completed ? status(there) : !here.completed ? status(here) : "completed", true);
+  return results.finish(!there.completed ? status(there) : !here.completed ? status(here) : "completed", true);
 }
 
 }  // namespace
 
-void Locus::run(Context& context) {
-  LocusFollower(context, options).run();
+StudyResult Locus::run(Context& context) {
+  return LocusFollower(context, options).run();
 }
 
 }  // namespace whirl::study

@@ -20,8 +20,8 @@ namespace {
 // Machine and solver at one level: film meshes doubled `level` times.
 struct Level {
   Level(Context& context, const CycleBranchOptions& options, int level)
-      : machine(context.machine), here{context.comm,    machine,        context.directory,
-                                       context.results, context.resume, context.studies} {
+      : machine(context.machine), here{context.comm,    machine,        context.results,
+                                       context.earlier, context.resume, context.studies} {
     for (auto& b : machine.bearings)
       for (int& cells : b.film.cells) cells <<= level;
     follower = std::make_unique<CycleFollower>(here, options);
@@ -70,11 +70,11 @@ MeshLimit mesh_limit(const std::vector<double>& values) {
   return out;
 }
 
-void MeshConvergence::run(Context& context) {
+StudyResult MeshConvergence::run(Context& context) {
   const CycleBranchOptions branch = options_of(context, options.of);
-  if (!context.results.root().child("studies").has_group(io::safe_name(options.of)))
+  if (!context.earlier.has_group(io::safe_name(options.of)))
     throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
-  const io::Group& of = context.results.group_of(options.of);
+  const io::Group& of = context.earlier.group(io::safe_name(options.of));
   if (!of.has_group("located"))
     throw core::NotConverged(
         fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
@@ -173,7 +173,7 @@ void MeshConvergence::run(Context& context) {
   group.set("parameter", branch.parameter.path);
   group.set("parameter_unit", unit);
   results.summary().points = static_cast<long>(rows.rows());
-  results.finish(trouble.empty() ? "completed" : trouble, !results.summary().bifurcations.empty());
+  return results.finish(trouble.empty() ? "completed" : trouble, !results.summary().bifurcations.empty());
 }
 
 }  // namespace whirl::study

@@ -8,6 +8,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
@@ -120,7 +121,7 @@ void follow(const std::vector<ShaftMode>& before, std::vector<ShaftMode>& now, i
 }
 
 // Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
-void rigid_modes(Context& context, const ModesOptions& options) {
+StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   rotor::Options shaft = context.machine.rotor;
   shaft.reduction = {};
   std::vector<int> pinned;
@@ -137,12 +138,12 @@ void rigid_modes(Context& context, const ModesOptions& options) {
       .child("spectrum")
       .put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
   summary.points = 1;
-  context.results.finish("completed", true);
+  return context.results.finish("completed", true);
 }
 
 }  // namespace
 
-void Modes::run(Context& context) {
+StudyResult Modes::run(Context& context) {
   if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
   const std::vector<double> speeds = options.all_speeds();
   const std::string unit = options.unit();
@@ -154,14 +155,16 @@ void Modes::run(Context& context) {
   auto& summary = results.summary();
   auto& group = results.group();
   std::size_t ready = 0;
-  const auto packed = distribute(groups, speeds.size(), [&](std::size_t i) {
+  Pieces pieces(results, context.resume);
+  const auto compute = [&](std::size_t i) {
     auto modes = pack(shaft_modes(system, walker.at(speeds[i]), options.count, limit));
     results.progress(fmt::format(
         "{}: {} of {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
         (speeds.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count),
         deck::from_si(speeds[i], unit), unit, results.seconds()));
     return modes;
-  });
+  };
+  const auto packed = distribute(groups, speeds.size(), compute, pieces, "speed");
 
   std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
@@ -197,7 +200,7 @@ void Modes::run(Context& context) {
     before = std::move(modes);
   }
   // Where the chords cross, refined by solving there and following the shape.
-  const auto refined = distribute(groups, crossings.size(), [&](std::size_t i) {
+  const auto refine = [&](std::size_t i) {
     Crossing c = crossings[i];
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
@@ -213,7 +216,8 @@ void Modes::run(Context& context) {
       if (std::abs(f) < 1e-7 * s) break;
     }
     return std::vector<double>{c.s1};
-  });
+  };
+  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical");
   struct Critical {
     double speed;
     int id;
@@ -263,7 +267,7 @@ void Modes::run(Context& context) {
   shapes.put("z", z, "m", "axial position of the nodes");
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
   summary.points = static_cast<long>(speeds.size());
-  results.finish("completed", true);
+  return results.finish("completed", true);
 }
 
 }  // namespace whirl::study

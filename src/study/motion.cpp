@@ -42,7 +42,7 @@ public:
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
 
-  void run() {
+  StudyResult run() {
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     const int total = options_.discard + options_.revolutions;
     for (; done_ < total; ++done_) {
@@ -52,7 +52,7 @@ public:
       progress(total);
       save();
     }
-    report();
+    return report();
   }
 
 private:
@@ -115,7 +115,7 @@ private:
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
-  void report() {
+  StudyResult report() {
     auto& results = context_.results;
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
@@ -133,7 +133,7 @@ private:
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
     summary.points = record_.revolutions();
-    results.finish("completed", true);
+    return results.finish("completed", true);
   }
 
   Context& context_;
@@ -150,8 +150,8 @@ private:
 
 }  // namespace
 
-void Motion::run(Context& context) {
-  Player(context, options).run();
+StudyResult Motion::run(Context& context) {
+  return Player(context, options).run();
 }
 
 }  // namespace whirl::study

@@ -90,7 +90,7 @@ public:
     if (total_ < 1) throw core::NotConverged("the shaft does not even turn once on the way");
   }
 
-  void run() {
+  StudyResult run() {
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     std::string status = "completed";
     try {
@@ -103,7 +103,7 @@ public:
     } catch (const core::NotConverged& e) {
       status = ended(e.what());
     }
-    report(status);
+    return report(status);
   }
 
 private:
@@ -211,7 +211,7 @@ private:
     }
   }
 
-  void report(const std::string& status) {
+  StudyResult report(const std::string& status) {
     auto& results = context_.results;
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
@@ -231,7 +231,7 @@ private:
     group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
     put_bearings(group, context_.machine);
     summary.points = static_cast<long>(table_.rows());
-    results.finish(status, table_.rows() > 0);
+    return results.finish(status, table_.rows() > 0);
   }
 
   Context& context_;
@@ -249,8 +249,8 @@ private:
 
 }  // namespace
 
-void RunUp::run(Context& context) {
-  Runner(context, options).run();
+StudyResult RunUp::run(Context& context) {
+  return Runner(context, options).run();
 }
 
 }  // namespace whirl::study

@@ -5,7 +5,6 @@
 #include "common.hpp"
 #include "groups.hpp"
 #include "whirl/core/agree.hpp"
-#include "whirl/io/xdmf.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::study {
@@ -16,7 +15,6 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
                const std::vector<double>& z) {
   auto& group = context.results.group();
   const auto names = names_of_bearings(context.machine);
-  std::vector<io::StructuredGrid> grids;
   for (int b = 0; b < system.n_bearings(); ++b) {
     const auto k = static_cast<std::size_t>(b);
     const auto& support = system.train().supports[k];
@@ -34,23 +32,16 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
     auto& pads = group.child("films").child(io::safe_name(names[k]));
     const auto groups = pads.groups();
     for (const auto& entry : groups) {
-      const std::string path = context.results.group_path() + "/films/" + io::safe_name(names[k]) + "/" + entry.first;
+      const std::string path = "films/" + io::safe_name(names[k]) + "/" + entry.first;
       for (auto& g : io::film_grids(pads.child(entry.first), path, names[k] + " " + entry.first, place))
-        grids.push_back(std::move(g));
+        context.results.show(std::move(g));
     }
   }
-  core::agree(context.comm, [&] {
-    int rank = 0;
-    MPI_Comm_rank(context.comm, &rank);
-    if (rank == 0 && !grids.empty())
-      io::write_xdmf(context.results.directory() / (io::safe_name(context.results.summary().name) + ".xdmf"),
-                     "results.h5", grids);
-  });
 }
 
 }  // namespace
 
-void Static::run(Context& context) {
+StudyResult Static::run(Context& context) {
   system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine),
                              options.speed.value);
   Walker walker(system);
@@ -130,7 +121,7 @@ void Static::run(Context& context) {
   group.set("speed", options.speed.value);
   if (options.fields) put_films(context, system, x, z);
   summary.points = 1;
-  context.results.finish("completed", true);
+  return context.results.finish("completed", true);
 }
 
 }  // namespace whirl::study

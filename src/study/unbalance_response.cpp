@@ -10,6 +10,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
@@ -152,7 +153,7 @@ void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Mo
 
 }  // namespace
 
-void UnbalanceResponse::run(Context& context) {
+StudyResult UnbalanceResponse::run(Context& context) {
   std::set<int> wanted(options.nodes.begin(), options.nodes.end());
   std::vector<int> nodes = options.nodes;
   if (nodes.empty()) {
@@ -169,15 +170,17 @@ void UnbalanceResponse::run(Context& context) {
   auto& summary = results.summary();
   const std::size_t n_bearings = context.machine.bearings.size();
   // Responses at several speeds, shared between the groups of ranks.
-  std::size_t ready = 0;
+  std::size_t ready = 0, calls = 0;
+  Pieces pieces(results, context.resume);
   const auto at_speeds = [&](const std::vector<double>& speeds) {
+    const auto compute = [&](std::size_t i) {
+      auto packed = pack(machine.at(speeds[i]));
+      results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
+                                   deck::from_si(speeds[i], unit), unit, results.seconds()));
+      return packed;
+    };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), [&](std::size_t i) {
-           auto packed = pack(machine.at(speeds[i]));
-           results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
-                                        deck::from_si(speeds[i], unit), unit, results.seconds()));
-           return packed;
-         }))
+    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls)))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };
@@ -262,7 +265,7 @@ void UnbalanceResponse::run(Context& context) {
   group.set("speed_unit", unit);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
   summary.points = static_cast<long>(curve.size());
-  results.finish("completed", true);
+  return results.finish("completed", true);
 }
 
 }  // namespace whirl::study

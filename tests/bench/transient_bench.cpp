@@ -170,7 +170,8 @@ int main(int argc, char** argv) {
     else
       words.push_back(word);
   }
-  const core::Session session(1, argv, words);
+  const core::Session session(1, argv);
+  core::Session::set_options(words);
 
   auto train = test::train({60, 16}, true);
   test::add_gen_pair(train, 2.5);

@@ -53,7 +53,7 @@ TEST(Summary, HasTheFieldsThatScriptsReadInOrder) {
   const auto j = nlohmann::ordered_json::parse(example().to_json());
   std::vector<std::string> keys;
   for (const auto& [k, v] : j.items()) keys.push_back(k);
-  EXPECT_EQ(keys, (std::vector<std::string>{"title", "version", "ranks", "wall_seconds", "studies"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"title", "version", "ranks", "wall_seconds", "options", "studies"}));
   const auto& s = j["studies"][0];
   keys.clear();
   for (const auto& [k, v] : s.items()) keys.push_back(k);

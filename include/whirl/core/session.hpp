@@ -6,16 +6,33 @@
 
 namespace whirl::core {
 
+/// An option that PETSc has been given.
+struct OptionInForce {
+  std::string name;    ///< with its dash
+  std::string value;   ///< empty for a flag
+  std::string source;  ///< `command line`, `PETSC_OPTIONS`, a file such as `.petscrc`; empty if that cannot be told
+};
+
 /// Owns the life of MPI, PETSc and SLEPc; make exactly one, first thing in main.
 ///
-/// `petsc_options` are the words for PETSc's option database ("-eq_ksp_monitor", ...). PETSc's printing error handler
-/// is replaced by one that keeps the text for LibraryError, so that a failure is reported once and by us.
+/// PETSc's printing error handler is replaced by one that keeps the text for LibraryError, so that a failure is
+/// reported once and by us. BLAS gets one thread unless the environment says how many.
 class Session {
 public:
-  Session(int argc, char** argv, const std::vector<std::string>& petsc_options = {});
+  Session(int argc, char** argv);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   ~Session();
+
+  /// One BLAS thread from here on, unless the environment says how many (OPENBLAS_NUM_THREADS, OMP_NUM_THREADS, ...).
+  /// The constructor does it; nothing happens if the library has no such switch.
+  static void one_blas_thread();
+
+  /// Puts words of the command line into PETSc's option database ("-newton_snes_monitor", ...), over what other sources
+  /// gave. core::InputError (agreed) for a word that is neither the name of an option nor the value of the one before.
+  static void set_options(const std::vector<std::string>& words);
+  /// All options that PETSc has been given, in the order of its database.
+  [[nodiscard]] static std::vector<OptionInForce> options_in_force();
 
   /// Options of PETSc that were given and that no solver on this rank has asked for.
   [[nodiscard]] static std::vector<std::string> unused_options();

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "whirl/deck/edit.hpp"
 #include "whirl/deck/node.hpp"
 
 namespace whirl::deck {
@@ -40,13 +41,12 @@ private:
 /// its own place.
 [[nodiscard]] Node merge(Node base, Node over);
 
-/// Sets what `argument` (`PATH=VALUE`; list items are 1-based) says; VALUE is YAML, an empty one removes the key.
-/// Tables on the path are read first.
-/// Errors cite the argument. Collective.
-void override_value(Node& root, const std::string& argument, const Files& files);
-
-/// The deck `path` laid over its bases, then all `overrides`. Collective; the same tree on every rank.
-/// Throws core::InputError (agreed).
+/// The deck `path` laid over its bases, then all `overrides` (arguments of `--set`, see edit.hpp); `structure` knows
+/// the units and defaults that relative ones need. What they changed goes to `changes` unless null. Collective; the
+/// same tree on every rank. Throws core::InputError (agreed).
+[[nodiscard]] Node load(const std::string& path, const std::vector<std::string>& overrides, const Files& files,
+                        const Structure& structure, std::vector<Change>* changes = nullptr);
+/// The same where no option is known, for which factors and offsets are refused.
 [[nodiscard]] Node load(const std::string& path, const std::vector<std::string>& overrides, const Files& files);
 
 }  // namespace whirl::deck

@@ -11,6 +11,8 @@ namespace whirl::deck {
 
 /// `node` as YAML text that reads back to the same tree.
 [[nodiscard]] std::string to_yaml(const Node& node);
+/// `node` on one line, between brackets where it has parts.
+[[nodiscard]] std::string to_line(const Node& node);
 /// `node` as indented JSON; scalars that are not quoted become numbers and booleans where they are ones.
 [[nodiscard]] std::string to_json(const Node& node);
 

@@ -73,6 +73,10 @@ private:
 /// Name in a file for any text of a user: '/' becomes '_', an empty name or "." becomes "_".
 [[nodiscard]] std::string safe_name(const std::string& text);
 
+/// Name of a file for any text of a user, as plots and tables have it: runs of anything but letters, digits and "+-."
+/// become one '_', without those and '.' at its ends; "study" if nothing is left.
+[[nodiscard]] std::string plain_name(const std::string& text);
+
 /// 64-bit FNV-1a hash of all names, shapes, units and values of the tree (descriptions too); equal trees have equal
 /// hashes.
 [[nodiscard]] std::uint64_t checksum(const Group& group);

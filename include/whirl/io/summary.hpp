@@ -72,11 +72,17 @@ struct StudySummary {
   void set(const std::string& key, double value, const std::string& unit);
 };
 
+/// An option of a library that was in force, and where it came from (empty if that cannot be told).
+struct LibraryOption {
+  std::string name = {}, value = {}, source = {};
+};
+
 /// The whole file; write it again after each study.
 struct Summary {
   std::string title = {}, version = {};
   int ranks = 1;
   double wall_seconds = 0;
+  std::vector<LibraryOption> options = {};  ///< of PETSc and SLEPc, from whatever source
   std::vector<StudySummary> studies = {};
 
   /// Replaces the study of the same name or appends it.

@@ -37,7 +37,8 @@ public:
   /// All values of a column, row after row.
   [[nodiscard]] const std::vector<double>& column(const std::string& name) const;
 
-  /// Writes one dataset per column into `group`, of shape [rows][row_shape...].
+  /// Writes one dataset per column into `group`, of shape [rows][row_shape...], and their order as the attribute
+  /// `columns`.
   void write(Group& group) const;
   /// Reads rows back that `write` made with the same columns; core::Error if a column is missing or has another shape.
   void read(const Group& group);

@@ -19,6 +19,9 @@ struct NewtonOptions {
 struct NewtonResult {
   bool converged = false;
   int iterations = 0;
+  /// The iterations as decisions count them: those that the first residuals foretell where the last ones are rounding,
+  /// which differs between rank counts.
+  int effort = 0;
   int linear_iterations = 0;
   double residual = 0;  ///< root mean square of the scaled residual at the end
   std::string reason;   ///< why it ended, with the text of a film's DomainError if one was met

@@ -60,8 +60,9 @@ public:
   [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
-  [[nodiscard]] bool resumes_itself() const override { return true; }
-  void run(Context& context) override;
+  [[nodiscard]] bool may_add(std::string_view other) const override;
+  [[nodiscard]] StudyResult run(Context& context) override;
+  [[nodiscard]] std::vector<std::unique_ptr<Study>> further(const io::Group& result) const override;
 };
 
 /// Name of the branch born at the k-th flip (1-based) of the study `name` with `follow_flips`, in the results.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "whirl/deck/edit.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
@@ -13,11 +14,12 @@ namespace whirl::study {
 struct Deck {
   system::Machine machine;
   std::vector<std::unique_ptr<Study>> studies;
+  std::vector<deck::Change> changes;  ///< what the overrides did
 };
 void describe(deck::Description<Deck>& d);
 
-/// Reads and checks the deck at `path` after `overrides` (`PATH=VALUE`); nothing is solved. Collective; the same on all
-/// ranks. Throws core::InputError (agreed) with a line per problem.
+/// Reads and checks the deck at `path` after `overrides` (arguments of `--set`); nothing is solved. Collective; the
+/// same on all ranks. Throws core::InputError (agreed) with a line per problem.
 [[nodiscard]] Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides);
 
 /// The deck as understood: valid, SI, every default written out.

@@ -21,7 +21,7 @@ public:
   [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
-  void run(Context& context) override;
+  [[nodiscard]] StudyResult run(Context& context) override;
 };
 
 }  // namespace whirl::study

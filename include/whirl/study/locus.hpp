@@ -25,7 +25,7 @@ public:
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;
   [[nodiscard]] std::string starts_from() const override { return options.of; }
-  void run(Context& context) override;
+  [[nodiscard]] StudyResult run(Context& context) override;
 };
 
 }  // namespace whirl::study

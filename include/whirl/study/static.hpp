@@ -17,7 +17,7 @@ public:
   static constexpr std::string_view key = "static";
   [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
-  void run(Context& context) override;
+  [[nodiscard]] StudyResult run(Context& context) override;
 };
 
 }  // namespace whirl::study

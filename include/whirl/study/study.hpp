@@ -10,20 +10,30 @@
 #include <vector>
 
 #include "whirl/deck/description.hpp"
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/io/xdmf.hpp"
 #include "whirl/system/options.hpp"
 
 namespace whirl::study {
 
-class Results;
-
+class Findings;
 class Study;
+
+/// What a study found; the same on all ranks.
+struct StudyResult {
+  io::Group group;                        ///< tables and fields, with units
+  io::StudySummary summary;               ///< named values, bifurcations, how it ended
+  std::vector<io::StructuredGrid> grids;  ///< meshes for ParaView; dataset paths are relative to `group`
+  bool delivered = true;                  ///< false: nothing but the reason in summary.status
+};
 
 /// What a study gets to work with.
 struct Context {
   MPI_Comm comm;
   const system::Machine& machine;
-  std::string directory;                            ///< of the results; exists
-  Results& results;                                 ///< where the study puts what it found
+  Findings& results;                                ///< what the study has found so far
+  const io::Group& earlier;                         ///< results of the studies before, by io::safe_name of their names
   bool resume = false;                              ///< go on from the checkpoint of this study, if there is one
   std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
 };
@@ -39,6 +49,9 @@ public:
   [[nodiscard]] virtual std::string_view kind() const = 0;
   /// Its name in results: that of the deck, or the kind.
   [[nodiscard]] virtual std::string name() const = 0;
+  /// True if a study `other` may be one that this one adds to the results, under the name of its files
+  /// (io::plain_name).
+  [[nodiscard]] virtual bool may_add(std::string_view /*other*/) const { return false; }
   /// True if it asks about a rotor in bearings, so that a deck of another system cannot have it.
   [[nodiscard]] virtual bool needs_rotor() const { return true; }
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
@@ -48,11 +61,15 @@ public:
                               const deck::Report& /*report*/) const {}
   /// Name of the study whose bifurcations this one goes on from; empty if it needs none.
   [[nodiscard]] virtual std::string starts_from() const { return {}; }
-  /// True if run() itself looks which of its results a resumed run already has; else a finished study is not run again.
-  [[nodiscard]] virtual bool resumes_itself() const { return false; }
-  /// Collective.
-  virtual void run(Context& context) = 0;
+  /// Computes; ends with `return context.results.finish(...)`. Throws core::NotConverged or core::DomainError if it can
+  /// deliver nothing. Collective.
+  [[nodiscard]] virtual StudyResult run(Context& context) = 0;
+  /// Studies that its result calls for, each with results of its own: the branches born at the flips it found.
+  [[nodiscard]] virtual std::vector<std::unique_ptr<Study>> further(const io::Group& /*result*/) const { return {}; }
 };
+
+/// Runs `study`; what it cannot deliver is a result with a reason. Collective.
+[[nodiscard]] StudyResult result_of(Study& study, Context& context);
 
 /// What all kinds share: options with a `name`.
 template <class Options>

@@ -1,0 +1,30 @@
+#pragma once
+// Tables of results as text that every spreadsheet reads.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+
+namespace whirl::io {
+
+struct CsvFile {
+  std::string name;  ///< of the table: the path of its group, with '.' for '/'
+  std::string text;  ///< one line of headers `key [unit]` (`key` alone without a unit), then one line a row
+};
+
+/// The tables in a tree of results, as CSV.
+///
+/// A group is a table if its datasets share their first extent, the rows; where it has datasets of two axes, those give
+/// the rows, and a dataset of one axis as long as their second one names their columns: `x.B1 [m]`. Failing that,
+/// `bearings/name` or `places/name` of the tree does, or numbers from 1. Numbers are as short as they can be without
+/// loss, `nan` where there is none.
+/// Left out: groups with the attribute `restart` and all below them, groups with datasets of three and more axes,
+/// tables of more than a million cells, and datasets that fit no table.
+[[nodiscard]] std::vector<CsvFile> csv_tables(const Group& tree);
+
+/// Writes one of them; atomic, makes the folder if it is missing.
+void write_csv(const std::filesystem::path& path, const CsvFile& table);
+
+}  // namespace whirl::io

@@ -1,0 +1,37 @@
+#pragma once
+// Which files of a folder belong to a run.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace whirl::io {
+
+/// The names of the files that a run and its pictures made in a folder: `manifest.txt`, one a line, relative to it.
+///
+/// Whoever makes a file appends its name first, in whatever language; a name that stands there twice does no harm.
+/// Names that lead out of the folder are passed over, and so is a last line without its end, which a kill left.
+/// Serial: call on one rank.
+class Manifest {
+public:
+  static constexpr const char* file_name = "manifest.txt";
+
+  explicit Manifest(std::filesystem::path folder);
+
+  /// Names a file (with '/' between folders) unless it is named already. core::Error if that cannot be written, or if
+  /// the name holds a line end or leads out of the folder.
+  void add(const std::string& name);
+  [[nodiscard]] bool has(const std::string& name) const;
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// True if the folder has a manifest.
+  [[nodiscard]] bool exists() const;
+  /// Removes the files named, except `keep`, and what a kill left of them (`NAME.part`, `.prev`, `.next`,
+  /// `.next.part`); folders below this one that are empty then; and the manifest, which goes last.
+  void remove_files(const std::string& keep = {});
+
+private:
+  std::filesystem::path folder_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace whirl::io

@@ -1,0 +1,340 @@
+// Changes of a tree: paths with wildcards, plain values, factors, offsets, things appended.
+#include "whirl/deck/edit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "known.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/description.hpp"
+#include "whirl/deck/load.hpp"
+#include "whirl/deck/output.hpp"
+
+namespace whirl::deck {
+namespace {
+
+using core::InputError;
+
+// An error that knows its place already.
+struct Placed {
+  std::string text;
+};
+
+// Every value below gets the edit's place.
+void relocate(Node& n, const Place& place) {
+  n.place = n.key_place = place;
+  for (Node& i : n.items) relocate(i, place);
+}
+
+// `path` split at the dots outside braces.
+std::vector<std::string> steps_of(std::string_view path) {
+  std::vector<std::string> steps(1);
+  int depth = 0;
+  for (const char c : path) {
+    depth += c == '{' ? 1 : c == '}' ? -1 : 0;
+    if (depth < 0 || depth > 1) break;
+    if (c == '.' && depth == 0)
+      steps.emplace_back();
+    else
+      steps.back() += c;
+  }
+  if (depth != 0) throw InputError("the braces of the path do not match");
+  if (std::find(steps.begin(), steps.end(), "") != steps.end()) throw InputError("a step of the path is empty");
+  return steps;
+}
+
+// The words that a step stands for: those between its braces, each with what stands around them.
+std::vector<std::string> alternatives(const std::string& step) {
+  const std::size_t open = step.find('{'), close = step.find('}');
+  if (open == std::string::npos) return {step};
+  std::vector<std::string> all;
+  std::string_view inside = std::string_view(step).substr(open + 1, close - open - 1);
+  while (true) {
+    const std::size_t comma = inside.find(',');
+    std::string_view word = inside.substr(0, comma);
+    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+    while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
+    if (word.empty()) throw InputError(fmt::format("a name in '{}' is empty", step));
+    for (std::string& end : alternatives(step.substr(close + 1)))
+      all.push_back(step.substr(0, open) + std::string(word) + end);
+    if (comma == std::string_view::npos) return all;
+    inside.remove_prefix(comma + 1);
+  }
+}
+
+// `*` stands for any run of characters.
+bool fits(std::string_view word, std::string_view pattern) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return word == pattern;
+  if (word.substr(0, star) != pattern.substr(0, star)) return false;
+  for (std::size_t i = star; i <= word.size(); ++i)
+    if (fits(word.substr(i), pattern.substr(star + 1))) return true;
+  return false;
+}
+
+// What a scalar asks for beyond replacing: nothing, a factor, or a sum.
+struct Relative {
+  double factor = 1;
+  std::string offset;  // empty if it is a factor
+};
+std::optional<Relative> relative_of(std::string_view text, bool append) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  Relative r;
+  const char first = text.empty() ? ' ' : text[0];
+  if (first == 'x' && !append) {
+    const Split s = split_quantity(text.substr(1));
+    if (!s.unit.empty()) throw InputError(fmt::format("a factor is a bare number, not '{}'", text));
+    r.factor = s.number;
+    return r;
+  }
+  if (first != '+' && first != '-' && !append) return std::nullopt;
+  r.offset = text;
+  if (const Split s = split_quantity(text); s.unit == "%") return Relative{1 + s.number / 100, {}};
+  return r;
+}
+
+// As people would write the result of a small sum: 60 * 1.1 is 66, not 66.00000000000001.
+std::string rounded(double value) {
+  double short_value = value;
+  const std::string text = fmt::format("{:.15g}", value);
+  (void)std::from_chars(text.data(), text.data() + text.size(), short_value);
+  if (!std::isfinite(short_value)) throw InputError("the result is not a finite number");
+  return write_number(short_value);
+}
+
+// `text` after the factor or the offset, in the unit that it had.
+std::string changed(const std::string& text, const Relative& r, const std::string& unit) {
+  const Split now = split_quantity(text);
+  if (r.offset.empty()) {
+    if (!now.unit.empty() && number_to_si(0, now.unit) != 0)
+      throw InputError(fmt::format("'{}' has no factor: its zero is not that of the temperature; write it in K", text));
+    return rounded(now.number * r.factor) + (now.unit.empty() ? "" : " " + now.unit);
+  }
+  double sum = 0;
+  if (unit == "*") {  // the study knows what it is; here it is of the kind in which it was written
+    const Split more = split_quantity(r.offset);
+    if (!same_kind(now.unit, more.unit))
+      throw InputError(fmt::format("'{}' and '{}' are not of the same kind", text, r.offset));
+    sum = number_to_si(now.number, now.unit) + number_to_si(more.number, more.unit);
+  } else {
+    sum = to_si(text, unit) + to_si(r.offset, unit == "K" ? "delta K" : unit);
+  }
+  return rounded(now.unit.empty() ? sum : from_si(sum, now.unit)) + (now.unit.empty() ? "" : " " + now.unit);
+}
+
+class Application {
+public:
+  Application(const Edit& e, const Structure& s, const Files& f) : edit_(e), structure_(s), files_(f) {}
+
+  std::vector<Change> run(Node& root) {
+    steps_ = steps_of(edit_.path);
+    walk(root, nullptr, 0);
+    return std::move(changes_);
+  }
+
+private:
+  [[nodiscard]] std::string walked() const { return fmt::format("{}", fmt::join(path_, ".")); }
+
+  void walk(Node& at, Node* parent, std::size_t i) {
+    if (i == steps_.size()) return act(at, *parent);
+    if (names_table(at)) {
+      Node rows = table(at);
+      at = std::move(rows);
+    }
+    if (at.kind == Node::Kind::none && i > 0) {
+      // One item of a list of numbers of which the deck is silent: the others are those of the default.
+      Leaf whole = known_leaf();
+      if (whole.spec && !whole.preset.items.empty()) {
+        whole.preset.key = at.key;
+        at = std::move(whole.preset);
+        relocate(at, edit_.place);
+      }
+    }
+    if (at.kind == Node::Kind::scalar)
+      throw InputError(fmt::format("'{}' is a value and has no '{}'", walked(), steps_[i]));
+    for (const std::string& step : alternatives(steps_[i])) {
+      if (step.find('*') != std::string::npos)
+        each(at, step, i);
+      else if (at.kind == Node::Kind::list)
+        enter(at, item(at, step), step, i);
+      else
+        enter(at, entry(at, step, i), step, i);
+    }
+  }
+
+  void enter(Node& at, std::size_t k, const std::string& step, std::size_t i) {
+    path_.push_back(step);
+    walk(at.items[k], &at, i + 1);
+    path_.pop_back();
+  }
+
+  // All that fit a pattern. Those of a map are found by name each time: one that is taken away moves the others.
+  void each(Node& at, const std::string& pattern, std::size_t i) {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < at.items.size(); ++k) {
+      const std::string name = at.kind == Node::Kind::list ? fmt::format("{}", k + 1) : at.items[k].key;
+      if (fits(name, pattern)) names.push_back(name);
+    }
+    if (names.empty())
+      throw InputError(path_.empty() ? fmt::format("no key fits '{}'", pattern)
+                                     : fmt::format("nothing in '{}' fits '{}'", walked(), pattern));
+    for (const std::string& name : names)
+      enter(at, at.kind == Node::Kind::list ? item(at, name) : entry(at, name, i), name, i);
+  }
+
+  [[nodiscard]] std::size_t item(const Node& at, const std::string& step) const {
+    std::size_t k = 0;
+    const char* end = step.data() + step.size();
+    const auto [last, code] = std::from_chars(step.data(), end, k);
+    if (code != std::errc() || last != end || k < 1 || k > at.items.size())
+      throw InputError(fmt::format("'{}' has items 1 to {}, not '{}'", walked(), at.items.size(), step));
+    return k - 1;
+  }
+
+  // Index of a key, which is begun if there is none.
+  [[nodiscard]] std::size_t entry(Node& at, const std::string& step, std::size_t i) const {
+    if (at.kind == Node::Kind::none) at.kind = Node::Kind::map;
+    if (const Node* found = at.find(step)) return static_cast<std::size_t>(found - at.items.data());
+    // A part of something new beside something of nearly this name is a slip where all are of a kind: a bearing is
+    // not begun by its clearance.
+    std::vector<std::string> names;
+    for (const Node& n : at.items) names.push_back(n.key);
+    const bool of_a_kind =
+        std::all_of(at.items.begin(), at.items.end(), [](const Node& n) { return n.kind == Node::Kind::map; });
+    if (const std::string hint = did_you_mean(step, names); i + 1 < steps_.size() && of_a_kind && !hint.empty()) {
+      const std::string whole = walked() + (path_.empty() ? "" : ".") + step;
+      throw InputError(
+          fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint, whole));
+    }
+    Node& next = at.set(step, Node{});
+    next.place = next.key_place = edit_.place;
+    return at.items.size() - 1;
+  }
+
+  // The value at the end of the path.
+  void act(Node& at, Node& parent) {
+    const bool scalar = edit_.value.kind == Node::Kind::scalar;
+    const Leaf leaf = known_leaf();
+    Node now = at.kind == Node::Kind::none ? leaf.preset : at;
+    Change change{walked(), to_line(now), {}};
+    Node after = edit_.value;
+    if (edit_.value.kind == Node::Kind::none && parent.kind == Node::Kind::map && !edit_.append) {
+      const std::string key = at.key;
+      std::erase_if(parent.items, [&](const Node& n) { return n.key == key; });
+      changes_.push_back(std::move(change));
+      return;
+    }
+    const bool add_number = edit_.append && scalar && now.kind != Node::Kind::list && leaf.spec && !names_table(now);
+    if (scalar && (add_number || !edit_.append) && leaf.spec && !names_table(edit_.value)) {
+      if (const auto r = relative_of(edit_.value.text, add_number)) {
+        after = std::move(now);
+        shift(after, *r, *leaf.spec);
+      }
+    } else if (edit_.append) {
+      after = joined(std::move(now));
+    }
+    if (!edit_.append && after.kind == Node::Kind::scalar && after.text.starts_with("=")) after.text.erase(0, 1);
+    after.key = at.key;
+    after.key_place = edit_.place;
+    change.after = to_line(after);
+    at = std::move(after);
+    changes_.push_back(std::move(change));
+  }
+
+  // What the description says; nothing for what it does not know, of which the reader will complain.
+  [[nodiscard]] Leaf known_leaf() const {
+    try {
+      return leaf_of(structure_, nullptr, path_);
+    } catch (const InputError&) {
+      return {};
+    }
+  }
+
+  void shift(Node& n, const Relative& r, const Spec& spec) const {
+    if (n.kind == Node::Kind::none)
+      throw InputError(fmt::format("'{}' has no value to start from: the deck does not give it", walked()));
+    if (names_table(n))
+      throw InputError(
+          fmt::format("'{}' is the table {}: name its rows and the column, {}.*.COLUMN", walked(), n.text, walked()));
+    if (n.kind == Node::Kind::map) throw InputError(fmt::format("'{}' is a map: name the part that changes", walked()));
+    for (Node& i : n.items) shift(i, r, spec);
+    if (n.kind != Node::Kind::scalar) return;
+    try {
+      n.text = changed(n.text, r, spec.unit);
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("'{}': {}", walked(), e.what()));
+    }
+    n.quoted = n.table_row = false;
+    n.place = n.key_place = edit_.place;
+  }
+
+  [[nodiscard]] Node joined(Node now) const {
+    if (names_table(now)) now = table(now);
+    if (now.kind == Node::Kind::none) now = Node::list();
+    if (now.kind == Node::Kind::map && edit_.value.kind == Node::Kind::map) return merge(std::move(now), edit_.value);
+    if (now.kind != Node::Kind::list)
+      throw InputError(fmt::format("nothing can be appended to '{}', which is no list", walked()));
+    if (edit_.value.kind == Node::Kind::list)
+      now.items.insert(now.items.end(), edit_.value.items.begin(), edit_.value.items.end());
+    else
+      now.push(edit_.value);
+    return now;
+  }
+
+  [[nodiscard]] Node table(const Node& name) const {
+    try {
+      return load_table(name, files_);
+    } catch (const InputError& e) {
+      throw Placed{e.what()};
+    }
+  }
+
+  const Edit& edit_;
+  const Structure& structure_;
+  const Files& files_;
+  std::vector<std::string> steps_;
+  std::vector<std::string> path_;  // up to here, without wildcards
+  std::vector<Change> changes_;
+};
+
+}  // namespace
+
+Edit make_edit(std::string path, Node value) {
+  const Place place = value.place;
+  value.key.clear();
+  return {std::move(path), false, std::move(value), place};
+}
+
+Edit parse_edit(const std::string& argument, std::string_view cited) {
+  const Place place{std::make_shared<const std::string>(fmt::format("{} {}", cited, argument)), 0, 0};
+  auto fail = [&](const std::string& m) { throw InputError(place.text() + ": " + m); };
+  const std::size_t equals = argument.find('=');
+  if (equals == std::string::npos || equals == 0) fail("expected PATH=VALUE");
+  const bool append = argument[equals - 1] == '+';
+  Edit edit{argument.substr(0, equals - (append ? 1 : 0)), append, {}, place};
+  if (edit.path.empty()) fail("expected PATH+=VALUE");
+  try {
+    edit.value = parse_yaml(std::string_view(argument).substr(equals + 1), "value");
+  } catch (const InputError& e) {
+    const std::string_view what = e.what();
+    fail(std::string(what.substr(what.find(": ") + 2)));
+  }
+  relocate(edit.value, place);
+  return edit;
+}
+
+std::vector<Change> apply(const Edit& edit, Node& root, const Structure& structure, const Files& files) {
+  try {
+    return Application(edit, structure, files).run(root);
+  } catch (const Placed& e) {
+    throw InputError(e.text);
+  } catch (const InputError& e) {
+    throw InputError(edit.place.text() + ": " + e.what());
+  }
+}
+
+}  // namespace whirl::deck

@@ -1,0 +1,37 @@
+#pragma once
+// What a description knows of a value whatever the deck gives there: for edits, and for help.
+
+#include <span>
+#include <string>
+
+#include "whirl/deck/description.hpp"
+
+namespace whirl::deck {
+
+/// What a description says about the value at a path.
+struct Leaf {
+  const Spec* spec = nullptr;  ///< of a number, or of the numbers of a list or a range; null for all else
+  Node preset;                 ///< the value if the deck is silent, kind none if there is none
+};
+
+/// A codec that tells what it knows; a codec that does not derive from it is a value without parts.
+class Knows {
+public:
+  Knows() = default;
+  Knows(const Knows&) = delete;
+  Knows& operator=(const Knows&) = delete;
+  virtual ~Knows() = default;
+  [[nodiscard]] virtual const Spec* spec() const { return nullptr; }
+  /// What is known at the rest of a path that is not empty; `preset` is the default at the start of it, null if
+  /// unknown. Throws core::InputError (without a place) if there is no such option.
+  [[nodiscard]] virtual Leaf leaf(const void* preset, std::span<const std::string> path) const;
+};
+
+/// What is known at `path` below a value of `codec`.
+[[nodiscard]] Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path);
+/// The same below a struct, whose own defaults hold where `preset` is null.
+[[nodiscard]] Leaf leaf_of(const Structure& structure, const void* preset, std::span<const std::string> path);
+/// Facts of the number that `codec` reads, or of the numbers of a list or a range; null for all else.
+[[nodiscard]] const Spec* spec_of(const Codec& codec);
+
+}  // namespace whirl::deck

@@ -1,0 +1,76 @@
+#include "whirl/io/manifest.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "io/atomic_file.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool stays_inside(const std::string& name) {
+  const fs::path path(name);
+  return !name.empty() && name.find_first_of("\r\n") == std::string::npos && path.is_relative() &&
+         std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".." || part == "."; });
+}
+
+std::string contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+Manifest::Manifest(fs::path folder) : folder_(std::move(folder)) {
+  const std::string text = contents(folder_ / file_name);
+  std::size_t begin = 0;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    std::string name = text.substr(begin, end - begin);
+    if (name.ends_with('\r')) name.pop_back();
+    if (stays_inside(name) && !has(name)) names_.push_back(std::move(name));
+  }
+}
+
+bool Manifest::has(const std::string& name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
+
+bool Manifest::exists() const {
+  return fs::exists(folder_ / file_name);
+}
+
+void Manifest::add(const std::string& name) {
+  if (!stays_inside(name)) throw core::Error("no name of a result: '" + name + "'");
+  if (has(name)) return;
+  const fs::path path = folder_ / file_name;
+  // An unfinished line would become a name together with this one.
+  if (const std::string text = contents(path); !text.empty() && text.back() != '\n')
+    replace_file(path, text.substr(0, text.find_last_of('\n') + 1));
+  std::ofstream out(path, std::ios::binary | std::ios::app);
+  out << name + "\n" << std::flush;
+  if (!out) throw core::Error("cannot write " + path.string() + ": " + std::strerror(errno));
+  names_.push_back(name);
+}
+
+void Manifest::remove_files(const std::string& keep) {
+  for (const std::string& name : names_) {
+    if (name == keep) continue;
+    const fs::path path = folder_ / name;
+    if (fs::is_directory(fs::symlink_status(path))) continue;
+    for (const char* suffix : {"", ".part", ".prev", ".next", ".next.part"}) fs::remove(path.string() + suffix);
+    // Folders that are not empty refuse, and stay.
+    std::error_code ignored;
+    for (fs::path inner = fs::path(name).parent_path(); !inner.empty(); inner = inner.parent_path())
+      fs::remove(folder_ / inner, ignored);
+  }
+  names_.clear();
+  fs::remove(folder_ / file_name);
+}
+
+}  // namespace whirl::io

@@ -1,0 +1,63 @@
+#include "findings.hpp"
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/io/checkpoint.hpp"
+
+namespace whirl::study {
+
+Findings::Findings(MPI_Comm comm, const std::string& name, const std::string& kind, std::filesystem::path checkpoint,
+                   Say say)
+    : comm_(comm),
+      rank_(core::rank_of(comm)),
+      checkpoint_(std::move(checkpoint)),
+      say_(rank_ == 0 ? std::move(say) : nullptr),
+      started_(std::chrono::steady_clock::now()) {
+  result_.summary.name = name;
+  result_.summary.kind = kind;
+  result_.group.set("kind", kind);
+  result_.group.set("title", name);
+}
+
+StudyResult Findings::finish(const std::string& status, bool delivered) {
+  result_.delivered = delivered;
+  result_.summary.status = status;
+  result_.summary.wall_seconds = seconds();
+  result_.group.set("status", status);
+  result_.group.set("delivered", delivered ? 1 : 0);
+  return std::move(result_);
+}
+
+void Findings::progress(const std::string& line) {
+  if (!say_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_line_ < std::chrono::milliseconds(100)) return;
+  last_line_ = now;
+  say_(line, true);
+}
+
+bool Findings::agreed(bool word) const {
+  int yes = word;
+  MPI_Bcast(&yes, 1, MPI_INT, 0, comm_);
+  return yes != 0;
+}
+
+void Findings::save_checkpoint(const io::Group& state) const {
+  core::agree(comm_, [&] {
+    if (rank_ == 0) io::Checkpoint(checkpoint_).save(state);
+  });
+}
+
+bool Findings::has_checkpoint() const {
+  int there = rank_ == 0 && io::Checkpoint(checkpoint_).exists();
+  MPI_Bcast(&there, 1, MPI_INT, 0, comm_);
+  return there != 0;
+}
+
+io::Group Findings::load_checkpoint() const {
+  io::Group state;
+  core::agree(comm_, [&] { state = io::Checkpoint(checkpoint_).load().state; });
+  return state;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,63 @@
+#pragma once
+// What one run of a study has found so far, its clock, its progress line and its checkpoint.
+
+#include <mpi.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/io/xdmf.hpp"
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+/// The result that a study works on; it knows no file but its checkpoint. Every rank holds the same.
+class Findings {
+public:
+  using Say = std::function<void(const std::string& line, bool transient)>;
+
+  /// Of the study `name` of that kind; `say` shows progress (called on rank 0 only, may be empty).
+  Findings(MPI_Comm comm, const std::string& name, const std::string& kind, std::filesystem::path checkpoint, Say say);
+
+  /// Tables and fields.
+  [[nodiscard]] io::Group& group() { return result_.group; }
+  [[nodiscard]] io::StudySummary& summary() { return result_.summary; }
+  /// Shows a mesh in ParaView; dataset paths are relative to group().
+  void show(io::StructuredGrid grid) { result_.grids.push_back(std::move(grid)); }
+  /// The result, with how it ended; nothing may be added any more.
+  [[nodiscard]] StudyResult finish(const std::string& status, bool delivered);
+
+  /// Wall time of this study, that of the run it resumes included.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count() + earlier_seconds_;
+  }
+  void add_earlier_seconds(double seconds) { earlier_seconds_ += seconds; }
+
+  /// Replaces the progress line; rank 0 only, at most ten times a second.
+  void progress(const std::string& line);
+  [[nodiscard]] bool shows_progress() const { return static_cast<bool>(say_); }
+
+  /// Rank 0's word, for all: what a clock decides must be decided alike. Collective.
+  [[nodiscard]] bool agreed(bool word) const;
+
+  /// Saved on rank 0, loaded on all ranks. Collective.
+  void save_checkpoint(const io::Group& state) const;
+  [[nodiscard]] io::Group load_checkpoint() const;
+  [[nodiscard]] bool has_checkpoint() const;
+
+private:
+  MPI_Comm comm_;
+  int rank_;
+  std::filesystem::path checkpoint_;
+  Say say_;
+  StudyResult result_;
+  std::chrono::steady_clock::time_point started_, last_line_;
+  double earlier_seconds_ = 0;
+};
+
+}  // namespace whirl::study

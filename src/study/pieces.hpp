@@ -1,0 +1,54 @@
+#pragma once
+// What a study has computed so far, piece by piece, in its checkpoint.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "findings.hpp"
+
+namespace whirl::study {
+
+/// Pieces of work that a killed run does not do again: a location's error estimate, the modes at one speed.
+///
+/// A study asks for each by a name that the same deck gives again in a resumed run, and gets what was kept or what it
+/// computes now. The checkpoint is the state() of the study and the pieces since then. It is saved after a piece if a
+/// second has passed since it was saved last (more if saving takes long), so that a kill costs about a second and the
+/// piece under way. Every rank holds the same; all members are collective.
+class Pieces {
+public:
+  /// With `resume`, takes over the checkpoint of an earlier run if there is one. Without `save` no file is written.
+  Pieces(Findings& findings, bool resume, bool save = true);
+
+  /// What else the checkpoint holds; empty until set.
+  [[nodiscard]] const io::Group& state() const { return state_; }
+
+  /// The piece of that name, made by `work` unless it is known.
+  const io::Group& get(const std::string& name, const std::function<void(io::Group&)>& work);
+  /// The same for numbers.
+  std::vector<double> numbers(const std::string& name, const std::function<std::vector<double>()>& work);
+  double number(const std::string& name, const std::function<double()>& work);
+  /// The same for all that is known of a bifurcation: `work` adds to it.
+  void complete(const std::string& name, io::Bifurcation& b, const std::function<void()>& work);
+  [[nodiscard]] bool known(const std::string& name) const { return pieces_.has_group(name); }
+
+  /// Keeps the numbers of a piece, without saving.
+  void keep(const std::string& name, const std::vector<double>& values);
+
+  /// True if it is time to save: rank 0's clock decides for all.
+  [[nodiscard]] bool due() const;
+  /// Saves the pieces with the last state, if it is time.
+  void save_if_due();
+  /// Saves a new state, from which the pieces so far are of no use any more.
+  void save(io::Group state);
+
+private:
+  void write();
+
+  Findings& findings_;
+  bool saves_;
+  io::Group state_, pieces_;
+  double last_saved_ = 0, cost_ = 0;
+};
+
+}  // namespace whirl::study

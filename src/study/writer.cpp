@@ -1,0 +1,117 @@
+#include "writer.hpp"
+
+#include <algorithm>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/core/session.hpp"
+#include "whirl/io/checkpoint.hpp"
+#include "whirl/io/csv.hpp"
+#include "whirl/io/hdf5.hpp"
+
+namespace whirl::study {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Those of this run in the file; an earlier one may have had others.
+void put_options(io::Group& root, const std::vector<io::LibraryOption>& options) {
+  root.erase_group("options");
+  if (options.empty()) return;
+  std::vector<std::string> names, values, sources;
+  for (const auto& o : options) {
+    names.push_back(o.name);
+    values.push_back(o.value);
+    sources.push_back(o.source);
+  }
+  auto& group = root.child("options");
+  group.put("name", std::move(names), "options of PETSc and SLEPc in force");
+  group.put("value", std::move(values), "their values; empty: a flag");
+  group.put("source", std::move(sources), "where they came from; empty: not known");
+}
+
+}  // namespace
+
+Writer::Writer(MPI_Comm comm, fs::path directory, const std::string& title, const std::string& version, bool resume)
+    : comm_(comm),
+      rank_(core::rank_of(comm)),
+      directory_(std::move(directory)),
+      manifest_(directory_),
+      started_(std::chrono::steady_clock::now()) {
+  core::agree(comm_, [&] {
+    // Every rank reads the same files; only rank 0 ever writes them.
+    if (!resume || !fs::exists(directory_ / "summary.json")) return;
+    all_ = io::Summary::read(directory_ / "summary.json");
+    earlier_seconds_ = all_.wall_seconds;
+    if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5");
+    auto& studies = root_.child("studies");
+    for (const auto& s : all_.studies) {
+      // What delivered nothing is tried again.
+      const std::string name = io::safe_name(s.name);
+      const bool known = studies.has_group(name) && studies.group(name).has_attribute("delivered");
+      if (!known || studies.group(name).integer("delivered") == 0) continue;
+      finished_.push_back(s.name);
+      // A run killed right after it finished the study leaves this behind.
+      if (rank_ == 0) io::Checkpoint(directory_ / (name + ".checkpoint.h5")).remove();
+    }
+  });
+  io::describe_results(root_, title, version);
+  root_.child("studies");
+  all_.title = title;
+  all_.version = version;
+  all_.ranks = core::size_of(comm);
+  all_.options.clear();
+  for (const auto& o : core::Session::options_in_force()) all_.options.push_back({o.name, o.value, o.source});
+  put_options(root_, all_.options);
+}
+
+bool Writer::finished(const std::string& name) const {
+  return std::find(finished_.begin(), finished_.end(), name) != finished_.end();
+}
+
+fs::path Writer::file(const std::string& name) {
+  if (rank_ == 0) manifest_.add(name);
+  return directory_ / name;
+}
+
+fs::path Writer::checkpoint_path(const std::string& study) {
+  fs::path path;
+  core::agree(comm_, [&] { path = file(io::safe_name(study) + ".checkpoint.h5"); });
+  return path;
+}
+
+void Writer::add(StudyResult result) {
+  const std::string name = result.summary.name, file = io::safe_name(name);
+  if (!result.delivered) undelivered_.push_back(name + ": " + result.summary.status);
+  root_.child("studies").child(file) = std::move(result.group);
+  all_.set(std::move(result.summary));
+  for (auto& grid : result.grids) {
+    const std::string head = "/studies/" + file + "/";
+    for (std::string& path : grid.coordinates) path.insert(0, head);
+    for (auto& field : grid.fields) field.dataset.insert(0, head);
+  }
+  // The study counts as finished as soon as the files of the run are written: what belongs to it goes first.
+  core::agree(comm_, [&] {
+    if (rank_ != 0) return;
+    if (!result.grids.empty()) io::write_xdmf(this->file(file + ".xdmf"), "results.h5", result.grids);
+    for (const auto& table : io::csv_tables(root_.group("studies").group(file)))
+      io::write_csv(this->file("csv/" + io::plain_name(name) + "/" + io::plain_name(table.name) + ".csv"), table);
+  });
+  write();
+  core::agree(comm_, [&] {
+    if (rank_ == 0) io::Checkpoint(directory_ / (file + ".checkpoint.h5")).remove();
+  });
+}
+
+void Writer::write() {
+  all_.wall_seconds =
+      earlier_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  core::agree(comm_, [&] {
+    if (rank_ != 0) return;
+    io::write_hdf5(file("results.h5"), root_);
+    all_.write(file("summary.json"));
+  });
+}
+
+}  // namespace whirl::study

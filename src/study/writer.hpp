@@ -1,0 +1,54 @@
+#pragma once
+// The files of a run: results.h5 and summary.json, and what an earlier run left in them.
+
+#include <mpi.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "whirl/io/manifest.hpp"
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+/// Writes the results of one study after another. Every rank holds the same tree; rank 0 of `comm` writes the files.
+class Writer {
+public:
+  /// `resume` takes over what an earlier run left in the directory.
+  Writer(MPI_Comm comm, std::filesystem::path directory, const std::string& title, const std::string& version,
+         bool resume);
+
+  /// True if an earlier run finished this study and it delivered something; its results are kept.
+  [[nodiscard]] bool finished(const std::string& name) const;
+  /// Where that study keeps its checkpoint; the manifest names it from now on.
+  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study);
+  /// Adds the result of a study and writes the files; its checkpoint goes. Collective.
+  void add(StudyResult result);
+
+  /// Results of the studies that are finished: a group for each, under io::safe_name of its name.
+  [[nodiscard]] const io::Group& studies() const { return root_.group("studies"); }
+  /// `NAME: reason` for each study that delivered nothing.
+  [[nodiscard]] const std::vector<std::string>& undelivered() const { return undelivered_; }
+
+private:
+  void write();
+  // Where a file goes; rank 0 enters its name into the manifest.
+  [[nodiscard]] std::filesystem::path file(const std::string& name);
+
+  MPI_Comm comm_;
+  int rank_;
+  std::filesystem::path directory_;
+  io::Manifest manifest_;  // rank 0's is the one that grows
+  io::Group root_;
+  io::Summary all_;
+  std::vector<std::string> finished_;
+  std::chrono::steady_clock::time_point started_;
+  double earlier_seconds_ = 0;
+  std::vector<std::string> undelivered_;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,63 @@
+// Tables as CSV.
+
+#include "whirl/io/csv.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "whirl/io/table.hpp"
+
+namespace {
+
+using namespace whirl::io;
+
+std::string text(const std::vector<CsvFile>& files, const std::string& name) {
+  for (const auto& f : files)
+    if (f.name == name) return f.text;
+  return "none";
+}
+
+}  // namespace
+
+TEST(Csv, HasTheColumnsOfATableInItsOrderWithUnitsAndNames) {
+  Group tree;
+  Table t({{"parameter", "rpm", ""}, {"stable", "1", ""}, {"a", "m", "", {2}}});
+  t.append({{3600}, {1}, {1e-6, 0.1}});
+  t.append({{4000.5}, {0}, {std::numeric_limits<double>::quiet_NaN(), -1.0 / 3}});
+  t.write(tree.child("branch"));
+  tree.child("bearings").put("name", std::vector<std::string>{"B1", "B,2"}, "");
+  tree.child("bearings").put("load", {1.5, 2}, "N", "");
+  const auto files = csv_tables(tree);
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(text(files, "branch"),
+            "parameter [rpm],stable,a.B1 [m],\"a.B,2 [m]\"\n3600,1,1e-06,0.1\n4000.5,0,nan,-0.3333333333333333\n");
+  EXPECT_EQ(text(files, "bearings"), "load [N],name\n1.5,B1\n2,\"B,2\"\n");
+}
+
+TEST(Csv, ASecondAxisIsNamedByTheDatasetOfItsLength) {
+  Group tree;
+  auto& g = tree.child("response");
+  g.put("speed", {1, 2, 3}, "rad/s", "");
+  g.put("node", std::vector<std::int64_t>{6, 120}, "");
+  g.put("amplitude", {3, 2}, {1, 2, 3, 4, 5, 6}, "m", "");
+  EXPECT_EQ(text(csv_tables(tree), "response"),
+            "speed [rad/s],amplitude.6 [m],amplitude.120 [m]\n1,1,2\n2,3,4\n3,5,6\n");
+}
+
+TEST(Csv, LeavesOutWhatIsNoTable) {
+  Group tree;
+  tree.child("odd").put("a", {1, 2}, "m", "");
+  tree.child("odd").put("b", {1, 2, 3}, "m", "");
+  tree.child("orbits").put("parameter", {1}, "rpm", "");
+  tree.child("orbits").put("x", {1, 2, 2}, {1, 2, 3, 4}, "m", "");
+  auto& seeds = tree.child("flips");
+  seeds.set("restart", 1);
+  seeds.child("1").put("mesh", {0, 1}, "1", "");
+  tree.child("films").child("B1").child("pad1").put("theta", {0, 1}, "rad", "");
+  tree.child("empty").put("x", std::vector<double>{}, "m", "");
+  const auto files = csv_tables(tree);
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(text(files, "films.B1.pad1"), "theta [rad]\n0\n1\n");
+  EXPECT_EQ(text(files, "empty"), "x [m]\n");
+}
