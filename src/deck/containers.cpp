@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "known.hpp"
+#include "name_of_value.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/load.hpp"
@@ -34,10 +35,10 @@ public:
   ListCodec(CodecPtr item, ListAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (node.kind != Node::Kind::list)
-      return r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
+      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
     if (!a_.resize(value, node.items.size()))
-      return r.problems.add(node.place,
-                            fmt::format("{} must have {} items, not {}", node.name(), a_.fixed, node.items.size()));
+      return r.problems.add(
+          node.place, fmt::format("{} must have {} items, not {}", name_of_value(node), a_.fixed, node.items.size()));
     for (std::size_t i = 0; i < node.items.size(); ++i) {
       Node item = node.items[i];
       if (item.key.empty()) item.key = node.key;
@@ -97,7 +98,7 @@ public:
       const Option& o = *row_.option(scalar_);
       o.codec->read(node, o.member(a_.at(value, 0)), r);
     } else {
-      r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
+      r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
     }
   }
   Node write(const void* value) const override {
@@ -137,7 +138,7 @@ private:
     const std::size_t before = r.problems.size();
     for (std::size_t i = 0; i < rows.items.size() && r.problems.size() == before; ++i)
       row_.read(rows.items[i], a_.at(value, i), r);
-    if (rows.items.empty()) r.problems.add(rows.place, fmt::format("{} has no rows", rows.name()));
+    if (rows.items.empty()) r.problems.add(rows.place, fmt::format("{} has no rows", name_of_value(rows)));
   }
   const Structure& row_;
   ListAccess a_;
@@ -156,7 +157,7 @@ public:
   MapCodec(CodecPtr item, MapAccess a) : item_(std::move(item)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (node.kind != Node::Kind::map)
-      return r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
+      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
     a_.clear(value);
     for (const Node& i : node.items) {
       if (!is_name(i.key))
@@ -264,7 +265,7 @@ public:
   ChoicesCodec(std::vector<ChoiceKind> k, ChoiceAccess a) : kinds_(std::move(k)), a_(std::move(a)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     if (node.kind != Node::Kind::list)
-      return r.problems.add(node.place, fmt::format("{} must be {}", node.name(), type()));
+      return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
     a_.clear(value);
     std::vector<std::string> names;
     for (const ChoiceKind& k : kinds_) names.push_back(k.name);

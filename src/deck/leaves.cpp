@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "known.hpp"
+#include "name_of_value.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 
@@ -18,9 +19,9 @@ using core::InputError;
 bool is_scalar(const Node& node, const std::string& wanted, Reading& r) {
   if (node.kind == Node::Kind::scalar) return true;
   if (node.kind == Node::Kind::none)
-    r.problems.add(node.place, fmt::format("{} has no value: expected {}", node.name(), wanted));
+    r.problems.add(node.place, fmt::format("{} has no value: expected {}", name_of_value(node), wanted));
   else
-    r.problems.add(node.place, fmt::format("{} is a {}: expected {}", node.name(),
+    r.problems.add(node.place, fmt::format("{} is a {}: expected {}", name_of_value(node),
                                            node.kind == Node::Kind::list ? "list" : "map", wanted));
   return false;
 }
@@ -43,7 +44,7 @@ bool read_real(const Node& node, const Spec& spec, Reading& r, double& value, st
     if (!spec.check.holds(si)) {
       const bool scaled =
           spec.unit != "1" && spec.unit != "*" && spec.check.text() != "positive" && spec.check.text() != "at least 0";
-      r.problems.add(node.place, fmt::format("{} must be {}{}, not {}", node.name(), spec.check.text(),
+      r.problems.add(node.place, fmt::format("{} must be {}{}, not {}", name_of_value(node), spec.check.text(),
                                              scaled ? " " + spec.unit : "", node.text));
       return false;
     }
@@ -51,7 +52,7 @@ bool read_real(const Node& node, const Spec& spec, Reading& r, double& value, st
     if (unit) *unit = split.unit;
     return true;
   } catch (const InputError& e) {
-    r.problems.add(node.place, fmt::format("{}: {}", node.name(), e.what()));
+    r.problems.add(node.place, fmt::format("{}: {}", name_of_value(node), e.what()));
     return false;
   }
 }
@@ -125,7 +126,7 @@ public:
   explicit RangeCodec(Spec s) : spec_(std::move(s)) {}
   void read(const Node& node, void* value, Reading& r) const override {
     auto& range = *static_cast<Range*>(value);
-    const std::string wanted = fmt::format("{} is written {{from: ..., to: ...}}", node.name());
+    const std::string wanted = fmt::format("{} is written {{from: ..., to: ...}}", name_of_value(node));
     if (node.kind != Node::Kind::map) return r.problems.add(node.place, wanted);
     for (const Node& i : node.items)
       if (i.key != "from" && i.key != "to")
@@ -138,7 +139,7 @@ public:
     if (!same_kind(range.unit, to_unit))
       return r.problems.add(to->place, fmt::format("'{}' and '{}' are not of the same kind", from->text, to->text));
     if (range.unit.empty()) range.unit = "1";
-    if (range.from == range.to) r.problems.add(to->place, fmt::format("{} is empty", node.name()));
+    if (range.from == range.to) r.problems.add(to->place, fmt::format("{} is empty", name_of_value(node)));
   }
   Node write(const void* value) const override {
     const auto& range = *static_cast<const Range*>(value);
@@ -184,9 +185,11 @@ public:
     const char* last = first + node.text.size();
     const auto [end, code] = std::from_chars(first, last, v);
     if (code != std::errc() || end != last)
-      return r.problems.add(node.place, fmt::format("{} must be a whole number, not {}", node.name(), node.text));
+      return r.problems.add(node.place,
+                            fmt::format("{} must be a whole number, not {}", name_of_value(node), node.text));
     if (!spec_.check.holds(v))
-      return r.problems.add(node.place, fmt::format("{} must be {}, not {}", node.name(), spec_.check.text(), v));
+      return r.problems.add(node.place,
+                            fmt::format("{} must be {}, not {}", name_of_value(node), spec_.check.text(), v));
     *static_cast<int*>(value) = v;
   }
   Node write(const void* value) const override {
@@ -210,7 +213,8 @@ public:
   void read(const Node& node, void* value, Reading& r) const override {
     if (!is_scalar(node, "true or false", r)) return;
     if (node.text != "true" && node.text != "false")
-      return r.problems.add(node.place, fmt::format("{} must be true or false, not {}", node.name(), node.text));
+      return r.problems.add(node.place,
+                            fmt::format("{} must be true or false, not {}", name_of_value(node), node.text));
     *static_cast<bool*>(value) = node.text == "true";
   }
   Node write(const void* value) const override {
@@ -243,7 +247,7 @@ public:
       valid.push_back(c.name);
     }
     const std::string hint = did_you_mean(node.text, valid);
-    r.problems.add(node.place, fmt::format("{} cannot be '{}'{}", node.name(), node.text,
+    r.problems.add(node.place, fmt::format("{} cannot be '{}'{}", name_of_value(node), node.text,
                                            hint.empty() ? fmt::format("; {}", type()) : hint));
   }
   Node write(const void* value) const override { return Node::scalar(choices_[get_(value)].name, true); }

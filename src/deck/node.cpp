@@ -23,10 +23,6 @@ std::string Place::directory() const {
   return parent.empty() ? "." : parent;
 }
 
-std::string Node::name() const {
-  return key.empty() ? "this value" : fmt::format("'{}'", key);
-}
-
 Node Node::scalar(std::string text, bool quoted) {
   Node n;
   n.kind = Kind::scalar;

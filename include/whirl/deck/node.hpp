@@ -37,8 +37,6 @@ struct Node {
   [[nodiscard]] static Node list();
   [[nodiscard]] static Node map();
 
-  /// 'key' in quotes, for messages; `this value` where it has none.
-  [[nodiscard]] std::string name() const;
   /// Entry `name` of a map, null if there is none.
   [[nodiscard]] const Node* find(std::string_view name) const;
   [[nodiscard]] Node* find(std::string_view name);
