@@ -1,9 +1,13 @@
-"""Draws every picture that a results folder has data for."""
+"""Draws every picture that a results folder has data for:  scripts/plot DIR [--formats png,svg]"""
+import argparse
+import pathlib
 import sys
 
-from . import bearing_map, bifurcation, campbell, eccentricity, film, locus, motion, multipliers, orbits, response, run_up, shapes
-from .data import open_results, results_directory
-from .style import use_style
+import whirl
+
+from . import (bearing_map, bifurcation, campbell, eccentricity, film, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
+               style)
+from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
 PICTURES = {
@@ -16,29 +20,49 @@ PICTURES = {
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
     "motion": [motion.draw],
 }
+TOGETHER = [machine.draw, bifurcation.draw_together, eccentricity.draw, bearing_map.draw_together, locus.draw_together, run_up.draw_together]
+
+
+def drawn(results, command="plot"):
+    """Files of all pictures of a run, each as it is made; ends with the number of pictures that failed."""
+    failed = 0
+    jobs = [(s.name, picture, s) for s in results.studies for picture in PICTURES.get(s.kind, [])]
+    jobs += [(results.title, picture, results) for picture in TOGETHER]
+    for name, picture, subject in jobs:
+        try:
+            for file in picture(subject):
+                yield file
+        except whirl.Error:
+            raise
+        except OSError:  # the disk, which the next picture needs as well
+            raise
+        except Exception as error:  # one picture that fails must not cost the others
+            what = f"{picture.__module__.split('.')[-1]}.{picture.__name__}".removeprefix("__main__.")
+            print(f"{command}: {name}: {what} cannot be drawn: {type(error).__name__}: {error}", file=sys.stderr)
+            failed += 1
+    return failed
+
+
+def formats(text):
+    kinds = tuple(dict.fromkeys(text.split(",")))
+    if not set(kinds) <= {"png", "svg", "pdf"}:
+        raise argparse.ArgumentTypeError(f"'{text}': choose from png, svg, pdf, with commas between")
+    return kinds
 
 
 def main(argv):
-    directory = results_directory("plot", argv)
-    if isinstance(directory, int):
-        return directory
-    use_style()
-    failed = 0
-    with open_results(directory) as results:
-        for study in results.studies:
-            for picture in PICTURES.get(study.kind, []):
-                try:
-                    files = picture(study)
-                except Exception as error:  # one picture that fails must not cost the others
-                    print(f"plot: {study.name}: {picture.__module__.split('.')[-1]}: {error!r}", file=sys.stderr)
-                    failed += 1
-                else:
-                    for file in files:
-                        print(file)
-        for file in [*bifurcation.draw_together(results), *eccentricity.draw(results), *bearing_map.draw_together(results),
-                     *locus.draw_together(results), *run_up.draw_together(results)]:
-            print(file)
-    return 1 if failed else 0
+    parser = argparse.ArgumentParser(prog="scripts/plot", description="Draws every picture that a results folder has data for.")
+    parser.add_argument("directory", metavar="DIR", type=pathlib.Path, help="folder of a run, with its results.h5")
+    parser.add_argument("--formats", type=formats, default=("png", "svg"), help="of the pictures: png,svg (default), pdf")
+    words = parser.parse_args(argv)
+    style.use_style(words.formats)
+    with said_in_a_sentence("plot"), Drawn(words.directory) as results:
+        files = drawn(results)
+        while True:
+            try:
+                print(next(files), flush=True)
+            except StopIteration as end:
+                return 1 if end.value else 0
 
 
 if __name__ == "__main__":

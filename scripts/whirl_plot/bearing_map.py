@@ -55,7 +55,7 @@ def draw_impedance(study):
     handles = [Line2D([], [], color=COLOURS[0], label=r"$|W|$"),
                Line2D([], [], color=COLOURS[1], marker=r"$\rightarrow$", linestyle="none", label=r"direction of the force $F^* = -v_s^*\,W$")]
     note = rf"$F^* = (c/R)^2 F/(\mu LD)$; computed up to $\varepsilon$ = {e[-1]:.3g}; the lower half is its mirror image"
-    return [save(figure, study, "impedance", note, handles)]
+    return save(figure, study, "impedance", note, handles)
 
 
 def maps_of(results):
@@ -156,8 +156,8 @@ def draw_pressure(whole, studies):
             axis.set_xticks(range(0, 361, 60))
         axes[2 * row].axhline(0, color=INK, linewidth=0.7)
         axes[2 * row + 1].set_ylim(bottom=0)
-    return [save(figure, whole, "map-pressure", "in the mid-plane; pressure below zero stays in the film equation of a liner and is cut off in the force",
-                 legend_of(studies))]
+    return save(figure, whole, "map-pressure", "in the mid-plane; pressure below zero stays in the film equation of a liner and is cut off in the force",
+                legend_of(studies))
 
 
 def draw_frequencies(study):
@@ -180,7 +180,7 @@ def draw_frequencies(study):
             if letter == "b":
                 axis.set_xlabel(r"frequency $\omega/\Omega$")
     handles = [Line2D([], [], color=c, marker=".", label=f"S = {load[i]:.3g}") for i, c in zip(picks, COLOURS)]
-    return [save(figure, study, "frequencies", SCALE, handles)]
+    return save(figure, study, "frequencies", SCALE, handles)
 
 
 def draw_together(results):
@@ -191,6 +191,6 @@ def draw_together(results):
     # Closed forms carry any load near the wall: what is shown ends at S = 10.
     largest = min(10.0, max(s.get("locus/sommerfeld").max() for s in studies))
     whole = results.whole("bearings by themselves")
-    return [draw_locus(whole, studies, largest), draw_entries(whole, studies, "k", "stiffness", "stiffness", largest),
-            draw_entries(whole, studies, "b", "damping", "damping", largest), draw_stability(whole, studies, largest),
+    return [*draw_locus(whole, studies, largest), *draw_entries(whole, studies, "k", "stiffness", "stiffness", largest),
+            *draw_entries(whole, studies, "b", "damping", "damping", largest), *draw_stability(whole, studies, largest),
             *draw_pressure(whole, studies)]

@@ -1,38 +1,115 @@
 """Bifurcation diagrams: equilibria and cycles over a parameter, each bearing, stable solid and unstable dashed."""
+import re
+
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import (BAD, COLOURS, INK, branch_legend, draw_branch, grid_of, mark, parameter_label, place_on_branch, save)
+from .curves import Branch
+from .style import BAD, COLOURS, DASHED, INK, X, Y, branch_legend, grid_of, mark, mark_end, parameter_label, save
+
+RANGE_ENDS = ("completed", "", "end of the range")
 
 
-def events_of(study):
-    kinds = study.get("bifurcations/type")
-    if kinds is None or not len(kinds):
-        return []
-    return list(zip(kinds, np.atleast_1d(study.get("bifurcations/parameter"))))
+class Followed:
+    """The branch of a study: its curves, where its bifurcations lie on it, and why it ends.
+
+    A branch that left from a bifurcation begins there, and one that ran into a bifurcation ends there: those cycles stand first
+    and last in `parameter`, `stable` and the columns that are known of them; `points` are without."""
+
+    def __init__(self, study):
+        self.study = study
+        self.parameter = study.get("branch/parameter")
+        self.points = len(self.parameter)
+        unstable, stable = study.get("branch/unstable_count"), study.get("branch/stable")
+        if stable is None:
+            stable = unstable == 0 if unstable is not None else np.ones(len(self.parameter))
+        self.stable = np.asarray(stable) > 0.5
+        unstable, step = unstable if unstable is not None else (~self.stable).astype(int), study.get("branch/step")
+        self.bare = self.curve = Branch(self.parameter, step, unstable)
+        self.bare_parameter, self.bare_stable = self.parameter, self.stable
+        self.born, self.closed = (study.has(f"{end}/parameter") and self.points > 0 for end in ("birth", "closing"))
+        step = np.abs(np.diff(self.parameter, prepend=self.parameter[0])) if step is None else step
+        if self.born:
+            self.parameter = np.concatenate([study.get("birth/parameter"), self.parameter])
+            self.stable = np.concatenate([self.stable[:1], self.stable])
+            step, unstable = np.concatenate([[0.0], step]), np.concatenate([unstable[:1], unstable])
+        if self.closed:
+            self.parameter = np.concatenate([self.parameter, study.get("closing/parameter")])
+            self.stable = np.concatenate([self.stable, self.stable[-1:]])
+            step, unstable = np.concatenate([step, [abs(self.parameter[-1] - self.parameter[-2])]]), np.concatenate([unstable, unstable[-1:]])
+        if self.born or self.closed:
+            self.curve = Branch(self.parameter, step, unstable)
+        kinds = study.get("bifurcations/type")
+        values = [] if kinds is None or not len(kinds) else np.atleast_1d(study.get("bifurcations/parameter"))
+        self.events = [(kind, value, self._place(kind, value)) for kind, value in zip(kinds if len(values) else [], values)]
+
+    def _place(self, kind, value):
+        # Self-excited cycles begin at their Hopf point, which the branch may pass again.
+        if kind == "hopf" and self.study.kind == "cycle_branch":
+            return (0, 0.0) if self.born else None
+        return self.curve.place(kind, value)
+
+    @property
+    def kinds(self):
+        return [kind for kind, _, _ in self.events]
+
+    @property
+    def ends(self):
+        """Why the branch ends, in a list; empty if it was followed to the end of its range."""
+        status = self.study.attribute("end", "") or self.study.status
+        if status in RANGE_ENDS or self.closed:
+            return []
+        reason = re.sub(r"^ended at [^:]*: ", "", status)
+        return [reason if len(reason) < 70 else reason[:67] + "..."]
+
+    def column(self, name):
+        """A column of the table `branch` as [point][bearing], with the cycles at its ends if both are known that there are."""
+        values = self.study.get(f"branch/{name}").reshape(self.points, -1)
+        ends = [end for end, there in (("birth", self.born), ("closing", self.closed)) if there]
+        if not all(self.study.has(f"{end}/{name}") for end in ends):
+            return values
+        outer = {end: self.study.get(f"{end}/{name}").reshape(1, -1) for end in ends}
+        none = values[:0]
+        return np.concatenate([outer.get("birth", none), values, outer.get("closing", none)])
+
+    def curve_of(self, values):
+        """The branch with or without the cycles at its ends, as the values are."""
+        return self.curve if len(values) == len(self.parameter) else self.bare
+
+    def along(self, values):
+        """Parameter and stability of each of the values."""
+        whole = len(values) == len(self.parameter)
+        return (self.parameter, self.stable) if whole else (self.bare_parameter, self.bare_stable)
+
+    def places_on(self, curve):
+        """(kind, value, place) of the bifurcations on that one."""
+        if curve is self.curve:
+            return self.events
+        first, last = int(self.born), self.points - 2 + int(self.born)
+        return [(k, v, (p[0] - first, p[1]) if p and first <= p[0] <= last else None) for k, v, p in self.events]
+
+    def draw(self, axis, values, colour, scale=1.0, linewidth=1.6, across=1.0):
+        """One curve over the parameter (times `across`), solid where stable."""
+        values = np.asarray(values, float) * scale
+        curve = self.curve_of(values)
+        for x, y, solid in curve.stretches(values, self.along(values)[1], [p for _, _, p in self.places_on(curve)]):
+            axis.plot(x * across, y, color=colour, linestyle="-" if solid else DASHED, linewidth=linewidth if solid else 0.8 * linewidth)
+        if len(values) == 1:
+            axis.plot(curve.parameter * across, values, ".", color=colour)
+
+    def mark(self, axis, curves, scale=1.0, size=6, across=1.0):
+        """Bifurcations and the early end of the branch, on each of the curves."""
+        for values in curves:
+            curve = self.curve_of(values)
+            for kind, value, place in self.places_on(curve):
+                if place is not None:
+                    mark(axis, kind, value * across, curve.at(values, place) * scale, size)
+            if self.ends:
+                mark_end(axis, curve.parameter[-1] * across, values[-1] * scale, size)
 
 
-def branch_of(study):
-    parameter = study.get("branch/parameter")
-    unstable = study.get("branch/unstable_count")
-    stable = study.get("branch/stable")
-    if stable is None:
-        stable = unstable == 0 if unstable is not None else np.ones(len(parameter))
-    return parameter, np.asarray(stable) > 0.5, unstable
-
-
-def heights(study, curves, kind, value):
-    """Of each curve at a bifurcation. Self-excited cycles begin at their Hopf point, which the branch may pass again."""
-    parameter, _, unstable = branch_of(study)
-    if kind == "hopf" and study.kind == "cycle_branch":
-        return [c[0] for c in curves]
-    return place_on_branch(parameter, curves, unstable, kind, value)
-
-
-def mark_events(axis, study, curves, scale, size=6):
-    for kind, value in events_of(study):
-        for height in heights(study, [c * scale for c in curves], kind, value):
-            mark(axis, kind, value, height, size=size)
+def legend(branches, more=()):
+    return branch_legend([k for b in branches for k in b.kinds], more, [e for b in branches for e in b.ends])
 
 
 def distinct(*tables):
@@ -42,91 +119,98 @@ def distinct(*tables):
     return [b for b in range(tables[0].shape[1]) if not any(alike(b, c) for c in range(b))]
 
 
+def finish(axis, title, ylabel, xlabel, margin=0.12):
+    axis.set_title(title)
+    axis.set_ylabel(ylabel)
+    axis.set_xlabel(xlabel)
+    axis.margins(y=margin)
+
+
 def draw_equilibria(study):
     if not study.has("branch/parameter", "branch/y"):
         return []
-    parameter, stable, unstable = branch_of(study)
-    x, y = (study.get(f"branch/{k}").reshape(len(parameter), -1) for k in "xy")
-    names = study.bearings(x.shape[1])
-    growth = study.get("branch/leading_real")
-    shown = distinct(x, y)
+    branch = Followed(study)
+    x, y = branch.column("x"), branch.column("y")
+    names, growth, shown = study.bearings(x.shape[1]), study.get("branch/leading_real"), distinct(x, y)
     figure, axes, _ = grid_of(len(shown) + (growth is not None))
     scale, unit = study.measure(np.concatenate([x, y]))
     for axis, b in zip(axes, shown):
-        draw_branch(axis, parameter, y[:, b] * scale, stable, COLOURS[0])
-        draw_branch(axis, parameter, x[:, b] * scale, stable, COLOURS[1])
-        mark_events(axis, study, [y[:, b], x[:, b]], scale)
-        axis.set_title(names[b])
-        axis.set_ylabel(f"position [{unit}]")
-        axis.set_xlabel(parameter_label(study))
-        axis.margins(y=0.12)
+        branch.draw(axis, y[:, b], Y, scale)
+        branch.draw(axis, x[:, b], X, scale)
+        branch.mark(axis, [y[:, b], x[:, b]], scale)
+        finish(axis, names[b], f"position [{unit}]", parameter_label(study))
     if growth is not None:
         axis = axes[-1]
-        axis.axhline(0, color=INK, linewidth=0.9)
-        draw_branch(axis, parameter, growth, stable, BAD)
-        mark_events(axis, study, [growth], 1)
-        axis.set_title("least stable eigenvalue")
-        axis.set_ylabel("real part [1/s]")
-        axis.set_xlabel(parameter_label(study))
-        axis.margins(y=0.12)
-    directions = [Line2D([], [], color=COLOURS[0], label="y, vertical"), Line2D([], [], color=COLOURS[1], label="x, horizontal")]
-    return [save(figure, study, "equilibria", study.shown,
-                 branch_legend([k for k, _ in events_of(study)], directions))]
+        axis.axhline(0, color=BAD, linewidth=0.9)
+        branch.draw(axis, growth, INK)
+        branch.mark(axis, [growth])
+        finish(axis, "least stable eigenvalue", "real part [1/s]", parameter_label(study))
+    directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")]
+    return save(figure, study, "equilibria", study.shown, legend([branch], directions))
 
 
-def draw_cycle_panel(axis, study, direction, b, scale, colour, size=6):
-    parameter, stable, _ = branch_of(study)
-    high, low = (study.get(f"branch/{direction}_{k}").reshape(len(parameter), -1)[:, b] for k in ("max", "min"))
-    axis.fill_between(parameter, low * scale, high * scale, color=colour, alpha=0.06, linewidth=0)
-    draw_branch(axis, parameter, high * scale, stable, colour)
-    draw_branch(axis, parameter, low * scale, stable, colour)
-    mark_events(axis, study, [high, low], scale, size)
+def draw_extremes(axis, branch, direction, b, scale, colour, size=6, linewidth=1.6):
+    high, low = (branch.column(f"{direction}_{k}")[:, b] for k in ("max", "min"))
+    branch.draw(axis, high, colour, scale, linewidth)
+    branch.draw(axis, low, colour, scale, linewidth)
+    branch.mark(axis, [high, low], scale, size)
 
 
 def draw_cycles(study):
     if not study.has("branch/parameter", "branch/y_max"):
         return []
-    parameter, _, _ = branch_of(study)
-    tables = [study.get(f"branch/{d}_{k}").reshape(len(parameter), -1) for d in "xy" for k in ("max", "min")
-              if study.has(f"branch/{d}_{k}")]
+    branch = Followed(study)
+    tables = [branch.column(f"{d}_{k}") for d in "xy" for k in ("max", "min") if study.has(f"branch/{d}_{k}")]
     shown, names = distinct(*tables), study.bearings(tables[0].shape[1])
     files = []
     for direction, words in (("y", "vertical"), ("x", "horizontal")):
         if not study.has(f"branch/{direction}_max"):
             continue
         figure, axes, _ = grid_of(len(shown))
-        scale, unit = study.measure(np.concatenate([study.get(f"branch/{direction}_max"), study.get(f"branch/{direction}_min")]))
+        scale, unit = study.measure(np.concatenate([branch.column(f"{direction}_max"), branch.column(f"{direction}_min")]))
         for axis, b in zip(axes, shown):
-            draw_cycle_panel(axis, study, direction, b, scale, COLOURS[0] if direction == "y" else COLOURS[1])
-            axis.set_title(names[b])
-            axis.set_ylabel(f"{direction}, max and min [{unit}]")
-            axis.set_xlabel(parameter_label(study))
-            axis.margins(y=0.12)
+            draw_extremes(axis, branch, direction, b, scale, Y if direction == "y" else X)
+            finish(axis, names[b], f"{direction}, max and min [{unit}]", parameter_label(study))
         note = f"largest and smallest {direction} ({words}) over one cycle: {study.shown}"
         unbalance = study.attribute("unbalance")
-        files.append(save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note,
-                          branch_legend([k for k, _ in events_of(study)])))
-    return files
+        files += save(figure, study, f"cycles-{words}", f"{note}; unbalance {unbalance}" if unbalance else note, legend([branch]))
+    return files + draw_nodes(study, branch)
+
+
+def draw_nodes(study, branch):
+    """Amplitudes of the shaft at the nodes that the deck asked for, 0-peak."""
+    if not study.has("nodes/amplitude", "nodes/node"):
+        return []
+    nodes = np.atleast_1d(study.get("nodes/node"))
+    tables = {k: study.get(f"nodes/{k}").reshape(branch.points, -1) for k in ("amplitude", "x", "y")}
+    scale, unit = study.measure(tables["amplitude"])
+    figure, axes, _ = grid_of(len(nodes))
+    for k, (axis, node) in enumerate(zip(axes, nodes)):
+        for name, colour in (("amplitude", INK), ("x", X), ("y", Y)):
+            branch.draw(axis, tables[name][:, k], colour, scale)
+        branch.mark(axis, [tables["amplitude"][:, k]], scale)
+        finish(axis, f"node {node}, shaft", f"amplitude, 0-peak [{unit}]", parameter_label(study))
+        axis.set_ylim(bottom=0)
+    handles = [Line2D([], [], color=c, label=w) for c, w in ((INK, "largest distance from the mean"), (Y, "y, vertical"), (X, "x, horizontal"))]
+    return save(figure, study, "nodes", "x, y: half of the travel of the shaft in space", legend([branch], handles))
 
 
 def draw_frequency(study):
     """Of self-excited cycles over the running speed: how far from half the speed the whirl is."""
     if not study.has("branch/parameter", "branch/period") or study.attribute("unbalance", "") or study.attribute("parameter") != "speed":
         return []
-    parameter, stable, _ = branch_of(study)
     to_si = {"rpm": np.pi / 30, "Hz": 2 * np.pi, "rad/s": 1}.get(study.attribute("parameter_unit"))
     if to_si is None:
         return []
-    ratio = 2 * np.pi / (study.get("branch/period") * parameter * to_si)
+    branch = Followed(study)
+    period = branch.column("period")[:, 0]
+    ratio = 2 * np.pi / (period * branch.along(period)[0] * to_si)
     figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
-    draw_branch(axis, parameter, ratio, stable, COLOURS[0])
-    mark_events(axis, study, [ratio], 1)
+    branch.draw(axis, ratio, INK)
+    branch.mark(axis, [ratio])
     axis.axhline(0.5, color=INK, linewidth=0.8, linestyle=":")
-    axis.set_title("whirl frequency")
-    axis.set_ylabel("whirl frequency / running speed")
-    axis.set_xlabel(parameter_label(study))
-    axis.margins(y=0.22)
-    return [save(figure, study, "frequency", "self-excited cycles; dotted: half the running speed", branch_legend([k for k, _ in events_of(study)]))]
+    finish(axis, "whirl frequency", "whirl frequency / running speed", parameter_label(study), 0.22)
+    return save(figure, study, "frequency", "self-excited cycles; dotted: half the running speed", legend([branch]))
 
 
 def draw_together(results):
@@ -136,29 +220,26 @@ def draw_together(results):
                or (s.kind == "equilibrium_branch" and s.has("branch/parameter", "branch/y"))]
     label = parameter_label(studies[0]) if studies else ""
     studies = [s for s in studies if parameter_label(s) == label]
-    if len(studies) < 2 or all(s.kind == "equilibrium_branch" for s in studies):
+    if not studies or all(s.kind == "equilibrium_branch" for s in studies):
         return []
-    field = {"cycle_branch": "branch/y_max", "equilibrium_branch": "branch/y"}
-    tables = [s.get(field[s.kind]).reshape(len(s.get("branch/parameter")), -1) for s in studies]
+    branches = [Followed(s) for s in studies]
+    tables = [b.column("y_max" if b.study.kind == "cycle_branch" else "y") for b in branches]
     count = min(t.shape[1] for t in tables)
     names, shown = studies[0].bearings(count), distinct(*(t[:, :count] for t in tables))
     scale, unit = studies[0].measure(np.concatenate([t[:, :count].ravel() for t in tables]))
     figure, axes, _ = grid_of(len(shown))
-    handles = []
-    for s, study in enumerate(studies):
-        colour = INK if study.kind == "equilibrium_branch" else COLOURS[s % len(COLOURS)]
-        handles.append(Line2D([], [], color=colour, label=study.name))
+    handles, next_colour = [], iter(COLOURS * 4)
+    for branch, table in zip(branches, tables):
+        equilibria = branch.study.kind == "equilibrium_branch"
+        colour = INK if equilibria else next(next_colour)
+        handles.append(Line2D([], [], color=colour, label=branch.study.name))
         for axis, b in zip(axes, shown):
-            if study.kind == "equilibrium_branch":
-                parameter, stable, _ = branch_of(study)
-                draw_branch(axis, parameter, tables[s][:, b] * scale, stable, colour, linewidth=1.3)
-                mark_events(axis, study, [tables[s][:, b]], scale, 5)
+            if equilibria:
+                branch.draw(axis, table[:, b], colour, scale, 1.3)
+                branch.mark(axis, [table[:, b]], scale, 5)
             else:
-                draw_cycle_panel(axis, study, "y", b, scale, colour, 5)
+                draw_extremes(axis, branch, "y", b, scale, colour, 5)
     for axis, b in zip(axes, shown):
-        axis.set_title(names[b])
-        axis.set_ylabel(f"y, max and min [{unit}]")
-        axis.set_xlabel(label)
-        axis.margins(y=0.12)
-    return [save(figure, results.whole("all branches"), "bifurcations", f"y (vertical): {studies[0].shown}",
-                 branch_legend([k for s in studies for k, _ in events_of(s)], handles))]
+        finish(axis, names[b], f"y, max and min [{unit}]", label)
+    return save(figure, results.whole("all branches" if len(studies) > 1 else studies[0].name), "bifurcations",
+                f"y (vertical): {studies[0].shown}", legend(branches, handles))

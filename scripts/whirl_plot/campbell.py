@@ -3,10 +3,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import BAD, GOOD, GREY, INK, ROTATION, WARN, levels, runs, save, speed_axis
+from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, WARN, levels, runs, save, speed_axis
 
-LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6))}
+LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4))}
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
+OVERDAMPED = 3.0  # log. decrement of modes that lose 95 % of their amplitude in a turn
+BOX = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6}
 
 
 def colour_of(decrement):
@@ -14,6 +16,7 @@ def colour_of(decrement):
 
 
 def modes_of(study):
+    """(number, speed, frequency, decrement, whirl) of each mode over the speeds at which it is there, ascending."""
     rows = {k: study.get(f"spectrum/{k}") for k in ("speed", "mode", "frequency", "log_decrement", "whirl")}
     for mode in np.unique(rows["mode"]):
         pick = np.nonzero(rows["mode"] == mode)[0]
@@ -22,15 +25,26 @@ def modes_of(study):
         yield int(mode), rows["speed"][pick], rows["frequency"][pick], rows["log_decrement"][pick], whirl
 
 
+def stretches(speed, every):
+    """(start, stop) of the runs of neighbouring speeds: nothing is drawn over speeds at which a mode was not found."""
+    index = np.searchsorted(every, speed)
+    return runs(list(index - np.arange(len(index))))
+
+
 def draw_lines(axis, x, y, decrement, whirl):
     """One polyline per stretch of one whirl and one class of damping, so that dashes run through."""
+    if len(x) == 1:
+        axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
+        return
     worst = np.minimum(decrement[:-1], decrement[1:])
-    for start, stop in runs(list(zip(whirl[:-1], map(colour_of, worst)))):
-        axis.plot(x[start:stop + 1], y[start:stop + 1], color=colour_of(worst[start]), linestyle=LINES.get(whirl[start], "-"))
+    for start, stop in runs(list(zip(whirl[:-1], map(colour_of, worst), worst > OVERDAMPED))):
+        heavy = worst[start] > OVERDAMPED
+        axis.plot(x[start:stop + 1], y[start:stop + 1], color=LIGHT if heavy else colour_of(worst[start]),
+                  linewidth=1.0 if heavy else 1.6, linestyle=LINES.get(whirl[start], "-"), zorder=1.5 if heavy else 2)
 
 
 def label_modes(axis, x, ends):
-    """Numbers of the modes at the right end, moved apart where they would overlap."""
+    """Numbers of the modes outside the right end, moved apart where they would overlap; those beyond the axis have none."""
     low, high = axis.get_ylim()
     gap, last = 0.035 * (high - low) * (2.2 if high < 2 else 1), -np.inf
     for mode, y in sorted(ends, key=lambda end: end[1]):
@@ -44,34 +58,51 @@ def draw(study):
     if not study.has("spectrum/speed") or len(np.unique(study.get("spectrum/speed"))) < 2:
         return []
     to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(8.2, 7.6), sharex=True, height_ratios=[2.2, 1])
+    figure, (top, bottom) = plt.subplots(2, 1, figsize=(8.6, 8.2), sharex=True, height_ratios=[2.2, 1])
     modes = list(modes_of(study))
-    for mode, speed, frequency, decrement, whirl in modes:
-        x, y = speed * to_speed, frequency * to_frequency
-        draw_lines(top, x, y, decrement, whirl)
-        draw_lines(bottom, x, decrement, decrement, whirl)
-    all_speed = np.concatenate([m[1] for m in modes])
+    every = np.unique(study.get("spectrum/speed"))
+    for _, speed, frequency, decrement, whirl in modes:
+        for a, b in stretches(speed, every):
+            x = speed[a:b] * to_speed
+            draw_lines(top, x, frequency[a:b] * to_frequency, decrement[a:b], whirl[a:b])
+            draw_lines(bottom, x, decrement[a:b], decrement[a:b], whirl[a:b])
     all_frequency = np.concatenate([m[2] for m in modes])
-    ends = np.array([all_speed.min(), all_speed.max()])
-    top.plot(ends * to_speed, ends * to_frequency, color=INK, linewidth=1.0)
+    ends = np.array([every[0], every[-1]])
     limit = min(all_frequency.max() * 1.06, 3 * ends[1])
-    side = ends[1] if ends[1] < 0.93 * limit else 0.9 * limit
-    top.annotate("1\u00d7", (side * to_speed, side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
-                 fontsize=9, ha="right", va="bottom", bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6})
-    critical = np.atleast_1d(study.get("critical/speed", np.array([])))
-    for speed, level in zip(critical, levels(critical, ends[1] - ends[0], 0.03)):
+    for times in (1, 2):
+        top.plot(ends * to_speed, times * ends * to_frequency, color=INK, linewidth=1.0 if times == 1 else 0.7)
+        side = ends[1] if times * ends[1] < 0.93 * limit else 0.9 * limit / times
+        top.annotate(f"{times}\u00d7", (side * to_speed, times * side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
+                     fontsize=9, ha="right", va="bottom", bbox=BOX)
+    crossed = np.atleast_1d(study.get("critical/speed", np.array([])))
+    damping = study.get("critical/log_decrement")
+    # By API 684 an amplification factor pi/delta below 2.5 is no critical speed.
+    heavy = np.zeros(len(crossed), bool) if damping is None else np.pi / np.maximum(np.atleast_1d(damping), 1e-9) < 2.5
+    for speed in crossed[heavy]:
+        top.plot(speed * to_speed, speed * to_frequency, "o", markersize=4, markerfacecolor="none", color=GREY, zorder=5)
+    critical = crossed[~heavy]
+    for speed in critical:
         top.plot(speed * to_speed, speed * to_frequency, "o", markersize=7, markerfacecolor="none", color=INK, zorder=5)
-        top.annotate(f"{speed * to_speed:.0f}", (speed * to_speed, speed * to_frequency),
-                     xytext=(7 + 24 * level, -4), textcoords="offset points", ha="left", va="top", fontsize=8, color=INK,
-                     bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.6})
+    # Their speeds above the axes, where they cover nothing.
+    for speed, level in zip(critical, levels(critical, ends[1] - ends[0], 0.045)):
+        top.annotate(f"{speed * to_speed:.0f}", (speed * to_speed, 1.0), xycoords=top.get_xaxis_transform(), xytext=(0, 2 + 9 * level),
+                     textcoords="offset points", ha="center", va="bottom", fontsize=7.5, color=INK)
+        top.axvline(speed * to_speed, ymax=speed / limit, color=INK, linewidth=0.4, linestyle=":")
     top.set_xlim(ends[0] * to_speed, ends[1] * to_speed)
     top.set_ylim(0, limit * to_frequency)
     top.set_ylabel(f"natural frequency [{unit}]")
-    top.set_title("Campbell diagram")
+    top.set_title("Campbell diagram, critical speeds above" if len(critical) else "Campbell diagram",
+                  pad=6 + (12 + 9 * max(levels(critical, ends[1] - ends[0], 0.045), default=0)) * bool(len(critical)))
     handles = [Line2D([], [], color=GOOD, label=f"log. decrement \u2265 {LOW_DAMPING}"),
                Line2D([], [], color=WARN, label=f"0 to {LOW_DAMPING}"), Line2D([], [], color=BAD, label="unstable")]
-    handles += [Line2D([], [], color=GREY, linestyle=s, label=w) for w, s in LINES.items()]
-    handles += [Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", label="critical speed")]
+    if any(np.any(m[3] > OVERDAMPED) for m in modes):
+        handles.append(Line2D([], [], color=LIGHT, label=f"above {OVERDAMPED:.0f}"))
+    occurring = {w for m in modes for w in m[4]}
+    handles += [Line2D([], [], color=GREY, linestyle=s, label=w) for w, s in LINES.items() if w in occurring]
+    if len(critical):
+        handles += [Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", label="critical speed")]
+    if heavy.any():
+        handles += [Line2D([], [], color=GREY, marker="o", markersize=4, markerfacecolor="none", linestyle="none", label="crossed, but AF < 2.5")]
 
     decrements = np.concatenate([m[3] for m in modes])
     inside = decrements[np.isfinite(decrements)]
@@ -81,7 +112,8 @@ def draw(study):
     bottom.set_ylim(low, high)
     bottom.set_ylabel("logarithmic decrement")
     bottom.set_xlabel(speed_label)
-    bottom.set_title("Damping (below zero: unstable)")
-    label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1]])
+    hidden = sum(1 for m in modes if np.all(m[3] > high))
+    bottom.set_title("Damping, unstable below zero" + (f"; {hidden} modes are damped more than shown" if hidden else ""))
+    label_modes(top, ends[1] * to_speed, [(m[0], m[2][-1] * to_frequency) for m in modes if m[1][-1] == ends[1] and m[3][-1] <= OVERDAMPED])
     label_modes(bottom, ends[1] * to_speed, [(m[0], m[3][-1]) for m in modes if m[1][-1] == ends[1]])
-    return [save(figure, study, "campbell", ROTATION, handles, 7)]
+    return save(figure, study, "campbell", f"numbers at the right: modes; sense of whirl by kinetic energy; {ROTATION}", handles, 7)

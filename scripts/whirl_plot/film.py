@@ -54,5 +54,5 @@ def draw(study):
                 j = len(z) // 2
             right.plot(theta[i], z[j], "+", color="white", markersize=8)
             right.set_title(f"{name}: film thickness, smallest {thickness.min():.4g} {unit} at {theta[i]:.1f} deg")
-        files.append(save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness"))
+        files += save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness")
     return files

@@ -4,10 +4,9 @@ import shutil
 import subprocess
 import sys
 
-FLIPS = [f"studies.{k}.cycle_branch.follow_flips=true" for k in (1, 2)]
 # Name of a run: deck, overrides.
 RUNS = {
-    "unbalance": ("turbine_train/unbalance.yaml", FLIPS),
+    "unbalance": ("turbine_train/unbalance.yaml", []),
     "response": ("turbine_train/response.yaml", []),
     "self_excited": ("turbine_train/self_excited.yaml", []),
     "train_run_up": ("turbine_train/run_up.yaml", []),

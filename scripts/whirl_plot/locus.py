@@ -80,7 +80,5 @@ def draw_together(results):
     axis.set_xlabel(f"{last(studies[0].attribute('parameter'))} [{studies[0].attribute('parameter_unit')}]")
     unit = re.sub("^u(?=m$)", "\u00b5", studies[0].attribute("second_unit"))
     axis.set_ylabel(f"{last(studies[0].attribute('second'))} [{unit}]")
-    whole = type("Whole", (), {"run_title": results.title, "name": "curves of bifurcations", "status": "",
-                               "file": lambda self, what: results.directory / f"{what}.png"})()
-    return [save(figure, whole, "loci", "where motions lose stability, over two parameters",
-                 [line for line in axis.get_lines() if not line.get_label().startswith("_")])]
+    return save(figure, results.whole("curves of bifurcations"), "loci", "where motions lose stability, over two parameters",
+                [line for line in axis.get_lines() if not line.get_label().startswith("_")])

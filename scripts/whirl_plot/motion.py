@@ -2,8 +2,9 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .orbits import draw_clearance, finish, square, turn_arrow
-from .style import COLOURS, GREY, INK, ROTATION, save
+from .bore import draw_clearance
+from .orbits import finish, square, turn_arrow
+from .style import COLOURS, GREY, INK, ROTATION, X, Y, save
 
 
 def distinct(study, names):
@@ -19,13 +20,13 @@ def draw_orbit(axis, study, b, x, y, px, py, unit):
         turn_arrow(axis)
     else:
         square(axis, x, y)
-    axis.plot(x, y, color=COLOURS[0], linewidth=0.7, alpha=0.9)
-    axis.plot(px, py, ".", color=COLOURS[1], markersize=4, zorder=4)
+    axis.plot(x, y, color=GREY, linewidth=0.6, rasterized=len(x) > 4000)
+    axis.plot(px, py, ".", color=INK, markersize=4, zorder=4)
     finish(axis, unit=unit)
 
 
 def draw_points(axis, px, py, unit):
-    axis.plot(px, py, ".", color=COLOURS[1], markersize=3)
+    axis.plot(px, py, ".", color=INK, markersize=3)
     if max(np.ptp(px), np.ptp(py)) < 1e-6:  # um: one point
         axis.set_xlim(px.mean() - 1, px.mean() + 1)
         axis.set_ylim(py.mean() - 1, py.mean() + 1)
@@ -37,7 +38,7 @@ def draw_points(axis, px, py, unit):
 def draw_spectrum(axis, order, x, y, unit, top=6.0):
     shown = order <= top
     floor = max(1e-9, 1e-8 * max(x[shown].max(), y[shown].max()))
-    for values, colour, label in ((x, COLOURS[0], "x"), (y, COLOURS[2], "y")):
+    for values, colour, label in ((y, Y, "y, vertical"), (x, X, "x, horizontal")):
         axis.semilogy(order[shown], np.maximum(values[shown], floor), color=colour, linewidth=0.8, label=label)
     axis.set_xlim(0, top)
     axis.set_xlabel("frequency / running speed")
@@ -82,4 +83,4 @@ def draw(study):
         elif exponents:
             row[3].set_visible(False)
     turns = int(round(x.shape[0] / study.attribute("samples", 1)))
-    return [save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, orange: shaft angle 0; {ROTATION}")]
+    return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: shaft angle 0; {ROTATION}")

@@ -1,58 +1,70 @@
-"""One self-contained HTML page of a results folder: values, bifurcations, modes, pictures."""
+"""One self-contained HTML page of a results folder: the machine, what was asked, the pictures, and all numbers."""
 import base64
 import html
-import json
 import re
 import sys
 
-from .data import open_results, results_directory
+
+from . import __main__ as plot
+from . import brief, style, tables
 from .manifest import register
+from .subject import Drawn, results_directory, said_in_a_sentence
+from .units import digits, person, with_bar
 
 STYLE = """
-body{font:15px/1.5 system-ui,sans-serif;color:#222;max-width:1120px;margin:2em auto;padding:0 1em}
-h1{font-size:1.7em;margin-bottom:.1em} h2{font-size:1.3em;margin-top:2em;border-bottom:1px solid #ddd;padding-bottom:.2em}
-.note{color:#777} table{border-collapse:collapse;margin:.8em 0;font-size:.92em} caption{text-align:left;font-weight:600;padding:.3em 0}
-th,td{padding:.2em 1em .2em 0;text-align:left;border-bottom:1px solid #eee} td.n{text-align:right;font-variant-numeric:tabular-nums}
-img{max-width:100%;margin:1em 0;border:1px solid #eee} nav a{margin-right:1.2em} details{margin:.6em 0} .bad{color:#c8102e}
+:root{--ink:#222;--grey:#6b7280;--line:#e3e7ec;--blue:#0b62a4;--bad:#c8102e}
+body{font:15px/1.5 system-ui,'DejaVu Sans',sans-serif;color:var(--ink);max-width:1180px;margin:0 auto;padding:1.5em}
+h1{font-size:1.75em;margin:.2em 0 0} h2{font-size:1.35em;margin:2.2em 0 .3em;border-bottom:2px solid var(--line);padding-bottom:.2em}
+h3{font-size:1.05em;margin:1.4em 0 .2em} .note{color:var(--grey);font-size:.88em;margin:.2em 0 1em;max-width:75em}
+nav{margin:1em 0;padding:.6em .9em;background:#f3f6f9;border-radius:6px} nav a{margin-right:1.1em;white-space:nowrap} a{color:var(--blue)}
+table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-align:left;font-weight:600;padding:.4em 0;font-size:1.05em}
+th,td{padding:.25em 1.1em .25em 0;text-align:left;border-bottom:1px solid var(--line);vertical-align:top} th{color:var(--grey);font-weight:600}
+td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
+img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margin:.7em 0} summary{cursor:pointer;color:var(--blue)}
+.bad{color:var(--bad);font-weight:600} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
 """
 
+# What a picture shows, by the end of its name.
+CAPTIONS = {
+    "machine": "The machine.", "sag": "Line of the shaft along the bearings and couplings.", "journals": "Where the journals sit in their clearances.",
+    "campbell": "Natural frequencies over speed, and their damping.", "shapes": "Mode shapes along the shaft.",
+    "shapes-3d": "Mode shapes in space: orbits of the nodes, and the shaft at one moment.", "response": "Response to unbalance of the shaft (Bode).",
+    "response-bearings": "Response to unbalance of the journals in their bearings (Bode).", "equilibria": "Where the journals rest, and the least stable eigenvalue.",
+    "locus": "Path of the journals' rest positions in their clearances.", "cycles-vertical": "Largest and smallest vertical position over a cycle.",
+    "cycles-horizontal": "Largest and smallest horizontal position over a cycle.", "nodes": "Amplitudes of the shaft at chosen nodes.",
+    "orbits": "Orbits of the journals.", "multipliers": "Floquet multipliers: a cycle is stable while all lie inside the unit circle.",
+    "frequency": "Whirl frequency over running speed.", "motion": "The motion in time.", "bifurcations": "All branches together, vertical motion of the journals.",
+    "eccentricity": "Largest eccentricity over speed.", "loci": "Where motions lose stability, over two parameters.", "run-up": "Amplitude on the way up and down.",
+}
+CONVENTIONS = [
+    ("Axes", "x to the right, y up, z along the shaft; nodes are numbered from 1 along z."),
+    ("Rotation", "from x to y, counter-clockwise with x to the right. Forward whirl turns with the shaft."),
+    ("Angles", "theta from +x, counter-clockwise. Lags are behind the shaft angle."),
+    ("Amplitudes", "0-peak, unless a name says peak to peak."),
+    ("Journal positions", "journal minus pedestal minus elevation, relative to the bearing centre."),
+    ("Loads", "of the journal on its bearing, positive down."),
+    ("Bars", "after \u00b1: an estimate of the error from film mesh, time mesh and location, in the unit of the number."),
+]
 
-def number(value):
-    """Seven digits are more than any of these numbers is worth."""
-    return "\u2013" if value is None else f"{value:.7g}" if isinstance(value, (int, float)) else html.escape(str(value))
+
+def escape(text):
+    return html.escape(str(text))
 
 
-def table(caption, head, rows, folded=False):
-    if not rows:
-        return ""
-    cells = "".join(f"<tr>{''.join(f'<td class=n>{number(c)}</td>' if isinstance(c, (int, float)) or c is None else f'<td>{html.escape(str(c))}</td>' for c in row)}</tr>" for row in rows)
-    title = "".join(f"<th>{html.escape(h)}</th>" for h in head)
-    body = f"<table><caption>{html.escape(caption)}</caption><tr>{title}</tr>{cells}</table>"
-    return f"<details><summary>{html.escape(caption)} ({len(rows)})</summary>{body}</details>" if folded else body
+def numeric(cell):
+    return isinstance(cell, (int, float)) or bool(re.fullmatch(r"[\u2212-]?[0-9.]+(e[\u2212-]?\d+)?( \u00b1 [0-9.]+)?( %)?|\u2013", str(cell)))
 
 
-def bifurcations(study):
-    rows, usual = [], ("type", "parameter", "value", "unit", "period_s", "uncertainty", "criticality")
-    for b in study.get("bifurcations", []):
-        more = ", ".join(f"{k} {number(v)}" for k, v in b.items() if k not in usual)
-        rows.append([b.get("type"), b.get("parameter"), b.get("value"), b.get("uncertainty"), b.get("unit"), b.get("period_s"),
-                     b.get("criticality") or "", more])
-    return table("Bifurcations", ["type", "parameter", "value", "\u00b1", "unit", "period [s]", "criticality", "more"], rows)
-
-
-def section(study, pictures):
-    name, status = study["name"], study.get("status", "")
-    out = [f"<h2 id='{anchor(name)}'>{html.escape(name)}</h2>"]
-    bad = "" if status == "completed" else " class=bad"
-    out.append(f"<p class=note>{html.escape(study.get('kind', ''))}, <span{bad}>{html.escape(status)}</span>, "
-               f"{number(study.get('points'))} points, {study.get('wall_seconds') or 0:.1f} s</p>")
-    values = [[k, v.get("value"), v.get("unit", "")] for k, v in study.get("values", {}).items()]
-    modes = [[m.get(k) for k in ("speed", "real", "imag", "log_decrement")] + [m.get("whirl") or ""] for m in study.get("modes", [])]
-    out.append(bifurcations(study))
-    out.extend(picture(p) for p in pictures)
-    out.append(table("Values", ["name", "value", "unit"], values, folded=len(values) > 12))
-    out.append(table("Modes", ["speed", "real [1/s]", "imag [rad/s]", "log. decrement", "whirl"], modes, folded=len(modes) > 12))
-    return "\n".join(out)
+def show(table, folded=False):
+    right = [all(numeric(row[k]) for row in table.rows) for k in range(len(table.head))]
+    mark = [" class=n" if r else "" for r in right]
+    head = "".join(f"<th{m}>{escape(h)}</th>" for m, h in zip(mark, table.head))
+    verdict = {"no": "<span class=bad>no</span>", "unstable": "<span class=bad>unstable</span>"}
+    body = "".join("<tr>" + "".join(f"<td{m}>{verdict.get(str(c), escape(c))}</td>" for m, c in zip(mark, row)) + "</tr>" for row in table.rows)
+    note = f"<p class=note>{escape(table.note)}</p>" if table.note else ""
+    caption = "" if folded else f"<caption>{escape(table.caption)}</caption>"
+    whole = f"<div class=scroll><table>{caption}<tr>{head}</tr>{body}</table></div>{note}"
+    return f"<details><summary>{escape(table.caption)} ({len(table.rows)})</summary>{whole}</details>" if folded else whole
 
 
 def anchor(name):
@@ -60,43 +72,124 @@ def anchor(name):
 
 
 def picture(path):
+    kind = re.sub(r"\d+$", "", path.stem.rsplit(".", 1)[-1])
+    words = CAPTIONS.get(kind) or CAPTIONS.get(re.sub(r"-\d*$", "", kind), "")
+    if kind.startswith("film-"):
+        words = f"Film of bearing {kind.removeprefix('film-')}: pressure and thickness, unwrapped."
     data = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"<img alt='{html.escape(path.stem)}' src='data:image/png;base64,{data}'>"
+    return f"<figure><img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'><figcaption>{escape(words)} <code>{escape(path.name)}</code></figcaption></figure>"
 
 
-def studies_of(directory):
-    """(summary, [(study, its pictures)], pictures of the whole run)."""
-    try:
-        summary = json.loads((directory / "summary.json").read_text())
-    except (OSError, ValueError):
-        summary = {}
-    known = {s["name"]: s for s in summary.get("studies", [])}
-    every = sorted(directory.glob("*.png"), key=lambda p: (p.stat().st_mtime_ns, p.name))
+def all_values(study):
+    """Everything of summary.json that the tables above may have left out."""
+    usual = ("type", "parameter", "value", "unit", "uncertainty")
+    rows = [[k, digits(v.value, 7) if v.uncertainty is None else with_bar(v.value, v.uncertainty), v.unit if v.unit != "1" else "", "" if v.unit in ("1", "") else person(v.value, v.unit)]
+            for k, v in study.values.items()]
+    out = [tables.Table("All values", ["name", "value", "unit", "reads"], rows)]
+    more = [[b.get("type"), with_bar(b.get("value"), b.get("uncertainty")), ", ".join(f"{k} {digits(v, 5)}" for k, v in b.items() if k not in usual)]
+            for b in study.bifurcations]
+    out.append(tables.Table("All about the bifurcations", ["type", "value", "more"], more))
+    doubts = [[f"{digits(s.get('from'), 6)} to {digits(s.get('to'), 6)} {s.get('unit', '')}", s.get("reason", "")] for s in study.summary.get("suspected", [])]
+    out.append(tables.Table("Not resolved: bifurcations may lie here", ["where", "why"], doubts))
+    modes = [[digits(m.get("speed"), 6), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4), m.get("whirl") or ""]
+             for m in study.modes]
+    out.append(tables.Table("All modes", ["speed", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "whirl"], modes))
+    return [show(t, folded=True) for t in out if t.rows]
+
+
+def section(study, pictures):
+    bad = "" if study.status == "completed" else " class=bad"
+    seconds = study.summary.get("wall_seconds")
+    facts = [escape(study.kind.replace("_", " ")), f"<span{bad}>{escape(study.status or 'not finished')}</span>"]
+    if study.summary.get("points") is not None:
+        facts.append(f"{study.summary['points']} points")
+    if isinstance(seconds, (int, float)):
+        facts.append(f"{seconds:.1f} s")
+    return "\n".join([f"<h2 id='{anchor(study.name)}'>{escape(study.name)}</h2><p class=note>{', '.join(facts)}</p>",
+                      *(show(t) for t in tables.findings(study)), *(picture(p) for p in pictures), *all_values(study)])
+
+
+def in_brief(results):
+    """One line a study."""
+    rows = "".join(f"<tr><td style='white-space:nowrap'><a href='#{anchor(s.name)}'>{escape(s.name)}</a></td><td>{escape(brief.of(s))}</td></tr>" for s in results.studies if brief.of(s))
+    return f"<h2 id=brief>In brief</h2><table>{rows}</table>" if rows else ""
+
+
+def left_over(results):
+    """Entries of summary.json without data in results.h5: studies that delivered nothing."""
+    known = {s.name for s in results.studies}
+    rows = [[s["name"], s.get("kind", ""), s.get("status", "")] for s in results.summary.get("studies", []) if s["name"] not in known]
+    return show(tables.Table("Studies without results", ["study", "kind", "how it ended"], rows)) if rows else ""
+
+
+def options_in_force(results):
+    """Options of the studies and of the run, as the deck was understood."""
+    deck, summary, out = results.deck or {}, results.summary, []
+    for key, value in summary.items():
+        if key in ("title", "version", "ranks", "wall_seconds", "studies"):
+            continue
+        rows = [[k, v if isinstance(v, (str, int, float)) else str(v)] for k, v in value.items()] if isinstance(value, dict) else [[key, str(value)]]
+        out.append(show(tables.Table(f"Run: {key.replace('_', ' ')}", ["option", "value"], rows), folded=True))
+    for entry in deck.get("studies") or []:
+        for kind, options in entry.items() if isinstance(entry, dict) else []:
+            rows = [[k, ", ".join(f"{a} {b}" for a, b in v.items()) if isinstance(v, dict) else v] for k, v in (options or {}).items() if v not in ([], "", None)]
+            out.append(show(tables.Table(f"{kind.replace('_', ' ')} {(options or {}).get('name', '')}".strip(), ["option", "value"], rows), folded=True))
+    return "\n".join(out)
+
+
+def pictures_of(results):
+    """[(study, its pictures)] and the pictures of the whole run, in the order in which they were drawn: that of the manifest."""
+    listed = results.directory / "manifest.txt"
+    names = listed.read_text(encoding="utf-8").split("\n") if listed.is_file() else []
+    every = sorted((p for p in results.directory.glob("*.png") if not names or p.name in names),
+                   key=lambda p: names.index(p.name) if names else (p.stat().st_mtime_ns, p.name))
     used, found = set(), []
-    with open_results(directory) as results:
-        summary.setdefault("title", results.title)
-        for study in results.studies:
-            stem = study.file("x").name.removesuffix("x.png")
-            mine = [p for p in every if p.name.startswith(stem) and p.name.removeprefix(stem).count(".") == 1]
-            used.update(mine)
-            found.append((known.pop(study.name, {"name": study.name, "kind": study.kind, "status": study.status}), mine))
-    found += [(s, []) for s in known.values()]
-    return summary, found, [p for p in every if p not in used]
+    stems = {s: s.file("x").name.removesuffix("x") for s in results.studies}
+    for study in results.studies:
+        mine = [p for p in every if p.name.startswith(stems[study]) and p.name.removeprefix(stems[study]).count(".") == 1]
+        used.update(mine)
+        found.append((study, mine))
+    return found, [p for p in every if p not in used]
+
+
+def page_of(results):
+    studies, general = pictures_of(results)
+    summary, title = results.summary, escape(results.title)
+    ended = [s for s in results.studies if s.status != "completed"]
+    facts = [f"whirl {escape(summary.get('version', ''))}"]
+    if summary.get("ranks"):
+        facts.append(f"{summary['ranks']} rank{'s' if summary['ranks'] != 1 else ''}")
+    if isinstance(summary.get("wall_seconds"), (int, float)):
+        facts.append(f"{summary['wall_seconds']:.1f} s")
+    facts.append(f"{len(studies)} studies" + (f", <span class=bad>{len(ended)} ended early</span>" if ended else ""))
+    links = "".join(f"<a href='#{anchor(s.name)}'>{escape(s.name)}</a>" for s, _ in studies)
+    machine = [p for p in general if p.stem == "machine"]
+    together = [p for p in general if p.stem != "machine"]
+    safe = tables.safe_perturbation(results)
+    conventions = tables.Table("Conventions", ["", ""], [list(c) for c in CONVENTIONS])
+    inputs = tables.inputs(results)
+    return "\n".join([
+        f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title><style>{STYLE}</style>",
+        f"<h1>{title}</h1><p class=note>{', '.join(facts)}</p>",
+        f"<nav><a href='#machine'>The machine</a>{links}<a href='#options'>Options</a></nav>",
+        in_brief(results), "<h2 id=machine>The machine</h2>", *(picture(p) for p in machine), *(show(t) for t in inputs), show(conventions, folded=True),
+        *([f"<h2 id=together>All together</h2>{''.join(picture(p) for p in together)}"] if together else []),
+        *([show(safe)] if safe else []), *(section(s, p) for s, p in studies), left_over(results),
+        f"<h2 id=options>Options in force</h2><p class=note>as the deck was understood, every default written out; resolved.yaml beside this page is that deck</p>{options_in_force(results)}",
+        "</html>"])
 
 
 def main(argv):
     directory = results_directory("report", argv)
     if isinstance(directory, int):
         return directory
-    summary, studies, general = studies_of(directory)
-    title = html.escape(summary["title"])
-    links = "".join(f"<a href='#{anchor(s['name'])}'>{html.escape(s['name'])}</a>" for s, _ in studies)
-    made = f"whirl {html.escape(str(summary.get('version', '')))}, {number(summary.get('ranks'))} ranks, {summary.get('wall_seconds') or 0:.1f} s"
-    page = [f"<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title>",
-            f"<style>{STYLE}</style><h1>{title}</h1><p class=note>{made}</p><nav>{links}</nav>",
-            *(picture(p) for p in general), *(section(s, p) for s, p in studies), "</html>"]
-    target = directory / "report.html"
-    register(target).write_text("\n".join(page), encoding="utf-8")
+    style.use_style(("png", "svg"))
+    with said_in_a_sentence("report"), Drawn(directory) as results:
+        if not any(p for _, p in pictures_of(results)[0]):
+            for _ in plot.drawn(results, "report"):  # a report by itself draws what it shows
+                pass
+        target = register(directory / "report.html")
+        target.write_text(page_of(results), encoding="utf-8")
     print(target)
     return 0
 

@@ -71,5 +71,5 @@ def draw_together(results):
     if linear:
         handles.append(Line2D([], [], color=GREY, linewidth=2.6, alpha=0.45, label="steady, linear"))
     unbalance = studies[0].attribute("unbalance", "")
-    return [save(figure, results.whole("run-up"), "run-up",
-                 f"largest distance from the mean position in each revolution; unbalance {unbalance}", handles, columns=4)]
+    return save(figure, results.whole("run-up"), "run-up",
+                 f"largest distance from the mean position in each revolution; unbalance {unbalance}", handles, columns=4)

@@ -1,8 +1,11 @@
-"""Sag line of the shaft and mode shapes along it."""
+"""Sag line of the shaft and mode shapes along it, flat and in space."""
+import typing
+
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import COLOURS, GREY, INK, ROTATION, grid_of, length_unit, save, speed_axis
+from .campbell import OVERDAMPED
+from .style import BAD, COLOURS, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, length_unit, save, speed_axis
 
 
 def bearing_places(study, z):
@@ -15,8 +18,19 @@ def bearing_places(study, z):
             return []
         places = z[node]
     else:
-        return []
+        known = (study.results.deck or {}).get("bearings") or {}
+        nodes = [b.get("node") if isinstance(b, dict) else None for b in known.values()]
+        return [(z[n - 1], name) for n, name in zip(nodes, known) if isinstance(n, int) and 1 <= n <= len(z)]
     return list(zip(places, study.bearings(len(places))))
+
+
+def coupling_places(study, z):
+    """Axial positions of the faces between rotors, from the deck's segments."""
+    segments = (study.results.deck or {}).get("rotor", {}).get("segments") or []
+    rotors = [str(s.get("rotor", "")) for s in segments] if isinstance(segments, list) else []
+    if len(rotors) != len(z) - 1:
+        return []
+    return [(z[k], f"{a}\u2013{b}") for k, (a, b) in enumerate(zip(rotors, rotors[1:]), 1) if a != b]
 
 
 def mark_bearings(axis, places, names=True):
@@ -27,21 +41,41 @@ def mark_bearings(axis, places, names=True):
             axis.annotate(name, (z, 1.0), xycoords=axis.get_xaxis_transform(), ha="center", va="bottom", fontsize=7.5, color=GREY)
 
 
+def mark_couplings(axis, places, names=True):
+    for z, name in places:
+        axis.axvline(z, color=GREY, linewidth=0.6, linestyle=":", zorder=1)
+        axis.plot(z, 0.0, marker="d", color=GREY, markersize=5, markerfacecolor="white", transform=axis.get_xaxis_transform(),
+                  clip_on=False, zorder=2)
+        if names:
+            axis.annotate(name, (z, 1.0), xycoords=axis.get_xaxis_transform(), xytext=(0, 9), textcoords="offset points", ha="center",
+                          va="bottom", fontsize=7, color=GREY)
+
+
 def draw_sag(study):
     if not study.has("nodes/z", "nodes/y"):
         return []
     z, x, y = study.get("nodes/z"), study.get("nodes/x", None), study.get("nodes/y")
-    places = bearing_places(study, z)
-    rows = 2 if x is not None else 1
-    figure, axes = plt.subplots(rows, 1, figsize=(9.6, 2.7 * rows + 1.0), sharex=True, squeeze=False)
-    for axis, values, words, colour in zip(axes[:, 0], (y, x), ("y, vertical", "x, horizontal"), COLOURS):
-        scale, unit = length_unit(values)
+    bearings, couplings = bearing_places(study, z), coupling_places(study, z)
+    rows = [("y, vertical", y, Y)] + ([("x, horizontal", x, X)] if x is not None else [])
+    moment = study.get("nodes/moment")
+    if moment is not None:
+        rows.append(("bending moment [kN m]", moment / 1e3, INK))
+    figure, axes = plt.subplots(len(rows), 1, figsize=(9.6, 2.7 * len(rows) + 1.1), sharex=True, squeeze=False)
+    for k, (axis, (words, values, colour)) in enumerate(zip(axes[:, 0], rows)):
+        scale, unit = length_unit(values) if "[" not in words else (1, "")
         axis.plot(z, values * scale, color=colour, linewidth=2.0)
-        mark_bearings(axis, places)
-        axis.set_ylabel(f"{words} [{unit}]")
+        for place, _ in bearings:
+            axis.plot(place, np.interp(place, z, values) * scale, "o", color=colour, markersize=5, markeredgecolor="white", zorder=4)
+        mark_bearings(axis, bearings, k == 0)
+        mark_couplings(axis, couplings, k == 0)
+        axis.set_ylabel(f"{words} [{unit}]" if unit else words)
         axis.margins(x=0.01, y=0.1)
     axes[-1, 0].set_xlabel("position along the shaft z [m]")
-    return [save(figure, study, "sag", f"centre line of the shaft in space, elevations included; {ROTATION}")]
+    what = study.group["nodes/y"].attrs.get("description", "") if "nodes/y" in study.group else ""
+    rigid = "rigid supports" in str(what)
+    note = "centre line of the aligned shaft on rigid supports" if rigid else "centre line of the shaft in space, elevations included"
+    note += "; triangles: bearings" + ("; diamonds: couplings" if couplings else "") + ("; moment positive where it sags" if moment is not None else "")
+    return save(figure, study, "sag", f"{note}; {ROTATION}" if x is not None else note)
 
 
 def semi_major(x, y):
@@ -49,42 +83,80 @@ def semi_major(x, y):
     return np.sqrt(0.5 * (np.abs(x)**2 + np.abs(y)**2 + np.abs(x**2 + y**2)))
 
 
-def describe(study, frequency, speed):
-    """Whirl and damping of the mode of this frequency at this speed, from the spectrum."""
-    if not study.has("spectrum/speed", "spectrum/frequency"):
-        return ""
-    speeds, frequencies = study.get("spectrum/speed"), study.get("spectrum/frequency")
-    here = np.nonzero(np.abs(speeds - speeds[np.argmin(np.abs(speeds - speed))]) < 1e-9 * (1 + abs(speed)))[0]
-    row = here[np.argmin(np.abs(frequencies[here] - frequency))]
-    whirl, decrement = study.get("spectrum/whirl"), study.get("spectrum/log_decrement")
-    words = f", {whirl[row]}" if whirl is not None else ""
-    return words + (f"\nlog. decrement {decrement[row]:.3g}" if decrement is not None else "")
+def describe(shape):
+    """Whirl and damping of a mode in words."""
+    words = f", {shape.whirl}" if shape.whirl else ""
+    return words + (f"\nlog. decrement {shape.decrement:.3g}" if np.isfinite(shape.decrement) else "")
+
+
+def nodes_of(z, values):
+    """Places where a line along the shaft crosses zero."""
+    k = np.nonzero(values[:-1] * values[1:] < 0)[0]
+    return z[k] + (z[k + 1] - z[k]) * values[k] / (values[k] - values[k + 1])
+
+
+def normalised(x, y):
+    """A shape turned to the moment when the node that moves most is farthest out, where it is one, and its envelope."""
+    size = semi_major(x, y)
+    top = int(np.argmax(size))
+    turn = np.exp(-0.5j * np.angle(x[top]**2 + y[top]**2)) / size[top]
+    x, y = x * turn, y * turn
+    side = 1 if abs(y[top].real) < abs(x[top].real) else np.sign(y[top].real) or 1
+    return side * x, side * y, size / size[top]
+
+
+class Shape(typing.NamedTuple):
+    """A mode at one speed: number, frequency [rad/s], x and y of the nodes (complex), and what is known of it."""
+
+    mode: int
+    frequency: float
+    x: np.ndarray
+    y: np.ndarray
+    decrement: float
+    whirl: str
+
+
+def tables_of(study):
+    """(speed, shapes) of each speed that shapes were kept at."""
+    if not study.has("shapes/x_real", "shapes/z"):
+        return
+    x = study.get("shapes/x_real") + 1j * study.get("shapes/x_imag")
+    y = study.get("shapes/y_real") + 1j * study.get("shapes/y_imag")
+    column = lambda name, default: np.broadcast_to(np.atleast_1d(study.get(f"shapes/{name}", default)), len(x))  # noqa: E731
+    speed = column("speed", 0.0)
+    shapes = [Shape(*row) for row in zip(column("mode", np.arange(1, len(x) + 1)), column("frequency", 0.0), x, y,
+                                         column("log_decrement", np.nan), column("whirl", ""))]
+    for value in dict.fromkeys(speed):
+        yield value, [shape for shape, s in zip(shapes, speed) if s == value]
 
 
 def draw_modes(study, shown=12):
-    if not study.has("shapes/x_real", "shapes/z"):
-        return []
-    z = study.get("shapes/z")
-    x = study.get("shapes/x_real") + 1j * study.get("shapes/x_imag")
-    y = study.get("shapes/y_real") + 1j * study.get("shapes/y_imag")
-    frequency = np.atleast_1d(study.get("shapes/frequency", np.zeros(len(x))))
-    speed = np.broadcast_to(np.atleast_1d(study.get("shapes/speed", 0.0)), len(x))
+    files, found = [], list(tables_of(study))
+    for speed, shapes in found:
+        # What dies within a turn is no vibration; unless nothing else is there.
+        shapes = [s for s in shapes if not s.decrement > OVERDAMPED] or shapes
+        suffix = f"-{speed * speed_axis(study.attribute('speed_unit', 'rad/s'))[0]:.0f}" if len(found) > 1 else ""
+        files += draw_flat(study, speed, shapes[:shown], suffix) + draw_in_space(study, speed, shapes[:shown], suffix)
+    return files
+
+
+def at_words(study, speed):
     to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
-    count = min(shown, len(x))
-    figure, axes, grid = grid_of(count, height=1.95, sharex=True, sharey=True)
-    for k, axis in enumerate(axes):
-        size = semi_major(x[k], y[k])
-        top = int(np.argmax(size))
-        # Seen at the moment when the node that moves most is farthest out.
-        turn = np.exp(-0.5j * np.angle(x[k, top]**2 + y[k, top]**2)) / size[top]
-        xs, ys, envelope = (x[k] * turn).real, (y[k] * turn).real, size / size[top]
-        side = 1 if abs(ys[top]) < abs(xs[top]) else np.sign(ys[top]) or 1
+    return f"at {speed_label.split(' [')[0]} {speed * to_speed:.0f} {study.attribute('speed_unit', 'rad/s')}", to_frequency, unit
+
+
+def draw_flat(study, speed, shapes, suffix):
+    z = study.get("shapes/z")
+    at, to_frequency, unit = at_words(study, speed)
+    figure, axes, grid = grid_of(len(shapes), height=1.95, sharex=True, sharey=True)
+    for axis, shape in zip(axes, shapes):
+        x, y, envelope = normalised(shape.x, shape.y)
         axis.fill_between(z, -envelope, envelope, color="#eef2f6", linewidth=0, zorder=0)
         axis.axhline(0, color=GREY, linewidth=0.6)
-        axis.plot(z, side * ys, color=COLOURS[0], linewidth=1.5, label="y, vertical")
-        axis.plot(z, side * xs, color=COLOURS[1], linewidth=1.5, label="x, horizontal")
+        for values, colour, label in ((y.real, Y, "y, vertical"), (x.real, X, "x, horizontal")):
+            axis.plot(z, values, color=colour, linewidth=1.5, label=label)
         mark_bearings(axis, bearing_places(study, z), names=False)
-        axis.set_title(f"{frequency[k] * to_frequency:.2f} {unit}{describe(study, frequency[k], speed[k])}", fontsize=8.5)
+        axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8.5)
         axis.set_ylim(-1.08, 1.08)
         axis.set_yticks([-1, 0, 1])
         axis.set_xlim(z[0], z[-1])
@@ -92,6 +164,47 @@ def draw_modes(study, shown=12):
         visible = [a for a in grid[:, column] if a.get_visible()]
         visible[-1].set_xlabel("z [m]")
         visible[-1].tick_params(labelbottom=True)
-    at = f"{speed_label.split(' [')[0]} {speed[0] * to_speed:.0f} {study.attribute('speed_unit', 'rad/s')}"
-    return [save(figure, study, "shapes", f"at {at}; shaded: largest excursion over a turn; scaled to 1 where it is largest",
-                 axes[0].get_legend_handles_labels()[0])]
+    return save(figure, study, f"shapes{suffix}", f"{at}; shaded: largest excursion over a turn, scaled to 1 where it is largest; triangles: bearings",
+                axes[0].get_legend_handles_labels()[0])
+
+
+def draw_in_space(study, speed, shapes, suffix):
+    """Each node's ellipse, the shaft at one moment through the thick dots, and where that line crosses the undeformed axis."""
+    z = study.get("shapes/z")
+    at, to_frequency, unit = at_words(study, speed)
+    columns = min(3, len(shapes))
+    rows = -(-len(shapes) // columns)
+    figure = plt.figure(figsize=(3.6 * columns, 2.6 * rows + 1.0))
+    angle = np.exp(1j * np.linspace(0, 2 * np.pi, 61))
+    rings = np.unique(np.linspace(0, len(z) - 1, 24).round().astype(int))
+    for k, shape in enumerate(shapes):
+        axis = figure.add_subplot(rows, columns, k + 1, projection="3d", computed_zorder=False)
+        x, y, _ = normalised(shape.x, shape.y)
+        for ring in rings:
+            ex, ey = (x[ring] * angle).real, (y[ring] * angle).real
+            # Forward where the ellipse is run through from x to y.
+            forward = (np.conj(x[ring]) * y[ring]).imag <= 0
+            axis.plot(np.full(61, z[ring]), ex, ey, color=COLOURS[1] if forward else COLOURS[3], linewidth=0.7)
+        axis.plot(z, np.zeros_like(z), np.zeros_like(z), color=GREY, linewidth=0.7)
+        axis.plot(z, x.real, y.real, color=INK, linewidth=1.6)
+        for place, _ in bearing_places(study, z):
+            axis.plot([place, place], [0, 0], [-1, 1], color=GREY, linewidth=0.6, linestyle=(0, (2, 2)))
+        # Node lines: where the shaft crosses the axis in the direction in which it moves most.
+        main = y.real if np.ptp(y.real) >= np.ptp(x.real) else x.real
+        crossings = nodes_of(z, main)
+        axis.plot(crossings, np.zeros_like(crossings), np.zeros_like(crossings), "o", color=BAD, markersize=3.5)
+        axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8, y=0.98)
+        axis.set_box_aspect((3.0, 1, 1), zoom=1.35)
+        axis.view_init(18, -62)
+        axis.set(xlim=(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[], zticks=[])
+        axis.tick_params(axis="x", labelsize=6.5, pad=-3)
+        axis.grid(False)
+        for pane in (axis.xaxis, axis.yaxis, axis.zaxis):
+            pane.pane.set_edgecolor(LIGHT)
+            pane.pane.set_facecolor("white")
+    from matplotlib.lines import Line2D
+    handles = [Line2D([], [], color=INK, label="shaft at one moment"), Line2D([], [], color=COLOURS[1], label="orbit, forward"),
+               Line2D([], [], color=COLOURS[3], label="orbit, backward"),
+               Line2D([], [], color=BAD, marker="o", linestyle="none", markersize=4, label="node: crosses the axis"),
+               Line2D([], [], color=GREY, linestyle=(0, (2, 2)), linewidth=0.8, label="bearing")]
+    return save(figure, study, f"shapes-3d{suffix}", f"{at}; along z [m], x to the back, y up; each scaled to its largest excursion", handles)

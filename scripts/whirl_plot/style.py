@@ -1,5 +1,7 @@
 """The look of all pictures, units of axes, and the marks that recur."""
 import io
+import re
+import textwrap
 
 import matplotlib
 
@@ -8,27 +10,34 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 from cycler import cycler  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
 
 from .manifest import register  # noqa: E402
 
 INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
-COLOURS = ["#0b62a4", "#d1670c", "#2a8c55", "#8e4b9e", "#b8860b", "#12868f", "#a83250", "#5b6770"]
-GOOD, WARN, BAD = "#0b62a4", "#e69f00", "#c8102e"
+# Each colour means one thing: the two directions, the studies of a run, damping and stability; over a parameter, viridis.
+# Marks are ink: their shape says what they are.
+Y, X = "#0b62a4", "#d1670c"
+COLOURS = ["#7b3fa0", "#12868f", "#8a5a2b", "#c2477f", "#7d8a1f", "#4a5a78", "#a98a00", "#5e4fa2"]
+GOOD, WARN, BAD = "#2a8c55", "#e69f00", "#c8102e"
+SHADE = "#f3f6f9"
 DASHED = (0, (3.2, 1.8))
 ROTATION = "rotation x \u2192 y, counter-clockwise with x right and y up"
+formats = ["png", "svg"]  # of the pictures, set by use_style
 
-# Label, marker and colour of each bifurcation.
+# Label, marker and meaning of each bifurcation.
 MARKS = {
-    "fold": ("LP", "s", "#222222", "limit point (fold)"),
-    "cyclic_fold": ("LPC", "s", "#222222", "limit point of cycles"),
-    "hopf": ("HB", "o", "#c8102e", "Hopf"),
-    "flip": ("PD", "D", "#8e4b9e", "period doubling (flip)"),
-    "neimark_sacker": ("NS", "^", "#c8102e", "Neimark-Sacker"),
-    "branch_point": ("BP", "P", "#2a8c55", "branch point"),
+    "fold": ("LP", "s", "limit point (fold)"),
+    "cyclic_fold": ("LPC", "s", "limit point of cycles"),
+    "hopf": ("HB", "o", "Hopf"),
+    "flip": ("PD", "D", "period doubling (flip)"),
+    "neimark_sacker": ("NS", "^", "Neimark-Sacker"),
+    "branch_point": ("BP", "P", "branch point"),
 }
 
 
-def use_style():
+def use_style(kinds=("png", "svg")):
+    formats[:] = kinds
     plt.rcParams.update({
         "figure.dpi": 110, "savefig.dpi": 170, "figure.constrained_layout.use": True,
         "font.size": 9.5, "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
@@ -37,6 +46,8 @@ def use_style():
         "grid.color": LIGHT, "grid.linewidth": 0.5, "xtick.color": INK, "ytick.color": INK,
         "xtick.labelsize": 8.5, "ytick.labelsize": 8.5, "legend.fontsize": 8.5, "legend.frameon": False,
         "lines.linewidth": 1.6, "lines.solid_capstyle": "round", "axes.prop_cycle": cycler(color=COLOURS),
+        # Texts stay texts and equal pictures equal files.
+        "svg.fonttype": "none", "svg.hashsalt": "whirl", "path.simplify": True, "path.simplify_threshold": 0.15,
     })
 
 
@@ -67,26 +78,47 @@ def save(figure, study, what, note="", handles=(), columns=6):
     longest = max((len(h.get_label()) for h in handles), default=0)
     entry = max(1.7, 0.5 + 0.07 * longest)  # inches
     columns = min(columns, max(2, int(figure.get_figwidth() / entry)))
-    head, foot = 0.58, 0.10 + 0.19 * bool(note) + 0.215 * -(-len(handles) // columns)  # inches
+    lines = textwrap.wrap(note, max(40, int(17.5 * figure.get_figwidth())))
+    # A figure grows by what its note needs beyond one line.
+    height += 0.15 * max(0, len(lines) - 1)
+    figure.set_figheight(height)
+    below = 0.19 * bool(lines) + 0.15 * max(0, len(lines) - 1)
+    head, foot = 0.58, 0.10 + below + 0.215 * -(-len(handles) // columns)  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
     figure.text(0.01, 1 - 0.2 / height, study.run_title, va="center", fontsize=11.5, fontweight="bold", color=INK)
     subtitle = study.name if study.status in ("", "completed") else f"{study.name} \u2014 {study.status}"
-    figure.text(0.01, 1 - 0.42 / height, subtitle, va="center", fontsize=9.5, color=GREY)
+    figure.text(0.01, 1 - 0.42 / height, textwrap.shorten(subtitle, max(40, int(14 * figure.get_figwidth())), placeholder=" ..."), va="center", fontsize=9.5, color=GREY)
     if handles:
         figure.legend(handles=list(handles), loc="lower left", ncol=columns, borderpad=0.2, borderaxespad=0, columnspacing=1.4,
-                      handlelength=2.2, labelspacing=0.35, bbox_to_anchor=(0.005, (0.05 + 0.19 * bool(note)) / height))
-    figure.text(0.99, 0.13 / height, note, ha="right", va="center", fontsize=7.5, color=GREY)
-    path = study.file(what)
-    write(figure, path)
+                      handlelength=2.2, labelspacing=0.35, bbox_to_anchor=(0.005, (0.05 + below) / height))
+    figure.text(0.99, 0.07 / height, "\n".join(lines), ha="right", va="bottom", fontsize=7.5, color=GREY)
+    stem = study.file(what)
+    files = write(figure, stem)
     plt.close(figure)
-    return path
+    return files
 
 
-def write(figure, path):
-    """As a PNG of 256 colours, a third of the size of one of all: lines on white need no more."""
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png", facecolor="white")
-    few_colours(Image.open(drawn).convert("RGB")).save(register(path), format="PNG", optimize=True)
+def write(figure, stem):
+    """The figure as `stem`.png of 256 colours, a third of the size of one of all (lines on white need no more), and as
+    `stem`.svg. Each is named in the run's manifest before it is written. Returns their paths."""
+    files = [register(stem.with_name(f"{stem.name}.{kind}")) for kind in formats]
+    for path in files:
+        if path.suffix == ".png":
+            drawn = io.BytesIO()
+            figure.savefig(drawn, format="png", facecolor="white")
+            few_colours(Image.open(drawn).convert("RGB")).save(path, format="PNG", optimize=True)
+        elif path.suffix == ".pdf":
+            figure.savefig(path, format="pdf", facecolor="white", metadata={"CreationDate": None})
+        else:
+            figure.savefig(path, format="svg", facecolor="white", metadata={"Date": None}, dpi=90)
+            path.write_text(shorter(path.read_text(encoding="utf-8")), encoding="utf-8")
+    return files
+
+
+def shorter(svg):
+    """Coordinates to a hundredth of a point, which no eye sees, and no indentation."""
+    svg = re.sub(r"(?<=[ ML\n\"(,])-?\d+\.\d{3,}", lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), svg)
+    return re.sub(r"\n *", "\n", svg)
 
 
 def few_colours(image):
@@ -114,46 +146,6 @@ def runs(keys):
             start = i
 
 
-def draw_branch(axis, x, y, stable, colour, **more):
-    """A curve that is solid where stable and dashed where not; each segment goes with its less stable end."""
-    x, y = np.asarray(x, float), np.asarray(y, float)
-    solid = np.asarray(stable, bool)
-    segment = solid[:-1] & solid[1:]
-    width = more.pop("linewidth", 1.6)
-    for start, stop in runs(segment):
-        axis.plot(x[start:stop + 1], y[start:stop + 1], color=colour, linestyle="-" if segment[start] else DASHED,
-                  linewidth=width if segment[start] else 0.8 * width, **more)
-    if len(x) == 1:
-        axis.plot(x, y, ".", color=colour)
-
-
-def place_on_branch(parameter, curves, unstable, kind, value):
-    """The height of each curve at a bifurcation: where the branch passes `value`, and changes stability if it does so
-    more than once; at its turning point for a limit point."""
-    parameter = np.asarray(parameter, float)
-    if len(parameter) < 2:
-        return [c[0] for c in curves]
-    if kind in ("fold", "cyclic_fold"):
-        slope = np.sign(np.diff(parameter))
-        turns = np.nonzero(slope[:-1] * slope[1:] < 0)[0] + 1
-        if len(turns):
-            i = turns[np.argmin(np.abs(parameter[turns] - value))]
-            return [c[i] for c in curves]
-    low, high = np.minimum(parameter[:-1], parameter[1:]), np.maximum(parameter[:-1], parameter[1:])
-    tolerance = 1e-9 * max(1.0, np.max(np.abs(parameter)))
-    inside = np.nonzero((low - tolerance <= value) & (value <= high + tolerance))[0]
-    if not len(inside):
-        i = int(np.argmin(np.abs(parameter - value)))
-        return [c[i] for c in curves]
-    if unstable is not None:
-        changes = [i for i in inside if unstable[i] != unstable[i + 1]]
-        inside = changes or inside
-    i = inside[0]
-    step = parameter[i + 1] - parameter[i]
-    s = (value - parameter[i]) / step if step else 0.5
-    return [c[i] + s * (c[i + 1] - c[i]) for c in curves]
-
-
 def levels(values, span, width=0.075):
     """For each label at `values` on an axis of length `span`, how many lines it has to go up to clear those before it."""
     taken, result = [], [0] * len(values)
@@ -166,23 +158,28 @@ def levels(values, span, width=0.075):
 
 def mark(axis, kind, x, y, size=6):
     """The legend says what marks mean: words beside them would cover curves."""
-    _, marker, colour, _ = MARKS.get(kind, (kind, "x", INK, kind))
-    axis.plot([x], [y], marker=marker, color=colour, markersize=size, markeredgecolor="white", markeredgewidth=0.8,
+    marker = MARKS.get(kind, (kind, "x", kind))[1]
+    axis.plot([x], [y], marker=marker, color=INK, markersize=size, markeredgecolor="white", markeredgewidth=0.8,
               linestyle="none", zorder=6)
 
 
-def branch_legend(kinds, more=()):
-    """Handles for stable, unstable and the kinds of bifurcation that occur."""
-    from matplotlib.lines import Line2D
+def mark_end(axis, x, y, size=6):
+    """Where a branch stops before the end of its range."""
+    axis.plot([x], [y], marker="X", color="white", markersize=size, markeredgecolor=INK, markeredgewidth=0.9,
+              linestyle="none", zorder=7)
+
+
+def branch_legend(kinds, more=(), ends=()):
+    """Handles for stable, unstable, the kinds of bifurcation that occur, and the ends of branches (name, reason)."""
     handles = list(more) + [Line2D([], [], color=GREY, label="stable"),
                             Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.3, label="unstable")]
-    seen = []
-    for kind in kinds:
-        if kind in MARKS and kind not in seen:
-            seen.append(kind)
-            short, marker, colour, words = MARKS[kind]
-            handles.append(Line2D([], [], color=colour, marker=marker, linestyle="none", markersize=6,
-                                  markeredgecolor="white", label=f"{short}  {words}"))
+    for kind in dict.fromkeys(k for k in kinds if k in MARKS):
+        short, marker, words = MARKS[kind]
+        handles.append(Line2D([], [], color=INK, marker=marker, linestyle="none", markersize=6,
+                              markeredgecolor="white", label=f"{short}  {words}"))
+    for reason in dict.fromkeys(ends):
+        handles.append(Line2D([], [], color="white", marker="X", markeredgecolor=INK, markeredgewidth=0.9, linestyle="none",
+                              markersize=6, label=f"ends: {reason}"))
     return handles
 
 

@@ -9,10 +9,12 @@
 #include "outcome.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
+#include "whirl/study/sweep.hpp"
 
 namespace whirl::app {
 namespace {
@@ -34,7 +36,7 @@ std::string changes_text(const std::vector<deck::Change>& changes) {
   for (std::size_t i = 0; i < std::min(most, changes.size()); ++i)
     text += fmt::format("  set {}: {}, was {}\n", changes[i].path, brief(changes[i].after), brief(changes[i].before));
   if (changes.size() > most) text += fmt::format("  and {} more values\n", changes.size() - most);
-  return text;
+  return core::printable(text);
 }
 
 // An InputError that does not depend on the rank is one that all ranks have.
@@ -75,6 +77,8 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
                           o.source.empty() ? "an unknown source" : o.source);
   for (const std::string& option : core::Session::unused_options())
     text += fmt::format("nothing has asked for the PETSc option {}\n", option);
+  if (core::rank_of(comm) == 0 && !held.locked())
+    text += fmt::format("'{}' cannot be locked: nothing would have kept a second run out\n", directory);
   text += fmt::format("results in {}\n", directory);
   return undelivered.empty() ? core::Exit::success : core::Exit::not_delivered;
 }
@@ -88,8 +92,16 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
       system::is_rotor(m) ? rotor + ", " + count(m.bearings.size(), "bearing", "bearings") : "system " + m.system.name;
   std::string text =
       fmt::format("{}: no errors; {}, {}\n", request.path, what, count(deck.studies.size(), "study", "studies"));
-  for (const auto& s : deck.studies) text += fmt::format("  {} ({})\n", s->name(), s->kind());
+  for (const auto& s : deck.studies) {
+    const auto* sweep = dynamic_cast<const study::Sweep*>(s.get());
+    text += fmt::format("  {} ({}{})\n", s->name(), s->kind(),
+                        sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "");
+  }
   text += changes_text(deck.changes);
+  const std::vector<std::string> warnings = study::warnings(deck);
+  constexpr std::size_t most = 20;
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i) text += fmt::format("  warning: {}\n", warnings[i]);
+  if (warnings.size() > most) text += fmt::format("  and {} more warnings\n", warnings.size() - most);
   return text;
 }
 

@@ -29,6 +29,7 @@ public:
   /// Takes back what the constructor made, if no study has left a result since: a deck that turned out to be wrong must
   /// not stand in the way of the right one. Rank 0 acts; throws nothing.
   void abandon() noexcept;
+  /// Whether this rank holds the lock; rank 0 does unless the file system has none.
   [[nodiscard]] bool locked() const { return lock_ >= 0; }
 
 private:

@@ -14,6 +14,7 @@
 #include "commands.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/deck/node.hpp"
 
@@ -158,7 +159,8 @@ int leave(const std::string& text, core::Exit exit, bool agreed, bool prints) {
   const bool alone = size > 1 && !agreed;
   if (prints || alone) {
     (void)std::fflush(stdout);
-    (void)std::fprintf(stderr, "whirl: %s%s\n", alone ? fmt::format("rank {}: ", rank).c_str() : "", text.c_str());
+    (void)std::fprintf(stderr, "whirl: %s%s\n", alone ? fmt::format("rank {}: ", rank).c_str() : "",
+                       core::printable(text).c_str());
     (void)std::fflush(stderr);
   }
   if (alone) MPI_Abort(MPI_COMM_WORLD, static_cast<int>(exit));

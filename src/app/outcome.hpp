@@ -7,8 +7,9 @@
 
 namespace whirl::app {
 
-/// A line per study (how it ended, points, time) and below it one per bifurcation, per point of codimension two and per
-/// stretch that could not be resolved. Numbers have the digits that their uncertainty leaves them.
+/// A line per study (how it ended, points, time). Below it one per bifurcation with what it means, per point of
+/// codimension two and per stretch that could not be resolved, and then what the study was asked for. Numbers have the
+/// digits that their uncertainty leaves them.
 [[nodiscard]] std::string outcome_text(const io::Summary& summary);
 
 }  // namespace whirl::app

@@ -32,8 +32,11 @@ void* mutable_part(const void* value) {
 
 class ListCodec : public Codec, public Knows {
 public:
-  ListCodec(CodecPtr item, ListAccess a) : item_(std::move(item)), a_(std::move(a)) {}
+  ListCodec(CodecPtr item, ListAccess a, bool isotropic = false)
+      : item_(std::move(item)), a_(std::move(a)), isotropic_(isotropic) {}
+  [[nodiscard]] CodecPtr isotropic() const { return std::make_shared<ListCodec>(item_, a_, true); }
   void read(const Node& node, void* value, Reading& r) const override {
+    if (isotropic_ && node.kind == Node::Kind::scalar) return read(spread(node), value, r);
     if (node.kind != Node::Kind::list)
       return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
     if (!a_.resize(value, node.items.size()))
@@ -57,9 +60,11 @@ public:
       n.set("minItems", Node::scalar(fmt::format("{}", a_.fixed)));
       n.set("maxItems", Node::scalar(fmt::format("{}", a_.fixed)));
     }
-    return n;
+    return isotropic_ ? either_schema(item_->schema(whole), std::move(n)) : n;
   }
   std::string type() const override {
+    if (isotropic_)
+      return fmt::format("a {}, or a list of {}", item_->type(), a_.fixed == 4 ? "4: xx, xy, yx, yy" : "2: x, y");
     return a_.fixed > 0 ? fmt::format("a list of {}, each a {}", a_.fixed, item_->type())
                         : fmt::format("a list, each item a {}", item_->type());
   }
@@ -76,8 +81,21 @@ public:
   }
 
 private:
+  // One value is that of x and y; of a matrix xx, xy, yx, yy the diagonal.
+  Node spread(const Node& one) const {
+    Node n = Node::list();
+    n.key = one.key;
+    n.key_place = one.key_place;
+    n.place = one.place;
+    for (std::size_t i = 0; i < a_.fixed; ++i) {
+      Node& item = n.push(one);
+      if (a_.fixed == 4 && (i == 1 || i == 2)) item.text = spec()->unit == "1" ? "0" : "0 " + spec()->unit;
+    }
+    return n;
+  }
   CodecPtr item_;
   ListAccess a_;
+  bool isotropic_ = false;
 };
 
 class TableCodec : public Codec, public Knows {
@@ -355,6 +373,11 @@ private:
 
 CodecPtr list_codec(CodecPtr item, ListAccess access) {
   return std::make_shared<ListCodec>(std::move(item), std::move(access));
+}
+CodecPtr isotropic_codec(const CodecPtr& list) {
+  const auto* codec = dynamic_cast<const ListCodec*>(list.get());
+  core::require(codec != nullptr, "only a list of numbers is isotropic");
+  return codec->isotropic();
 }
 CodecPtr table_codec(const Structure& row, ListAccess access, std::string scalar) {
   return std::make_shared<TableCodec>(row, std::move(access), std::move(scalar));

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
 
 #include "known.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
@@ -97,23 +97,10 @@ std::optional<Relative> relative_of(std::string_view text, bool append) {
   return r;
 }
 
-// As people would write the result of a small sum: 60 * 1.1 is 66, not 66.00000000000001.
-std::string rounded(double value) {
-  double short_value = value;
-  const std::string text = fmt::format("{:.15g}", value);
-  (void)std::from_chars(text.data(), text.data() + text.size(), short_value);
-  if (!std::isfinite(short_value)) throw InputError("the result is not a finite number");
-  return write_number(short_value);
-}
-
 // `text` after the factor or the offset, in the unit that it had.
 std::string changed(const std::string& text, const Relative& r, const std::string& unit) {
+  if (r.offset.empty()) return scaled(text, r.factor);
   const Split now = split_quantity(text);
-  if (r.offset.empty()) {
-    if (!now.unit.empty() && number_to_si(0, now.unit) != 0)
-      throw InputError(fmt::format("'{}' has no factor: its zero is not that of the temperature; write it in K", text));
-    return rounded(now.number * r.factor) + (now.unit.empty() ? "" : " " + now.unit);
-  }
   double sum = 0;
   if (unit == "*") {  // the study knows what it is; here it is of the kind in which it was written
     const Split more = split_quantity(r.offset);
@@ -123,7 +110,7 @@ std::string changed(const std::string& text, const Relative& r, const std::strin
   } else {
     sum = to_si(text, unit) + to_si(r.offset, unit == "K" ? "delta K" : unit);
   }
-  return rounded(now.unit.empty() ? sum : from_si(sum, now.unit)) + (now.unit.empty() ? "" : " " + now.unit);
+  return write_rounded(now.unit.empty() ? sum : from_si(sum, now.unit)) + (now.unit.empty() ? "" : " " + now.unit);
 }
 
 class Application {
@@ -312,6 +299,8 @@ Edit make_edit(std::string path, Node value) {
 Edit parse_edit(const std::string& argument, std::string_view cited) {
   const Place place{std::make_shared<const std::string>(fmt::format("{} {}", cited, argument)), 0, 0};
   auto fail = [&](const std::string& m) { throw InputError(place.text() + ": " + m); };
+  for (std::string_view rest = argument; !rest.empty(); rest.remove_prefix(core::utf8_length(rest)))
+    if (core::utf8_length(rest) == 0) fail("the argument is not UTF-8 text");
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals == 0) fail("expected PATH=VALUE");
   const bool append = argument[equals - 1] == '+';

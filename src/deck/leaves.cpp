@@ -8,6 +8,7 @@
 #include "known.hpp"
 #include "name_of_value.hpp"
 #include "schema.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
 
 namespace whirl::deck {
@@ -227,7 +228,11 @@ public:
 class TextCodec : public Codec {
 public:
   void read(const Node& node, void* value, Reading& r) const override {
-    if (is_scalar(node, "text", r)) *static_cast<std::string*>(value) = node.text;
+    if (!is_scalar(node, "text", r)) return;
+    for (std::size_t i = 0; i < node.text.size(); ++i)
+      if (core::begins_with_control(std::string_view(node.text).substr(i)))
+        return r.problems.add(node.place, fmt::format("{} holds control characters", name_of_value(node)));
+    *static_cast<std::string*>(value) = node.text;
   }
   Node write(const void* value) const override { return Node::scalar(*static_cast<const std::string*>(value), true); }
   Node schema(bool) const override { return typed_schema("string"); }

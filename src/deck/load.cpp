@@ -7,9 +7,12 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
+#include <unordered_map>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
 
 namespace whirl::deck {
@@ -17,35 +20,27 @@ namespace {
 
 using core::InputError;
 
-// Length of the UTF-8 sequence at `s`, 0 if it is not one (overlong forms and surrogates are left to the reader's eye).
-std::size_t sequence(const unsigned char* s, std::size_t n) {
-  const unsigned char c = s[0];
-  const std::size_t length = c < 0x80                ? 1
-                             : c >= 0xC2 && c < 0xE0 ? 2
-                             : c >= 0xE0 && c < 0xF0 ? 3
-                             : c >= 0xF0 && c < 0xF5 ? 4
-                                                     : 0;
-  if (length == 0 || length > n) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((s[i] & 0xC0) != 0x80) return 0;
-  return length;
-}
+constexpr std::size_t most_bases = 100;
+constexpr std::size_t most_bytes = std::size_t{16} << 20;  // of all files of a deck: one table may be named many times
 
 void require_text(const std::string& bytes, const std::string& path) {
   int line = 1;
-  const auto* s = reinterpret_cast<const unsigned char*>(bytes.data());
-  for (std::size_t i = 0; i < bytes.size();) {
-    const std::size_t length = sequence(s + i, bytes.size() - i);
-    const bool control = s[i] < 0x20 && s[i] != '\n' && s[i] != '\r' && s[i] != '\t';
+  for (std::string_view rest = bytes; !rest.empty();) {
+    const std::size_t length = core::utf8_length(rest);
+    const bool control = rest[0] >= 0 && rest[0] < 0x20 && rest[0] != '\n' && rest[0] != '\r' && rest[0] != '\t';
     if (length == 0 || control) throw InputError(fmt::format("{}:{}:1: the file is not UTF-8 text", path, line));
-    if (s[i] == '\n') ++line;
-    i += length;
+    if (rest[0] == '\n') ++line;
+    rest.remove_prefix(length);
   }
 }
 
 std::string slurp(const std::string& path, std::size_t limit) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw InputError(fmt::format("'{}' is a directory", path));
+  // Reading a pipe or a device would wait, or never end.
+  std::error_code none;
+  const std::filesystem::file_status status = std::filesystem::status(path, none);
+  if (std::filesystem::is_directory(status)) throw InputError(fmt::format("'{}' is a directory", path));
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError(fmt::format("'{}' is no regular file", path));
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(fmt::format("cannot read '{}': {}", path, std::strerror(errno ? errno : ENOENT)));
@@ -73,6 +68,9 @@ Node load_chain(const std::string& path, std::vector<std::string>& chain, const 
       (relative.is_absolute() ? relative : std::filesystem::path(named.place.directory()) / relative)
           .lexically_normal()
           .string();
+  if (chain.size() == most_bases)
+    throw InputError(
+        fmt::format("{}: there are more than {} bases, each of the one before", named.place.text(), most_bases));
   chain.push_back(std::filesystem::path(path).lexically_normal().string());
   if (std::find(chain.begin(), chain.end(), next) != chain.end()) {
     std::string loop;
@@ -104,33 +102,38 @@ std::string Files::read_text(const std::string& path, std::size_t limit) const {
   MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, comm_);
   bytes.resize(size);
   MPI_Bcast(bytes.data(), static_cast<int>(size), MPI_CHAR, 0, comm_);
+  n_bytes_ += size;
+  if (n_bytes_ > most_bytes)
+    throw InputError(fmt::format("'{}': the files of the deck hold more than {} MiB", path, most_bytes >> 20));
   return bytes;
 }
 
 Node merge(Node base, Node over) {
   if (base.kind != Node::Kind::map || over.kind != Node::Kind::map) return over;
-  Node merged = std::move(over);
+  std::unordered_map<std::string_view, Node*> changed;
+  for (Node& o : over.items) changed.emplace(o.key, &o);
+  // Keys of the base keep their order, new keys follow; keys that were taken back are gone.
   std::vector<Node> items;
   for (Node& b : base.items) {
-    Node* o = merged.find(b.key);
-    if (!o) {
+    const auto at = changed.find(b.key);
+    if (at == changed.end()) {
       items.push_back(std::move(b));
-    } else if (o->kind != Node::Kind::none) {
-      Node m = merge(std::move(b), *o);
-      m.key = o->key;
-      m.key_place = o->key_place;
-      items.push_back(std::move(m));
+      continue;
     }
+    Node* o = at->second;
+    changed.erase(at);
+    if (o->kind == Node::Kind::none) continue;
+    std::string key = o->key;
+    const Place key_place = o->key_place;
+    Node m = merge(std::move(b), std::move(*o));
+    m.key = std::move(key);
+    m.key_place = key_place;
+    items.push_back(std::move(m));
   }
-  // Keys of the base keep their order, new keys follow; keys that were taken back are gone.
-  for (Node& o : merged.items) {
-    const bool seen =
-        std::any_of(base.items.begin(), base.items.end(), [&](const Node& b) { return b.key == o.key; }) ||
-        std::any_of(items.begin(), items.end(), [&](const Node& i) { return i.key == o.key; });
-    if (!seen) items.push_back(std::move(o));
-  }
-  merged.items = std::move(items);
-  return merged;
+  for (Node& o : over.items)
+    if (changed.contains(o.key)) items.push_back(std::move(o));
+  over.items = std::move(items);
+  return over;
 }
 
 Node load(const std::string& path, const std::vector<std::string>& overrides, const Files& files,

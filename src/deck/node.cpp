@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/printable.hpp"
 
 namespace whirl::deck {
 
@@ -64,16 +65,16 @@ Node& Node::push(Node value) {
 
 void Problems::add(const Place& place, const std::string& message) {
   const std::string where = place.text();
-  std::string line = where.empty() ? message : where + ": " + message;
-  if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) lines_.push_back(std::move(line));
+  std::string line = core::printable(where.empty() ? message : where + ": " + message);
+  if (!seen_.insert(line).second) return;
+  if (!full()) lines_.push_back(std::move(line));
 }
 
 void Problems::raise() const {
   if (lines_.empty()) return;
-  constexpr std::size_t most = 20;
   std::string all;
-  for (std::size_t i = 0; i < std::min(most, lines_.size()); ++i) all += (i ? "\n" : "") + lines_[i];
-  if (lines_.size() > most) all += fmt::format("\nand {} more", lines_.size() - most);
+  for (std::size_t i = 0; i < lines_.size(); ++i) all += (i ? "\n" : "") + lines_[i];
+  if (size() > lines_.size()) all += fmt::format("\nand {} more", size() - lines_.size());
   throw core::InputError(all);
 }
 
@@ -103,7 +104,11 @@ Report Report::below(std::string_view path) const {
 }
 
 void Report::fail(std::string_view path, const std::string& message) const {
-  problems_->add(place(path), message);
+  // Finding the place takes a walk through the tree, which only those that will be shown are worth.
+  if (problems_->full())
+    problems_->add({}, prefix_ + std::string(path) + message);
+  else
+    problems_->add(place(path), message);
 }
 
 std::vector<std::string> split_path(std::string_view path) {
@@ -145,10 +150,15 @@ std::string lower(std::string_view s) {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
+  if (word.size() > 60) return best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& c : candidates) {
+  const std::string wanted = lower(word);
+  for (std::size_t k = 0; k < std::min<std::size_t>(candidates.size(), 1000); ++k) {
+    const std::string& c = candidates[k];
     const bool part = word.size() >= 4 && c.size() > word.size() && c.compare(0, word.size(), word) == 0;
-    const std::size_t d = part ? 1 : distance(lower(word), lower(c));
+    const std::size_t apart = c.size() > word.size() ? c.size() - word.size() : word.size() - c.size();
+    if (!part && apart >= least) continue;
+    const std::size_t d = part ? 1 : distance(wanted, lower(c));
     if (d < least && d < word.size()) {
       least = d;
       best = c;
@@ -165,7 +175,12 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 std::string did_you_mean_one_of(std::string_view word, const std::vector<std::string>& names) {
   if (names.empty()) return "; there is none";
   const std::string hint = did_you_mean(word, names);
-  return hint.empty() ? fmt::format("; there {} {}", names.size() == 1 ? "is" : "are", fmt::join(names, ", ")) : hint;
+  if (!hint.empty()) return hint;
+  constexpr std::size_t most = 10;
+  const std::size_t n = std::min(most, names.size());
+  return fmt::format("; there {} {}{}", names.size() == 1 ? "is" : "are",
+                     fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(n), ", "),
+                     names.size() > n ? fmt::format(" and {} more", names.size() - n) : "");
 }
 
 }  // namespace whirl::deck

@@ -31,6 +31,11 @@ std::string scalar_text(const Node& n) {
   return is_plain(n.text) ? n.text : Json(n.text).dump();
 }
 
+// Keys may be paths with wildcards.
+std::string key_text(const Node& n) {
+  return is_plain(n.key) ? n.key : Json(n.key).dump();
+}
+
 bool is_leaf(const Node& n) {
   return n.kind == Node::Kind::scalar || n.kind == Node::Kind::none;
 }
@@ -45,7 +50,7 @@ std::string flow(const Node& n) {
   std::string s = map ? "{" : "[";
   for (const Node& i : n.items) {
     if (s.size() > 1) s += ", ";
-    if (map) s += i.key + ": ";
+    if (map) s += key_text(i) + ": ";
     s += flow(i);
   }
   return s + (map ? "}" : "]");
@@ -60,7 +65,7 @@ bool on_one_line(const Node& n, bool in_list) {
 void block(const Node& n, const std::string& indent, std::string& out) {
   for (const Node& i : n.items) {
     const bool in_list = n.kind == Node::Kind::list;
-    out += indent + (in_list ? "-" : i.key + ":");
+    out += indent + (in_list ? "-" : key_text(i) + ":");
     if (on_one_line(i, in_list)) {
       out += " " + flow(i) + "\n";
       continue;

@@ -21,6 +21,16 @@ const Option* Structure::option(std::string_view key) const {
   return it == options.end() ? nullptr : &*it;
 }
 
+const Option* Structure::aliased(std::string_view key, double& factor) const {
+  for (const Option& o : options)
+    for (const Alias& a : o.aliases)
+      if (a.key == key) {
+        factor = a.factor;
+        return &o;
+      }
+  return nullptr;
+}
+
 std::vector<std::string> Structure::keys() const {
   std::vector<std::string> k;
   for (const Option& o : options) k.push_back(o.key);
@@ -34,6 +44,34 @@ bool Structure::applies(const Option& o, const void* object) const {
   return std::find(o.selected.begin(), o.selected.end(), value) != o.selected.end();
 }
 
+namespace {
+
+// The entry of `node` for `o`, under its key or another word for it, which goes to `meant`; null if there is none.
+const Node* given(const Option& o, const Node& node, Node& meant, Reading& r) {
+  const Node* value = node.find(o.key);
+  for (const Alias& a : o.aliases) {
+    const Node* other = node.find(a.key);
+    if (!other) continue;
+    if (value) {
+      r.problems.add(other->key_place, fmt::format("'{}' says the same as '{}', which {} gives: keep one of them",
+                                                   a.key, value->key, value->key_place.text()));
+      continue;
+    }
+    meant = *other;
+    if (a.factor != 1 && meant.kind == Node::Kind::scalar) {
+      try {
+        meant.text = scaled(meant.text, 1 / a.factor);
+      } catch (const InputError& e) {
+        r.problems.add(other->place, fmt::format("'{}': {}", a.key, e.what()));
+      }
+    }
+    value = &meant;
+  }
+  return value;
+}
+
+}  // namespace
+
 void Structure::read(const Node& node, void* object, Reading& r) const {
   const std::string name = node.key.empty() ? "this value" : fmt::format("'{}'", node.key);
   if (node.kind == Node::Kind::none)
@@ -42,14 +80,19 @@ void Structure::read(const Node& node, void* object, Reading& r) const {
     return r.problems.add(node.place, fmt::format("{} must be a map with the keys {}", name, fmt::join(keys(), ", ")));
   const std::size_t before = r.problems.size();
   for (const Node& entry : node.items) {
-    if (option(entry.key)) continue;
+    if (double factor = 1; option(entry.key) || aliased(entry.key, factor)) continue;
+    if (r.problems.full()) {
+      r.problems.add(entry.key_place, entry.key);
+      continue;
+    }
     const std::string hint = did_you_mean(entry.key, keys());
     r.problems.add(entry.key_place,
                    fmt::format("unknown key '{}'{}", entry.key,
                                hint.empty() ? fmt::format("; valid keys are {}", fmt::join(keys(), ", ")) : hint));
   }
   for (const Option& o : options) {
-    const Node* value = node.find(o.key);
+    Node meant;
+    const Node* value = given(o, node, meant, r);
     if (!applies(o, object)) {
       if (value)
         r.problems.add(value->key_place,

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <unordered_set>
 
 #include "whirl/core/error.hpp"
 #include "whirl/deck/load.hpp"
@@ -9,6 +10,8 @@ namespace whirl::deck {
 namespace {
 
 using core::InputError;
+
+constexpr std::size_t most_values = 300000;
 
 struct Cell {
   std::string text;
@@ -75,6 +78,7 @@ Column column_of(const Cell& cell, const Place& place) {
 Node parse_table(std::string_view text, const std::string& source) {
   const auto name = std::make_shared<const std::string>(source);
   std::vector<Column> columns;
+  std::size_t n_values = 0;
   Node rows = Node::list();
   rows.place = {name, 1, 1};
   int line = 0;
@@ -86,11 +90,11 @@ Node parse_table(std::string_view text, const std::string& source) {
     if (trimmed(row).empty()) continue;
     const std::vector<Cell> cells = cells_of(row, {name, line, 1});
     if (columns.empty()) {
+      std::unordered_set<std::string> keys;
       for (const Cell& c : cells) {
         Column column = column_of(c, {name, line, c.column});
-        for (const Column& other : columns)
-          if (other.key == column.key)
-            throw InputError(fmt::format("{}: column '{}' is given twice", column.place.text(), column.key));
+        if (!keys.insert(column.key).second)
+          throw InputError(fmt::format("{}: column '{}' is given twice", column.place.text(), column.key));
         columns.push_back(std::move(column));
       }
       continue;
@@ -98,6 +102,9 @@ Node parse_table(std::string_view text, const std::string& source) {
     if (cells.size() != columns.size())
       throw InputError(
           fmt::format("{}:{}:1: {} cells in a table of {} columns", source, line, cells.size(), columns.size()));
+    n_values += cells.size() + 1;
+    if (n_values > most_values)
+      throw InputError(fmt::format("{}:{}:1: the table has more than {} values", source, line, most_values));
     Node entry = Node::map();
     entry.table_row = true;
     entry.place = {name, line, 1};

@@ -226,7 +226,9 @@ double to_si(std::string_view text, std::string_view si) {
   if (s.unit.empty() && si != "*") throw InputError(fmt::format("'{}' has no unit: expected {}", text, expected(si)));
   if (s.unit == si || (s.unit == "K" && si == difference)) return s.number;
   check_kind(s.unit, si);
-  return apply(parse_unit(s.unit), s.number);
+  const double value = apply(parse_unit(s.unit), s.number);
+  if (!std::isfinite(value)) throw InputError(fmt::format("'{}' is not a finite number in SI units", text));
+  return value;
 }
 
 double number_to_si(double number, std::string_view unit) {
@@ -257,6 +259,22 @@ std::string write_number(double value) {
   text.resize(last + 1);
   if (last > sign) text.insert(sign + 1, ".");
   return fmt::format("{}e{}", text, exponent);
+}
+
+std::string write_rounded(double value) {
+  double short_value = value;
+  const std::string text = fmt::format("{:.15g}", value);
+  (void)std::from_chars(text.data(), text.data() + text.size(), short_value);
+  if (!std::isfinite(short_value)) throw InputError("the result is not a finite number");
+  return write_number(short_value);
+}
+
+std::string scaled(std::string_view text, double factor) {
+  const Split now = split_quantity(text);
+  if (now.unit.empty()) return write_rounded(now.number * factor);
+  if (number_to_si(0, now.unit) != 0)
+    throw InputError(fmt::format("'{}' has no factor: its zero is not that of the temperature; write it in K", text));
+  return write_rounded(now.number * factor) + " " + now.unit;
 }
 
 std::string write_quantity(double value, std::string_view unit) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <unordered_map>
 
 #include "whirl/core/error.hpp"
 #include "whirl/deck/load.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 using core::InputError;
 
-constexpr std::size_t most_nodes = 1000000;  // aliases of aliases could ask for more than there is memory
+constexpr std::size_t most_nodes = 300000;  // aliases of aliases could ask for more than there is memory
 
 // Builds our tree from the parser's events. The parser's own tree keeps duplicate keys and cyclic aliases and loses the
 // place of aliases; its events do not.
@@ -31,10 +32,10 @@ public:
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto it = anchors_.find(anchor);
     if (it == anchors_.end()) fail(mark, "an alias cannot stand inside the value that it names");
+    count(size_of(it->second), mark);
     Node copy = it->second;
     copy.key.clear();
     copy.place = place(mark);
-    count(size_of(copy), mark);
     add(std::move(copy), 0);
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -64,6 +65,7 @@ private:
     bool has_key = false;
     std::string key;
     Place key_place;
+    std::unordered_map<std::string, int> lines;  // of the keys so far
   };
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
@@ -82,7 +84,12 @@ private:
   }
   void count(std::size_t more, const YAML::Mark& mark) {
     n_nodes_ += more;
-    if (n_nodes_ > most_nodes) fail(mark, "the deck is too large once its aliases are expanded");
+    require_few(place(mark));
+  }
+  void require_few(const Place& at) const {
+    if (n_nodes_ > most_nodes)
+      throw InputError(
+          fmt::format("{}: the deck has more than {} values once its aliases are expanded", at.text(), most_nodes));
   }
   bool wants_key() const {
     return !stack_.empty() && stack_.back().node.kind == Node::Kind::map && !stack_.back().has_key;
@@ -91,7 +98,7 @@ private:
   void open(const YAML::Mark& mark, const std::string& tag, Node n, YAML::anchor_t anchor) {
     if (wants_key()) fail(mark, "a key must be a single word");
     if (tag != "?" && !tag.empty()) fail(mark, fmt::format("tags such as '{}' have no meaning here", tag));
-    stack_.push_back({leaf(mark, std::move(n)), anchor, false, {}, {}});
+    stack_.push_back({leaf(mark, std::move(n)), anchor, false, {}, {}, {}});
   }
   void close() {
     Open top = std::move(stack_.back());
@@ -100,7 +107,11 @@ private:
   }
   void add(Node n, YAML::anchor_t anchor) {
     if (wants_key()) return take_key(n);
-    if (anchor != 0) anchors_[anchor] = n;
+    if (anchor != 0) {
+      n_nodes_ += size_of(n);  // nested anchors keep their values many times
+      require_few(n.place);
+      anchors_[anchor] = n;
+    }
     if (stack_.empty()) {
       root_ = std::move(n);
       return;
@@ -119,9 +130,8 @@ private:
     if (n.kind != Node::Kind::scalar) throw InputError(where + "a key must be a single word");
     if (n.text == "<<")
       throw InputError(where + "merge keys ('<<') are not supported; use `base:` or repeat the values");
-    if (const Node* first = top.node.find(n.text))
-      throw InputError(
-          fmt::format("{}key '{}' is given twice, first in line {}", where, n.text, first->key_place.line));
+    if (const auto [first, fresh] = top.lines.emplace(n.text, n.place.line); !fresh)
+      throw InputError(fmt::format("{}key '{}' is given twice, first in line {}", where, n.text, first->second));
     top.key = n.text;
     top.key_place = n.place;
     top.has_key = true;

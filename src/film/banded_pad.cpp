@@ -1,86 +1,17 @@
-// Any pad by a banded factorisation of the five-point equation.
-//
-// Unknowns p_ij, i = 1..n_theta - 1 around and j along the pad, numbered along z first; on a closed pad i = 0..n_theta
-// - 1 with the columns in the order 0, n - 1, 1, n - 2, ..., which keeps neighbours within twice the bandwidth. Columns
-// in grooves hold p = 0. Per unit of cell area
-//     (A p)_ij + v_j src_ij = 0,   A from conductances v_j a_(i+1/2,j)/(R dtheta)^2 around and b_(i,j+1/2)/dz^2 along.
-// An aligned journal needs only half the length: v_j = 1/2 on a mid-plane row, no flow across the mid-plane.
-// Reynolds cavitation: p >= 0, A p + src >= 0, complementary; primal-dual active set (Hintermueller, Ito, Kunisch
-// 2003), which converges from any start because A is an M-matrix. With lambda = A^-1 dF/dp on the uncavitated nodes
-//     dF = -lambda . (d src + dA p).
+// The equation of a pad, its force without complementarity, and all derivatives by adjoints.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "film/band.hpp"
+#include "film/banded_pad.hpp"
 #include "film/groove.hpp"
-#include "film/mobility.hpp"
-#include "film/pad.hpp"
 #include "film/truncation.hpp"
-#include "whirl/core/error.hpp"
 
 namespace whirl::film {
-namespace {
-
-class BandedPad final : public PadSolver {
-public:
-  BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
-  void add(const Motion& motion, Need need, Response& response) override;
-  std::vector<double> pressure(const Motion& motion) override;
-
-private:
-  struct Faces {  // coefficients on faces, with derivatives in h and Omega
-    std::vector<double> h, value, d_h, d_speed;
-    void resize(std::size_t n) {
-      for (auto* v : {&h, &value, &d_h, &d_speed}) v->assign(n, 0.0);
-    }
-  };
-  void coefficients(const Motion& motion);
-  void assemble();
-  void solve();
-  void solve_complementarity();
-  double residual(int i, int j) const;
-  void integrate(Need need, Response& response);
-  void adjoint(const Motion& motion, Response& response);
-
-  int wrap(int i) const { return pad_.closed ? (i + grid_.n_theta) % grid_.n_theta : i; }
-  // Pressure zero on the whole column: beyond an edge of the pad, or in a groove.
-  bool wall(int i) const {
-    return pad_.closed ? grooves_[static_cast<std::size_t>(wrap(i))] : i <= 0 || i >= grid_.n_theta;
-  }
-  int place(int i) const {
-    if (!pad_.closed) return i - 1;
-    return 2 * i < grid_.n_theta ? 2 * i : 2 * (grid_.n_theta - i) - 1;
-  }
-  std::size_t at(int i, int j) const { return static_cast<std::size_t>(place(i) * rows_ + j); }
-  std::size_t around(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * rows_ + j : i); }
-  std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
-  double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)][0]; }
-  double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
-  double row_z(int j) const { return (j + 1) * grid_.dz - 0.5 * pad_.length; }
-
-  Pad pad_;
-  Grid grid_;
-  bool tilt_;
-  Options::Cavitation cavitation_;
-  Resistance resistance_around_, resistance_along_;
-  double viscosity_, density_;
-  int rows_, z_faces_;
-  double last_share_;
-  int first_;                  // first column of unknowns
-  std::vector<bool> grooves_;  // columns of a closed pad
-
-  double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
-  Faces a_, b_;                         // [n_theta][rows], [n_theta][z_faces]; one column if aligned
-  std::vector<double> source_;          // v_j src_ij
-  std::vector<char> cavitated_, next_;  // active set, kept as the start of the next evaluation
-  Band band_;
-  std::vector<Quad> x_, load_;  // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
-};
 
 BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
     : pad_(pad),
       grid_(pad, options.cells),
+      least_(pad),
       tilt_(options.tilt),
       cavitation_(options.cavitation),
       resistance_around_(resistance_around(options.turbulence)),
@@ -90,6 +21,7 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
       rows_(tilt_ ? grid_.n_z - 1 : grid_.n_z / 2),
       z_faces_(tilt_ ? rows_ + 1 : rows_),
       last_share_(!tilt_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
+      stiffen_(1.0 + std::pow(4.0 * pad.radius * grid_.dtheta / pad.length, 4)),
       first_(pad.closed ? 0 : 1),
       band_((grid_.n_theta - first_) * rows_, (pad.closed ? 2 : 1) * rows_) {
   const auto n = static_cast<std::size_t>(grid_.n_theta);
@@ -101,7 +33,7 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
   if (pad.closed) grooves_ = grooved(grid_.n_theta, options.grooves);
   for (int i = first_; i < grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = wall(i);
-  next_.assign(size, 0);
+  if (cavitation_ == Options::Cavitation::reynolds) enter_ruptured();
   x_.assign(size, Quad::zero());
   load_.assign(size, Quad::zero());
 }
@@ -113,16 +45,9 @@ void BandedPad::coefficients(const Motion& motion) {
   tx_ = tilt_ ? motion.position[2] : 0.0;
   ty_ = tilt_ ? motion.position[3] : 0.0;
   const double txd = tilt_ ? motion.velocity[2] : 0.0, tyd = tilt_ ? motion.velocity[3] : 0.0;
-  const double c = pad_.clearance, end = 0.5 * pad_.length;
-  // h is linear in z: its minimum lies on a side.
-  h_min_ = std::numeric_limits<double>::infinity();
-  const auto check = [&](double cosine, double sine) {
-    const double middle = c - X_ * cosine - Y_ * sine, tip = end * (tx_ * cosine + ty_ * sine);
-    h_min_ = std::min(h_min_, middle - std::abs(tip));
-  };
-  for (std::size_t i = 0; i < grid_.node_cos.size(); ++i) check(grid_.node_cos[i], grid_.node_sin[i]);
-  for (std::size_t i = 0; i < grid_.face_cos.size(); ++i) check(grid_.face_cos[i], grid_.face_sin[i]);
-  require_thickness(std::isfinite(X_ + Y_ + tx_ + ty_) ? h_min_ : std::numeric_limits<double>::quiet_NaN());
+  const double c = pad_.clearance;
+  h_min_ = least_(X_, Y_, tx_, ty_);
+  require_thickness(h_min_);
 
   const int a_columns = tilt_ ? rows_ : 1, b_columns = tilt_ ? z_faces_ : 1;
   for (int i = 0; i < n; ++i) {
@@ -159,6 +84,7 @@ void BandedPad::coefficients(const Motion& motion) {
 }
 
 void BandedPad::assemble() {
+  const bool ruptured = cavitation_ == Options::Cavitation::reynolds;
   for (int i = first_; i < grid_.n_theta; ++i) {
     for (int j = 0; j < rows_; ++j) {
       const std::size_t here = at(i, j);
@@ -171,6 +97,7 @@ void BandedPad::assemble() {
       const double left = share(j) * a_.value[around(wrap(i - 1), j)], right = share(j) * a_.value[around(i, j)];
       const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
       row[0] = left + right + b_.value[along(i, j)] + up;
+      if (ruptured) row[0] += cut_[here];
       if (j + 1 < rows_ && !cavitated_[here + 1]) row[1] -= up;
       // Of two neighbours the one that comes first holds the entry.
       for (const auto& [side, value] : {std::pair{i + 1, right}, std::pair{i - 1, left}}) {
@@ -182,53 +109,17 @@ void BandedPad::assemble() {
   }
 }
 
-void BandedPad::solve() {
-  if (cavitation_ == Options::Cavitation::reynolds) return solve_complementarity();
+void BandedPad::solve(Need need) {
+  if (cavitation_ == Options::Cavitation::reynolds) return solve_ruptured(need);
   assemble();
   band_.factor();
   for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -source_[k]);
   band_.solve(x_);
 }
 
-// A p + src at a node.
-double BandedPad::residual(int i, int j) const {
-  const double p = pressure_at(i, j);
-  double r = source_[at(i, j)] + b_.value[along(i, j)] * (p - pressure_at(i, j - 1));
-  r += share(j) * (a_.value[around(wrap(i - 1), j)] * (p - pressure_at(i - 1, j)) +
-                   a_.value[around(i, j)] * (p - pressure_at(i + 1, j)));
-  if (j + 1 < z_faces_) r += b_.value[along(i, j + 1)] * (p - pressure_at(i, j + 1));
-  return r;
-}
-
-void BandedPad::solve_complementarity() {
-  constexpr int kMost = 200;
-  constexpr double kRound = 1e-12;  // ties within rounding must not make the set cycle
-  double scale = 0.0;
-  for (double s : source_) scale = std::max(scale, std::abs(s));
-  for (int iteration = 0; iteration < kMost; ++iteration) {
-    assemble();
-    band_.factor();
-    for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -source_[k]);
-    band_.solve(x_);
-    double top = 0.0;
-    for (const Quad& x : x_) top = std::max(top, std::abs(x[0]));
-    int changes = 0;
-    for (int i = first_; i < grid_.n_theta; ++i) {
-      for (int j = 0; j < rows_; ++j) {
-        const std::size_t k = at(i, j);
-        const bool now = wall(i) || (cavitated_[k] ? residual(i, j) >= -kRound * scale : x_[k][0] < -kRound * top);
-        changes += now != static_cast<bool>(cavitated_[k]);
-        next_[k] = now;
-      }
-    }
-    if (changes == 0) return;
-    cavitated_.swap(next_);
-  }
-  throw core::NotConverged("the cavitated region of a film did not settle");
-}
-
 // Force, and its derivatives in the nodal pressures into load_.
 void BandedPad::integrate(Need need, Response& response) {
+  if (cavitation_ == Options::Cavitation::reynolds) return integrate_ruptured(need, response);
   const bool truncated = cavitation_ == Options::Cavitation::half_sommerfeld;
   const double area = pad_.radius * grid_.dtheta * grid_.dz * grid_.mean;
   std::fill(load_.begin(), load_.end(), Quad::zero());
@@ -269,6 +160,8 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
     if (cavitated_[k]) load_[k] = Quad::zero();
   }
   band_.solve(load_);
+  const bool ruptured = cavitation_ == Options::Cavitation::reynolds;
+  if (ruptured) weigh_ruptured();
   const auto lambda = [&](int i, int j) {
     return wall(i) || j < 0 || j >= rows_ ? Quad::zero() : load_[at(wrap(i), j)];
   };
@@ -286,7 +179,11 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
     const auto k = static_cast<std::size_t>(i);
     Quad level = Quad::zero(), moment = Quad::zero();
     for (int j = 0; j < rows_; ++j) {
-      const Quad e = (share(j) * (pressure_at(i + 1, j) - pressure_at(i, j))) * (lambda(i + 1, j) - lambda(i, j));
+      Quad e = (share(j) * (pressure_at(i + 1, j) - pressure_at(i, j))) * (lambda(i + 1, j) - lambda(i, j));
+      if (ruptured) {
+        for (const int node : {i, i + 1})
+          if (!wall(node)) e += 0.5 * stiffen_ * by_mobility_[at(wrap(node), j)];
+      }
       const Quad slope = a_.d_h[around(i, j)] * e;
       level += slope;
       moment += row_z(j) * slope;
@@ -305,7 +202,8 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
     spread(position, level, moment, grid_.node_cos[k], grid_.node_sin[k]);
     level = moment = Quad::zero();
     for (int j = 0; j < rows_; ++j) {
-      const Quad e = (share(j) * grid_.mean) * lambda(i, j);
+      const Quad e = ruptured ? (wall(i) ? Quad::zero() : grid_.mean * by_source_[at(i, j)])
+                              : (share(j) * grid_.mean) * lambda(i, j);
       level += e;
       moment += row_z(j) * e;
     }
@@ -328,7 +226,7 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
 
 void BandedPad::add(const Motion& motion, Need need, Response& response) {
   coefficients(motion);
-  solve();
+  solve(need);
   integrate(need, response);
   response.min_thickness = std::min(response.min_thickness, h_min_);
   if (need == Need::tangents) adjoint(motion, response);
@@ -336,7 +234,7 @@ void BandedPad::add(const Motion& motion, Need need, Response& response) {
 
 std::vector<double> BandedPad::pressure(const Motion& motion) {
   coefficients(motion);
-  solve();
+  solve(Need::force);
   const bool truncated = cavitation_ != Options::Cavitation::none;
   std::vector<double> values;
   for (int i = 0; i <= grid_.n_theta; ++i) {
@@ -348,8 +246,6 @@ std::vector<double> BandedPad::pressure(const Motion& motion) {
   }
   return values;
 }
-
-}  // namespace
 
 std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Options& options, const Lubricant& lubricant) {
   return std::make_unique<BandedPad>(pad, options, lubricant);

@@ -58,6 +58,15 @@ std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
   return table;
 }
 
+std::span<const deck::Name<Inlet::Type>> names(Inlet::Type) {
+  static constexpr deck::Name<Inlet::Type> table[] = {
+      {Inlet::Type::free, "free", "wherever cavitation lets the film reform"},
+      {Inlet::Type::maximum_gap, "maximum_gap",
+       "where the film is thickest, turning with the journal: what the tables of Raimondi and Boyd assume"},
+      {Inlet::Type::line, "line", "along a line fixed in the bearing, at 'angle'"}};
+  return table;
+}
+
 std::span<const deck::Name<Options::Quadrature>> names(Options::Quadrature) {
   static constexpr deck::Name<Options::Quadrature> table[] = {
       {Options::Quadrature::sub_cell, "sub_cell", "positive part of the piecewise linear pressure, exactly"},
@@ -137,12 +146,23 @@ void describe(deck::Description<Contact>& d) {
       .continuable();
 }
 
+void describe(deck::Description<Inlet>& d) {
+  d.add("type", &Inlet::type, "where pressure zero is held");
+  d.add("angle", &Inlet::angle, "rad", deck::any, "of the line, from +x counter-clockwise; the top if not given")
+      .only(&Inlet::type, {Inlet::Type::line});
+}
+
 void describe(deck::Description<Options>& d) {
   using enum Options::Kind;
   d.add("type", &Options::kind, "model of the film");
-  d.add("cavitation", &Options::cavitation, "what happens where the pressure would be negative")
+  d.add("cavitation", &Options::cavitation,
+        "what happens where the pressure would be negative; half_sommerfeld, the cheapest, unless given")
       .only(&Options::kind, {reynolds});
-  d.add("turbulence", &Options::turbulence, "flow coefficients of the film", "004 errata 15")
+  d.add("turbulence", &Options::turbulence,
+        "flow coefficients of the film; laminar unless given, however large the Reynolds number", "004 errata 15")
+      .only(&Options::kind, {reynolds});
+  d.add("inlet", &Options::inlet, "where the film of a cylindrical bore without grooves starts",
+        "Raimondi and Boyd 1958")
       .only(&Options::kind, {reynolds});
   d.add("cells", &Options::cells, deck::in(4, 2000),
         "intervals around and along each pad; of a short or long compliant film around only")
@@ -181,6 +201,10 @@ void describe(deck::Description<Options>& d) {
       .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
   d.add("differences", &Options::differences, "differences of the thickness around the bearing")
       .only(&Options::kind, {compliant_short, compliant_long, compliant_finite});
+  d.check([](const Options& o, const deck::Report& r) {
+    if (o.kind == reynolds && o.inlet.type != Inlet::Type::free && !o.grooves.empty())
+      r.fail("inlet", "a film starts at its 'grooves' or at an 'inlet', not at both");
+  });
   d.check([](const Options& o, const deck::Report& r) {
     if (o.kind != compliant_short && o.kind != compliant_long && o.kind != compliant_finite) return;
     if (o.liner.has_value() == o.compliance.has_value())

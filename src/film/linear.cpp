@@ -22,7 +22,7 @@ public:
       }
     }
   }
-  Summary summary(const Motion&) override { return {std::numeric_limits<double>::infinity(), 0.0, 0.0, 0.0}; }
+  Summary summary(const Motion&) override { return {.min_thickness = std::numeric_limits<double>::infinity()}; }
   std::vector<Field> fields(const Motion&) override { return {}; }
   [[nodiscard]] bool linear() const override { return true; }
 

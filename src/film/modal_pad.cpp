@@ -8,7 +8,6 @@
 //     dF = -sum_k m_k . (d src + dA_k q_k).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "film/mobility.hpp"
@@ -43,6 +42,7 @@ private:
 
   Pad pad_;
   Grid grid_;
+  LeastThickness least_;
   bool truncated_;
   Resistance around_, along_;
   double viscosity_, density_;
@@ -74,6 +74,7 @@ private:
 ModalPad::ModalPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
     : pad_(pad),
       grid_(pad, options.cells),
+      least_(pad),
       truncated_(options.cavitation == Options::Cavitation::half_sommerfeld),
       around_(resistance_around(options.turbulence)),
       along_(resistance_along(options.turbulence)),
@@ -121,16 +122,13 @@ void ModalPad::thickness(const Motion& motion) {
   const double X = X_, Y = Y_, c = pad_.clearance;
   const double *nc = grid_.node_cos.data(), *ns = grid_.node_sin.data();
   const double *fc = grid_.face_cos.data(), *fs = grid_.face_sin.data();
-  double low = c - X * nc[n] - Y * ns[n];
-  h_node_[static_cast<std::size_t>(n)] = low;
+  h_min_ = least_(X, Y);
+  require_thickness(h_min_);
+  h_node_[static_cast<std::size_t>(n)] = c - X * nc[n] - Y * ns[n];
   for (int i = 0; i < n; ++i) {
     h_node_[static_cast<std::size_t>(i)] = c - X * nc[i] - Y * ns[i];
     h_face_[static_cast<std::size_t>(i)] = c - X * fc[i] - Y * fs[i];
   }
-  for (double h : h_node_) low = h < low ? h : low;
-  for (double h : h_face_) low = h < low ? h : low;
-  h_min_ = low;
-  require_thickness(std::isfinite(X + Y) ? h_min_ : std::numeric_limits<double>::quiet_NaN());
 
   const double speed = motion.speed;
   const double step = pad_.radius * grid_.dtheta;

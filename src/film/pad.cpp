@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -10,9 +12,12 @@
 
 namespace whirl::film {
 
-std::vector<Pad> make_pads(const Geometry& g) {
-  if (g.type == Geometry::Bore::cylindrical)
-    return {{g.radius, g.length, g.clearance, 0.5 * std::numbers::pi, 2.0 * std::numbers::pi, 0.0, 0.0, true}};
+std::vector<Pad> make_pads(const Geometry& g, const Inlet& inlet) {
+  if (g.type == Geometry::Bore::cylindrical) {
+    const bool free = inlet.type == Inlet::Type::free;
+    const double start = free ? 0.5 * std::numbers::pi : inlet.type == Inlet::Type::line ? inlet.angle : 0.0;
+    return {{g.radius, g.length, g.clearance, start, 2.0 * std::numbers::pi, 0.0, 0.0, free}};
+  }
   const double machined = g.clearance / (1.0 - g.preload);
   const double rise = machined - g.clearance;  // the centre of each arc lies beyond the bearing centre
   const bool lobes = g.type == Geometry::Bore::lemon_bore;
@@ -38,6 +43,34 @@ Grid::Grid(const Pad& pad, const std::array<int, 2>& cells)
     face_cos.push_back(std::cos(face));
     face_sin.push_back(std::sin(face));
   }
+}
+
+LeastThickness::LeastThickness(const Pad& pad)
+    : clearance_(pad.clearance),
+      half_length_(0.5 * pad.length),
+      middle_{std::cos(pad.start + 0.5 * pad.arc), std::sin(pad.start + 0.5 * pad.arc)},
+      first_{std::cos(pad.start), std::sin(pad.start)},
+      last_{std::cos(pad.start + pad.arc), std::sin(pad.start + pad.arc)},
+      half_(pad.closed ? -1.0 : std::cos(0.5 * pad.arc)) {}
+
+double LeastThickness::operator()(double X, double Y) const {
+  const double r = std::sqrt(X * X + Y * Y);
+  if (!(X * middle_[0] + Y * middle_[1] < r * half_)) return clearance_ - r;
+  return clearance_ - std::max(X * first_[0] + Y * first_[1], X * last_[0] + Y * last_[1]);
+}
+
+double LeastThickness::operator()(double X, double Y, double tx, double ty) const {
+  const double x = half_length_ * tx, y = half_length_ * ty;
+  return std::min((*this)(X + x, Y + y), (*this)(X - x, Y - y));
+}
+
+double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Pad& pad : make_pads(geometry)) {
+    const double X = position[0] - pad.centre_x, Y = position[1] - pad.centre_y;
+    least = std::min(least, LeastThickness(pad)(X, Y, position[2], position[3]));
+  }
+  return least;
 }
 
 void require_thickness(double h_min) {

@@ -17,8 +17,8 @@ struct Pad {
 };
 
 /// The pads of a bore, lower pad first (errata of Gavalas 2022, eq. 2.10, items 18-19); a cylindrical bore is one
-/// closed pad that begins at 90 deg.
-std::vector<Pad> make_pads(const Geometry& geometry);
+/// closed pad that begins at 90 deg, or one with two edges at its inlet: at 0 if that follows the maximum gap.
+std::vector<Pad> make_pads(const Geometry& geometry, const Inlet& inlet = {});
 
 /// Uniform grid of a pad: n_theta x n_z cells, nodes on all edges, faces midway between nodes along theta.
 struct Grid {
@@ -28,6 +28,22 @@ struct Grid {
   double mean;  // exact cell mean of cos(theta) over its mid-point value, 2 sin(dtheta/2)/dtheta
   std::vector<double> node_cos, node_sin;  // [n_theta + 1]
   std::vector<double> face_cos, face_sin;  // [n_theta]
+};
+
+/// Least thickness of an arc, exactly and not over nodes: where h = clearance - X cos(theta) - Y sin(theta) is smallest
+/// on the whole circle if the arc reaches there, else at one of its edges.
+class LeastThickness {
+public:
+  explicit LeastThickness(const Pad& pad);
+  /// X, Y: journal relative to the centre of the arc [m]; NaN if they are.
+  [[nodiscard]] double operator()(double X, double Y) const;
+  /// The same with the slopes tx, ty of the journal: h is linear along the shaft, least at one of the sides.
+  [[nodiscard]] double operator()(double X, double Y, double tx, double ty) const;
+
+private:
+  double clearance_, half_length_;
+  std::array<double, 2> middle_, first_, last_;  // directions of the middle and the edges of the arc
+  double half_;                                  // cosine of half the arc
 };
 
 /// Part of a film that answers for one pad.

@@ -8,6 +8,7 @@
 #include "film/kinds.hpp"
 #include "film/mobility.hpp"
 #include "film/pad.hpp"
+#include "film/turning_frame.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -23,6 +24,8 @@ void check(const Geometry& g, const Options& o, const Lubricant& l) {
   const bool closed = g.type == Geometry::Bore::cylindrical;
   demand(closed || (g.arc > 0.0 && g.arc <= limit), "the arc must be positive and its pads must not overlap");
   demand(closed || o.grooves.empty(), "only a cylindrical bore has grooves");
+  demand(o.inlet.type == Inlet::Type::free || (closed && o.grooves.empty()),
+         "only a cylindrical bore without grooves has an inlet");
   demand(g.preload < 1.0, "the preload must be below 1");
   demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
   demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");
@@ -34,7 +37,7 @@ void check(const Geometry& g, const Options& o, const Lubricant& l) {
 class ReynoldsFilm final : public Model {
 public:
   ReynoldsFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : options_(options), lubricant_(lubricant), pads_(make_pads(geometry)) {
+      : options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
     const bool modal = !options.tilt && options.cavitation != Options::Cavitation::reynolds;
     for (const Pad& pad : pads_) {
       solvers_.push_back(modal && !pad.closed ? make_modal_pad(pad, options, lubricant)
@@ -45,6 +48,11 @@ public:
   void evaluate(const Motion& motion, Need need, Response& response) override {
     response = {};
     response.min_thickness = std::numeric_limits<double>::infinity();
+    if (turns()) {
+      const TurningFrame frame(motion, pads_.front().clearance);
+      solvers_.front()->add(frame.motion(), need, response);
+      return frame.turn_back(need, response);
+    }
     for (auto& solver : solvers_) solver->add(motion, need, response);
   }
 
@@ -52,6 +60,11 @@ public:
   std::vector<Field> fields(const Motion& motion) override;
 
 private:
+  [[nodiscard]] bool turns() const { return options_.inlet.type == Inlet::Type::maximum_gap; }
+  // The motion seen by the pads.
+  [[nodiscard]] Motion seen(const Motion& motion) const {
+    return turns() ? TurningFrame(motion, pads_.front().clearance).motion() : motion;
+  }
   double thickness(const Pad& pad, const Motion& motion, double theta, double z) const {
     const double tx = options_.tilt ? motion.position[2] : 0.0, ty = options_.tilt ? motion.position[3] : 0.0;
     return pad.clearance - (motion.position[0] + z * tx - pad.centre_x) * std::cos(theta) -
@@ -67,14 +80,21 @@ private:
 // Side flow through both ends, h^3/(mu k_z) p_z with one-sided slopes of second order; friction torque of the journal
 // from the shear mu U/h tau_c + (h/2) p_theta/R with tau_c = 1 + 0.0012 Re^0.94 in turbulence (Constantinescu's Couette
 // factor).
-Summary ReynoldsFilm::summary(const Motion& motion) {
+// What enters is Couette flow U h/2 less the pressure's own around the pad, at its first edge in the direction of
+// rotation.
+Summary ReynoldsFilm::summary(const Motion& given) {
+  const Motion motion = seen(given);
   Summary result;
+  result.inlet_flow = 0.0;
   result.min_thickness = std::numeric_limits<double>::infinity();
-  const Resistance along = resistance_along(options_.turbulence);
+  const Resistance along = resistance_along(options_.turbulence), around = resistance_around(options_.turbulence);
   const bool laminar = options_.turbulence == Options::Turbulence::laminar;
   const double mu = lubricant_.viscosity;
   for (std::size_t n = 0; n < pads_.size(); ++n) {
     const Pad& pad = pads_[n];
+    const double X = motion.position[0] - pad.centre_x, Y = motion.position[1] - pad.centre_y;
+    const double tx = options_.tilt ? motion.position[2] : 0.0, ty = options_.tilt ? motion.position[3] : 0.0;
+    result.min_thickness = std::min(result.min_thickness, LeastThickness(pad)(X, Y, tx, ty));
     const Grid grid(pad, options_.cells);
     const auto columns = static_cast<std::size_t>(grid.n_z + 1);
     const std::vector<double> p = solvers_[n]->pressure(motion);
@@ -93,6 +113,14 @@ Summary ReynoldsFilm::summary(const Motion& motion) {
           result.side_flow +=
               share * h * h * h / (mu * film::evaluate(along, Re)) * (4.0 * first - second) / (2.0 * grid.dz);
         }
+        if (!pad.closed && i == (U >= 0.0 ? 0 : grid.n_theta)) {
+          const auto p_at = [&](int steps) {
+            return p[static_cast<std::size_t>(i == 0 ? steps : i - steps) * columns + static_cast<std::size_t>(j)];
+          };
+          const double rise = (4.0 * p_at(1) - p_at(2)) / (2.0 * grid.dtheta * pad.radius);
+          result.inlet_flow += grid.dz * (side ? 0.5 : 1.0) *
+                               (0.5 * std::abs(U) * h - h * h * h / (mu * film::evaluate(around, Re)) * rise);
+        }
         const double area = share * grid.dz * (side ? 0.5 : 1.0);
         const double couette = laminar ? 1.0 : 1.0 + 0.0012 * std::pow(Re, 0.94);
         double slope = 0.0;
@@ -103,16 +131,18 @@ Summary ReynoldsFilm::summary(const Motion& motion) {
           slope = (at(i == grid.n_theta ? 1 : i + 1) - at(i == 0 ? grid.n_theta - 1 : i - 1)) / (2.0 * grid.dtheta);
         }
         shear += area * (mu * U / h * couette + 0.5 * h * slope / pad.radius);
-        result.min_thickness = std::min(result.min_thickness, h);
         result.max_pressure = std::max(result.max_pressure, row[j]);
       }
     }
     result.power_loss += shear * U;
+    if (pad.closed) result.inlet_flow = std::numeric_limits<double>::quiet_NaN();
   }
   return result;
 }
 
-std::vector<Field> ReynoldsFilm::fields(const Motion& motion) {
+std::vector<Field> ReynoldsFilm::fields(const Motion& given) {
+  const Motion motion = seen(given);
+  const double turn = turns() ? TurningFrame(given, pads_.front().clearance).angle() : 0.0;
   std::vector<Field> all;
   for (std::size_t n = 0; n < pads_.size(); ++n) {
     const Pad& pad = pads_[n];
@@ -127,6 +157,7 @@ std::vector<Field> ReynoldsFilm::fields(const Motion& motion) {
     for (double t : theta.values) {
       for (double at : z.values) h.values.push_back(thickness(pad, motion, t, at));
     }
+    for (double& t : theta.values) t += turn;
     for (Field* f : {&theta, &z, &pressure, &h}) all.push_back(std::move(*f));
   }
   return all;

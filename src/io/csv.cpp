@@ -42,8 +42,11 @@ std::string value(const Dataset& d, std::size_t k) {
 std::vector<std::string> order(const Group& group) {
   std::vector<std::string> names;
   if (group.has_attribute("columns")) {
-    std::istringstream words(group.text("columns"));
-    for (std::string word; words >> word;)
+    // Names with spaces stand one a line.
+    const std::string& all = group.text("columns");
+    const char between = all.find('\n') == std::string::npos ? ' ' : '\n';
+    std::istringstream words(all);
+    for (std::string word; std::getline(words, word, between);)
       if (group.has_dataset(word)) names.push_back(word);
   }
   for (const std::size_t axes : {1UL, 2UL})

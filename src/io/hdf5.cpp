@@ -272,6 +272,21 @@ Group read_hdf5(const std::filesystem::path& path) {
   }
 }
 
+std::string to_bytes(const Group& root) {
+  const Quiet quiet;
+  return image_of(root);
+}
+
+Group from_bytes(const std::string& bytes) {
+  const Quiet quiet;
+  const List in_memory(H5Pcreate(H5P_FILE_ACCESS));
+  check(H5Pset_fapl_core(in_memory, std::size_t{1} << 20, false));
+  std::string image = bytes;
+  check(H5Pset_file_image(in_memory, image.data(), image.size()));
+  const File file(H5Fopen("whirl results in memory.h5", H5F_ACC_RDONLY, in_memory));
+  return read_group(file);
+}
+
 void describe_results(Group& root, const std::string& title, const std::string& version) {
   root.set("title", title);
   root.set("version", version);

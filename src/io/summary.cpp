@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "io/atomic_file.hpp"
 #include "whirl/core/error.hpp"
@@ -28,6 +29,14 @@ double number(const Json& j) {
 
 Json text_or_null(const std::string& s) {
   return s.empty() ? Json(nullptr) : Json(s);
+}
+
+// The numbers of an object under keys that are not `known`.
+std::map<std::string, double> others(const Json& j, const std::set<std::string>& known) {
+  std::map<std::string, double> out;
+  for (const auto& [key, value] : j.items())
+    if (!known.contains(key)) out[key] = number(value);
+  return out;
 }
 
 Json to_json(const Bifurcation& b) {
@@ -101,18 +110,77 @@ CodimensionTwo codimension_two(Json j) {
   return c;
 }
 
+Json numbers(const std::vector<double>& all) {
+  Json j = Json::array();
+  for (const double x : all) j.push_back(number(x));
+  return j;
+}
+
+std::vector<double> numbers(const Json& j) {
+  std::vector<double> all;
+  for (const Json& x : j) all.push_back(number(x));
+  return all;
+}
+
+Json to_json(const StudySummary& s);
+StudySummary study(const Json& j);
+
+void put_sweep(Json& j, const StudySummary& s) {
+  for (const VariantSummary& v : s.variants) {
+    Json changes = Json::object(), studies = Json::array();
+    for (const auto& [path, value] : v.changes) changes[path] = value;
+    for (const StudySummary& one : v.studies) studies.push_back(to_json(one));
+    j["variants"].push_back({{"name", v.name}, {"changes", std::move(changes)}, {"studies", std::move(studies)}});
+  }
+  for (const SweepColumn& c : s.columns)
+    j["columns"].push_back({{"name", c.name},
+                            {"unit", c.unit},
+                            {"values", numbers(c.values)},
+                            {"uncertainties", numbers(c.uncertainties)}});
+  for (const Trend& t : s.trends)
+    j["trends"].push_back({{"column", t.column},
+                           {"quantity", t.quantity},
+                           {"unit", t.unit},
+                           {"beside", t.beside},
+                           {"sign", t.sign},
+                           {"variants", t.variants},
+                           {"at", numbers(t.at)},
+                           {"difference", numbers(t.difference)},
+                           {"uncertainty", numbers(t.uncertainty)}});
+}
+
+void take_sweep(const Json& j, StudySummary& s) {
+  for (const Json& v : j.value("variants", Json::array())) {
+    VariantSummary& variant = s.variants.emplace_back();
+    variant.name = v.at("name");
+    for (const auto& [path, value] : v.at("changes").items()) variant.changes.emplace_back(path, value);
+    for (const Json& one : v.at("studies")) variant.studies.push_back(study(one));
+  }
+  for (const Json& c : j.value("columns", Json::array()))
+    s.columns.push_back({c.at("name"), c.at("unit"), numbers(c.at("values")), numbers(c.at("uncertainties"))});
+  for (const Json& t : j.value("trends", Json::array()))
+    s.trends.push_back({t.at("column"), t.at("quantity"), t.at("unit"), t.at("beside"), t.at("sign"), t.at("variants"),
+                        numbers(t.at("at")), numbers(t.at("difference")), numbers(t.at("uncertainty"))});
+}
+
 Json to_json(const StudySummary& s) {
   Json values = Json::object();
-  for (const auto& [name, q] : s.values) values[name] = {{"value", number(q.value)}, {"unit", q.unit}};
+  for (const auto& [name, q] : s.values) {
+    values[name] = {{"value", number(q.value)}, {"unit", q.unit}};
+    for (const auto& [key, value] : q.more) values[name][key] = number(value);
+  }
   Json bifurcations = Json::array(), modes = Json::array();
   for (const Bifurcation& b : s.bifurcations) bifurcations.push_back(to_json(b));
-  for (const ModeEntry& m : s.modes)
+  for (const ModeEntry& m : s.modes) {
     modes.push_back({{"speed", number(m.speed)},
                      {"speed_unit", m.speed_unit},
                      {"real", number(m.real)},
                      {"imag", number(m.imag)},
                      {"log_decrement", number(m.log_decrement)},
                      {"whirl", text_or_null(m.whirl)}});
+    if (!m.stability.empty()) modes.back()["stability"] = m.stability;
+    for (const auto& [key, value] : m.more) modes.back()[key] = number(value);
+  }
   Json j = {{"name", s.name},
             {"kind", s.kind},
             {"status", s.status},
@@ -121,9 +189,17 @@ Json to_json(const StudySummary& s) {
             {"bifurcations", std::move(bifurcations)},
             {"modes", std::move(modes)},
             {"points", s.points}};
+  if (!s.stability.empty()) j["stability"] = s.stability;
+  if (!s.warnings.empty()) j["warnings"] = s.warnings;
+  for (const Column& c : s.curve) {
+    Json column = Json::array();
+    for (const double v : c.values) column.push_back(number(v));
+    j["curve"][c.name] = {{"unit", c.unit}, {"values", std::move(column)}};
+  }
   for (const CodimensionTwo& c : s.codimension_two) j["codimension_two"].push_back(to_json(c));
   for (const Suspicion& x : s.suspected)
     j["suspected"].push_back({{"from", number(x.from)}, {"to", number(x.to)}, {"unit", x.unit}, {"reason", x.reason}});
+  put_sweep(j, s);
   return j;
 }
 
@@ -133,7 +209,8 @@ StudySummary study(const Json& j) {
   s.kind = j.at("kind");
   s.status = j.at("status");
   s.wall_seconds = number(j.at("wall_seconds"));
-  for (const auto& [name, q] : j.at("values").items()) s.set(name, number(q.at("value")), q.at("unit"));
+  for (const auto& [name, q] : j.at("values").items())
+    s.set(name, number(q.at("value")), q.at("unit"), others(q, {"value", "unit"}));
   for (const Json& b : j.at("bifurcations")) s.bifurcations.push_back(bifurcation(b));
   for (const Json& c : j.value("codimension_two", Json::array())) s.codimension_two.push_back(codimension_two(c));
   for (const Json& x : j.value("suspected", Json::array()))
@@ -141,8 +218,19 @@ StudySummary study(const Json& j) {
   for (const Json& m : j.at("modes"))
     s.modes.push_back({number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
                        m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>(),
-                       m.value("speed_unit", std::string())});
+                       m.value("speed_unit", std::string()),
+                       others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability"}),
+                       m.value("stability", std::string())});
+  s.stability = j.value("stability", std::string());
+  s.warnings = j.value("warnings", std::vector<std::string>());
+  const Json curve = j.value("curve", Json::object());
+  for (const auto& [name, c] : curve.items()) {
+    Column column{name, c.at("unit"), {}};
+    for (const Json& v : c.at("values")) column.values.push_back(number(v));
+    s.curve.push_back(std::move(column));
+  }
   s.points = j.at("points");
+  take_sweep(j, s);
   return s;
 }
 
@@ -152,13 +240,14 @@ const char* name_of(BifurcationType type) {
   return bifurcation_names[static_cast<std::size_t>(type)];
 }
 
-void StudySummary::set(const std::string& key, double value, const std::string& unit) {
+void StudySummary::set(const std::string& key, double value, const std::string& unit,
+                       std::map<std::string, double> more) {
   for (auto& [known, quantity] : values)
     if (known == key) {
-      quantity = {value, unit};
+      quantity = {value, unit, std::move(more)};
       return;
     }
-  values.emplace_back(key, Quantity{value, unit});
+  values.emplace_back(key, Quantity{value, unit, std::move(more)});
 }
 
 void Summary::set(StudySummary study) {

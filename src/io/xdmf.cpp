@@ -44,18 +44,17 @@ void write_xdmf(const std::filesystem::path& path, const std::string& hdf5_name,
   for (const StructuredGrid& g : grids) {
     core::require(g.nodes.size() == 2 || g.nodes.size() == 3, "a structured grid has two or three extents");
     const std::string extents = fmt::format("{}", fmt::join(g.nodes, " "));
-    const auto item = [&](const std::string& dataset) {
+    const auto item = [&](const std::string& dataset, const char* components = "") {
       return fmt::format(
-          "<DataItem Dimensions=\"{}\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">{}:{}</DataItem>", extents,
-          escaped(hdf5_name), escaped(dataset));
+          "<DataItem Dimensions=\"{}{}\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">{}:{}</DataItem>", extents,
+          components, escaped(hdf5_name), escaped(dataset));
     };
     fmt::format_to(
         out,
         "   <Grid Name=\"{}\" GridType=\"Uniform\">\n    <Topology TopologyType=\"{}DSMesh\" Dimensions=\"{}\"/>\n",
         escaped(g.name), g.nodes.size(), extents);
-    fmt::format_to(out, "    <Geometry GeometryType=\"X_Y_Z\">\n");
-    for (const std::string& c : g.coordinates) fmt::format_to(out, "     {}\n", item(c));
-    fmt::format_to(out, "    </Geometry>\n");
+    // The three coordinates of a node together: ParaView's newer readers know no other way.
+    fmt::format_to(out, "    <Geometry GeometryType=\"XYZ\">\n     {}\n    </Geometry>\n", item(g.coordinates, " 3"));
     for (const StructuredGrid::Field& f : g.fields)
       fmt::format_to(
           out, "    <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n     {}\n    </Attribute>\n",
@@ -70,33 +69,26 @@ std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, cons
                                        const FilmPlace& place) {
   const std::vector<double> theta = pad.reals("theta"), z = pad.reals("z");
   const Shape shape = {theta.size(), z.size()};
-  StructuredGrid wrapped{name, shape, {path + "/node_x", path + "/node_y", path + "/node_z"}, {}};
+  StructuredGrid wrapped{name, shape, path + "/node_xyz", {}};
   for (const auto& [field, data] : pad.datasets())
     if (data.shape == shape && std::holds_alternative<std::vector<double>>(data.values) && !field.starts_with("node_"))
       wrapped.fields.push_back({data.unit.empty() ? field : field + " [" + data.unit + "]", path + "/" + field});
 
-  std::vector<double> x, y, axial, arc, flat, zero;
+  std::vector<double> in_space, flat;
   for (double t : theta)
     for (double s : z) {
-      x.push_back(place.centre_x + place.radius * std::cos(t));
-      y.push_back(place.centre_y + place.radius * std::sin(t));
-      axial.push_back(place.centre_z + s);
-      arc.push_back(place.radius * t);
-      flat.push_back(s);
-      zero.push_back(0);
+      in_space.insert(in_space.end(), {place.centre_x + place.radius * std::cos(t),
+                                       place.centre_y + place.radius * std::sin(t), place.centre_z + s});
+      flat.insert(flat.end(), {place.radius * t, s, 0.0});
     }
-  pad.put("node_x", shape, std::move(x), "m", "position of the film's nodes in space, x");
-  pad.put("node_y", shape, std::move(y), "m", "position of the film's nodes in space, y");
-  pad.put("node_z", shape, std::move(axial), "m", "position of the film's nodes in space, z");
-  pad.put("node_arc", shape, std::move(arc), "m", "unwrapped: radius times theta");
-  pad.put("node_axial", shape, std::move(flat), "m", "unwrapped: z from the bearing's middle");
-  pad.put("node_flat", shape, std::move(zero), "m", "unwrapped: the plane");
+  const Shape triples = {theta.size(), z.size(), 3};
+  pad.put("node_xyz", triples, std::move(in_space), "m", "position of the film's nodes in space [theta][z][x, y, z]");
+  pad.put("node_flat", triples, std::move(flat), "m",
+          "unwrapped: radius times theta, z from the bearing's middle, zero [theta][z][3]");
 
   StructuredGrid unwrapped = wrapped;
   unwrapped.name += " unwrapped";
-  unwrapped.coordinates[0] = path + "/node_arc";
-  unwrapped.coordinates[1] = path + "/node_axial";
-  unwrapped.coordinates[2] = path + "/node_flat";
+  unwrapped.coordinates = path + "/node_flat";
   return {std::move(wrapped), std::move(unwrapped)};
 }
 

@@ -139,6 +139,18 @@ double total_mass(const Options& o) {
   return mass;
 }
 
+std::vector<double> node_masses(const Options& o) {
+  if (o.type == Options::Type::rigid) return {o.mass};
+  std::vector<double> mass(o.segments.size() + 1, 0.0);
+  for (std::size_t k = 0; k < o.segments.size(); ++k) {
+    const double half = segment_mass(o.segments[k], o.material) / 2;
+    mass[k] += half;
+    mass[k + 1] += half;
+  }
+  for (const Disc& d : o.discs) mass[static_cast<std::size_t>(d.node - 1)] += resolved(d, o.material).mass;
+  return mass;
+}
+
 double mass_between(const Options& o, int from, int to) {
   refuse_unless(from >= 1 && from < to && to <= n_nodes(o), fmt::format("nodes {}, {} bound no span", from, to));
   double mass = 0;

@@ -77,9 +77,12 @@ bool Follower::on_course(const State& from, const State& to) const {
 
 bool Follower::advance(const State& from, double ds, State& to, NewtonResult& result) {
   to.u = copy(from.u.get());
-  check(VecAXPY(to.u.get(), ds, from.tangent.get()));
+  check(VecAXPY(to.u.get(), natural_from(from) ? ds / std::abs(from.point.slope) : ds, from.tangent.get()));
   core::Vector row = core::duplicate(to.u.get());
-  weighted_row(problem_, from.tangent.get(), row.get());
+  if (natural_from(from))
+    parameter_row(problem_, row.get());
+  else
+    weighted_row(problem_, from.tangent.get(), row.get());
   double offset = 0;
   check(VecDot(row.get(), to.u.get(), &offset));
   result = correct(to.u.get(), row.get(), offset);
@@ -156,6 +159,8 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
     if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
       return {"stopped on request", false, 1, options_.from};
+    if (callbacks_.limit && !(callbacks_.limit(here.u.get()) > 0))
+      return {callbacks_.why(here.u.get()), false, 1, options_.from, true};
     here.point.slope = last_entry(problem_.comm(), here.tangent.get());  // a checkpoint may renew the tangent
   }
 
@@ -184,16 +189,23 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
       ok = result.converged;
       if (ok) {
         last.point = here.point;
-        last.point.step = arclength(problem_, here, last.u.get());
+        last.point.step = distance(here, last.u.get());
         last.point.newton_iterations = result.iterations;
         inspect(last, here.tangent.get());
         next = std::move(last);
       }
     }
+    BranchEnd limit;
+    if (ok && callbacks_.limit && !(callbacks_.limit(next.u.get()) > 0) && !end_at_limit(here, next, limit)) {
+      result.reason = callbacks_.why(next.u.get());
+      ok = false;
+    }
     if (!ok) {
       ds = rounded(ds / 2);
-      if (ds < options_.min_step) return ended("the step fell below its minimum: " + result.reason, false);
-      continue;
+      if (ds >= options_.min_step) continue;
+      if (turns_back(here))
+        return ended("the branch turns back at a fold, which natural continuation does not pass", false);
+      return ended("the step fell below its minimum: " + result.reason, false);
     }
     next.point.index = here.point.index + 1;
     // With stability facts missing at this point alone (a branch that starts at a bifurcation) there is nothing to
@@ -209,6 +221,12 @@ BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
     ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
     ds = std::max(ds, options_.min_step);
     if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
+    if (limit.limited) {
+      BranchEnd end = ended(callbacks_.why(here.u.get()), false);
+      end.limited = true;
+      end.bracket = limit.bracket;
+      return end;
+    }
     if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 &&
         problem_.adapt(here.u, here.tangent)) {
       earlier = {}, before = {};

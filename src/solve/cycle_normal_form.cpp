@@ -78,7 +78,7 @@ VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex
 
 }  // namespace
 
-double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier) {
+double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier, double step) {
   Composition& joined = problem.composition();
   BorderedMonodromy bordered(problem, 2);
   find_null_vectors(bordered, {1, -2 * multiplier.real() / std::abs(multiplier), 1});
@@ -87,7 +87,7 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
             p = eigenvector_in(bordered.left(), joined.times_transposed(bordered.left()), std::conj(multiplier));
   q *= std::sqrt(static_cast<double>(q.size())) / q.norm();
   p /= std::conj(p.dot(q));
-  PeriodMap map(problem, u);
+  PeriodMap map(problem, u, step);
   const Complex i(0, 1);
   const auto r = map.path(q.real()), s = map.path(q.imag());
   const VectorXd rr = map.bilinear(r, r), ss = map.bilinear(s, s), rs = map.bilinear(r, s);

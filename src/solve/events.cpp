@@ -64,7 +64,7 @@ bool Follower::split(const State& a, const State& b, State& middle, State& rest)
   rest.u = copy(b.u.get());
   rest.tangent = copy(b.tangent.get());
   rest.point = b.point;
-  rest.point.step = arclength(problem_, middle, b.u.get());
+  rest.point.step = distance(middle, b.u.get());
   return true;
 }
 
@@ -123,7 +123,7 @@ void Follower::pin_down(const State& a, const State& b, const Test& test, const 
     name(at);
     if (found.located) {
       std::optional<Refined> refined = callbacks_.refine(found, at.u.get(), at.tangent.get());
-      const double h = b.point.step, s = refined ? arclength(problem_, a, refined->u.get()) : 0;
+      const double h = b.point.step, s = refined ? distance(a, refined->u.get()) : 0;
       if (refined && s > std::min(0.0, h) - 0.1 * std::abs(h) && s < std::max(0.0, h) + 0.1 * std::abs(h)) {
         State exact;
         exact.u = std::move(refined->u);
@@ -154,6 +154,9 @@ void Follower::folds(const State& a, const State& b, int depth) {
     LocatedEvent found{};
     State at;
     found.event = callbacks_.cycles ? Event::cyclic_fold : Event::fold;
+    const int before = a.point.stability.unstable(), after = b.point.stability.unstable();
+    found.others_unstable = std::min(before, after);
+    found.loses = after > before;
     pin_down(
         a, b, [](const State& s) { return s.point.slope; }, [](const State&) {}, found, at);
     found.sensitivity = 0;
@@ -209,6 +212,8 @@ void Follower::crossings(const State& a, const State& b, int depth) {
     return d.empty() ? -1.0 : d[std::min(k, d.size() - 1)];
   };
   LocatedEvent found{};
+  found.others_unstable = std::min(from, to);
+  found.loses = to > from;
   State at;
   bool real = false;
   pin_down(
@@ -347,8 +352,8 @@ void Follower::around(const State& a, State& middle, const State& b) {
   rest.u = copy(b.u.get());
   rest.tangent = copy(b.tangent.get());
   rest.point = b.point;
-  rest.point.step = arclength(problem_, middle, b.u.get());
-  middle.point.step = arclength(problem_, a, middle.u.get());
+  rest.point.step = distance(middle, b.u.get());
+  middle.point.step = distance(a, middle.u.get());
   crossings(a, middle, 0);
   crossings(middle, rest, 0);
 }

@@ -27,6 +27,7 @@ public:
         options_(options),
         callbacks_(callbacks),
         newton_(problem, options.newton),
+        kind_(options.kind),
         direction_(options.to >= options.from ? 1 : -1) {}
 
   BranchEnd run(core::Vector u, std::optional<Restart> restart);
@@ -37,8 +38,18 @@ private:
   NewtonResult correct(Vec u, Vec row, double offset) { return newton_.solve(u, row, offset); }
   NewtonResult correct_at(core::Vector& u, double parameter);
   [[nodiscard]] bool on_course(const State& from, const State& to) const;
-  // The point at arclength ds from `from`.
+  // The point at arclength ds from `from`; of natural continuation, at the parameter ds further on.
   bool advance(const State& from, double ds, State& to, NewtonResult& result);
+  // A branch that leaves a bifurcation at right angles to the parameter begins with a step of arclength.
+  [[nodiscard]] bool natural_from(const State& from) const {
+    return kind_ == Continuation::natural && from.point.slope != 0;
+  }
+  // How far b lies from a in the measure of advance().
+  [[nodiscard]] double distance(const State& a, Vec b) const;
+  // The branch ends where the limit of the callbacks is met between two points; false if that place cannot be found.
+  bool end_at_limit(const State& a, State& b, BranchEnd& end);
+  // Whether a branch that natural continuation cannot follow turns back just behind `here`: the fold is then reported.
+  bool turns_back(const State& here);
   // After a change of the discretisation: the point near `here` on the branch of the new one, and what that changed.
   bool settle(State& here, NewtonResult& result);
 
@@ -67,6 +78,7 @@ private:
   const ContinuationOptions& options_;
   const BranchCallbacks& callbacks_;
   Newton newton_;
+  Continuation kind_;
   int direction_;
   bool visited_ = false;  // the last step's crossings came from a closer look
   // Folds of the step whose events are sought, and of the one before: parameter, and how far the step reaches from

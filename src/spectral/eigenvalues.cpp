@@ -6,7 +6,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "spectral/rounding.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
@@ -81,9 +83,21 @@ void solve_dense(EigenSolver& eps, Mat a, Mat b) {
   check(EPSSolve(eps.get()));
 }
 
+constexpr double search_tolerance = 1e-10;
+
+Eigen::MatrixXd entries(Mat dense) {
+  PetscInt n = 0;
+  check(MatGetSize(dense, &n, nullptr));
+  const PetscScalar* a = nullptr;
+  check(MatDenseGetArrayRead(dense, &a));
+  Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(a, n, n);
+  check(MatDenseRestoreArrayRead(dense, &a));
+  return out;
+}
+
 // What a solver has found, at least `wanted` of them; `scale` makes the shapes SI.
 std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<double>& scale, PetscInt wanted,
-                           const EigenOptions& options) {
+                           const EigenOptions& options, DensePencil* pencil) {
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
   if (converged < wanted)
@@ -91,10 +105,14 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<doub
   core::Vector re, im;
   check(MatCreateVecs(a, re.put(), im.put()));
   std::vector<Mode> out;
+  std::vector<PetscInt> place;
   for (PetscInt i = 0; i < converged; ++i) {
-    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes);
+    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes || pencil);
+    if (pencil) pencil->add(p.value, p.real, p.imaginary);
     if (p.value.imag() < 0 || !std::isfinite(p.value.real())) continue;
     Mode m{p.value, {}};
+    // What a search by iteration leaves.
+    if (options.rounding && !pencil) m.rounding = search_tolerance * std::abs(p.value);
     if (options.shapes) {
       m.shape.resize(p.real.size());
       Complex largest = 0;
@@ -105,7 +123,12 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<doub
       }
       for (Complex& v : m.shape) v /= largest;
     }
+    if (pencil) place.push_back(i);
     out.push_back(std::move(m));
+  }
+  if (pencil) {
+    const std::vector<double> rounding = pencil->rounding();
+    for (std::size_t k = 0; k < out.size(); ++k) out[k].rounding = rounding[static_cast<std::size_t>(place[k])];
   }
   std::sort(out.begin(), out.end(), [](const Mode& m, const Mode& n) {
     return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
@@ -144,7 +167,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     check(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
     const PetscInt wanted = std::min<PetscInt>(options.count, system.size() - 2);
     check(EPSSetDimensions(eps.get(), wanted, std::min<PetscInt>(system.size(), 2 * wanted + 20), PETSC_DEFAULT));
-    check(EPSSetTolerances(eps.get(), 1e-10, 200));
+    check(EPSSetTolerances(eps.get(), search_tolerance, 200));
     check(EPSSetTarget(eps.get(), options.target));
     check(EPSSetWhichEigenpairs(eps.get(), EPS_TARGET_MAGNITUDE));
     ST st = nullptr;
@@ -169,21 +192,30 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   std::vector<Mode> out;
   if (!dense) {
     check(EPSSolve(eps.get()));
-    return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options);
+    return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr);
   }
   // One rank's answer for all: how many modes there are, and which of them are unstable, decides what comes next.
   core::agree(system.comm(), [&] {
     if (core::rank_of(system.comm()) != 0) return;
+    std::optional<DensePencil> pencil;
+    if (options.rounding) pencil.emplace(entries(a.get()), entries(b.get()));
     solve_dense(eps, a.get(), b.get());
-    out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options);
+    out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options,
+                   pencil ? &*pencil : nullptr);
   });
   if (core::size_of(system.comm()) == 1) return out;
   std::vector<Complex> values;
-  for (const Mode& m : out) values.push_back(m.lambda);
+  std::vector<Complex> rounding;
+  for (const Mode& m : out) {
+    values.push_back(m.lambda);
+    rounding.emplace_back(m.rounding);
+  }
   share(system.comm(), values);
+  share(system.comm(), rounding);
   out.resize(values.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].lambda = values[k];
+    out[k].rounding = rounding[k].real();
     share(system.comm(), out[k].shape);
   }
   return out;

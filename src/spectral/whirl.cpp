@@ -1,14 +1,21 @@
 #include "whirl/spectral/whirl.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace whirl::spectral {
 
+namespace {
+
+constexpr double planar_below = 0.1, clear_share = 0.9;
+
+}  // namespace
+
 const char* name_of(Sense sense) {
   switch (sense) {
+    case Sense::planar:
+      return "planar";
     case Sense::forward:
       return "forward";
     case Sense::backward:
@@ -18,17 +25,34 @@ const char* name_of(Sense sense) {
   }
 }
 
-Sense sense_of_whirl(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y) {
-  const std::complex<double> i(0, 1);
-  double largest = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) largest = std::max(largest, std::norm(x[k]) + std::norm(y[k]));
-  bool forward = false, backward = false;
+WhirlEnergy whirl_energy(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y,
+                         const std::vector<double>& mass) {
+  WhirlEnergy out;
+  double total = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    if (std::norm(x[k]) + std::norm(y[k]) < largest / 400) continue;
-    // z = x + i y = f exp(i w t) + conj(g) exp(-i w t) with f = (x + i y)/2, g = (x - i y)/2.
-    (std::abs(x[k] + i * y[k]) >= std::abs(x[k] - i * y[k]) ? forward : backward) = true;
+    const double m = mass.empty() ? 1.0 : mass[k];
+    // |f|^2 - |b|^2 = Im(conj(y) x), |f|^2 + |b|^2 = (|x|^2 + |y|^2)/2.
+    const double turning = m * (std::conj(y[k]) * x[k]).imag();
+    total += m * (std::norm(x[k]) + std::norm(y[k])) / 2;
+    out.whirl += std::abs(turning);
+    out.forward += turning;
   }
-  return forward && backward ? Sense::mixed : backward ? Sense::backward : Sense::forward;
+  if (total > 0) {
+    out.whirl /= total;
+    out.forward /= total;
+  }
+  return out;
+}
+
+Sense sense_of_whirl(const WhirlEnergy& energy) {
+  if (energy.whirl < planar_below) return Sense::planar;
+  const double share = (energy.whirl + energy.forward) / (2 * energy.whirl);
+  return share >= clear_share ? Sense::forward : share <= 1 - clear_share ? Sense::backward : Sense::mixed;
+}
+
+Sense sense_of_whirl(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y,
+                     const std::vector<double>& mass) {
+  return sense_of_whirl(whirl_energy(x, y, mass));
 }
 
 double log_decrement(std::complex<double> lambda) {

@@ -73,6 +73,11 @@ io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std
   return b;
 }
 
+double more_of(const io::Bifurcation& b, const std::string& name) {
+  const auto at = b.more.find(name);
+  return at == b.more.end() ? io::no_value : at->second;
+}
+
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all) {
   std::vector<std::string> type;
   std::vector<double> parameter, uncertainty, angle;

@@ -24,6 +24,9 @@ namespace whirl::study {
                                              const std::string& unit, const system::Machine& machine,
                                              const std::vector<std::string>& unbalance, const system::Plant& system);
 
+/// A further number of a bifurcation; not a number if it has none of that name.
+[[nodiscard]] double more_of(const io::Bifurcation& b, const std::string& name);
+
 /// A table of bifurcations: type, parameter, uncertainty, angle.
 void put_bifurcations(io::Group& group, const std::vector<io::Bifurcation>& all);
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "branch_state.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/equilibrium.hpp"
@@ -28,6 +30,20 @@ bool Walker::attempt(double speed) {
   std::swap(x_, trial_);
   last_ = speed;
   return true;
+}
+
+Trail Walker::trail() {
+  const auto leave = [this] {
+    std::vector<double> state = system_.gather(x_.get());
+    state.push_back(last_);
+    return state;
+  };
+  const auto take = [this](const std::vector<double>& state) {
+    if (!x_) x_ = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
+    fill(x_.get(), {state.begin(), state.end() - 1});
+    last_ = state.back();
+  };
+  return {leave, take};
 }
 
 Vec Walker::at(double speed) {
@@ -60,16 +76,23 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   spectral::EigenOptions options;
   options.count = 60;
   options.shapes = false;
+  options.rounding = true;
+  // Without damping the real parts are rounding errors, and none of them is a bifurcation.
   std::vector<std::complex<double>> values;
+  std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
+  int neutral = 0;
   for (const auto& mode : spectral::modes(system, x, options)) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
+    if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
+    if (mode.neutral()) neutral += mode.lambda.imag() != 0 ? 2 : 1;
   }
-  // Without damping the real parts are rounding errors of the largest eigenvalue, and none of them is a bifurcation.
-  double largest = 0;
-  for (const auto& v : values) largest = std::max(largest, std::abs(v));
-  const double rounding = 1e-11 * largest;
-  return solve::make_stability(std::move(values), [rounding](std::complex<double> v) { return v.real() - rounding; });
+  solve::Stability s = solve::make_stability(std::move(values), [&rounding](std::complex<double> v) {
+    const auto at = rounding.find(v.real());
+    return v.real() - (at == rounding.end() ? 0 : at->second);
+  });
+  s.neutral = neutral;
+  return s;
 }
 
 std::vector<std::string> names_of_bearings(const system::Machine& machine) {
@@ -79,6 +102,7 @@ std::vector<std::string> names_of_bearings(const system::Machine& machine) {
 void put_bearings(io::Group& group, const system::Machine& machine) {
   std::vector<double> clearance, preload, offset, arc;
   std::vector<std::int64_t> node;
+  std::vector<std::string> bore;
   for (const auto& b : machine.bearings) {
     const film::Geometry g = b.geometry.value_or(film::Geometry{});
     const bool lobes = g.type == film::Geometry::Bore::lemon_bore;
@@ -87,10 +111,14 @@ void put_bearings(io::Group& group, const system::Machine& machine) {
     offset.push_back(lobes ? g.offset : 0.0);
     arc.push_back(g.arc);
     node.push_back(b.node);
+    bore.emplace_back(lobes                                         ? "lemon_bore"
+                      : g.type == film::Geometry::Bore::cylindrical ? "cylindrical"
+                                                                    : "partial_arc");
   }
   auto& bearings = group.child("bearings");
   bearings.put("name", names_of_bearings(machine), "bearings in the order of the deck");
   bearings.put("node", node, "shaft node, 1-based");
+  bearings.put("bore", bore, "kind of geometry");
   bearings.put("clearance", clearance, "m", "assembled radial clearance c_b; zero for a linear film");
   bearings.put("preload", preload, "1", "m = 1 - c_b/c_p of two lobes; zero for one pad at the bottom");
   bearings.put("offset", offset, "m", "horizontal distance between the centres of the two lobes");
@@ -122,15 +150,6 @@ void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& 
 std::string branch_status(const solve::BranchEnd& end, const std::string& unit) {
   if (end.completed) return "completed";
   return fmt::format("ended at {:.6g} {}: {}", end.parameter, unit, end.reason);
-}
-
-system::Train with_half_film_mesh(system::Train train) {
-  for (auto& s : train.supports) {
-    for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = std::max(4, s.film.cells[d] / 2);
-    if (s.film.quadrature == film::Options::Quadrature::simpson)
-      for (int& cells : s.film.cells) cells += cells % 2;
-  }
-  return train;
 }
 
 }  // namespace whirl::study

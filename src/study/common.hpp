@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "findings.hpp"
+#include "groups.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/newton.hpp"
+#include "whirl/study/parameter.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -19,6 +21,8 @@ public:
   explicit Walker(system::Plant& system) : system_(system) {}
   /// The equilibrium at `speed` [rad/s]; the system is left at that speed. Collective; throws core::NotConverged.
   Vec at(double speed);
+  /// Where it stands, for a resumed run to go on from.
+  [[nodiscard]] Trail trail();
 
 private:
   bool attempt(double speed);
@@ -44,12 +48,12 @@ void put_places(io::Group& group, const system::Machine& machine, const system::
 void put_groups(io::StudySummary& summary, const system::Train& train);
 void put_groups(io::StudySummary& summary, const std::optional<system::Groups>& groups);
 
+/// The same word of the solver.
+[[nodiscard]] inline solve::Continuation kind_of(Following f) {
+  return f == Following::natural ? solve::Continuation::natural : solve::Continuation::arclength;
+}
+
 /// "completed", or why and where the branch ended; the last parameter is a scaled one, in `unit`.
 [[nodiscard]] std::string branch_status(const solve::BranchEnd& end, const std::string& unit);
-
-/// The train with its film meshes halved in both directions. A result that moves by d when the mesh is halved is given
-/// the uncertainty d: a mesh of second order errs by d/3, and two meshes that cannot show the order call for a safety
-/// factor of 3 (Roache 1994).
-[[nodiscard]] system::Train with_half_film_mesh(system::Train train);
 
 }  // namespace whirl::study

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "coexisting.hpp"
 #include "cycle_follower.hpp"
 
 namespace whirl::study {
@@ -12,17 +13,36 @@ namespace {
 // The branch born at one flip of another one.
 class DoubledBranch final : public Study {
 public:
-  DoubledBranch(std::string name, CycleBranchOptions options, FlipSeed seed)
-      : name_(std::move(name)), options_(std::move(options)), seed_(std::move(seed)) {}
+  DoubledBranch(std::string name, CycleBranchOptions options, std::vector<FlipSeed> flips, std::size_t from)
+      : name_(std::move(name)), options_(std::move(options)), flips_(std::move(flips)), from_(from) {}
   [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
   [[nodiscard]] std::string name() const override { return name_; }
   void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
-  [[nodiscard]] StudyResult run(Context& context) override { return CycleFollower(context, options_, seed_).run(); }
+  [[nodiscard]] StudyResult run(Context& context) override {
+    return CycleFollower(context, options_, flips_[from_], flips_).run();
+  }
 
 private:
   std::string name_;
   CycleBranchOptions options_;
-  FlipSeed seed_;
+  std::vector<FlipSeed> flips_;
+  std::size_t from_;  // of them this branch is born
+};
+
+// The branch that begins at a forced cycle beside the first one of another branch.
+class BesideBranch final : public Study {
+public:
+  BesideBranch(std::string name, CycleBranchOptions options, solve::Cycle first)
+      : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
+  [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
+  [[nodiscard]] std::string name() const override { return name_; }
+  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
+  [[nodiscard]] StudyResult run(Context& context) override { return CycleFollower(context, options_, first_).run(); }
+
+private:
+  std::string name_;
+  CycleBranchOptions options_;
+  solve::Cycle first_;
 };
 
 }  // namespace
@@ -34,18 +54,24 @@ StudyResult CycleBranch::run(Context& context) {
 // A resumed run takes the flips of a finished branch from its results, and so does any other.
 std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result) const {
   std::vector<std::unique_ptr<Study>> born;
+  CycleBranchOptions beside = options;
+  beside.parameter.deflation.reset();
+  beside.follow_flips = false;
+  for (std::size_t k = 2; auto& first : read_solutions(result))
+    born.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), beside, std::move(first)));
   if (!options.follow_flips || !result.has_group("flips")) return born;
   const std::vector<FlipSeed> seeds = read_seeds(result.group("flips"));
   for (std::size_t k = 1; k <= seeds.size(); ++k) {
     const auto& chosen = options.flips;
     if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k)) == chosen.end()) continue;
     born.push_back(
-        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds[k - 1]));
+        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds, k - 1));
   }
   return born;
 }
 
 bool CycleBranch::may_add(std::string_view other) const {
+  if (options.parameter.deflation && may_be_solution(name(), other)) return true;
   const std::string first = io::plain_name(name_of_doubled(name(), 1));
   const std::string_view stem = std::string_view(first).substr(0, first.size() - 1);
   if (!options.follow_flips || !other.starts_with(stem) || other.size() == stem.size() ||

@@ -104,6 +104,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("flips", &O::flips, deck::positive,
         "which of them, 1 being the first found; all if not given. A branch that runs back into the simple cycle meets "
         "another flip there, whose branch is the same");
+  d.add("nodes", &O::nodes, deck::positive, "nodes of the shaft to report beside the bearings");
   d.add("orbits", &O::orbits, deck::non_negative, "cycles whose time history is stored, spread over the branch");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
   d.check([](const O& o, const deck::Report& r) {
@@ -122,11 +123,17 @@ void describe(deck::Description<CycleBranchOptions>& d) {
 
 void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
+  if (system::is_rotor(machine))
+    check_nodes("nodes", options.nodes, machine, report);
+  else if (!options.nodes.empty())
+    report.fail("nodes", "this system has no shaft");
   const bool forced = options.origin == CycleBranchOptions::Origin::equilibrium;
   if (forced && options.unbalance.empty())
     report.fail("", "'unbalance' is missing (forced cycles need a force; self-excited ones have 'origin: hopf')");
   if (!forced && !options.unbalance.empty())
     report.fail("unbalance", "self-excited cycles (origin: hopf) are those of the balanced machine");
+  if (!forced && options.parameter.deflation)
+    report.fail("deflation", "self-excited cycles start at the Hopf point, where there is one solution");
   if (!forced && options.start) report.fail("start", "self-excited cycles start at the Hopf point");
   check_parameter(options.parameter, options.speed, machine, report);
   const deck::Range& range = options.parameter.range;

@@ -51,6 +51,7 @@ void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, do
   const solve::Cycle cycle = problem_->gather(u), direction = problem_->gather(tangent);
   io::Group state;
   record_.write(state.child("record"), true);
+  nodes_.write(state);
   write_cycle(state.child("cycle"), cycle);
   write_cycle(state.child("tangent"), direction);
   solve::BranchPoint now = point;
@@ -70,14 +71,14 @@ std::optional<solve::Restart> CycleFollower::restore() {
   if (!pieces_->state().has_group("cycle")) return std::nullopt;
   const io::Group state = pieces_->state();
   record_.read(state.group("record"));
+  nodes_.read(state);
   const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
-  problem_ = make_problem(*system_, options_.period, cycle.mesh, false);
+  problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);
   read_summary(state.group("summary"), context_.results.summary());
   events_ = static_cast<int>(state.integer("events"));
   solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
                          read_point(state.group("point"))};
-  restart.point.stability = solve::make_stability(std::move(restart.point.stability.values), distance_of_multiplier);
   seeds_ = read_seeds(state.group("flips"));
   located_ = read_located(state.group("located"));
   last_ = cycle;

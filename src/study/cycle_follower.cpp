@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bifurcation.hpp"
+#include "coexisting.hpp"
 #include "make_plant.hpp"
+#include "summary_bars.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 
@@ -17,14 +21,18 @@ double distance_of_multiplier(std::complex<double> mu) {
   return std::abs(mu) - 1;
 }
 
-CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed)
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed,
+                             std::vector<FlipSeed> siblings)
     : context_(context),
       options_(std::move(options)),
       seed_(std::move(seed)),
+      siblings_(std::move(siblings)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
-      system_(make_system(false)),
+      system_(make_system({1, 1})),
       record_(system_->places(), unit_, options_.multipliers),
+      films_(system_->places()),
+      nodes_(options_.nodes, unit_),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
@@ -35,6 +43,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
   continuation_.beta_1 = options_.parameter.beta_1;
   continuation_.beta_2 = options_.parameter.beta_2;
+  continuation_.kind = kind_of(options_.parameter.continuation);
   continuation_.max_points = options_.max_points;
   const bool adapt = options_.method == CycleBranchOptions::Method::collocation && options_.adapt_mesh;
   continuation_.adapt_every = adapt ? options_.adapt_every : 0;
@@ -43,16 +52,21 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.newton = newton_;
 }
 
-std::unique_ptr<system::Plant> CycleFollower::make_system(bool half_film) const {
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first)
+    : CycleFollower(context, std::move(options)) {
+  first_ = std::move(first);
+}
+
+std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells) const {
   PlantRequest wanted{options_.unbalance, &options_.parameter};
   wanted.value = options_.start ? options_.start->value : options_.parameter.range.from;
   wanted.speed = options_.speed ? options_.speed->value : 0;
-  wanted.half_film = half_film;
+  wanted.film_cells = film_cells;
   return make_plant(space(), context_.machine, wanted);
 }
 
-solve::Stability CycleFollower::stability() {
-  auto values = problem_->multipliers();
+solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) const {
+  auto values = problem.multipliers();
   // The trivial multiplier of a self-excited cycle says nothing.
   if (autonomous())
     values.erase(std::min_element(values.begin(), values.end(),
@@ -60,9 +74,16 @@ solve::Stability CycleFollower::stability() {
   return solve::make_stability(std::move(values), distance_of_multiplier);
 }
 
+double CycleFollower::room(const solve::Cycle& orbit) const {
+  if (!options_.max_eccentricity) return std::numeric_limits<double>::infinity();
+  return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), *system_);
+}
+
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
-  record_.append(point, problem_->orbit(u), problem_->orbit_scheme(), *system_, scale_);
+  const solve::Cycle orbit = problem_->orbit(u);
+  record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
+  nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
   report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
@@ -90,48 +111,115 @@ void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b)
     const auto result = solve::newton(*problem_, u.get(), row.get(), p / scale_, newton_);
     if (!result.converged) continue;
     problem_->linearise(u.get(), row.get());
-    record_.report(key, problem_->orbit(u.get()), problem_->orbit_scheme(), *system_, stability(),
-                   context_.results.summary());
+    report(key, u.get());
   }
+}
+
+void CycleFollower::report(const std::string& key, Vec u) {
+  io::StudySummary own;
+  record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_), own);
+  const solve::Cycle cycle = problem_->gather(u);
+  SummaryBars bars(own, law());
+  for (const CycleMesh& mesh : meshes()) {
+    io::StudySummary there;
+    try {
+      if (const auto other = corrected_on(mesh, cycle))
+        record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
+                       other->other ? *other->other : *system_, stability_of(*other->problem), there);
+    } catch (const core::NotConverged&) {
+      there = {};
+    } catch (const core::DomainError&) {
+      there = {};
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      there = {};
+    }
+    bars.add(mesh.axis, mesh.spacing, there);
+  }
+  bars.write(newton_.tolerance);
+  for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
+}
+
+// The flip that a branch of twice the period ran back into lies between its last cycle and where the next step landed.
+void CycleFollower::close_at_flip(double landed) {
+  // Other methods keep their unknowns, not the orbit.
+  if (record_.points() == 0 || options_.method != CycleBranchOptions::Method::collocation) return;
+  const auto [low, high] = std::minmax({record_.last_parameter(), landed});
+  const FlipSeed* only = nullptr;
+  for (const FlipSeed& s : siblings_) {
+    const double p = s.cycle.parameter / scale_;
+    if (p < low || p > high || p == seed_->cycle.parameter / scale_) continue;
+    if (only) return;
+    only = &s;
+  }
+  if (!only) return;
+  solve::Cycle simple = only->cycle;  // run through once it shows all that twice would
+  simple.period *= 2;
+  record_.close(simple, problem_->orbit_scheme(), *system_, scale_);
 }
 
 StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
   core::Vector u;
   if (!restart) {
-    problem_ = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), false);
+    problem_ = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), 1);
     if (seed_)
       restart = start_at_flip();
     else if (autonomous())
       restart = start_at_hopf();
     else
       u = start(*problem_);
+    if (restart) record_.begin(problem_->orbit(restart->u.get()), problem_->orbit_scheme(), *system_, scale_);
   }
   put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
-  callbacks.stability = [this](Vec) { return stability(); };
+  callbacks.stability = [this](Vec) { return stability_of(*problem_); };
   callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
   callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
   if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
     callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
       return solve::refine(*cycles, e, v, t, newton_);
     };
+  // The branch has touched, as it was asked to, or its film has become too thin.
+  bool contact = false;
+  if (films_.exists() || options_.max_eccentricity) {
+    callbacks.limit = [this](Vec v) {
+      const solve::Cycle orbit = problem_->orbit(v);
+      return std::min(films_.margin(least_films(orbit, *system_)), room(orbit));
+    };
+    callbacks.why = [this, &contact](Vec v) {
+      const solve::Cycle orbit = problem_->orbit(v);
+      const std::vector<double> films = least_films(orbit, *system_);
+      contact = room(orbit) <= films_.margin(films);
+      return contact ? fmt::format("the eccentricity reaches {:.6g} (max_eccentricity)", *options_.max_eccentricity)
+                     : films_.reason(films);
+    };
+  }
   callbacks.on_suspicion = [this](const solve::Suspicion& s) {
     context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
   };
   callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
     save(p, v, t, step);
     returned_ = seed_ && returned(problem_->orbit(v));
-    contact_ = options_.max_eccentricity && record_.eccentricity() >= *options_.max_eccentricity;
-    return !returned_ && !contact_;
+    return !returned_;
   };
   const solve::BranchEnd end =
       solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
 
   auto& results = context_.results;
   auto& group = results.group();
+  if (returned_) {
+    // The step that showed the return landed on the simple cycle, or beyond it on the branch already followed.
+    record_.drop_last();
+    nodes_.drop_last();
+    close_at_flip(end.parameter);
+    std::erase_if(results.summary().suspected, [&](const io::Suspicion& s) { return s.to == end.parameter; });
+    group.set("end", "the cycle of half the period, at a flip");
+  } else if (contact) {
+    group.set("end", "contact");
+  }
   record_.write(group, false);
+  nodes_.write(group);
   record_.write_orbits(group.child("orbits"), options_.orbits);
   put_places(group, context_.machine, *system_);
   put_bifurcations(group, results.summary().bifurcations);
@@ -139,12 +227,15 @@ StudyResult CycleFollower::run() {
   group.set("parameter_unit", unit_);
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
   group.set("period_turns", options_.period);
-  results.summary().points = end.points;
+  results.summary().points = end.points - (returned_ ? 1 : 0);
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
-  if (contact_) results.summary().set("contact", end.parameter, unit_);
-  return results.finish(returned_ || contact_ ? "completed" : branch_status(end, unit_), end.points > 0);
+  if (end.limited) results.summary().set("contact", end.parameter, unit_, {{"uncertainty", end.bracket}});
+  results.summary().stability = record_.verdict();
+  if (options_.parameter.deflation) put_solutions(group, results.summary(), coexisting());
+  return results.finish(returned_ || (end.limited && contact) ? "completed" : branch_status(end, unit_),
+                        end.points > 0);
 }
 
 }  // namespace whirl::study

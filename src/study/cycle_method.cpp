@@ -1,5 +1,6 @@
 // Which solver of periodic solutions follows the branch.
 
+#include <cmath>
 #include <cstdlib>
 
 #include "cycle_follower.hpp"
@@ -36,6 +37,11 @@ solve::Tableau tableau_of(CycleBranchOptions::Stepping scheme) {
 
 }  // namespace
 
+double CycleFollower::order_in_time() const {
+  if (options_.method != Method::collocation) return tableau_of(options_.scheme).order;
+  return 2 * options_.degree - (options_.points == CycleBranchOptions::Points::radau ? 1 : 0);
+}
+
 // Only films with many states of their own are worth the messages; below that every rank does the same.
 MPI_Comm CycleFollower::space() const {
   constexpr int shared_from = 3000;
@@ -47,7 +53,7 @@ MPI_Comm CycleFollower::space() const {
 }
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,
-                                                                    std::vector<double> mesh, bool doubled) const {
+                                                                    std::vector<double> mesh, double finer) const {
   const int laps = turns / options_.period;
   int steps = steps_of(options_);
   if (options_.method == Method::shooting) {
@@ -55,10 +61,10 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
     steps *= laps;
   }
   // Where an interval is one step, as in a finite-difference method, it is the mesh that makes steps shorter.
-  if (doubled && (options_.method == Method::collocation || steps == 1))
+  if (finer > 1 && (options_.method == Method::collocation || steps == 1))
     mesh = solve::doubled(mesh);
-  else if (doubled)
-    steps *= 2;
+  else
+    steps = static_cast<int>(std::lround(steps * finer));
 
   if (options_.method == Method::newton_picard) {
     solve::NewtonPicardOptions o;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film_limit.hpp"
+#include "verdict.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -69,8 +71,18 @@ std::vector<io::Table::Column> columns(const system::Places& places, const std::
           {"y_max", length, "largest y of " + places.text, b},
           {"y_min", length, "smallest", b},
           {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
+          {"film_min", length, "smallest film thickness over the cycle, not a number without a film", b},
           {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
           {"multipliers_imag", "1", "their imaginary parts", m}};
+}
+
+std::vector<io::Table::Column> columns_of_birth(const system::Places& places, const std::string& unit) {
+  std::vector<io::Table::Column> some;
+  for (auto& c : columns(places, unit, 0))
+    if (c.name == "parameter" || c.name == "period" || c.name == "eccentricity_max" || c.name.ends_with("_max") ||
+        c.name.ends_with("_min"))
+      some.push_back(c);
+  return some;
 }
 
 }  // namespace
@@ -79,15 +91,50 @@ CycleRecord::CycleRecord(system::Places places, std::string unit, int multiplier
     : places_(std::move(places)),
       unit_(std::move(unit)),
       multipliers_(multipliers),
-      table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))) {}
+      table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))),
+      birth_(columns_of_birth(places_, unit_)),
+      closing_(birth_) {}
+
+std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius) const {
+  std::vector<double> eccentricity(places_.names.size(), 0.0);
+  for (std::size_t i = 0; i < eccentricity.size(); ++i)
+    if (places_.clearances[i] > 0) eccentricity[i] = radius[i] / places_.clearances[i];
+  return eccentricity;
+}
+
+void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                       const system::Plant& system, double scale) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  end.append({{cycle.parameter / scale},
+              {cycle.period},
+              e.x_max,
+              e.x_min,
+              e.y_max,
+              e.y_min,
+              per_clearance(e.radius),
+              film_column(least_films(cycle, system), places_.names.size())});
+}
+
+void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(birth_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(closing_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::drop_last() {
+  if (orbits_.empty()) return;
+  orbits_.pop_back();
+  table_.truncate(orbits_.size());
+}
 
 void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
                          const system::Plant& system, double scale) {
   std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
   const Extremes e = extremes(motion, places_.names.size());
-  std::vector<double> eccentricity(places_.names.size(), 0.0);
-  for (std::size_t i = 0; i < eccentricity.size(); ++i)
-    if (places_.clearances[i] > 0) eccentricity[i] = e.radius[i] / places_.clearances[i];
   std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
   for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
     re[k] = point.stability.values[k].real();
@@ -105,15 +152,27 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
                  e.x_min,
                  e.y_max,
                  e.y_min,
-                 eccentricity,
+                 per_clearance(e.radius),
+                 film_column(least_films(cycle, system), places_.names.size()),
                  re,
                  im});
   orbits_.push_back(std::move(motion));
 }
 
-double CycleRecord::eccentricity() const {
-  const auto& all = table_.column("eccentricity_max");
-  return *std::max_element(all.end() - static_cast<std::ptrdiff_t>(places_.names.size()), all.end());
+double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                 const system::Plant& system) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < e.radius.size(); ++i)
+    if (places_.clearances[i] > 0) largest = std::max(largest, e.radius[i] / places_.clearances[i]);
+  return largest;
+}
+
+std::string CycleRecord::verdict() const {
+  BranchVerdict verdict;
+  for (const double stable : table_.column("stable"))
+    verdict.add(stable > 0 ? StabilityClass::stable : StabilityClass::unstable);
+  return verdict.text();
 }
 
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
@@ -134,6 +193,8 @@ void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, cons
 
 void CycleRecord::write(io::Group& group, bool everything) const {
   table_.write(group.child("branch"));
+  if (birth_.rows() > 0) birth_.write(group.child("birth"));
+  if (closing_.rows() > 0) closing_.write(group.child("closing"));
   if (!everything) return;
   std::vector<double> flat;
   for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
@@ -144,6 +205,7 @@ void CycleRecord::write(io::Group& group, bool everything) const {
 
 void CycleRecord::read(const io::Group& group) {
   table_.read(group.group("branch"));
+  if (group.has_group("birth")) birth_.read(group.group("birth"));
   const auto& flat = group.reals("orbits");
   const std::size_t width = samples_per_orbit * places_.names.size() * 2;
   orbits_.clear();
@@ -157,9 +219,11 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   const std::size_t total = orbits_.size(),
                     n = std::min<std::size_t>(total, static_cast<std::size_t>(std::max(count, 0)));
   std::vector<double> parameter, x, y;
+  std::vector<std::int64_t> point;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = n == 1 ? 0 : k * (total - 1) / (n - 1);
     parameter.push_back(table_.column("parameter")[i]);
+    point.push_back(static_cast<std::int64_t>(i));
     for (std::size_t v = 0; v < orbits_[i].size(); v += 2) {
       x.push_back(orbits_[i][v]);
       y.push_back(orbits_[i][v + 1]);
@@ -167,6 +231,7 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   }
   const io::Shape shape{n, samples_per_orbit, places_.names.size()};
   group.put("parameter", parameter, unit_, "where on the branch");
+  group.put("point", point, "its row in the table of the branch, from 0");
   group.put("x", shape, x, places_.unit, "x of " + places_.text + " [orbit][time][bearing]");
   group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
 }
@@ -193,19 +258,33 @@ solve::Cycle read_cycle(const io::Group& group) {
   return cycle;
 }
 
+void write_stability(io::Group& group, const solve::Stability& stability) {
+  std::vector<double> re, im;
+  for (const auto& v : stability.values) {
+    re.push_back(v.real());
+    im.push_back(v.imag());
+  }
+  group.put("real", re, "1", "eigenvalues or multipliers");
+  group.put("imag", im, "1", "their imaginary parts");
+  group.put("distance", stability.distance, "1", "from the border of stability");
+}
+
+solve::Stability read_stability(const io::Group& group) {
+  solve::Stability s;
+  const auto &re = group.reals("real"), &im = group.reals("imag");
+  for (std::size_t k = 0; k < re.size(); ++k) s.values.emplace_back(re[k], im[k]);
+  s.distance = group.reals("distance");
+  return s;
+}
+
 void write_point(io::Group& group, const solve::BranchPoint& point) {
   group.set("index", point.index);
   group.set("parameter", point.parameter);
   group.set("slope", point.slope);
   group.set("step", point.step);
   group.set("newton_iterations", point.newton_iterations);
-  std::vector<double> re, im;
-  for (const auto& v : point.stability.values) {
-    re.push_back(v.real());
-    im.push_back(v.imag());
-  }
-  group.put("real", re, "1", "eigenvalues or multipliers");
-  group.put("imag", im, "1", "their imaginary parts");
+  write_stability(group.child("stability"), point.stability);
+  group.put("monitors", point.monitors, "1", "functions whose zeros are located");
 }
 
 solve::BranchPoint read_point(const io::Group& group) {
@@ -215,8 +294,8 @@ solve::BranchPoint read_point(const io::Group& group) {
   point.slope = group.real("slope");
   point.step = group.real("step");
   point.newton_iterations = static_cast<int>(group.integer("newton_iterations"));
-  const auto &re = group.reals("real"), &im = group.reals("imag");
-  for (std::size_t k = 0; k < re.size(); ++k) point.stability.values.emplace_back(re[k], im[k]);
+  point.stability = read_stability(group.group("stability"));
+  point.monitors = group.reals("monitors");
   return point;
 }
 

@@ -39,7 +39,7 @@ solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) 
 
 Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other) {
   const solve::Cycle cycle = other.on_film_of(*system_, from.cycle);
-  problem_ = make_problem(*system_, options_.period, cycle.mesh, false);
+  problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);
   core::Vector u = problem_->scatter(cycle);
   Relocated out{from, 0, 0};
@@ -135,23 +135,6 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
     check(VecAXPY(u.get(), next, tangent.get()));
     last_f = f;
     step = next;
-  }
-}
-
-double CycleFollower::time_error(const Located& at) {
-  problem_ = make_problem(*system_, options_.period, at.cycle.mesh, false);
-  if (autonomous()) problem_->set_phase_reference(at.cycle);
-  solve::LocatedEvent found;
-  found.event = at.event;
-  found.parameter = at.cycle.parameter / scale_;
-  found.sensitivity = at.sensitivity;
-  found.critical = at.critical;
-  try {
-    return 2 * shift(found, at.cycle, true, false);
-  } catch (const core::DomainError&) {
-    return std::numeric_limits<double>::quiet_NaN();
-  } catch (const core::NotConverged&) {
-    return std::numeric_limits<double>::quiet_NaN();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "coexisting.hpp"
 #include "cycle_follower.hpp"
 #include "make_plant.hpp"
 #include "whirl/core/error.hpp"
@@ -31,6 +32,7 @@ std::vector<double> two_laps(const std::vector<double>& mesh) {
 
 // The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
 core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
+  if (first_) return problem.scatter(*first_);
   const std::vector<double> whole = system_->gather(find_rest(*system_).get());
   solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), system_->parameter()};
   guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
@@ -129,10 +131,40 @@ solve::Restart CycleFollower::start_at_hopf() {
   restart.step = continuation_.initial_step;
   restart.point.index = -1;  // the Hopf point is no cycle: the first one comes next
   restart.point.parameter = parameter / scale_;
-  context_.results.summary().set("hopf", parameter / scale_, unit_);
-  context_.results.summary().set("hopf.whirl_frequency", critical->lambda.imag(), "rad/s");
-  record_hopf(hopf, restart, critical->lambda.imag());
+  hopf.event = solve::Event::hopf;
+  hopf.critical = {0, critical->lambda.imag()};
+  record_hopf(hopf, at_hopf.get(), restart);
   return restart;
+}
+
+std::vector<solve::Cycle> CycleFollower::coexisting() {
+  system_->set_parameter(continuation_.from * scale_);
+  const auto made = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), false);
+  solve::PeriodicProblem& problem = *made;
+  std::vector<core::Vector> known;
+  known.push_back(start(problem));
+  core::Vector row = core::duplicate(known.front().get());
+  solve::parameter_row(problem, row.get());
+  solve::NewtonOptions newton = newton_;
+  newton.max_iterations = 40;
+  if (!solve::newton(problem, known.front().get(), row.get(), continuation_.from, newton).converged) return {};
+  const solve::Cycle first = problem.gather(known.front().get());
+  // The same motion begun some turns later is no other one.
+  const auto copies = [&](Vec u) {
+    const solve::Cycle cycle = problem.gather(u);
+    std::vector<core::Vector> out;
+    for (int turn = 1; turn < options_.period; ++turn)
+      out.push_back(problem.scatter(delayed(cycle, problem.scheme(), static_cast<double>(turn) / options_.period)));
+    return out;
+  };
+  const auto guess = [&](int k) {
+    return problem.scatter(other_vibration(first, problem.scheme(), options_.period, k));
+  };
+  std::vector<solve::Cycle> out;
+  for (const auto& u : solve::deflate(problem, state_weight(), known, guess,
+                                      deflation_options(*options_.parameter.deflation, newton), copies))
+    out.push_back(problem.gather(u.get()));
+  return out;
 }
 
 FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) {
@@ -153,7 +185,7 @@ solve::Cycle two(const solve::Cycle& one, double second) {
 }  // namespace
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
-  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), false);
+  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), 1);
   if (autonomous()) twice->set_phase_reference(two(seed.cycle, 1));
   return twice;
 }
@@ -172,7 +204,7 @@ solve::Restart CycleFollower::leave_flip(const solve::PeriodicProblem& twice, co
 
 solve::Restart CycleFollower::start_at_flip() {
   system_->set_parameter(seed_->cycle.parameter);
-  problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), false);
+  problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), 1);
   if (autonomous()) problem_->set_phase_reference(two(seed_->cycle, 1));
   solve::Restart restart = leave_flip(*problem_, *seed_);
   restart.step = continuation_.initial_step;

@@ -7,6 +7,8 @@
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
+#include "whirl/rotor/advice.hpp"
+#include "whirl/study/sweep.hpp"
 
 namespace whirl::study {
 namespace {
@@ -30,14 +32,12 @@ void check_name(const Deck& deck, std::size_t i, const deck::Report& report) {
                   fmt::format("study {} is called '{}', and the files of both are '{}': give each a name of its own",
                               j + 1, earlier.name(), file));
     else if (earlier.may_add(file))
-      report.fail("name",
-                  fmt::format("study {}, '{}', follows its flips and calls a branch so: give each a name of its own",
-                              j + 1, earlier.name()));
+      report.fail("name", fmt::format("study {}, '{}', adds a branch that it calls so: give each a name of its own",
+                                      j + 1, earlier.name()));
     else if (later.may_add(io::plain_name(earlier.name())))
-      report.fail("name",
-                  fmt::format("'{}' follows its flips and calls a branch '{}', as study {} is called: give each a "
-                              "name of its own",
-                              name, earlier.name(), j + 1));
+      report.fail("name", fmt::format("'{}' adds a branch that it calls '{}', as study {} is called: give each a "
+                                      "name of its own",
+                                      name, earlier.name(), j + 1));
   }
 }
 
@@ -47,6 +47,10 @@ void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
   d.check([](const Deck& deck, const deck::Report& r) {
+    const auto holds = [](const auto& s) { return s->needs_bearings(); };
+    const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
+    if (shaft && deck.machine.bearings.size() < 2 && std::any_of(deck.studies.begin(), deck.studies.end(), holds))
+      r.fail("bearings", "a shaft needs at least two bearings");
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());
@@ -68,6 +72,10 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   const deck::Node root = deck::load(path, overrides, files, deck::structure_of<Deck>(), &changes);
   deck::Problems problems;
   auto d = deck::read<Deck>(root, files, problems);
+  // Variants of a deck with errors would only repeat them.
+  for (std::size_t i = 0; i < d.studies.size() && problems.empty(); ++i)
+    if (auto* sweep = dynamic_cast<Sweep*>(d.studies[i].get()))
+      sweep->prepare(root, {d.studies.data(), i}, files, problems);
   try {
     problems.raise();
   } catch (core::InputError& e) {
@@ -76,6 +84,20 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
   }
   d.changes = std::move(changes);
   return d;
+}
+
+std::vector<std::string> warnings(const Deck& d) {
+  std::vector<std::string> all = rotor::advice(d.machine.rotor);
+  const std::vector<std::string> own = all;
+  for (const auto& s : d.studies) {
+    const auto* sweep = dynamic_cast<const Sweep*>(s.get());
+    if (!sweep) continue;
+    for (const Variant& v : sweep->variants())
+      for (const std::string& line : warnings(*v.deck))
+        if (std::find(own.begin(), own.end(), line) == own.end())
+          all.push_back(fmt::format("variant '{}' of '{}': {}", v.name, sweep->name(), line));
+  }
+  return all;
 }
 
 std::string resolved_text(const Deck& d) {

@@ -27,6 +27,8 @@ public:
   /// Tables and fields.
   [[nodiscard]] io::Group& group() { return result_.group; }
   [[nodiscard]] io::StudySummary& summary() { return result_.summary; }
+  /// Another checkpoint that goes as soon as the result is written.
+  void leave_behind(std::filesystem::path checkpoint) { result_.checkpoints.push_back(std::move(checkpoint)); }
   /// Shows a mesh in ParaView; dataset paths are relative to group().
   void show(io::StructuredGrid grid) { result_.grids.push_back(std::move(grid)); }
   /// The result, with how it ended; nothing may be added any more.
@@ -41,6 +43,10 @@ public:
   /// Replaces the progress line; rank 0 only, at most ten times a second.
   void progress(const std::string& line);
   [[nodiscard]] bool shows_progress() const { return static_cast<bool>(say_); }
+  /// The same at once, for the progress of a part of this study.
+  void say(const std::string& line, bool transient) const {
+    if (say_) say_(line, transient);
+  }
 
   /// Rank 0's word, for all: what a clock decides must be decided alike. Collective.
   [[nodiscard]] bool agreed(bool word) const;

@@ -72,15 +72,28 @@ Answers distribute(const Groups& groups, std::size_t n, const Work& work) {
   return all;
 }
 
-Answers distribute(const Groups& groups, std::size_t n, const Work& work, Pieces& kept, const std::string& name) {
+Answers distribute(const Groups& groups, std::size_t n, const Work& answer, Pieces& kept, const std::string& name,
+                   const Trail& trail) {
+  // The trail stands before the answer, behind its own length.
+  const Work work = [&](std::size_t item) {
+    const std::vector<double> own = answer(item);
+    std::vector<double> both = trail.leave();
+    both.insert(both.begin(), static_cast<double>(both.size()));
+    both.insert(both.end(), own.begin(), own.end());
+    return both;
+  };
+  const auto split = [](const std::vector<double>& both) {
+    return both.begin() + 1 + static_cast<std::ptrdiff_t>(both.front());
+  };
   const auto piece = [&](std::size_t item) { return fmt::format("{} {}", name, item + 1); };
   const auto known = [] { return std::vector<double>(); };
   Answers all(n);
   std::vector<std::size_t> wanted;
   for (std::size_t item = 0; item < n; ++item)
-    if (kept.known(piece(item)))
+    if (kept.known(piece(item))) {
       all[item] = kept.numbers(piece(item), known);
-    else
+      trail.take({all[item].cbegin() + 1, split(all[item])});
+    } else
       wanted.push_back(item);
   const std::size_t longest =
       (wanted.size() + static_cast<std::size_t>(groups.count) - 1) / static_cast<std::size_t>(groups.count);
@@ -97,9 +110,10 @@ Answers distribute(const Groups& groups, std::size_t n, const Work& work, Pieces
     kept.save_if_due();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     most = std::clamp<unsigned long>(
-        static_cast<unsigned long>(0.5 * static_cast<double>(size) / std::max(seconds, 1e-6)), 1, 2 * size);
+        static_cast<unsigned long>(0.25 * static_cast<double>(size) / std::max(seconds, 1e-6)), 1, 2 * size);
     MPI_Bcast(&most, 1, MPI_UNSIGNED_LONG, 0, groups.world);
   }
+  for (auto& both : all) both.erase(both.cbegin(), split(both));
   return all;
 }
 

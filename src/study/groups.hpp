@@ -36,10 +36,18 @@ struct Groups {
 [[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
                                                           const std::function<std::vector<double>(std::size_t)>& work);
 
-/// The same in rounds of about half a second, after which the answers are `kept` as pieces `name 1`, ..., `name n`:
-/// those of an interrupted run are not computed again.
+/// What an item leaves behind from which the next one starts, as numbers: to be read after an item, and to be put back
+/// where a resumed run takes an item as it was kept.
+struct Trail {
+  std::function<std::vector<double>()> leave;
+  std::function<void(const std::vector<double>&)> take;
+};
+
+/// The same in rounds of about a quarter of a second, after which the answers are `kept` as pieces `name 1`, ..., `name
+/// n`: those of an interrupted run are not computed again, and on one rank the others start from what they would have
+/// started from.
 [[nodiscard]] std::vector<std::vector<double>> distribute(const Groups& groups, std::size_t n,
                                                           const std::function<std::vector<double>(std::size_t)>& work,
-                                                          Pieces& kept, const std::string& name);
+                                                          Pieces& kept, const std::string& name, const Trail& trail);
 
 }  // namespace whirl::study

@@ -8,6 +8,7 @@
 #include "whirl/study/motion.hpp"
 #include "whirl/study/run_up.hpp"
 #include "whirl/study/static.hpp"
+#include "whirl/study/sweep.hpp"
 #include "whirl/study/unbalance_response.hpp"
 
 namespace whirl::study {
@@ -35,6 +36,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<RunUp>("a rotor whose speed rises or falls evenly: amplitude in every revolution on the way"),
       kind<Locus>("curve of one bifurcation of a branch in two parameters, with points of codimension two"),
       kind<MeshConvergence>("bifurcations of a branch of cycles on finer and finer film meshes: order, limit, error"),
+      kind<Sweep>("the same studies for variants of the machine: one table of all values, trends"),
   };
   return all;
 }

@@ -10,8 +10,11 @@
 #include "bifurcation.hpp"
 #include "common.hpp"
 #include "cycle_follower.hpp"
+#include "film_limit.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
 #include "located.hpp"
+#include "locus_follower.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -24,81 +27,15 @@
 namespace whirl::study {
 namespace {
 
-using core::check;
-
-// Names of the monitors behind the condition's own tests.
-constexpr const char* generalised_hopf = "generalised_hopf";
+// Names of monitors behind the condition's own tests.
 constexpr const char* meeting = "meeting";
 constexpr const char* meeting_over_second = "meeting_over_second";
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-struct Row {
-  double first = 0, second = 0, period = 0, angle = 0;
-};
-
-// Normal forms of flips on the curve, a little behind and ahead of a point of it, and what lies between the two in the
-// scaled parameters.
-struct FlipsBeside {
-  double behind = 0, ahead = 0;
-  Eigen::Vector2d moved = Eigen::Vector2d::Zero();
-};
-
-// The branch problem at the bifurcation that the curve begins with, in both parameters.
-class LocusFollower {
-public:
-  LocusFollower(Context& context, const LocusOptions& options);
-  StudyResult run();
-
-private:
-  // System, branch problem and condition at the start of the curve.
-  void begin();
-  void make_cycles(const CycleBranchOptions& o);
-  void make_equilibria(const EquilibriumBranchOptions& o);
-  void make_system(const std::optional<deck::Quantity>& speed);
-  [[nodiscard]] system::Train train_at(double first) const;
-  [[nodiscard]] solve::SecondParameter second();
-  [[nodiscard]] Row row_at(Vec whole, double second) const;
-  [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
-  // `error` in scaled second parameter; not a number: unknown.
-  void record(const std::string& type, double second, double error, Vec whole);
-  void record_flip(double second, double bracket, Vec whole);
-  [[nodiscard]] FlipsBeside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
-  // Whether the zero of the coefficient at `whole` is one on the doubled mesh too: its error in scaled second
-  // parameter, or not a number; and whether that mesh has another one near.
-  struct Verdict {
-    double error = unknown;
-    bool unclear = false;
-  };
-  [[nodiscard]] Verdict judge_flip(Vec whole, double reach);
-  void suspect(double from, double to, const std::string& reason);
-  // Points in one direction from the start, without it.
-  std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
-
-  Context& context_;
-  const LocusOptions& options_;
-  std::optional<CycleBranchOptions> of_cycles_;
-  const EquilibriumBranchOptions* of_rest_ = nullptr;
-  Located seed_;
-  Parameter first_;
-  std::vector<std::string> unbalance_;
-  deck::Range first_range_;
-  double first_scale_ = 1, second_scale_ = 1;   // SI values of one unit of the scaled parameters: widths of the ranges
-  double start_second_ = 0, second_value_ = 0;  // SI: at the start, and to which the system is set
-  solve::ContinuationOptions continuation_;
-  std::unique_ptr<system::RotorSystem> system_;
-  std::unique_ptr<solve::CycleProblem> cycles_;
-  std::unique_ptr<solve::EquilibriumProblem> rest_;
-  solve::ExtendedProblem* branch_ = nullptr;
-  std::unique_ptr<solve::Condition> condition_;
-  std::unique_ptr<solve::AugmentedProblem> problem_;
-  Row start_, last_;
-  bool left_ = false, ended_ = false;
-};
 
 double width(const deck::Range& range) {
   return std::abs(range.to - range.from);
 }
+
+}  // namespace
 
 LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : context_(context), options_(options) {
   for (const auto& s : context.studies) {
@@ -132,6 +69,7 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   continuation_.min_step = step ? step->min.value / second_scale_ : 1e-6;
   continuation_.max_step = step ? step->max.value / second_scale_ : 1.0 / 30;
   continuation_.max_points = options.max_points;
+  continuation_.kind = kind_of(options.second.continuation);
   continuation_.location_tolerance = 1e-7;
 }
 
@@ -144,34 +82,33 @@ void LocusFollower::begin() {
   if (of_cycles_)
     make_cycles(*of_cycles_);
   else
-    make_equilibria(*of_rest_);
+    make_equilibria();
   if (!condition_)
     throw core::NotConverged(
         fmt::format("bifurcation {} of '{}' is none that can be followed", options_.bifurcation, options_.of));
 }
 
-system::Train LocusFollower::train_at(double first) const {
+system::Train LocusFollower::train_at(double first, bool half_film) const {
   system::Machine machine = with_parameter(context_.machine, options_.second.path, second_value_);
   if (first_.path != "speed") machine = with_parameter(machine, first_.path, first);
-  return system::train_of(machine, unbalance_);
+  system::Train train = system::train_of(machine, unbalance_);
+  return half_film ? with_film_mesh(std::move(train), {0.5, 0.5}) : train;
 }
 
-void LocusFollower::make_system(const std::optional<deck::Quantity>& speed) {
-  const double value = seed_.cycle.parameter;
-  if (first_.path == "speed") {
-    system_ = std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(value), value);
-    return;
-  }
+std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, bool half_film) const {
+  if (first_.path == "speed")
+    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(first, half_film), first);
   system::Varying varying;
-  varying.train = [this](double p) { return train_at(p); };
-  varying.value = value;
+  varying.train = [this, half_film](double p) { return train_at(p, half_film); };
+  varying.value = first;
   varying.magnitude = std::max(std::abs(first_range_.from), std::abs(first_range_.to));
-  system_ = std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), speed->value);
+  const auto& speed = of_cycles_ ? of_cycles_->speed : of_rest_->speed;
+  return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), speed->value);
 }
 
 void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   unbalance_ = o.unbalance;
-  make_system(o.speed);
+  system_ = make_system(seed_.cycle.parameter, false);
   solve::CycleOptions c;
   c.degree = o.degree;
   c.points = o.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
@@ -192,8 +129,8 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   condition_ = solve::condition_of(*cycles_, seed_.event, seed_.critical);
 }
 
-void LocusFollower::make_equilibria(const EquilibriumBranchOptions& o) {
-  make_system(o.speed);
+void LocusFollower::make_equilibria() {
+  system_ = make_system(seed_.cycle.parameter, false);
   continuation_.adapt_every = 0;
   continuation_.newton.max_iterations = 20;
   rest_ =
@@ -202,10 +139,10 @@ void LocusFollower::make_equilibria(const EquilibriumBranchOptions& o) {
   condition_ = solve::condition_of(*system_, *rest_, seed_.event, seed_.critical);
 }
 
-solve::SecondParameter LocusFollower::second() {
-  return {[this](double value) {
+solve::SecondParameter LocusFollower::second(system::RotorSystem& system, bool half_film) {
+  return {[this, &system, half_film](double value) {
             second_value_ = value;
-            system_->set_train(train_at(system_->parameter()));
+            system.set_train(train_at(system.parameter(), half_film));
           },
           second_scale_};
 }
@@ -235,104 +172,51 @@ std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent)
   return all;
 }
 
-void LocusFollower::record(const std::string& type, double second, double error, Vec whole) {
-  const Row row = row_at(whole, second);
-  io::CodimensionTwo c;
-  c.type = type;
-  c.parameter = first_.path;
-  c.value = {deck::from_si(row.first, first_range_.unit), first_range_.unit};
-  c.second_parameter = options_.second.path;
-  c.second_value = {deck::from_si(row.second, options_.second.range.unit), options_.second.range.unit};
-  if (!std::isnan(error)) c.uncertainty = error * second_scale_ / deck::number_to_si(1, options_.second.range.unit);
-  const double speed = first_.path == "speed" ? row.first : system_->speed();
-  if (const auto groups = system::groups_of(system_->train())) {
-    c.more["nondimensional_speed"] = speed / groups->speed_scale;
-    c.more["nondimensional_load"] = groups->load;
-    c.more["nondimensional_unbalance"] = groups->unbalance;
+// A Hopf curve along which another mode is unstable already is no border of stability.
+int LocusFollower::others_unstable(Vec whole) {
+  core::Vector left = core::duplicate(whole);
+  problem_->residual(whole, left.get());  // sets both parameters
+  const core::Vector u = problem_->branch_part(whole);
+  solve::Stability all;
+  std::vector<std::complex<double>> critical;
+  if (cycles_) {
+    core::Vector row = core::duplicate(u.get());
+    // At a fold the matrix with the parameter fixed is singular.
+    solve::weighted_row(*cycles_, solve::any_tangent(*cycles_, u.get()).get(), row.get());
+    cycles_->linearise(u.get(), row.get());
+    all = solve::make_stability(cycles_->multipliers(), distance_of_multiplier);
+    const double angle = row_at(whole, 0).angle;
+    critical.push_back(std::polar(1.0, angle));
+    if (seed_.event == solve::Event::neimark_sacker) critical.push_back(std::polar(1.0, -angle));
+    if (cycles_->options().autonomous) critical.emplace_back(1);
+  } else {
+    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
+    rest_->to_state(u.get(), x.get());
+    all = equilibrium_stability(*system_, x.get());
+    const double omega = seed_.event == solve::Event::hopf ? problem_->inner(whole)(0) : 0;
+    critical.emplace_back(0, omega);
+    if (omega != 0) critical.emplace_back(0, -omega);
   }
-  context_.results.summary().codimension_two.push_back(std::move(c));
-}
-
-FlipsBeside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, double reach) {
-  const core::Vector at = problem_->branch_part(whole);
-  const auto cycle = cycles_->gather(at.get());
-  solve::CycleProblem cycles(sharing_time(context_.comm, mesh.size() - 1), *system_, cycles_->options(), mesh);
-  const core::Vector u = cycles.scatter(cycle), along = solve::any_tangent(cycles, u.get());
-  const auto condition = solve::make_flip(cycles);
-  solve::AugmentedProblem problem(cycles, *condition, along.get(), second());
-  core::Vector here = problem.make_unknown(), row = core::duplicate(here.get());
-  problem.join(u.get(), condition->start(), solve::last_entry(cycles_->comm(), whole), here.get());
-  problem.prime(here.get());
-  const core::Vector tangent = solve::any_tangent(problem, here.get());
-  solve::weighted_row(problem, tangent.get(), row.get());
-  double middle = 0;
-  check(VecDot(row.get(), here.get(), &middle));
-  FlipsBeside out;
-  for (const bool ahead : {false, true}) {
-    check(VecAXPY(here.get(), ahead ? 2 * reach : -reach, tangent.get()));
-    const auto result =
-        solve::newton(problem, here.get(), row.get(), middle + (ahead ? reach : -reach), continuation_.newton);
-    if (!result.converged) throw core::NotConverged(result.reason);
-    problem.linearise(here.get(), row.get());
-    (ahead ? out.ahead : out.behind) = solve::flip_coefficient(cycles, problem.branch_part(here.get()).get());
-    const Eigen::Vector2d place(problem.first_parameter(here.get()), solve::last_entry(problem.comm(), here.get()));
-    out.moved += ahead ? place : Eigen::Vector2d(-place);
+  std::vector<bool> taken(all.values.size(), false);
+  for (const auto& c : critical) {
+    std::size_t nearest = all.values.size();
+    for (std::size_t k = 0; k < all.values.size(); ++k)
+      if (!taken[k] &&
+          (nearest == all.values.size() || std::abs(all.values[k] - c) < std::abs(all.values[nearest] - c)))
+        nearest = k;
+    if (nearest < taken.size()) taken[nearest] = true;
   }
-  return out;
+  int count = 0;
+  for (std::size_t k = 0; k < all.values.size(); ++k) count += !taken[k] && all.distance[k] > 0;
+  return count;
 }
 
-// Where the journal stands still in its oil for a moment the force of a closed-form film has a kink, and the
-// coefficient a peak as narrow as the time mesh allows: on its flanks it vanishes, too. Only a zero through which the
-// doubled mesh repeats the same straight line is one of the equations.
-LocusFollower::Verdict LocusFollower::judge_flip(Vec whole, double reach) {
-  Verdict verdict;
-  const auto mesh = cycles_->mesh();
-  const FlipsBeside coarse = flips_beside(whole, mesh, reach);
-  const double tolerance = std::abs(coarse.ahead - coarse.behind) / 4, width = coarse.moved.cwiseAbs().maxCoeff();
-  const auto alike = [&](double a, double b) { return std::abs(a - b) < tolerance; };
-  if (!alike(coarse.ahead, -coarse.behind)) return verdict;
-  FlipsBeside fine = flips_beside(whole, solve::doubled(mesh), reach);
-  if (coarse.moved.dot(fine.moved) < 0) std::swap(fine.behind, fine.ahead);
-  verdict.unclear = fine.behind * fine.ahead < 0;
-  // Twice the move to the doubled mesh, as for all errors of the time mesh.
-  if (alike(fine.behind, coarse.behind) && alike(fine.ahead, coarse.ahead))
-    verdict.error = std::abs((fine.ahead + fine.behind) / (fine.ahead - fine.behind)) * width;
-  return verdict;
-}
-
-void LocusFollower::record_flip(double second_here, double bracket, Vec whole) {
-  const double first_here = row_at(whole, second_here).first;
-  Verdict verdict;
-  double reach = continuation_.max_step / 100;
-  try {
-    verdict = judge_flip(whole, reach);
-    // Kinks of a film on its mesh blur the coefficient: from farther away they matter less.
-    if (std::isnan(verdict.error)) {
-      const bool unclear = verdict.unclear;
-      verdict = judge_flip(whole, reach *= 10);
-      verdict.unclear = verdict.unclear || unclear;
-    }
-  } catch (const core::NotConverged&) {
-    verdict.unclear = true;
-  } catch (const core::DomainError&) {
-    verdict.unclear = true;
-  }
-  core::agree(context_.comm, [&] {
-    second_value_ = second_here * second_scale_;
-    system_->set_parameter(first_here);
-    system_->set_train(train_at(first_here));
-  });
-  if (!std::isnan(verdict.error))
-    record(solve::generalised_flip, second_here, verdict.error + bracket, whole);
-  else if (verdict.unclear)
-    suspect(second_here - reach, second_here + reach,
-            "the coefficient of the flip changes its sign, but not alike on the doubled time mesh");
-}
-
-void LocusFollower::suspect(double from, double to, const std::string& reason) {
-  const std::string& unit = options_.second.range.unit;
-  const double factor = second_scale_ / deck::number_to_si(1, unit);
-  context_.results.summary().suspected.push_back({from * factor, to * factor, unit, reason});
+std::vector<double> LocusFollower::films(Vec whole) const {
+  const core::Vector u = problem_->branch_part(whole);
+  if (cycles_) return least_films(cycles_->gather(u.get()), *system_);
+  core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
+  rest_->to_state(u.get(), x.get());
+  return system_->film_thickness(system_->gather(x.get()).data());
 }
 
 std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd& end) {
@@ -349,7 +233,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     rest_->from_state(x.get(), seed_.cycle.parameter, u.get());
   }
   const core::Vector along = solve::any_tangent(*branch_, u.get());
-  problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), second());
+  problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), second(*system_));
   core::Vector start = problem_->make_unknown();
   problem_->join(u.get(), condition_->start(), start_second_ / second_scale_, start.get());
   problem_->prime(start.get());
@@ -375,16 +259,20 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   callbacks.on_zero = [&](const solve::LocatedZero& zero, Vec whole) {
     if (!zero.located) return;
     const std::string type = names[zero.monitor];
-    if (type == solve::generalised_flip) return record_flip(zero.parameter, zero.bracket, whole);
-    // The rounding of a Lyapunov coefficient is more than its location leaves, and not known.
-    record(type, zero.parameter, type == generalised_hopf ? unknown : zero.bracket, whole);
+    if (type == solve::generalised_flip || type == generalised_hopf)
+      return record_generalised(type, zero.parameter, zero.bracket, whole);
+    record(type, zero.parameter, zero.bracket, whole);
   };
   callbacks.on_event = [&](const solve::LocatedEvent& event, Vec whole) {
     if (event.event == solve::Event::fold && event.located) record(meeting, event.parameter, event.bracket, whole);
   };
   callbacks.on_suspicion = [&](const solve::Suspicion& s) { suspect(s.from, s.to, s.reason); };
+  // The parameters may change what a film bears.
+  callbacks.limit = [&](Vec whole) { return FilmLimit(system_->places()).margin(films(whole)); };
+  callbacks.why = [&](Vec whole) { return FilmLimit(system_->places()).reason(films(whole)); };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
     last_ = row_at(whole, point.parameter);
+    last_.others_unstable = others_unstable(whole);
     if (point.index > 0)
       rows.push_back(last_);
     else
@@ -417,6 +305,37 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   return rows;
 }
 
+namespace {
+
+// The curve into the summary, and a warning where it is no border of stability.
+void put_curve(io::StudySummary& summary, const std::vector<Row>& rows, const std::string& first,
+               const std::string& second) {
+  std::vector<io::Column> columns{{"parameter", first, {}},
+                                  {"second", second, {}},
+                                  {"period", "s", {}},
+                                  {"angle", "rad", {}},
+                                  {"others_unstable", "1", {}}};
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  int marked = 0;
+  for (const Row& row : rows) {
+    const double values[] = {deck::from_si(row.first, first), deck::from_si(row.second, second), row.period, row.angle,
+                             static_cast<double>(row.others_unstable)};
+    for (std::size_t k = 0; k < columns.size(); ++k) columns[k].values.push_back(values[k]);
+    if (row.others_unstable == 0) continue;
+    ++marked;
+    low = std::min(low, values[1]);
+    high = std::max(high, values[1]);
+  }
+  if (marked > 0)
+    summary.warnings.push_back(fmt::format(
+        "no border of stability at {} of {} points, second parameter from {:.6g} to {:.6g} {}: others are unstable "
+        "there already (others_unstable)",
+        marked, rows.size(), low, high, second));
+  summary.curve = std::move(columns);
+}
+
+}  // namespace
+
 StudyResult LocusFollower::run() {
   const deck::Range& range = options_.second.range;
   const double from = range.from / second_scale_, to = range.to / second_scale_;
@@ -430,16 +349,19 @@ StudyResult LocusFollower::run() {
   io::Table table({{"parameter", first_range_.unit, "first parameter, that of the branch"},
                    {"second", range.unit, "second parameter"},
                    {"period", "s", "period of the cycle, or 2 pi/omega at Hopf points"},
-                   {"angle", "rad", "angle of the critical multiplier"}});
+                   {"angle", "rad", "angle of the critical multiplier"},
+                   {"others_unstable", "1", "unstable eigenvalues or multipliers beside the critical ones"}});
   for (const Row& row : all)
     table.append({{deck::from_si(row.first, first_range_.unit)},
                   {deck::from_si(row.second, range.unit)},
                   {row.period},
-                  {row.angle}});
+                  {row.angle},
+                  {static_cast<double>(row.others_unstable)}});
   auto& results = context_.results;
   put_groups(results.summary(), system_->train());
   auto& group = results.group();
   table.write(group.child("locus"));
+  put_curve(results.summary(), all, first_range_.unit, range.unit);
   std::vector<std::string> types;
   std::vector<double> first, second;
   for (const auto& c : results.summary().codimension_two) {
@@ -464,8 +386,6 @@ StudyResult LocusFollower::run() {
   };
   return results.finish(!there.completed ? status(there) : !here.completed ? status(here) : "completed", true);
 }
-
-}  // namespace
 
 StudyResult Locus::run(Context& context) {
   return LocusFollower(context, options).run();

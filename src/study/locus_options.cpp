@@ -33,6 +33,7 @@ void describe(deck::Description<LocusOptions>& d) {
 void Locus::validate(const system::Machine& machine, const deck::Report& report) const {
   if (options.second.path == "speed")
     return report.fail("parameter", "the second parameter is another option than the speed: let the branch vary that");
+  if (options.second.deflation) report.fail("deflation", "a curve of bifurcations begins at one that was found");
   check_parameter(options.second, deck::Quantity{1, "rad/s"}, machine, report);
   try {
     const double value = value_of(machine, options.second.path);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common.hpp"
+#include "film_mesh.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -17,9 +18,8 @@ std::unique_ptr<system::Plant> make_plant(MPI_Comm comm, const system::Machine& 
   };
   const double magnitude = varied ? std::max(std::abs(varied->range.from), std::abs(varied->range.to)) : 1;
   if (!system::is_rotor(machine)) return system::make_other(comm, {machine_at, request.value, magnitude});
-  const auto train_at = [machine_at, unbalance = request.unbalance, half = request.half_film](double p) {
-    system::Train t = system::train_of(machine_at(p), unbalance);
-    return half ? with_half_film_mesh(std::move(t)) : t;
+  const auto train_at = [machine_at, unbalance = request.unbalance, cells = request.film_cells](double p) {
+    return with_film_mesh(system::train_of(machine_at(p), unbalance), cells);
   };
   if (!varied) return std::make_unique<system::RotorSystem>(comm, train_at(0), request.value);
   return std::make_unique<system::RotorSystem>(comm, system::Varying{train_at, request.value, magnitude},

@@ -1,6 +1,7 @@
 #pragma once
 // The system of a deck, for studies that follow branches and motions of any kind of system.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,11 +13,11 @@ namespace whirl::study {
 
 /// Which system is wanted.
 struct PlantRequest {
-  std::vector<std::string> unbalance;    ///< of a rotor, applied together
-  const Parameter* parameter = nullptr;  ///< that of a branch; null: a rotor's speed, and none of another system
-  double value = 0;                      ///< of the parameter, SI
-  double speed = 0;                      ///< of a rotor, where the parameter is another one [rad/s]
-  bool half_film = false;                ///< film meshes halved in both directions
+  std::vector<std::string> unbalance;      ///< of a rotor, applied together
+  const Parameter* parameter = nullptr;    ///< that of a branch; null: a rotor's speed, and none of another system
+  double value = 0;                        ///< of the parameter, SI
+  double speed = 0;                        ///< of a rotor, where the parameter is another one [rad/s]
+  std::array<double, 2> film_cells{1, 1};  ///< cells of its films over those of the deck
 };
 
 /// The system that `machine` describes. It refers to `machine` and to the parameter, which outlive it. Collective.

@@ -20,8 +20,8 @@ namespace {
 // Machine and solver at one level: film meshes doubled `level` times.
 struct Level {
   Level(Context& context, const CycleBranchOptions& options, int level)
-      : machine(context.machine), here{context.comm,    machine,        context.results,
-                                       context.earlier, context.resume, context.studies} {
+      : machine(context.machine), here{context.comm,      machine,        context.results, context.earlier,
+                                       context.summaries, context.resume, context.studies, context.checkpoint_of} {
     for (auto& b : machine.bearings)
       for (int& cells : b.film.cells) cells <<= level;
     follower = std::make_unique<CycleFollower>(here, options);

@@ -1,5 +1,9 @@
 #include "whirl/study/modes.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 namespace whirl::study {
 
 std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
@@ -19,14 +23,13 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("count", &ModesOptions::count, deck::positive, "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
+  d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
+        "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
   d.check([](const ModesOptions& o, const deck::Report& r) {
     if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
     // Without films the shaft is taken at rest, whatever its speed.
     if (o.supports != ModesOptions::Supports::films) return;
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
-    for (double s : o.all_speeds())
-      if (s <= 0)
-        return r.fail(o.range ? "range" : "speeds", "a film carries no load at rest: speeds must be positive");
   });
 }
 
@@ -38,10 +41,27 @@ std::vector<double> ModesOptions::all_speeds() const {
   return s;
 }
 
+std::vector<double> ModesOptions::all_shape_speeds() const {
+  std::vector<double> s;
+  for (const deck::Quantity& q : shapes_at) s.push_back(q.value);
+  if (s.empty()) s.push_back(all_speeds().back());
+  return s;
+}
+
 std::string ModesOptions::unit() const {
   return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
 }
 
-void Modes::validate(const system::Machine&, const deck::Report&) const {}
+void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (options.supports != ModesOptions::Supports::films) return;
+  const std::vector<double> speeds = options.all_speeds();
+  if (std::none_of(speeds.begin(), speeds.end(), [](double s) { return s <= 0; })) return;
+  for (const system::Bearing& b : machine.bearings)
+    if (b.film.kind != film::Options::Kind::linear)
+      return report.fail(options.range ? "range" : "speeds",
+                         fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
+                                     "films have coefficients at rest, too)",
+                                     b.name));
+}
 
 }  // namespace whirl::study

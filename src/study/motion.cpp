@@ -9,10 +9,12 @@
 #include <optional>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "groups.hpp"
 #include "make_plant.hpp"
 #include "motion_record.hpp"
 #include "motion_start.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {
@@ -38,21 +40,28 @@ public:
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
         integrator_(system_, {options_.speed.value}, start_.x.get(), {.tolerance = options_.tolerance}),
-        record_(options_, system_.places()) {
+        record_(options_, system_.places()),
+        films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
 
   StudyResult run() {
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     const int total = options_.discard + options_.revolutions;
-    for (; done_ < total; ++done_) {
-      // Directions need time to turn to those that grow most, before their growth counts.
-      if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
-      revolve(done_ >= options_.discard);
-      progress(total);
-      save();
+    std::string status = "completed";
+    try {
+      for (; done_ < total; ++done_) {
+        // Directions need time to turn to those that grow most, before their growth counts.
+        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
+        revolve(done_ >= options_.discard);
+        progress(total);
+        save();
+      }
+    } catch (const core::DomainError& e) {
+      if (record_.revolutions() < 2) throw;
+      status = fmt::format("ended in revolution {}: {}", done_ + 1, e.what());
     }
-    return report();
+    return report(status);
   }
 
 private:
@@ -65,9 +74,11 @@ private:
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
       }
-      if (!record) continue;
       integrator_.state(start_.x.get());
-      record_.sample(system_.shown(system_.gather(start_.x.get()).data()), system_.gather(integrator_.scaled()));
+      const std::vector<double> whole = system_.gather(start_.x.get());
+      if (const auto thickness = system_.film_thickness(whole.data()); !(films_.margin(thickness) > 0))
+        throw core::DomainError(films_.reason(thickness));
+      if (record) record_.sample(system_.shown(whole.data()), system_.gather(integrator_.scaled()));
     }
     if (record) record_.close(growth, period);
     integrator_.restart(0, integrator_.step());
@@ -115,7 +126,7 @@ private:
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
-  StudyResult report() {
+  StudyResult report(const std::string& status) {
     auto& results = context_.results;
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
@@ -133,7 +144,7 @@ private:
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
     summary.points = record_.revolutions();
-    return results.finish("completed", true);
+    return results.finish(status, true);
   }
 
   Context& context_;
@@ -144,6 +155,7 @@ private:
   transient::Integrator integrator_;
   std::optional<transient::Tangents> tangents_;
   MotionRecord record_;
+  FilmLimit films_;
   int done_ = 0;
   double last_saved_ = -1e9;
 };

@@ -35,7 +35,8 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("discard", &O::discard, deck::non_negative, "revolutions before anything is recorded");
   d.add("revolutions", &O::revolutions, deck::at_least(2), "revolutions recorded");
   d.add("samples", &O::samples, deck::at_least(8), "samples per revolution, of orbits and spectra");
-  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2), "error allowed to a step, in clearances");
+  d.add("tolerance", &O::tolerance, deck::between(1e-13, 1e-2),
+        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
   d.add("exponents", &O::exponents, deck::non_negative, "Lyapunov exponents to compute, the largest; none: 0");
   d.add("max_period", &O::max_period, deck::positive, "longest period to look for, in revolutions");
   d.add("return_tolerance", &O::return_tolerance, deck::between(0, 1),

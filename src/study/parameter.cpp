@@ -26,6 +26,13 @@ std::span<const deck::Name<Event>> names(Event) {
   return table;
 }
 
+std::span<const deck::Name<Following>> names(Following) {
+  static constexpr deck::Name<Following> table[] = {
+      {Following::arclength, "arclength", "pseudo-arclength: folds are passed, the parameter may turn back"},
+      {Following::natural, "natural", "the parameter goes on in steps of its own: the branch ends at a fold"}};
+  return table;
+}
+
 void describe(deck::Description<Step>& d) {
   d.add("initial", &Step::initial, "*", deck::positive, "length of the first step").required();
   d.add("min", &Step::min, "*", deck::positive, "length below which the branch ends").required();
@@ -36,12 +43,26 @@ void describe(deck::Description<Step>& d) {
   });
 }
 
+void describe(deck::Description<Deflation>& d) {
+  d.add("solutions", &Deflation::solutions, deck::at_least(2),
+        "solutions wanted in all; the search ends when so many are known");
+  d.add("attempts", &Deflation::attempts, deck::Check{.min = 1, .max = 10000}, "guesses to search from");
+  d.add(
+      "power", &Deflation::power, deck::positive,
+      "p of the factor 1/|u - r|^p + 1 that takes a known solution r out of the equations, with u in root mean square "
+      "clearances",
+      "004 eq. 3.1 with errata 26");
+}
+
 void describe(deck::Description<Parameter>& d) {
   d.add("parameter", &Parameter::path, "speed, or the path of an option that studies may vary");
   d.add("range", &Parameter::range, "*", deck::any,
         "values to cover, from the first towards the second; results carry its unit")
       .required();
   d.add("step", &Parameter::step, "lengths of steps, in the unit of the range");
+  d.add("continuation", &Parameter::continuation, "how the branch goes on from point to point");
+  d.add("deflation", &Parameter::deflation,
+        "search for further solutions at the start of the branch; each begins a branch of its own, 'NAME solution K'");
   d.add(
       "beta_1", &Parameter::beta_1, "rad", deck::Check{.min = 0, .max = std::numbers::pi, .min_open = true},
       "angle between the predictor and the line from point to point above which a step is halved; the tangent may turn "

@@ -13,7 +13,6 @@ Pieces::Pieces(Findings& findings, bool resume, bool save) : findings_(findings)
     pieces_ = all.group("pieces");
     findings_.add_earlier_seconds(all.real("seconds"));
   }
-  last_saved_ = findings_.seconds();
 }
 
 const io::Group& Pieces::get(const std::string& name, const std::function<void(io::Group&)>& work) {
@@ -38,6 +37,10 @@ double Pieces::number(const std::string& name, const std::function<double()>& wo
   return numbers(name, [&] { return std::vector<double>{work()}; }).front();
 }
 
+solve::Stability Pieces::stability(const std::string& name, const std::function<solve::Stability()>& work) {
+  return read_stability(get(name, [&](io::Group& g) { write_stability(g, work()); }));
+}
+
 void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::function<void()>& work) {
   const io::Group& kept = get(name, [&](io::Group& g) {
     work();
@@ -52,7 +55,7 @@ void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::fu
 
 bool Pieces::due() const {
   // Saving takes no more than a twentieth of the time.
-  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= std::max(1.0, 20 * cost_));
+  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= std::max(0.5, 20 * cost_));
 }
 
 void Pieces::save_if_due() {

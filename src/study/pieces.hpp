@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "findings.hpp"
+#include "whirl/solve/continuation.hpp"
 
 namespace whirl::study {
 
 /// Pieces of work that a killed run does not do again: a location's error estimate, the modes at one speed.
 ///
 /// A study asks for each by a name that the same deck gives again in a resumed run, and gets what was kept or what it
-/// computes now. The checkpoint is the state() of the study and the pieces since then. It is saved after a piece if a
-/// second has passed since it was saved last (more if saving takes long), so that a kill costs about a second and the
-/// piece under way. Every rank holds the same; all members are collective.
+/// computes now. The checkpoint is the state() of the study and the pieces since then. It is saved after a piece if
+/// half a second has passed since it was saved last (more if saving takes long), so that a kill costs less than a
+/// second and the piece under way. Every rank holds the same; all members are collective.
 class Pieces {
 public:
   /// With `resume`, takes over the checkpoint of an earlier run if there is one. Without `save` no file is written.
@@ -28,6 +29,8 @@ public:
   /// The same for numbers.
   std::vector<double> numbers(const std::string& name, const std::function<std::vector<double>()>& work);
   double number(const std::string& name, const std::function<double()>& work);
+  /// The same for the stability of a point.
+  solve::Stability stability(const std::string& name, const std::function<solve::Stability()>& work);
   /// The same for all that is known of a bifurcation: `work` adds to it.
   void complete(const std::string& name, io::Bifurcation& b, const std::function<void()>& work);
   [[nodiscard]] bool known(const std::string& name) const { return pieces_.has_group(name); }
@@ -48,7 +51,7 @@ private:
   Findings& findings_;
   bool saves_;
   io::Group state_, pieces_;
-  double last_saved_ = 0, cost_ = 0;
+  double last_saved_ = -1e9, cost_ = 0;  // at once for the first time
 };
 
 }  // namespace whirl::study

@@ -1,23 +1,36 @@
-#include <memory>
+#include "run_studies.hpp"
 
 #include "findings.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/study/deck.hpp"
+#include "whirl/study/sweep.hpp"
 #include "writer.hpp"
 
 namespace whirl::study {
 namespace {
 
 // One study, and then those that its result calls for.
-void run_one(Study& study, MPI_Comm comm, const Deck& deck, const RunOptions& options, Writer& writer) {
-  if (!options.resume || !writer.finished(study.name())) {
-    Findings findings(comm, study.name(), std::string(study.kind()), writer.checkpoint_path(study.name()), options.say);
-    Context context{comm, deck.machine, findings, writer.studies(), options.resume, deck.studies};
-    writer.add(result_of(study, context));
-    if (findings.shows_progress()) options.say("", false);
+void run_one(Study& study, MPI_Comm comm, const Deck& deck, const Say& say, bool resume, Store& store) {
+  if (!resume || !store.finished(study.name())) {
+    Findings findings(comm, study.name(), std::string(study.kind()), store.checkpoint_path(study.name()), say);
+    const auto part = [&](const std::string& name) { return store.checkpoint_path(study.name() + " " + name); };
+    Context context{comm, deck.machine, findings, store.studies(), store.summaries(), resume, deck.studies, part};
+    store.add(result_of(study, context));
+    if (findings.shows_progress()) say("", false);
   }
-  for (const auto& more : study.further(writer.studies().group(io::safe_name(study.name()))))
-    run_one(*more, comm, deck, options, writer);
+  for (const auto& more : study.further(store.studies().group(io::safe_name(study.name()))))
+    run_one(*more, comm, deck, say, resume, store);
+}
+
+// Whether the study stands in the deck for the variants of a sweep only.
+bool is_pattern(const Study& study, const Deck& deck) {
+  bool pattern = false, needed = false;
+  for (const auto& s : deck.studies) {
+    const auto* sweep = dynamic_cast<const Sweep*>(s.get());
+    const bool repeats = sweep && sweep->repeats(study.name());
+    pattern = pattern || (repeats && !sweep->options.as_given);
+    needed = needed || (repeats && sweep->options.as_given) || s->starts_from() == study.name();
+  }
+  return pattern && !needed && study.kind() != Sweep::key;
 }
 
 }  // namespace
@@ -33,9 +46,14 @@ StudyResult result_of(Study& study, Context& context) {
   }
 }
 
+void run_studies(MPI_Comm comm, const Deck& deck, const Say& say, bool resume, Store& store) {
+  for (const auto& study : deck.studies)
+    if (!is_pattern(*study, deck)) run_one(*study, comm, deck, say, resume, store);
+}
+
 std::vector<std::string> run(MPI_Comm comm, const Deck& deck, const RunOptions& options) {
   Writer writer(comm, options.directory, deck.machine.title, options.version, options.resume);
-  for (const auto& study : deck.studies) run_one(*study, comm, deck, options, writer);
+  run_studies(comm, deck, options.say, options.resume, writer);
   return writer.undelivered();
 }
 

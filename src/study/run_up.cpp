@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "groups.hpp"
 #include "motion_start.hpp"
 #include "whirl/core/error.hpp"
@@ -82,6 +83,7 @@ public:
         x_(start_state(system_, options.start).x),
         integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),
         places_(system_.places()),
+        films_(places_),
         table_(columns(unit_, places_.names.size(), options.nodes.size())) {
     system_.set_acceleration(drive_.acceleration);
     const double from = options.range.from, to = options.range.to,
@@ -122,6 +124,8 @@ private:
       integrator_.advance(drive_.time_of(2 * std::numbers::pi * (done_ + static_cast<double>(k) / options_.samples)));
       integrator_.state(x_.get());
       const std::vector<double> whole = system_.gather(x_.get());
+      if (const auto thickness = system_.film_thickness(whole.data()); !(films_.margin(thickness) > 0))
+        throw core::DomainError(films_.reason(thickness));
       const auto shown = system_.shown(whole.data());
       for (std::size_t b = 0; b < n; ++b) r.samples[b].push_back(shown[b].position);
       if (options_.nodes.empty()) continue;
@@ -242,6 +246,7 @@ private:
   core::Vector x_;
   transient::Integrator integrator_;
   system::Places places_;
+  FilmLimit films_;
   io::Table table_;
   int total_ = 0, done_ = 0;
   double last_saved_ = -1e9;

@@ -15,7 +15,8 @@ void describe(deck::Description<RunUpOptions>& d) {
   d.add("start", &O::start, "state at the beginning");
   d.add("nodes", &O::nodes, deck::positive, "nodes of the shaft to report beside the bearings");
   d.add("samples", &O::samples, deck::at_least(8), "samples per revolution, among which extremes are looked for");
-  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2), "error allowed to a step, in clearances");
+  d.add("tolerance", &O::tolerance, deck::between(1e-13, 1e-2),
+        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
   d.check([](const O& o, const deck::Report& r) {
     if (o.acceleration.has_value() == o.duration.has_value())

@@ -3,9 +3,14 @@
 #include <fmt/core.h>
 
 #include "common.hpp"
+#include "film_limit.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
+#include "summary_bars.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
+#include "whirl/solve/equilibrium.hpp"
 
 namespace whirl::study {
 namespace {
@@ -39,6 +44,77 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
   }
 }
 
+// What follows from the films at the state x.
+void put_values(const Context& context, system::RotorSystem& system, const std::vector<double>& x,
+                io::StudySummary& summary) {
+  const auto journals = system.journals(x.data());
+  const auto films = system.film_responses(x.data(), film::Need::force);
+  const auto names = names_of_bearings(context.machine);
+  const std::vector<double> thickness = system.film_thickness(x.data());
+  double total_loss = 0;
+  const char* const axis[] = {"x", "y"};
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    const auto& support = system.train().supports[b];
+    const std::string head = "bearing." + names[b] + ".";
+    summary.set("load." + names[b], films[b].force[1], "N");
+    summary.set(head + "force.x", films[b].force[0], "N");
+    summary.set(head + "force.y", films[b].force[1], "N");
+    for (std::size_t d = 0; d < 2; ++d) summary.set(head + axis[d], journals[b].position[d], "m");
+    if (support.geometry.clearance > 0) {
+      for (std::size_t d = 0; d < 2; ++d)
+        summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
+      film::Summary report;
+      core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
+      // Between the nodes of a mesh, too.
+      const double thinnest = std::min(report.min_thickness, thickness[b]);
+      summary.set(head + "min_thickness", thinnest, "m");
+      summary.set(head + "min_thickness_ratio", thinnest / support.geometry.clearance, "1");
+      summary.set(head + "minimum_film", support.minimum_film, "m");
+      summary.set(head + "max_pressure", report.max_pressure, "Pa");
+      summary.set(head + "side_flow", report.side_flow, "m^3/s");
+      summary.set(head + "power_loss", report.power_loss, "W");
+      total_loss += report.power_loss;
+    }
+    // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
+    film::Coefficients tangents;
+    core::agree(context.comm,
+                [&] { tangents = system.film_coefficients(static_cast<int>(b), x.data(), system.speed()); });
+    for (std::size_t d = 0; d < 2; ++d)
+      for (std::size_t e = 0; e < 2; ++e) {
+        summary.set(head + "K." + axis[d] + axis[e], tangents.stiffness[2 * d + e], "N/m");
+        summary.set(head + "C." + axis[d] + axis[e], tangents.damping[2 * d + e], "N s/m");
+      }
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
+      if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");
+    }
+  }
+  summary.set("power_loss", total_loss, "W");
+}
+
+// The same on other film meshes, for the error bars.
+void put_bars(const Context& context, const system::RotorSystem& system, double speed, const std::vector<double>& x) {
+  SummaryBars bars(context.results.summary(), law_of(context.machine));
+  for (const FilmMesh& mesh : film_meshes(context.machine)) {
+    io::StudySummary there;
+    try {
+      system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);
+      const core::Vector at = resampled(other, system, x);
+      other.set_forcing(false);
+      if (solve::find_equilibrium(other, at.get(), {}).converged)
+        put_values(context, other, other.gather(at.get()), there);
+    } catch (const core::DomainError&) {
+      there = {};
+    } catch (const core::NotConverged&) {
+      there = {};
+    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+      there = {};
+    }
+    bars.add(mesh.axis, mesh.spacing, there);
+  }
+  bars.write(1e-9);
+}
+
 }  // namespace
 
 StudyResult Static::run(Context& context) {
@@ -59,46 +135,15 @@ StudyResult Static::run(Context& context) {
     if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
   }
   summary.set("length.total", rotor::node_positions(rotor).back(), "m");
+  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
+  put_values(context, system, x, summary);
+  put_bars(context, system, options.speed.value, x);
   std::vector<double> px, py, load;
-  double total_loss = 0;
-  const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
-    const auto& support = system.train().supports[b];
-    const std::string head = "bearing." + names[b] + ".";
-    summary.set("load." + names[b], films[b].force[1], "N");
-    summary.set(head + "force.x", films[b].force[0], "N");
-    summary.set(head + "force.y", films[b].force[1], "N");
-    for (std::size_t d = 0; d < 2; ++d) summary.set(head + axis[d], journals[b].position[d], "m");
-    if (support.geometry.clearance > 0) {
-      for (std::size_t d = 0; d < 2; ++d)
-        summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
-      film::Summary report;
-      core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
-      summary.set(head + "min_thickness", report.min_thickness, "m");
-      summary.set(head + "min_thickness_ratio", report.min_thickness / support.geometry.clearance, "1");
-      summary.set(head + "max_pressure", report.max_pressure, "Pa");
-      summary.set(head + "side_flow", report.side_flow, "m^3/s");
-      summary.set(head + "power_loss", report.power_loss, "W");
-      total_loss += report.power_loss;
-    }
-    // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
-    film::Coefficients tangents;
-    core::agree(context.comm,
-                [&] { tangents = system.film_coefficients(static_cast<int>(b), x.data(), system.speed()); });
-    for (std::size_t d = 0; d < 2; ++d)
-      for (std::size_t e = 0; e < 2; ++e) {
-        summary.set(head + "K." + axis[d] + axis[e], tangents.stiffness[2 * d + e], "N/m");
-        summary.set(head + "C." + axis[d] + axis[e], tangents.damping[2 * d + e], "N s/m");
-      }
-    for (std::size_t d = 0; d < 2; ++d) {
-      const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
-      if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");
-    }
     px.push_back(journals[b].position[0]);
     py.push_back(journals[b].position[1]);
     load.push_back(films[b].force[1]);
   }
-  summary.set("power_loss", total_loss, "W");
 
   const std::vector<double> shaft = system.shaft(x.data(), 0, true), z = rotor::node_positions(rotor);
   std::vector<double> sx, sy;

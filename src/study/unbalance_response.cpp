@@ -6,14 +6,18 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "common.hpp"
+#include "film_limit.hpp"
 #include "groups.hpp"
 #include "pieces.hpp"
 #include "whirl/deck/units.hpp"
+#include "whirl/film/state_model.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/frequency_response.hpp"
+#include "whirl/study/separation.hpp"
 
 namespace whirl::study {
 namespace {
@@ -34,12 +38,14 @@ struct Motion {
 struct Response {
   double speed = 0;
   std::vector<Motion> nodes, bearings;
+  std::vector<double> films;  // smallest thickness that the linear motion leaves each bearing [m]
 };
 
 std::vector<double> pack(const Response& r) {
   std::vector<double> flat{r.speed};
   for (const auto* place : {&r.nodes, &r.bearings})
     for (const Motion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
+  flat.insert(flat.end(), r.films.begin(), r.films.end());
   return flat;
 }
 
@@ -50,7 +56,23 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
     const double* v = flat.data() + 1 + 4 * k;
     (k < n_nodes ? r.nodes : r.bearings).push_back({{v[0], v[1]}, {v[2], v[3]}});
   }
+  r.films.assign(flat.end() - static_cast<std::ptrdiff_t>(n_bearings), flat.end());
   return r;
+}
+
+// The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
+// gives way; there the motion counts against the clearance.
+double film_left(const system::Support& s, const std::array<double, 2>& at, const Motion& m) {
+  if (s.film.kind == film::Options::Kind::linear) return std::numeric_limits<double>::infinity();
+  if (film::has_states(s.film.kind)) return s.geometry.clearance - m.semi_major();
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int samples = 90;
+  for (int k = 0; k < samples; ++k) {
+    const Complex turn = std::exp(Complex(0, 2 * std::numbers::pi * k / samples));
+    least = std::min(
+        least, film::minimum_thickness(s.geometry, {at[0] + (m.x * turn).real(), at[1] + (m.y * turn).real(), 0, 0}));
+  }
+  return least;
 }
 
 class Machine {
@@ -66,9 +88,9 @@ public:
     PetscInt begin = 0, end = 0;
     core::check(VecGetOwnershipRange(x, &begin, &end));
     // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum
-    // rows.
+    // rows; own states of films, behind all pairs of coordinate and rate, are not forced.
     std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
-    for (PetscInt row = begin; row < end; row += 2) {
+    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); row += 2) {
       const auto q = static_cast<std::size_t>(row / 2), at = static_cast<std::size_t>(2 * (row - begin));
       right[at] = speed * speed * system_.unbalance_cosine()[q];
       right[at + 1] = -speed * speed * system_.unbalance_sine()[q];
@@ -101,8 +123,14 @@ public:
       }
       r.bearings.push_back({z[0], z[1]});
     }
+    const auto rest = system_.journals(system_.gather(x).data());
+    for (std::size_t b = 0; b < rest.size(); ++b)
+      r.films.push_back(film_left(system_.train().supports[b], rest[b].position, r.bearings[b]));
     return r;
   }
+
+  [[nodiscard]] system::Places places() const { return system_.places(); }
+  [[nodiscard]] Trail trail() { return walker_.trail(); }
 
 private:
   system::RotorSystem system_;
@@ -151,6 +179,37 @@ void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Mo
   }
 }
 
+// Linear motions know no bore: where they leave less film than the surfaces bear they are none.
+void put_films(io::Group& group, io::StudySummary& summary, const system::Places& places,
+               const std::vector<Response>& curve, const std::string& unit) {
+  std::vector<double> all;
+  for (const Response& r : curve) {
+    const auto films = film_column(r.films, places.names.size());
+    all.insert(all.end(), films.begin(), films.end());
+  }
+  group.child("bearings")
+      .put("film_min", {curve.size(), places.names.size()}, all, "m",
+           "smallest film thickness that the linear motion leaves, not a number without a film");
+  for (std::size_t b = 0; b < places.names.size(); ++b) {
+    const Response *worst = nullptr, *first = nullptr, *last = nullptr;
+    for (const Response& r : curve) {
+      if (!std::isfinite(r.films[b])) continue;
+      if (!worst || r.films[b] < worst->films[b]) worst = &r;
+      if (r.films[b] > 0 && r.films[b] >= places.least_films[b]) continue;
+      if (!first) first = &r;
+      last = &r;
+    }
+    if (!worst) continue;
+    summary.set("bearing." + places.names[b] + ".film_min", worst->films[b], "m");
+    if (first)
+      summary.warnings.push_back(fmt::format(
+          "the linear motion leaves bearing {} {:.3g} um of film at {:.6g} {}, less than the {:.3g} um below which the "
+          "surfaces touch (minimum_film): no answer between {:.6g} and {:.6g} {}",
+          places.names[b], worst->films[b] * 1e6, deck::from_si(worst->speed, unit), unit, places.least_films[b] * 1e6,
+          deck::from_si(first->speed, unit), deck::from_si(last->speed, unit), unit));
+  }
+}
+
 }  // namespace
 
 StudyResult UnbalanceResponse::run(Context& context) {
@@ -180,7 +239,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls)))
+    for (const auto& flat :
+         distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls), machine.trail()))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };
@@ -218,29 +278,31 @@ StudyResult UnbalanceResponse::run(Context& context) {
       std::sort(curve.begin(), curve.end(), by_speed);
     }
 
+  const auto put_peak = [&](const std::string& head, const Peak& peak) {
+    summary.set(head + "speed", deck::from_si(peak.speed, unit), unit);
+    summary.set(head + "semi_major", peak.amplitude, "m");
+    summary.set(head + "amplification_factor", peak.amplification, "1");
+    if (!options.operating && !options.operating_speed) return;
+    const double from = options.operating ? options.operating->from : options.operating_speed->value,
+                 to = options.operating ? options.operating->to : from;
+    const Separation margin = separation(peak.speed, peak.amplification, from, to);
+    summary.set(head + "separation_margin", margin.actual, "1");
+    summary.set(head + "required_margin", margin.required, "1");
+  };
   std::vector<Peak> peaks;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
     for (const std::size_t k : tops(node))
       own.push_back({nodes[node], curve[k].speed, curve[k].nodes[node].semi_major(), amplification(curve, node, k)});
     std::stable_sort(own.begin(), own.end(), [](const Peak& a, const Peak& b) { return a.amplitude > b.amplitude; });
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
-      summary.set(head + "speed", deck::from_si(own[k].speed, unit), unit);
-      summary.set(head + "semi_major", own[k].amplitude, "m");
-    }
+    for (std::size_t k = 0; k < own.size(); ++k) put_peak(fmt::format("node.{}.peak.{}.", nodes[node], k + 1), own[k]);
     if (node == 0) peaks = own;
   }
   // The first node named in the deck is the one the report speaks of; its highest peak comes first.
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const std::string head = fmt::format("peak.{}.", k + 1);
     summary.set(head + "node", peaks[k].node, "1");
-    summary.set(head + "speed", deck::from_si(peaks[k].speed, unit), unit);
-    summary.set(head + "semi_major", peaks[k].amplitude, "m");
-    summary.set(head + "amplification_factor", peaks[k].amplification, "1");
-    if (options.operating_speed)
-      summary.set(head + "separation_margin",
-                  std::abs(peaks[k].speed - options.operating_speed->value) / options.operating_speed->value, "1");
+    put_peak(head, peaks[k]);
   }
   if (options.operating_speed) {
     const Response r = at_speeds({options.operating_speed->value}).front();
@@ -254,6 +316,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   }
 
   auto& group = results.group();
+  put_films(group, summary, machine.places(), curve, unit);
   auto& response = group.child("response");
   std::vector<double> speeds;
   for (const Response& r : curve) speeds.push_back(r.speed);

@@ -9,14 +9,19 @@ void describe(deck::Description<UnbalanceResponseOptions>& d) {
   d.add("range", &O::range, "rad/s", deck::positive, "range of speeds; results carry its unit").required();
   d.add("points", &O::points, deck::at_least(2), "speeds in the range, evenly spaced with both ends");
   d.add("nodes", &O::nodes, deck::positive, "nodes to report; bearings and unbalance planes if empty");
-  d.add("operating_speed", &O::operating_speed, "rad/s", deck::positive,
-        "speed from which separation margins are counted");
+  d.add(
+      "operating_speed", &O::operating_speed, "rad/s", deck::positive,
+      "speed at which amplitudes are reported; separation margins are counted from it if there is no operating range");
+  d.add("operating", &O::operating, "rad/s", deck::positive,
+        "operating speeds, lowest to highest, from which separation margins are counted", "API 617, API 684");
   d.add("refine", &O::refine, "add speeds at peaks until their height is settled");
 }
 
 void UnbalanceResponse::validate(const system::Machine& machine, const deck::Report& report) const {
   check_unbalance(options.unbalance, machine, report);
   check_nodes("nodes", options.nodes, machine, report);
+  if (options.operating && !(options.operating->from <= options.operating->to))
+    report.fail("operating", "the lowest operating speed comes first");
 }
 
 }  // namespace whirl::study

@@ -88,7 +88,7 @@ void Writer::add(StudyResult result) {
   all_.set(std::move(result.summary));
   for (auto& grid : result.grids) {
     const std::string head = "/studies/" + file + "/";
-    for (std::string& path : grid.coordinates) path.insert(0, head);
+    grid.coordinates.insert(0, head);
     for (auto& field : grid.fields) field.dataset.insert(0, head);
   }
   // The study counts as finished as soon as the files of the run are written: what belongs to it goes first.
@@ -100,7 +100,9 @@ void Writer::add(StudyResult result) {
   });
   write();
   core::agree(comm_, [&] {
-    if (rank_ == 0) io::Checkpoint(directory_ / (file + ".checkpoint.h5")).remove();
+    if (rank_ != 0) return;
+    io::Checkpoint(directory_ / (file + ".checkpoint.h5")).remove();
+    for (const auto& part : result.checkpoints) io::Checkpoint(part).remove();
   });
 }
 

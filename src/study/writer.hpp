@@ -8,29 +8,27 @@
 #include <string>
 #include <vector>
 
+#include "run_studies.hpp"
 #include "whirl/io/manifest.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
-#include "whirl/study/study.hpp"
 
 namespace whirl::study {
 
 /// Writes the results of one study after another. Every rank holds the same tree; rank 0 of `comm` writes the files.
-class Writer {
+class Writer final : public Store {
 public:
   /// `resume` takes over what an earlier run left in the directory.
   Writer(MPI_Comm comm, std::filesystem::path directory, const std::string& title, const std::string& version,
          bool resume);
 
-  /// True if an earlier run finished this study and it delivered something; its results are kept.
-  [[nodiscard]] bool finished(const std::string& name) const;
-  /// Where that study keeps its checkpoint; the manifest names it from now on.
-  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study);
-  /// Adds the result of a study and writes the files; its checkpoint goes. Collective.
-  void add(StudyResult result);
-
-  /// Results of the studies that are finished: a group for each, under io::safe_name of its name.
-  [[nodiscard]] const io::Group& studies() const { return root_.group("studies"); }
+  [[nodiscard]] bool finished(const std::string& name) const override;
+  /// The manifest names it from now on.
+  [[nodiscard]] std::filesystem::path checkpoint_path(const std::string& study) override;
+  /// Writes the files as well.
+  void add(StudyResult result) override;
+  [[nodiscard]] const io::Group& studies() const override { return root_.group("studies"); }
+  [[nodiscard]] std::span<const io::StudySummary> summaries() const override { return all_.studies; }
   /// `NAME: reason` for each study that delivered nothing.
   [[nodiscard]] const std::vector<std::string>& undelivered() const { return undelivered_; }
 

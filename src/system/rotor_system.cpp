@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "blocks.hpp"
@@ -206,8 +207,23 @@ Places RotorSystem::places() const {
   for (const Support& s : train_.supports) {
     p.names.push_back(s.name);
     p.clearances.push_back(s.geometry.clearance);
+    p.least_films.push_back(s.minimum_film);
   }
   return p;
+}
+
+std::vector<double> RotorSystem::film_thickness(const double* x) const {
+  std::vector<double> out(bearings_.size(), std::numeric_limits<double>::infinity());
+  const std::vector<JournalState> at = journals(x);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Bearing& b = bearings_[i];
+    const double* own = x + 2 * n_ + b.first;
+    if (b.states)
+      out[i] = *std::min_element(own, own + b.count);
+    else if (!b.film->linear())
+      out[i] = film::minimum_thickness(train_.supports[i].geometry, {at[i].position[0], at[i].position[1], 0, 0});
+  }
+  return out;
 }
 
 core::Vector RotorSystem::guess() {

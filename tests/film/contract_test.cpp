@@ -47,6 +47,11 @@ std::vector<Case> cases() {
   grooved.grooves = {{90.0 * kDegree, 20.0 * kDegree}, {-30.0 * kDegree, 0.0}};
   Options grooved_reynolds = grooved;
   grooved_reynolds.cavitation = C::reynolds;
+  const auto with_inlet = [](Options o, Inlet inlet) {
+    o.inlet = inlet;
+    return o;
+  };
+  const Inlet widest{Inlet::Type::maximum_gap, 0.0}, line{Inlet::Type::line, 40.0 * kDegree};
   return {
       {"lemon_half_sommerfeld", lemon(), options(C::half_sommerfeld, T::constantinescu, false, {60, 16}), loaded,
        moving},
@@ -69,6 +74,16 @@ std::vector<Case> cases() {
       {"closed_tilted", cylinder(), options(C::half_sommerfeld, T::constantinescu, true, {41, 13}), shallow, moving},
       {"closed_grooved", cylinder(), grooved, shallow, moving},
       {"closed_grooved_reynolds", cylinder(), grooved_reynolds, shallow, moving},
+      {"inlet_widest", cylinder(), with_inlet(options(C::half_sommerfeld, T::constantinescu, false, {60, 16}), widest),
+       shallow, moving},
+      {"inlet_widest_reynolds", cylinder(), with_inlet(options(C::reynolds, T::laminar, false, {60, 16}), widest),
+       shallow, moving},
+      {"inlet_widest_tilted", cylinder(), with_inlet(options(C::reynolds, T::constantinescu, true, {41, 13}), widest),
+       shallow, moving},
+      {"inlet_line", cylinder(), with_inlet(options(C::half_sommerfeld, T::laminar, false, {48, 12}), line), shallow,
+       moving},
+      {"inlet_line_reynolds", cylinder(), with_inlet(options(C::reynolds, T::constantinescu, false, {48, 12}), line),
+       shallow, moving},
       {"linear", arc(), linear, shallow, moving},
       {"short", cylinder(), rigid(Options::Kind::short_bearing), shallow, moving},
       {"long", cylinder(), rigid(Options::Kind::long_bearing), shallow, moving},
@@ -79,8 +94,8 @@ std::vector<Case> cases() {
 
 class Contract : public ::testing::TestWithParam<Case> {};
 
-// |F(s + e d) - F(s) - e dF d| must fall as e^2. Reynolds cavitation is piecewise smooth: the steps stay so small that
-// no node changes sides.
+// |F(s + e d) - F(s) - e dF d| must fall as e^2. Reynolds cavitation has kinks in its tangents: small steps, so that
+// none lies between.
 TEST_P(Contract, TaylorRemainderIsSecondOrder) {
   const Case& c = GetParam();
   const bool kinked = c.options.cavitation == Options::Cavitation::reynolds && c.options.kind != Options::Kind::linear;
@@ -169,7 +184,14 @@ TEST(Film, ImpossibleOptionsAreInputErrors) {
   Options coarse;
   coarse.cells = {2, 16};
   EXPECT_THROW(make_model(arc(), coarse, oil()), core::InputError);
-  EXPECT_THROW(make_model(arc(), {}, {0.0067, 0.0}), core::InputError);
+  Options turbulent;
+  turbulent.turbulence = Options::Turbulence::constantinescu;
+  EXPECT_THROW(make_model(arc(), turbulent, {0.0067, 0.0}), core::InputError);
+  Options inlet;
+  inlet.inlet.type = Inlet::Type::maximum_gap;
+  EXPECT_THROW(make_model(arc(), inlet, oil()), core::InputError);
+  inlet.grooves = {{0.0, 0.0}};
+  EXPECT_THROW(make_model(cylinder(), inlet, oil()), core::InputError);
 }
 
 }  // namespace

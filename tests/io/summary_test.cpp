@@ -138,3 +138,25 @@ TEST(Summary, ADamagedFileIsAnErrorWithItsName) {
   }
   EXPECT_THROW((void)Summary::read(folder / "none.json"), core::Error);
 }
+
+TEST(Summary, VerdictsAndCurvesComeBack) {
+  Summary whole = example();
+  StudySummary s = whole.studies[0];
+  s.stability = "loses stability";
+  s.warnings = {"film of bearing B4 is thin"};
+  s.curve = {{"parameter", "rpm", {5000, NAN}}, {"others_unstable", "1", {0, 2}}};
+  s.modes[0].stability = "undamped";
+  whole.set(s);
+  const auto j = nlohmann::ordered_json::parse(whole.to_json());
+  EXPECT_EQ(j["studies"][0]["curve"]["others_unstable"]["values"][1], 2);
+  const StudySummary back = Summary::from_json(whole.to_json()).studies[0];
+  EXPECT_EQ(back.stability, s.stability);
+  EXPECT_EQ(back.warnings, s.warnings);
+  EXPECT_EQ(back.modes[0].stability, "undamped");
+  ASSERT_EQ(back.curve.size(), 2U);
+  EXPECT_EQ(back.curve[0].name, "parameter");
+  EXPECT_EQ(back.curve[0].unit, "rpm");
+  EXPECT_TRUE(std::isnan(back.curve[0].values[1]));
+  // None of them stands in the file where there is nothing to say.
+  EXPECT_FALSE(nlohmann::ordered_json::parse(example().to_json())["studies"][0].contains("stability"));
+}

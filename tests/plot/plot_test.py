@@ -4,6 +4,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 from html.parser import HTMLParser
 
 import h5py
@@ -16,7 +17,7 @@ import synthetic  # noqa: E402
 ROOT = pathlib.Path(__file__).parents[2]
 EXPECTED = {
     "at_service_speed": ["sag", "journals", "film-B1", "film-B3"],
-    "modes": ["campbell", "shapes"],
+    "modes": ["campbell", "shapes", "shapes-3d"],
     "generator_pair": ["response", "response-bearings"],
     "balanced": ["equilibria", "locus"],
     "pair_G2.5": ["cycles-vertical", "cycles-horizontal", "orbits", "multipliers"],
@@ -38,6 +39,9 @@ def check(condition, what):
 
 
 def check_picture(path):
+    drawing = path.with_suffix(".svg")
+    check(drawing.is_file() and drawing.stat().st_size < 700_000, f"{drawing.name} is missing or large")
+    check(xml.etree.ElementTree.parse(drawing).getroot().tag.endswith("svg"), f"{drawing.name} is no SVG")
     check(path.is_file(), f"{path.name} is missing")
     pixels = matplotlib.image.imread(path)[..., :3]
     check(pixels.shape[1] >= 1000, f"{path.name} is small: {pixels.shape}")
@@ -69,7 +73,12 @@ with tempfile.TemporaryDirectory() as name:
             check_picture(whole / f"{study}.{picture}.png")
     for picture in TOGETHER:
         check_picture(whole / f"{picture}.png")
-    check(len(done.stdout.split("\n")) - 1 == len(list(whole.glob("*.png"))), "plot does not name each picture once")
+    made = sorted(str(p) for k in ("*.png", "*.svg") for p in whole.glob(k))
+    check(sorted(done.stdout.split("\n")[:-1]) == made, "plot does not name each file once")
+    listed = (whole / "manifest.txt").read_text().splitlines()
+    check(sorted(str(whole / n) for n in listed if n not in synthetic.FILES) == made, "the manifest does not name each file once")
+    run("plot", whole)
+    check((whole / "manifest.txt").read_text().splitlines() == listed, "drawing again changes the manifest")
 
     done = run("report", whole)
     check(done.returncode == 0, f"report said {done.returncode}\n{done.stderr}")
@@ -77,7 +86,8 @@ with tempfile.TemporaryDirectory() as name:
     page.feed((whole / "report.html").read_text())
     check(page.images == len(list(whole.glob("*.png"))), f"the report has {page.images} pictures")
     check(not page.links, f"the report needs {page.links}")
-    for words in ("42165.66", "hopf", "5025", "<A & B>"):
+    check("report.html" in (whole / "manifest.txt").read_text().splitlines(), "the manifest does not name the report")
+    for words in ("42165.66", "Hopf point", "5025 \u00b1 12", "<A & B>", "counter-clockwise", "213.4"):
         check(words in page.text, f"the report does not say {words}")
 
     # A run that ended early: no summary, a study without points, one with a single point, one of an unknown kind.
@@ -101,5 +111,8 @@ with tempfile.TemporaryDirectory() as name:
     check(not (part / "pair_G6.3.orbits.png").exists(), "a picture of nothing")
     check(run("report", part).returncode == 0, "the report needs summary.json")
 
-    check(run("plot", pathlib.Path(name) / "none").returncode == 2, "a folder that is not there")
+    few = pathlib.Path(name) / "few"
+    synthetic.make(few)
+    done = subprocess.run([str(ROOT / "scripts" / "plot"), str(few), "--formats", "png"], capture_output=True, text=True)
+    check(done.returncode == 0 and list(few.glob("*.png")) and not list(few.glob("*.svg")), "--formats png")
 print("all pictures are there")

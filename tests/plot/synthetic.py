@@ -5,6 +5,7 @@ import pathlib
 import h5py
 import numpy as np
 
+FILES = ["results.h5", "summary.json"]
 NAMES = ["B1", "B2", "B3", "B4", "B5"]
 CLEARANCE = np.array([180e-6, 220e-6, 300e-6, 300e-6, 150e-6])
 RPM = np.pi / 30
@@ -198,6 +199,7 @@ def make(directory):
     ]
     summary = {"title": "Turbine-generator train <A & B>", "version": "0.1.0", "ranks": 2, "wall_seconds": 9.4, "studies": studies}
     (directory / "summary.json").write_text(json.dumps(summary))
+    (directory / "manifest.txt").write_text("".join(f"{name}\n" for name in FILES))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,8 @@ G25, G63 = "studies.1.cycle_branch.", "studies.2.cycle_branch."
 # A stretch of each branch with bifurcations in it: a flip of G2.5, both Neimark-Sacker bifurcations of G6.3.
 SHORT = [G25 + "range={from: 4000 rpm, to: 4200 rpm}", G25 + "step={initial: 20 rpm, min: 0.01 rpm, max: 60 rpm}",
          G25 + "at=[4100 rpm]", G63 + "range={from: 2500 rpm, to: 2800 rpm}",
-         G63 + "step={initial: 20 rpm, min: 0.01 rpm, max: 60 rpm}", G63 + "at=[2700 rpm]"]
+         G63 + "step={initial: 20 rpm, min: 0.01 rpm, max: 60 rpm}", G63 + "at=[2700 rpm]",
+         *[grade + option for grade in (G25, G63) for option in ("follow_flips=false", "flips=[]")]]
 
 
 def nearest(study, speed, kinds=("cyclic_fold", "flip", "neimark_sacker", "branch_point")):
@@ -89,6 +90,9 @@ def period_doubling(h):
                    and value(run[name], "returned") is not None, run[name]["status"])
             b = f[f"studies/{name}/branch"]
             speed, size = b["parameter"][()], (b["x_max"][()] - b["x_min"][()])[:, 0]
+            ends = sorted(f[f"studies/{name}/{end}/parameter"][0] for end in ("birth", "closing"))
+            h.true(f"{name} lies between the flips, which are its ends", numpy.allclose(ends, flips, rtol=1e-9, atol=0)
+                   and flips[0] < speed.min() and speed.max() < flips[1], f"{speed.min()} to {speed.max()}, {ends}")
             inside = (speed > flips[0] + 1) & (speed < flips[1] - 1)
             turns = b["period"][()] * speed / 60
             h.close(f"{name}: turns per period", float(numpy.ptp(turns)) + float(turns[0]), 2, 1e-9)
@@ -121,7 +125,7 @@ def ranks(h):
     """The same branches to 1e-8 on 1, 2 and 3 ranks."""
     decks = {"unbalance.yaml": SHORT,
              "balanced.yaml": ["studies.1.equilibrium_branch.range={from: 4950 rpm, to: 5100 rpm}"],
-             "modes.yaml": ["studies.3.modes.points=2"]}
+             "modes.yaml": ["studies.3.modes.points=2", "studies.3.modes.shapes_at=[]"]}
     for deck, overrides in decks.items():
         for n in (1, 2, 3):
             h.run(deck, f"{deck}.{n}", overrides, launcher=[*h.launcher, "-n", str(n)])

@@ -60,7 +60,7 @@ run("damaged results, replaced", "static.yaml", work, 0, flags=["--force"])
 run("a checkpoint that the study does not use", "static.yaml", work, 0, flags=["--resume"])
 
 short = ["studies.1.cycle_branch.range={from: 4000 rpm, to: 4100 rpm}", "studies.1.cycle_branch.at=[]",
-         "studies.2.cycle_branch.max_points=1"]
+         "studies.2.cycle_branch.max_points=1", "studies.2.cycle_branch.follow_flips=false", "studies.2.cycle_branch.flips=[]"]
 work = h.work / "checkpoint"
 work.mkdir()
 run("a short branch", "unbalance.yaml", work, 0, overrides=short)

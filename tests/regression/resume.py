@@ -22,7 +22,7 @@ h = Harness(program, source, sys.argv[5:])
 random.seed(seed)
 # Many kills need a longer way: seven bifurcations.
 LONG = [G25 + "range={from: 4000 rpm, to: 5200 rpm}", G25 + "at=[4300 rpm]", G63 + "range={from: 2500 rpm, to: 4100 rpm}",
-        G63 + "at=[2700 rpm, 3600 rpm]"]
+        G63 + "at=[2700 rpm, 3600 rpm]", *SHORT[-4:]]
 deck = LONG if kills > 6 else SHORT
 
 

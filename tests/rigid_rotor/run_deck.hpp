@@ -30,7 +30,10 @@ inline std::vector<io::StudySummary> run_deck(study::Deck& deck, const std::stri
 
 inline std::map<std::string, double> values_of(const io::StudySummary& s) {
   std::map<std::string, double> values;
-  for (const auto& [name, q] : s.values) values[name] = q.value;
+  for (const auto& [name, q] : s.values) {
+    values[name] = q.value;
+    for (const auto& [part, bar] : q.more) values[name + "." + part] = bar;
+  }
   return values;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "rotor/shafts.hpp"
 #include "support/dense.hpp"
@@ -69,6 +70,9 @@ TEST(Assembly, RigidMotionsCostNothingAndCarryMassInertiaAndSpin) {
   }
   for (const VectorXd& v : {x, y, tilt_x, tilt_y}) EXPECT_LT((a.k * v).norm(), 1e-13 * a.k.norm());
   const double mass = rotor::total_mass(o);
+  const auto masses = rotor::node_masses(o);
+  EXPECT_EQ(masses.size(), static_cast<std::size_t>(r.n_nodes()));
+  EXPECT_NEAR(std::accumulate(masses.begin(), masses.end(), 0.0) / mass, 1, 1e-14);
   EXPECT_NEAR(x.dot(a.m * x) / mass, 1, 1e-13);
   EXPECT_NEAR(y.dot(a.m * y) / mass, 1, 1e-13);
   EXPECT_NEAR(a.f.dot(y) / -mass, 1, 1e-13);  // gravity pulls along -y with the whole mass

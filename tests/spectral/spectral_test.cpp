@@ -166,7 +166,17 @@ TEST(Words, ForModes) {
   EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, -2.0 * i}), Sense::forward);
   EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {i, 2.0 * i}), Sense::backward);
   EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, 2.0 * i}), Sense::mixed);
-  EXPECT_EQ(spectral::sense_of_whirl({1, 0.01}, {-i, 0.01 * i}), Sense::forward);  // a node that rests has no vote
+  EXPECT_EQ(spectral::sense_of_whirl({1, 0.01}, {-i, 0.01 * i}), Sense::forward);  // a node that hardly moves
+  // Half-axes 1 and 0.5 forward: f = 0.75, b = 0.25, so that (f^2 - b^2)/(f^2 + b^2) = 0.8.
+  EXPECT_DOUBLE_EQ(spectral::whirl_energy({1}, {-0.5 * i}).whirl, 0.8);
+  EXPECT_DOUBLE_EQ(spectral::whirl_energy({1}, {-0.5 * i}).forward, 0.8);
+  // A line at 45 degrees, and an orbit of half-axes 1 and 0.04: 2 a b/(a^2 + b^2) = 0.08.
+  EXPECT_EQ(spectral::sense_of_whirl({1}, {1}), Sense::planar);
+  EXPECT_EQ(spectral::sense_of_whirl({1}, {-0.04 * i}), Sense::planar);
+  EXPECT_EQ(spectral::sense_of_whirl({1}, {-0.06 * i}), Sense::forward);
+  // Energy 1 forward and 4 backward; the heavy node decides: 50 forward and 4 backward.
+  EXPECT_DOUBLE_EQ(spectral::whirl_energy({1, 2}, {-i, 2.0 * i}).forward, -0.6);
+  EXPECT_EQ(spectral::sense_of_whirl({1, 2}, {-i, 2.0 * i}, {50, 1}), Sense::forward);
   EXPECT_DOUBLE_EQ(spectral::log_decrement({-0.3, 2}), 0.3 * std::numbers::pi);
   EXPECT_DOUBLE_EQ(spectral::log_decrement({-0.3, -2}), 0.3 * std::numbers::pi);
   EXPECT_EQ(spectral::log_decrement({-1, 0}), std::numeric_limits<double>::infinity());
@@ -176,4 +186,40 @@ TEST(Words, ForModes) {
   EXPECT_DOUBLE_EQ(spectral::mac({1, i}, {1, -i}), 0);
   EXPECT_DOUBLE_EQ(spectral::mac({1, 0}, {1, 1}), 0.5);
   EXPECT_STREQ(spectral::name_of(Sense::backward), "backward");
+}
+
+// Rounding moves the eigenvalues of an undamped chain off the axis by less than its estimate, and that by no more than
+// a millionth of a damping that counts.
+TEST(Modes, RoundingIsToldFromDamping) {
+  const int masses = 20;
+  for (const double damping : {0.0, 1e-9}) {
+    test::SmallSystem s(MPI_COMM_WORLD, 2 * masses, 0, 1, Chain{masses, damping});
+    const core::Vector x = s.vector(Eigen::VectorXd::Zero(2 * masses));
+    spectral::EigenOptions o;
+    o.rounding = true;
+    const auto modes = spectral::modes(s, x.get(), o);
+    ASSERT_EQ(modes.size(), 20U);
+    for (const auto& m : modes) {
+      EXPECT_EQ(m.neutral(), damping == 0) << m.lambda << " " << m.rounding;
+      EXPECT_LE(m.rounding, 1e-11);
+      if (damping > 0) {
+        EXPECT_NEAR(m.lambda.real(), -damping / 2, m.rounding);
+      }
+    }
+  }
+  // A free mass has a double eigenvalue zero with one vector, which rounding splits by its square root.
+  test::SmallSystem free(MPI_COMM_WORLD, 4, 0, 1, []<class T>(double, const Column<T>& x, const Column<T>& xdot, T) {
+    Column<T> f(4);
+    f << xdot(0) - x(1), xdot(1) + 1e-17 * x(0), xdot(2) - x(3), xdot(3) + x(2) + 0.1 * x(3);
+    return f;
+  });
+  const core::Vector x = free.vector(Eigen::VectorXd::Zero(4));
+  spectral::EigenOptions o;
+  o.rounding = true;
+  int neutral = 0;
+  for (const auto& m : spectral::modes(free, x.get(), o)) {
+    neutral += m.neutral();
+    EXPECT_EQ(m.neutral(), std::abs(m.lambda) < 1e-7);
+  }
+  EXPECT_GE(neutral, 1);
 }

@@ -110,9 +110,18 @@ public:
   [[nodiscard]] virtual Access find(void* value, std::span<const std::string> path) const;
 };
 
+/// The codec of a list of 2 or 4 numbers that takes a single one as well.
+[[nodiscard]] std::shared_ptr<const Codec> isotropic_codec(const std::shared_ptr<const Codec>& list);
+
 /// The codec of type T; specialised for every supported type.
 template <class T, class = void>
 struct CodecOf;
+
+/// Another word that users write for an option: its value times `factor` is the option's (a diameter is two radii).
+struct Alias {
+  std::string key;
+  double factor = 1;
+};
 
 /// One described option.
 struct Option {
@@ -125,6 +134,7 @@ struct Option {
   bool continuable = false;
   std::string selector{};               ///< key of the option that decides whether this one applies, empty if always
   std::vector<std::string> selected{};  ///< values of the selector for which it applies
+  std::vector<Alias> aliases{};
 };
 
 /// The options of one struct; type-erased.
@@ -141,6 +151,8 @@ public:
   [[nodiscard]] Node schema(bool whole) const;
   [[nodiscard]] Access find(void* object, std::span<const std::string> path) const;
   [[nodiscard]] const Option* option(std::string_view key) const;
+  /// The option that `key` is another word for, null if none; `factor` gets its factor.
+  [[nodiscard]] const Option* aliased(std::string_view key, double& factor) const;
   [[nodiscard]] std::vector<std::string> keys() const;
   /// True if `o` applies to `object` (its selector has one of the values asked for).
   [[nodiscard]] bool applies(const Option& o, const void* object) const;
@@ -178,6 +190,16 @@ public:
     /// Studies may vary it.
     const Line& continuable() const {
       s_.options[i_].continuable = true;
+      return *this;
+    }
+    /// `key` is accepted for it as well; a number given there is `factor` times the option's.
+    const Line& alias(std::string key, double factor = 1) const {
+      s_.options[i_].aliases.push_back({std::move(key), factor});
+      return *this;
+    }
+    /// One value is accepted for a list of fixed length: for both of a pair, for the diagonal xx, yy of xx, xy, yx, yy.
+    const Line& isotropic() const {
+      s_.options[i_].codec = isotropic_codec(s_.options[i_].codec);
       return *this;
     }
     /// Applies only where the choice `selector` (described before) has one of `values`.

@@ -12,20 +12,23 @@
 
 namespace whirl::deck {
 
-/// Reads whole files for decks and tables: rank 0 of `comm` reads, all ranks get the same bytes.
+/// Reads whole files for one deck and its tables: rank 0 of `comm` reads, all ranks get the same bytes.
 class Files {
 public:
   explicit Files(MPI_Comm comm) : comm_(comm) {}
   /// Bytes of the file `path`, at most `limit` of them. Collective. Throws core::InputError (agreed, without a place)
-  /// if it cannot be read, is larger, or is not UTF-8 text; a byte-order mark is removed.
+  /// if it cannot be read, is no regular file, is larger, is not UTF-8 text, or if all files read so far hold more than
+  /// 16 MiB; a byte-order mark is removed.
   [[nodiscard]] std::string read_text(const std::string& path, std::size_t limit = std::size_t{1} << 20) const;
 
 private:
   MPI_Comm comm_;
+  mutable std::size_t n_bytes_ = 0;  // read so far, the same on all ranks
 };
 
 /// The first and only YAML document in `text`; `source` names it in errors. Refuses duplicate keys, aliases to
-/// enclosing values, merge keys and further documents. Throws core::InputError with its place.
+/// enclosing values, merge keys, further documents, and more than 300,000 values with all copies that anchors and
+/// aliases ask for. Throws core::InputError with its place.
 [[nodiscard]] Node parse_yaml(std::string_view text, const std::string& source);
 
 /// Rows of a CSV table as a list of maps: header cells `key [unit]` give the keys, the unit is appended to the numbers

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 namespace whirl::deck {
@@ -46,18 +47,22 @@ struct Node {
   Node& push(Node value);
 };
 
-/// What is wrong with a deck, in the order found.
+/// What is wrong with a deck, in the order found. The first 20 are kept, the others counted.
 class Problems {
 public:
-  /// `place: message`, one line.
+  /// `place: message`, one line, made printable.
   void add(const Place& place, const std::string& message);
-  [[nodiscard]] std::size_t size() const noexcept { return lines_.size(); }
-  [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
-  /// Throws one core::InputError with a line per problem (the first 20), if there is any.
+  [[nodiscard]] std::size_t size() const noexcept { return seen_.size(); }
+  [[nodiscard]] bool empty() const noexcept { return seen_.empty(); }
+  /// True if further problems are only counted, so that a hint is lost work.
+  [[nodiscard]] bool full() const noexcept { return lines_.size() >= most; }
+  /// Throws one core::InputError with a line per problem, if there is any.
   void raise() const;
 
 private:
+  static constexpr std::size_t most = 20;
   std::vector<std::string> lines_;
+  std::unordered_set<std::string> seen_;
 };
 
 /// Reports problems of a value that was read already, by the path of the offending key below `root`.
@@ -77,12 +82,13 @@ private:
   std::string prefix_;
 };
 
-/// The candidate closest to `word` by edit distance, empty if none is near enough to be what was meant.
+/// The candidate closest to `word` by edit distance, empty if none is near enough to be what was meant. Looks at the
+/// first thousand candidates, and at no word above 60 characters.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 /// ` (did you mean 'x'?)`, or nothing.
 [[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
-/// The same for a few names of the deck: where none is near, `; there are a, b`.
+/// The same for names of the deck: where none is near, `; there are a, b`, the first ten of them.
 [[nodiscard]] std::string did_you_mean_one_of(std::string_view word, const std::vector<std::string>& names);
 
 /// `path` split at its dots.

@@ -35,6 +35,14 @@ struct Split {
 /// Throws core::InputError without a place, saying what was expected.
 [[nodiscard]] double to_si(std::string_view text, std::string_view si);
 
+/// `text` ("180 um", "3") times `factor` in its own unit, rounded to 15 digits. Throws core::InputError (without a
+/// place) if it is no number, if the result is not finite, or if the unit has its zero elsewhere (degC).
+[[nodiscard]] std::string scaled(std::string_view text, double factor);
+
+/// A number as people would write the result of a small sum, rounded to 15 digits: 60 * 1.1 is 66, not
+/// 66.00000000000001. Throws core::InputError (without a place) if it is not finite.
+[[nodiscard]] std::string write_rounded(double value);
+
 /// `value` (SI) as a number in `unit`; throws core::InputError if `unit` is not one.
 [[nodiscard]] double from_si(double value, std::string_view unit);
 

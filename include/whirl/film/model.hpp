@@ -2,6 +2,7 @@
 // Quasi-static fluid films: journal motion in, film force on the journal and its exact tangents out.
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ struct Response {
   std::array<std::array<double, 4>, 4> d_position{};  // [i][j] = d force_i / d position_j; stiffness K is its negative
   std::array<std::array<double, 4>, 4> d_velocity{};  // [i][j] = d force_i / d velocity_j; damping C is its negative
   std::array<double, 4> d_speed{};                    // [i] = d force_i / d Omega
-  double min_thickness = 0.0;  // m, over the nodes and faces of all pads; infinite for a linear film
+  double min_thickness = 0.0;  // m, least of all pads, exactly (minimum_thickness); infinite for a linear film
 };
 
 /// Quantities for reports, computed apart from evaluate() so that they cost nothing inside solvers.
@@ -36,6 +37,7 @@ struct Summary {
   double max_pressure = 0.0;   // Pa
   double side_flow = 0.0;      // m^3/s, out of both sides of all pads
   double power_loss = 0.0;     // W, friction torque on the journal times Omega; full (not striated) film everywhere
+  double inlet_flow = std::numeric_limits<double>::quiet_NaN();  // m^3/s, around into all pads where their films start
 };
 
 /// One array on the grid of one pad, row-major.
@@ -64,6 +66,10 @@ public:
   /// True if the force is linear in position and velocity and independent of speed.
   [[nodiscard]] virtual bool linear() const { return false; }
 };
+
+/// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`
+/// as in Motion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
+[[nodiscard]] double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position);
 
 /// The film described by the options; throws core::InputError on values outside their range.
 std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& options, const Lubricant& lubricant);

@@ -2,6 +2,7 @@
 // What a fluid film is made of: bore, lubricant, and how its pressure is computed. Plain data, SI and radians.
 
 #include <array>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -34,6 +35,16 @@ struct Groove {
   double width = 0.0;  // rad, 0: a single line of nodes
 };
 
+/// Where the film of a full circle without grooves starts, at pressure zero over the whole length.
+struct Inlet {
+  /// free: the film reforms where cavitation lets it, around the whole circle. maximum_gap: where the film of the
+  /// journal at that moment is thickest, in the mid-plane, so that the line turns with the journal (Raimondi and Boyd
+  /// 1958). line: at an angle fixed in the bearing.
+  enum class Type { free, maximum_gap, line };
+  Type type = Type::free;
+  double angle = 0.5 * std::numbers::pi;  // rad, of the line
+};
+
 /// Contact of rough surfaces: the asperities carry p_c = K E' F(h/sigma), F(x) = 4.4086e-5 (4 - x)^6.804 below x = 4,
 /// none above. Source: Greenwood and Tripp (1971), with F fitted by Hu et al. (1994).
 struct Contact {
@@ -60,7 +71,8 @@ struct Options {
   enum class Turbulence { laminar, constantinescu };
   Kind kind = Kind::reynolds;
   Cavitation cavitation = Cavitation::half_sommerfeld;
-  Turbulence turbulence = Turbulence::constantinescu;
+  Turbulence turbulence = Turbulence::laminar;
+  Inlet inlet;                                             // of a cylindrical bore
   std::array<int, 2> cells = {60, 16};                     // -, intervals around x along each pad
   bool tilt = false;                                       // -, false: tilt is ignored and moments are zero
   std::array<double, 4> stiffness = {0.0, 0.0, 0.0, 0.0};  // N/m, xx xy yx yy; linear film: force = -K d - C d'

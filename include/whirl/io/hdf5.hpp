@@ -19,4 +19,8 @@ void write_hdf5(const std::filesystem::path& path, const Group& root);
 /// Marks `root` as a results file: attributes title, version, format, and in words the frames, signs and units.
 void describe_results(Group& root, const std::string& title, const std::string& version);
 
+/// The tree as the bytes of such a file, and back: to hand it to other ranks. core::Error if the bytes are damaged.
+[[nodiscard]] std::string to_bytes(const Group& root);
+[[nodiscard]] Group from_bytes(const std::string& bytes);
+
 }  // namespace whirl::io

@@ -15,7 +15,8 @@ inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 /// A number with its unit; NaN and infinity become null in the file.
 struct Quantity {
   double value = no_value;
-  std::string unit;
+  std::string unit = {};
+  std::map<std::string, double> more = {};  ///< "uncertainty" and its parts, in the same unit
 };
 
 enum class BifurcationType { fold, hopf, cyclic_fold, flip, neimark_sacker, branch_point };
@@ -54,6 +55,40 @@ struct ModeEntry {
   double speed = no_value, real = no_value, imag = no_value, log_decrement = no_value;
   std::string whirl = {};  ///< forward, backward, mixed, planar
   std::string speed_unit = "rad/s";
+  std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
+  std::string stability = {};               ///< stable, undamped (its real part is rounding), unstable; or empty
+};
+
+/// A column of numbers over the points of a curve.
+struct Column {
+  std::string name = {}, unit = {};
+  std::vector<double> values = {};
+};
+
+struct StudySummary;
+
+/// One variant of a sweep.
+struct VariantSummary {
+  std::string name = {};
+  std::vector<std::pair<std::string, std::string>> changes = {};  ///< path and value, as text with unit
+  std::vector<StudySummary> studies;                              ///< what was asked of it
+};
+
+/// One value of all variants of a sweep, in their order; NaN where a variant has none.
+struct SweepColumn {
+  std::string name = {}, unit = {};
+  std::vector<double> values = {}, uncertainties = {};
+};
+
+/// How a value changes along one quantity of a sweep.
+struct Trend {
+  std::string column = {}, quantity = {}, unit = {};
+  std::string beside = {};                 ///< the other quantities of a grid, which are constant; else empty
+  std::string sign = {};                   ///< "+", "-", "0", "mixed", "undetermined" (the bar contains zero), "no bar"
+  std::vector<std::string> variants = {};  ///< by rising quantity
+  std::vector<double> at = {};             ///< the quantity of each
+  std::vector<double> difference = {};     ///< of the value from each to the next
+  std::vector<double> uncertainty = {};    ///< of that
 };
 
 /// What one study delivered.
@@ -65,11 +100,17 @@ struct StudySummary {
   std::vector<Bifurcation> bifurcations = {};
   std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any
   std::vector<Suspicion> suspected = {};             ///< likewise
+  std::string stability = {};                        ///< verdict on the whole branch; likewise
+  std::vector<std::string> warnings = {};            ///< what its numbers must not be taken for; likewise
+  std::vector<Column> curve = {};                    ///< a curve, column by column of equal length; likewise
   std::vector<ModeEntry> modes = {};
+  std::vector<VariantSummary> variants = {};  ///< of a sweep; in the file only if there are any, like what follows
+  std::vector<SweepColumn> columns = {};
+  std::vector<Trend> trends = {};
   long points = 0;
 
   /// Sets values[key], replacing an earlier one.
-  void set(const std::string& key, double value, const std::string& unit);
+  void set(const std::string& key, double value, const std::string& unit, std::map<std::string, double> more = {});
 };
 
 /// An option of a library that was in force, and where it came from (empty if that cannot be told).

@@ -9,15 +9,15 @@
 
 namespace whirl::io {
 
-/// A structured mesh of n0 x n1 (x n2) nodes whose coordinates and nodal fields are datasets of that shape.
+/// A structured mesh of n0 x n1 (x n2) nodes whose nodal fields are datasets of that shape.
 struct StructuredGrid {
   struct Field {
     std::string name;     ///< as ParaView shows it, with its unit
     std::string dataset;  ///< path in the HDF5 file
   };
   std::string name;
-  Shape nodes;                 ///< two or three extents, slowest index first
-  std::string coordinates[3];  ///< dataset paths of x, y, z
+  Shape nodes;              ///< two or three extents, slowest index first
+  std::string coordinates;  ///< path of the dataset of shape `nodes` x 3: x, y, z of each node
   std::vector<Field> fields;
 };
 

@@ -28,6 +28,9 @@ void validate(const Options& options);
 /// Mass of the rotor in kg.
 [[nodiscard]] double total_mass(const Options& options);
 
+/// Mass at each node in kg: half of each segment that ends there, and the discs; all of a rigid rotor at its one node.
+[[nodiscard]] std::vector<double> node_masses(const Options& options);
+
 /// Mass of the segments between nodes `from` < `to` and of the discs with from <= node < to, in kg: adjoining spans
 /// share nothing.
 [[nodiscard]] double mass_between(const Options& options, int from, int to);

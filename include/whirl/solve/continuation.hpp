@@ -14,8 +14,12 @@
 
 namespace whirl::solve {
 
+/// How a branch goes on from a point: over the arclength, which passes folds, or over the parameter, which ends there.
+enum class Continuation { arclength, natural };
+
 /// All numbers in units of the scaled parameter.
 struct ContinuationOptions {
+  Continuation kind = Continuation::arclength;
   double from = 0, to = 1;
   double initial_step = 0.1, min_step = 1e-4, max_step = 0.5;
   int max_points = 1000;
@@ -37,6 +41,7 @@ struct ContinuationOptions {
 struct Stability {
   std::vector<std::complex<double>> values;
   std::vector<double> distance;
+  int neutral = 0;  ///< values on the border as far as rounding can tell; none of them counts as unstable
 
   [[nodiscard]] int unstable() const {
     int n = 0;
@@ -71,6 +76,8 @@ struct LocatedEvent {
   bool located = true;            ///< false: seen between two points, but the location did not converge
   bool refined = false;           ///< by the minimally augmented system; `bracket` is then the Newton step left
   double quadratic = 0;           ///< d^2 parameter/d arclength^2 of a refined fold: the branch lies above if positive
+  int others_unstable = 0;        ///< unstable values beside the critical one or pair
+  bool loses = false;             ///< along the branch a value or pair becomes unstable here
 };
 
 /// A zero of one of a branch's monitors.
@@ -109,6 +116,10 @@ struct BranchCallbacks {
   /// many at every point.
   std::function<std::vector<double>(Vec u, Vec tangent)> monitors;
   std::function<void(const LocatedZero&, Vec u)> on_zero;
+  /// Positive where the solution is one of the equations' validity (a film thick enough): the branch ends at its zero,
+  /// which is located, or at a start where it is not positive. `why` says what the limit is.
+  std::function<double(Vec u)> limit;
+  std::function<std::string(Vec u)> why;
   /// Where events may have been missed.
   std::function<void(const Suspicion&)> on_suspicion;
   /// After each accepted point, with all that a restart needs; return false to stop.
@@ -128,6 +139,8 @@ struct BranchEnd {
   bool completed = false;  ///< reached the end of its range
   int points = 0;
   double parameter = 0;  ///< scaled, of the last point
+  bool limited = false;  ///< at the zero of the callback `limit`,
+  double bracket = 0;    ///< whose location left this scaled width
 };
 
 /// Follows the branch through u (a guess at options.from, corrected there first) to options.to.

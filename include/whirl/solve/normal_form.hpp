@@ -16,7 +16,8 @@ namespace whirl::solve {
 /// is the critical one; strong resonances (theta = pi, 2 pi/3, pi/2) have other normal forms. The critical vector has a
 /// root mean square of one in scaled states. Source: Kuznetsov (2004), 4.7 and (5.73). Cost: about 60 evaluations of
 /// the tangents along the cycle. Collective.
-[[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier);
+[[nodiscard]] double neimark_sacker_coefficient(CycleProblem& problem, Vec u, std::complex<double> multiplier,
+                                                double step = 1);
 
 /// w . (D^3 P(v, v, v) + 3 D^2 P(v, h))/6, (I - M) h = D^2 P(v, v), of the map P over one period of a forced cycle with
 /// a multiplier of -1, M v = -v and M^T w = -w. It has no pole where w . v = 0 (resonance 1:2), but one where +1 is a

@@ -18,6 +18,10 @@ using Complex = std::complex<double>;
 struct Mode {
   Complex lambda;
   std::vector<Complex> shape;
+  double rounding = 0;  ///< what rounding may have done to lambda, where its real part is small enough to ask [rad/s]
+
+  /// The real part is nothing but rounding: neither growth nor decay can be told.
+  [[nodiscard]] bool neutral() const { return std::abs(lambda.real()) <= rounding; }
 };
 
 struct EigenOptions {
@@ -25,6 +29,7 @@ struct EigenOptions {
   double target = 0;      ///< real shift of the shift-and-invert transformation [1/s]
   int dense_below = 600;  ///< systems up to this size are solved as dense matrices (LAPACK), with all eigenvalues
   bool shapes = true;
+  bool rounding = false;  ///< estimate Mode::rounding
 };
 
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.

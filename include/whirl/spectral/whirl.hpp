@@ -6,14 +6,26 @@
 
 namespace whirl::spectral {
 
-enum class Sense { forward, backward, mixed };
+enum class Sense { planar, forward, backward, mixed };
 [[nodiscard]] const char* name_of(Sense sense);
 
-/// Sense of whirl of a shape given by x and y at the shaft's nodes (same length): forward where |x + i y| > |x - i y|
-/// for exp(+i omega t), omega > 0. Nodes that move less than a twentieth of the largest do not vote; mixed if the
-/// others disagree.
+/// How the kinetic energy of a shape divides. x + i y of a node is f exp(i omega t) + conj(b) exp(-i omega t) with
+/// |f|, |b| = |x +- i y|/2, and the energy goes with E = sum m (|f|^2 + |b|^2).
+struct WhirlEnergy {
+  double whirl = 0;    ///< sum m | |f|^2 - |b|^2 |/E in [0, 1]: 0 if every node moves on a line, 1 if on a circle
+  double forward = 0;  ///< sum m (|f|^2 - |b|^2)/E in [-whirl, whirl]: negative if backward motion carries more
+};
+/// Of a shape given by x and y at the shaft's nodes (same length, for exp(+i omega t), omega > 0) with the nodes'
+/// masses [kg]; equal ones if `mass` is empty.
+[[nodiscard]] WhirlEnergy whirl_energy(const std::vector<std::complex<double>>& x,
+                                       const std::vector<std::complex<double>>& y,
+                                       const std::vector<double>& mass = {});
+
+/// In a word: planar if `whirl` is below 0.1, an orbit of half-axes 20 to 1; else forward or backward if at least nine
+/// tenths of the whirling energy turn so; mixed if neither.
+[[nodiscard]] Sense sense_of_whirl(const WhirlEnergy& energy);
 [[nodiscard]] Sense sense_of_whirl(const std::vector<std::complex<double>>& x,
-                                   const std::vector<std::complex<double>>& y);
+                                   const std::vector<std::complex<double>>& y, const std::vector<double>& mass = {});
 
 /// delta = -2 pi Re(lambda)/|Im(lambda)|; infinite for a real eigenvalue.
 [[nodiscard]] double log_decrement(std::complex<double> lambda);

@@ -41,6 +41,7 @@ struct CycleBranchOptions {
   std::vector<Event> detect{Event::cyclic_fold, Event::flip, Event::neimark_sacker};
   bool follow_flips = false;  ///< also follow the cycles of twice the period born at the flips found
   std::vector<int> flips;     ///< of which flips, 1-based in the order found; of all if empty
+  std::vector<int> nodes;     ///< of the shaft, whose amplitudes are recorded beside the bearings
   int orbits = 20;            ///< cycles whose time history is stored, spread over the branch
   bool checkpoint = true;
 };

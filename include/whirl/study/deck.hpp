@@ -22,6 +22,9 @@ void describe(deck::Description<Deck>& d);
 /// same on all ranks. Throws core::InputError (agreed) with a line per problem.
 [[nodiscard]] Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>& overrides);
 
+/// What is unusual about the deck and its variants, a line each; nothing of it keeps the deck from being computed.
+[[nodiscard]] std::vector<std::string> warnings(const Deck& deck);
+
 /// The deck as understood: valid, SI, every default written out.
 [[nodiscard]] std::string resolved_text(const Deck& deck);
 

@@ -18,6 +18,10 @@ struct ModesOptions {
   int count = 14;                       ///< modes to find, those of lowest frequency
   std::optional<double> max_frequency;  ///< |imaginary part| up to which modes are reported [rad/s]
 
+  std::vector<deck::Quantity> shapes_at;  ///< speeds at which shapes are kept [rad/s]; the last one if empty
+
+  /// Those of `shapes_at` in rad/s, or the last of all speeds.
+  [[nodiscard]] std::vector<double> all_shape_speeds() const;
   /// All speeds in rad/s, and the unit in which they were written.
   [[nodiscard]] std::vector<double> all_speeds() const;
   [[nodiscard]] std::string unit() const;
@@ -29,6 +33,7 @@ class Modes final : public StudyWith<ModesOptions> {
 public:
   static constexpr std::string_view key = "modes";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool needs_bearings() const override { return options.supports == ModesOptions::Supports::films; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 };

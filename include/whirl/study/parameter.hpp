@@ -23,11 +23,24 @@ struct Step {
   deck::Quantity max;
 };
 
+/// How a branch goes on from a point.
+enum class Following { arclength, natural };
+[[nodiscard]] std::span<const deck::Name<Following>> names(Following);
+
+/// A search for solutions that coexist with the first one of a branch.
+struct Deflation {
+  int solutions = 2;  ///< wanted in all
+  int attempts = 12;  ///< guesses tried
+  double power = 2;   ///< p of 1/|u - r|^p + 1
+};
+
 /// `speed`, or the path of a continuable option, and the interval to cover.
 struct Parameter {
   std::string path = "speed";
-  deck::Range range;                                                ///< SI; direction is from -> to
-  std::optional<Step> step;                                         ///< the study's own choice if absent
+  deck::Range range;         ///< SI; direction is from -> to
+  std::optional<Step> step;  ///< the study's own choice if absent
+  Following continuation = Following::arclength;
+  std::optional<Deflation> deflation;                               ///< none if absent
   double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;  ///< [rad], of solve::ContinuationOptions
 };
 
@@ -42,6 +55,7 @@ struct Parameter {
 [[nodiscard]] system::Machine with_parameter(const system::Machine& machine, std::string_view path, double value);
 
 void describe(deck::Description<Step>& d);
+void describe(deck::Description<Deflation>& d);
 void describe(deck::Description<Parameter>& d);
 
 /// The parameter exists and may be varied, range and step have its unit, and `speed` is given exactly where the

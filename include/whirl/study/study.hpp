@@ -3,10 +3,13 @@
 
 #include <mpi.h>
 
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "whirl/deck/description.hpp"
@@ -22,10 +25,11 @@ class Study;
 
 /// What a study found; the same on all ranks.
 struct StudyResult {
-  io::Group group;                        ///< tables and fields, with units
-  io::StudySummary summary;               ///< named values, bifurcations, how it ended
-  std::vector<io::StructuredGrid> grids;  ///< meshes for ParaView; dataset paths are relative to `group`
-  bool delivered = true;                  ///< false: nothing but the reason in summary.status
+  io::Group group;                                 ///< tables and fields, with units
+  io::StudySummary summary;                        ///< named values, bifurcations, how it ended
+  std::vector<io::StructuredGrid> grids;           ///< meshes for ParaView; dataset paths are relative to `group`
+  std::vector<std::filesystem::path> checkpoints;  ///< of its parts; they go when the result is written
+  bool delivered = true;                           ///< false: nothing but the reason in summary.status
 };
 
 /// What a study gets to work with.
@@ -34,8 +38,11 @@ struct Context {
   const system::Machine& machine;
   Findings& results;                                ///< what the study has found so far
   const io::Group& earlier;                         ///< results of the studies before, by io::safe_name of their names
+  std::span<const io::StudySummary> summaries;      ///< of those
   bool resume = false;                              ///< go on from the checkpoint of this study, if there is one
   std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
+  /// Where a part of this study keeps a checkpoint of its own. Collective.
+  std::function<std::filesystem::path(const std::string& part)> checkpoint_of;
 };
 
 /// One analysis of a deck.
@@ -54,6 +61,8 @@ public:
   [[nodiscard]] virtual bool may_add(std::string_view /*other*/) const { return false; }
   /// True if it asks about a rotor in bearings, so that a deck of another system cannot have it.
   [[nodiscard]] virtual bool needs_rotor() const { return true; }
+  /// True if the shaft of a rotor has to stand in bearings for it.
+  [[nodiscard]] virtual bool needs_bearings() const { return true; }
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
   virtual void validate(const system::Machine& machine, const deck::Report& report) const = 0;
   /// The same for what does not fit the studies before it in the deck.

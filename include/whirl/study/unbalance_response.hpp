@@ -13,7 +13,8 @@ struct UnbalanceResponseOptions {
   deck::Range range;                              ///< of speed [rad/s]
   int points = 200;                               ///< speeds in the range, evenly spaced with both ends
   std::vector<int> nodes;                         ///< nodes to report; bearings and unbalance planes if empty
-  std::optional<deck::Quantity> operating_speed;  ///< [rad/s], for the separation margin
+  std::optional<deck::Quantity> operating_speed;  ///< [rad/s], where amplitudes are reported
+  std::optional<deck::Range> operating;           ///< range of speeds [rad/s], for the separation margins
   bool refine = true;                             ///< add speeds at peaks until their height is settled
 };
 void describe(deck::Description<UnbalanceResponseOptions>& d);

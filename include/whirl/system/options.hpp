@@ -31,8 +31,9 @@ struct Bearing {
   std::optional<film::Geometry> geometry;  ///< absent only for a linear film
   film::Options film;
   std::variant<std::string, film::Lubricant>
-      lubricant;                     ///< a name of Machine::lubricants, or its own; unused by a linear film
-  std::optional<Pedestal> pedestal;  ///< rigid if absent
+      lubricant;                       ///< a name of Machine::lubricants, or its own; unused by a linear film
+  std::optional<Pedestal> pedestal;    ///< rigid if absent
+  std::optional<double> minimum_film;  ///< thickness below which the surfaces touch [m]; that of the machine if absent
 };
 
 /// Permissible e Omega of ISO 21940-11 (G2.5 is 2.5 mm/s).
@@ -67,8 +68,9 @@ struct Machine : Others {
   rotor::Options rotor;
   double gravity = 9.81;  ///< along -y [m/s^2]
   std::map<std::string, film::Lubricant> lubricants;
-  std::vector<Bearing> bearings;     ///< in the order of the deck
-  std::vector<Unbalance> unbalance;  ///< in the order of the deck
+  std::vector<Bearing> bearings;       ///< in the order of the deck
+  std::optional<double> minimum_film;  ///< of every bearing [m]; film::default_minimum_film() if absent
+  std::vector<Unbalance> unbalance;    ///< in the order of the deck
 };
 
 void describe(deck::Description<Pedestal>& d);

@@ -19,10 +19,11 @@ struct PlaceState {
 /// The pairs of outputs that results show.
 struct Places {
   std::vector<std::string> names;
-  std::vector<double> clearances;  ///< a length to measure them in, in `unit`; zero where there is none
-  std::string unit;                ///< of positions: "m"
-  std::string rate_unit;           ///< of velocities: "m/s"
-  std::string text;                ///< what a position is: "journal relative to the bearing centre"
+  std::vector<double> clearances;     ///< a length to measure them in, in `unit`; zero where there is none
+  std::string unit;                   ///< of positions: "m"
+  std::string rate_unit;              ///< of velocities: "m/s"
+  std::string text;                   ///< what a position is: "journal relative to the bearing centre"
+  std::vector<double> least_films{};  ///< thickness below which the surfaces touch, in `unit`; empty: there are none
 };
 
 /// A system that branches of equilibria and cycles and motions can be computed of, whatever it is made of. All members
@@ -33,6 +34,9 @@ public:
   [[nodiscard]] virtual Places places() const = 0;
   /// The outputs at a state held as a whole [size()]. Not collective.
   [[nodiscard]] virtual std::vector<PlaceState> shown(const double* x) const = 0;
+  /// Smallest film thickness of each place at a whole state, in Places::unit; infinite where there is no film, empty if
+  /// no place has one. Not collective.
+  [[nodiscard]] virtual std::vector<double> film_thickness(const double* /*x*/) const { return {}; }
   /// A state from which Newton's method finds an equilibrium at the present parameter.
   [[nodiscard]] virtual core::Vector guess() = 0;
   /// Moves x away from an equilibrium by `offset` in both directions, per clearance; own states follow.

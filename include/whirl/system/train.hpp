@@ -18,6 +18,7 @@ struct Support {
   film::Geometry geometry;
   film::Options film;
   film::Lubricant lubricant;
+  double minimum_film = 0;  ///< film thickness below which journal and bearing touch [m]; 0 where there is no film
   bool has_pedestal = false;
   std::array<double, 2> mass{}, stiffness{}, damping{};  ///< of the pedestal in x and y [kg, N/m, N s/m]
 };

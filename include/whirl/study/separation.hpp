@@ -1,0 +1,21 @@
+#pragma once
+// How far a critical speed must stay from where a machine runs.
+
+namespace whirl::study {
+
+/// Separation margins, as fractions of the border of the operating range that the critical speed is nearest to.
+struct Separation {
+  double actual = 0;    ///< zero inside the range
+  double required = 0;  ///< not a number if the amplification factor is none; zero below 2.5: damped, no critical speed
+};
+
+/// With the amplification factor AF = N/(N2 - N1) of a peak:
+///
+///     below `from`  required = 0.17 (1 - 1/(AF - 1.5))           of `from`
+///     above `to`    required = 0.10 + 0.17 (1 - 1/(AF - 1.5))    of `to`
+///
+/// Inside the range the actual margin is zero and the required one that of the nearer border. Any one unit of speed.
+/// Source: API 617 (separation of lateral critical speeds); API 684 (2005), 2.5.
+[[nodiscard]] Separation separation(double critical_speed, double amplification_factor, double from, double to);
+
+}  // namespace whirl::study

@@ -1,0 +1,84 @@
+"""The clearance of a bearing: its pads, where the journal can be, and how far it is from the wall."""
+import numpy as np
+
+from .style import GREY, INK, SHADE
+
+
+def pads_of(study, b):
+    """Pads as (x, y of the centre, radius, middle, arc), in m and rad: film thickness at theta inside the pad is
+    radius - (x_journal - x) cos(theta) - (y_journal - y) sin(theta).
+
+    One pad has its middle at the bottom. Two lobes of radius c/(1-m) are moved inwards by m c/(1-m) along y and apart by the
+    offset along x, the lower one to the right. An arc of zero is a whole bore."""
+    def of(name, default=0.0):
+        values = study.get(f"bearings/{name}")
+        return default if values is None else np.atleast_1d(values)[b]
+
+    clearance, preload, offset, arc = (float(of(k)) for k in ("clearance", "preload", "offset", "arc"))
+    if not clearance > 0:  # a linear film has none
+        return []
+    bore = of("bore", "lemon_bore" if 0 < preload < 1 or offset else "partial_arc")
+    if bore != "lemon_bore":
+        return [(0.0, 0.0, clearance, 1.5 * np.pi, arc if bore == "partial_arc" and 0 < arc < 2 * np.pi else 2 * np.pi)]
+    radius = clearance / (1 - preload)
+    return [(side * offset / 2, side * preload * radius, radius, np.pi * (1 + side / 2), arc) for side in (1, -1)]
+
+
+def reach(pads, angle):
+    """Distance from the bearing's centre to the wall in the directions `angle`: where the film of the nearest place of any pad
+    becomes zero. Infinite where no pad lies ahead."""
+    found = np.full(np.shape(angle), np.inf)
+    for ox, oy, radius, middle, arc in pads:
+        theta = middle + np.linspace(-0.5, 0.5, 1441) * arc
+        ahead = np.cos(np.asarray(angle)[..., None] - theta)
+        gap = radius + ox * np.cos(theta) + oy * np.sin(theta)
+        with np.errstate(divide="ignore"):
+            found = np.minimum(found, np.min(np.where(ahead > 1e-9, gap / np.maximum(ahead, 1e-9), np.inf), axis=-1))
+    return found
+
+
+def distance_in_words(study, b, x, y):
+    """The eccentricity per assembled clearance, and, where the bore is no circle, the way to the wall that it makes."""
+    pads = pads_of(study, b)
+    if not pads:
+        return ""
+    e = np.hypot(x, y)
+    ratio = e / float(np.atleast_1d(study.get("bearings/clearance"))[b])
+    words = f"\n|e| = {ratio:.3f} $c_b$"
+    wall = float(reach(pads, np.array([np.arctan2(y, x)]))[0])
+    if len(pads) > 1:
+        words += f", {e / wall:.3f} of the way to the wall"
+    return words
+
+
+def draw_clearance(axis, study, b, points=()):
+    """Pads as thick arcs; dotted between them how far the journal could go; the panel holds it and `points` (x, y in um)."""
+    if study.has("bearings/outline_x", "bearings/outline_y"):
+        x, y = (study.get(f"bearings/outline_{k}")[b] * 1e6 for k in "xy")
+        axis.fill(x, y, color=SHADE, zorder=0)
+        axis.plot(x, y, color=INK, linewidth=1.2)
+    else:
+        pads = pads_of(study, b)
+        if not pads:
+            return False
+        angle = np.linspace(0, 2 * np.pi, 721)
+        # A pad at the bottom leaves the top open: the dotted line goes on as the circle of its radius.
+        circle = np.min([ox * np.cos(angle) + oy * np.sin(angle) + np.sqrt(np.maximum(r**2 - (ox * np.sin(angle) - oy * np.cos(angle))**2, 0))
+                         for ox, oy, r, _, _ in pads], axis=0)
+        wall = reach(pads, angle)
+        radius = np.minimum(wall, circle) if len(pads) == 1 else np.minimum(wall, 1.3 * circle)
+        x, y = radius * np.cos(angle) * 1e6, radius * np.sin(angle) * 1e6
+        whole = all(arc >= 2 * np.pi for *_, arc in pads)
+        axis.fill(x, y, color=SHADE, zorder=0)
+        axis.plot(x, y, color=INK if whole else GREY, linewidth=1.2 if whole else 0.9, linestyle="-" if whole else ":")
+        for ox, oy, r, middle, arc in pads if not whole else []:
+            t = middle + np.linspace(-0.5, 0.5, 361) * arc
+            px, py = ox + r * np.cos(t), oy + r * np.sin(t)
+            # Only the part that the journal can reach; another pad is nearer elsewhere.
+            reached = np.hypot(px, py) <= reach(pads, np.arctan2(py, px)) * (1 + 1e-6)
+            axis.plot(np.where(reached, px, np.nan) * 1e6, np.where(reached, py, np.nan) * 1e6, color=INK, linewidth=1.8)
+    axis.plot(0, 0, "+", color=GREY, markersize=7)
+    side = 1.08 * max(np.nanmax(np.abs(v)) for v in (x, y, *points))
+    axis.set_xlim(-side, side)
+    axis.set_ylim(-side, side)
+    return True

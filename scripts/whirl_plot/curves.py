@@ -1,0 +1,126 @@
+"""Smooth curves through computed points: cycles over a period, branches along their arclength."""
+import numpy as np
+
+DENSE = 16  # pieces that a stretch between two points is drawn in
+
+
+def periodic(values, pieces=4):
+    """The periodic cubic spline through equidistant samples [time, ...], at `pieces` times as many times, closed.
+
+    The coefficients c of B-splines solve (c_{k-1} + 4 c_k + c_{k+1})/6 = values_k, a circulant system."""
+    values = np.asarray(values, float)
+    n = len(values)
+    symbol = (4 + 2 * np.cos(2 * np.pi * np.arange(n) / n)) / 6
+    c = np.fft.ifft(np.fft.fft(values, axis=0) / symbol.reshape((n,) + (1,) * (values.ndim - 1)), axis=0).real
+    before, after, second = np.roll(c, 1, 0), np.roll(c, -1, 0), np.roll(c, -2, 0)
+    t = np.arange(pieces).reshape((1, pieces) + (1,) * (values.ndim - 1)) / pieces
+    weights = (1 - t)**3 / 6, (3 * t**3 - 6 * t**2 + 4) / 6, (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6, t**3 / 6
+    dense = sum(w * b[:, None] for w, b in zip(weights, (before, c, after, second)))
+    dense = dense.reshape((n * pieces,) + values.shape[1:])
+    return np.concatenate([dense, dense[:1]])
+
+
+def slopes(s, values):
+    """d values/ds at the points: of the parabola through each and its neighbours, but at most three times the smaller chord
+    where both chords rise or both fall, so that a kink is not overshot (Fritsch and Carlson, 1980)."""
+    h, chord = np.diff(s), np.diff(values) / np.diff(s)
+    if len(h) == 1:
+        return np.array([chord[0], chord[0]])
+    inner = (h[1:] * chord[:-1] + h[:-1] * chord[1:]) / (h[1:] + h[:-1])
+    both = chord[:-1] * chord[1:] >= 0
+    limit = 3 * np.minimum(np.abs(chord[:-1]), np.abs(chord[1:]))
+    inner = np.where(both, np.sign(inner) * np.minimum(np.abs(inner), limit), inner)
+    ends = [chord[0] - (inner[0] - chord[0]), chord[-1] - (inner[-1] - chord[-1])]
+    for k, c in ((0, chord[0]), (1, chord[-1])):
+        ends[k] = 0.0 if ends[k] * c < 0 else np.sign(c) * min(abs(ends[k]), 3 * abs(c))
+    return np.concatenate([ends[:1], inner, ends[1:]])
+
+
+class Branch:
+    """A branch through its points, cubic along the arclength: parameter and any number of curves over it."""
+
+    def __init__(self, parameter, step=None, unstable=None):
+        self.parameter = np.asarray(parameter, float)
+        n = len(self.parameter)
+        self.unstable = np.zeros(n, int) if unstable is None else np.asarray(unstable, int)
+        length = np.asarray(step, float)[1:] if step is not None and len(step) == n else np.abs(np.diff(self.parameter))
+        positive = length[np.isfinite(length) & (length > 0)]
+        length = np.where(np.isfinite(length) & (length > 0), length, positive.min() if len(positive) else 1.0)
+        self.s = np.concatenate([[0.0], np.cumsum(length)])
+        self._own = self._prepare(self.parameter)
+
+    def _prepare(self, values):
+        values = np.asarray(values, float)
+        return values, (slopes(self.s, values) if len(values) > 1 else np.zeros_like(values))
+
+    @staticmethod
+    def _cubic(prepared, s, i, t):
+        values, slope = prepared
+        h = s[i + 1] - s[i]
+        return ((1 + 2 * t) * (1 - t)**2 * values[i] + t * (1 - t)**2 * h * slope[i]
+                + t**2 * (3 - 2 * t) * values[i + 1] + t**2 * (t - 1) * h * slope[i + 1])
+
+    def at(self, values, place):
+        """A curve at a place (segment, t in [0, 1]) on the branch."""
+        if len(self.parameter) == 1:
+            return float(values[0])
+        return float(self._cubic(self._prepare(values), self.s, place[0], place[1]))
+
+    def place(self, kind, value):
+        """Where on the branch a bifurcation is: (segment, t). A limit point where the branch turns nearest to `value`; others
+        where it passes `value`, and changes stability if it passes more than once; None if it passes nowhere near."""
+        n = len(self.parameter)
+        if n < 2:
+            return (0, 0.0)
+        t = np.linspace(0, 1, DENSE + 1)
+        dense = np.array([self._cubic(self._own, self.s, i, t) for i in range(n - 1)])
+        if kind in ("fold", "cyclic_fold"):
+            flat = np.concatenate([dense[:, :-1].ravel(), dense[-1:, -1]])
+            slope = np.sign(np.diff(flat))
+            turns = np.nonzero(slope[:-1] * slope[1:] < 0)[0] + 1
+            if len(turns):
+                k = turns[np.argmin(np.abs(flat[turns] - value))]
+                return (min(k // DENSE, n - 2), k % DENSE / DENSE if k // DENSE < n - 1 else 1.0)
+        found = []
+        for i in range(n - 1):
+            d = dense[i] - value
+            for k in np.nonzero((d[:-1] * d[1:] < 0) | (d[:-1] == 0))[0]:
+                found.append((i, t[k] + (t[1] - t[0]) * (d[k] / (d[k] - d[k + 1]) if d[k] != d[k + 1] else 0.0)))
+        if dense[-1, -1] == value:
+            found.append((n - 2, 1.0))
+        if not found:
+            near = np.abs(dense - value)
+            i, k = np.unravel_index(np.argmin(near), near.shape)
+            return (int(i), float(t[k])) if near[i, k] < 0.02 * max(np.ptp(self.parameter), 1e-300) else None
+        changes = [f for f in found if self.unstable[f[0]] != self.unstable[f[0] + 1]]
+        return (changes or found)[0]
+
+    def stretches(self, values, stable, places):
+        """Pieces (parameter, curve, stable) of one style each. The style changes at the bifurcation between two points where
+        one is known, else the whole segment goes with its less stable end."""
+        if len(self.parameter) < 2:
+            return []
+        stable = np.asarray(stable, bool)
+        prepared = self._prepare(values)
+        cuts = {}
+        for place in places:
+            if place is not None and stable[place[0]] != stable[place[0] + 1]:
+                cuts.setdefault(place[0], place[1])
+        pieces = []
+
+        def add(i, a, b, solid):
+            t = np.linspace(a, b, DENSE + 1)
+            x, y = self._cubic(self._own, self.s, i, t), self._cubic(prepared, self.s, i, t)
+            if pieces and pieces[-1][2] == solid:
+                pieces[-1][0].append(x[1:])
+                pieces[-1][1].append(y[1:])
+            else:
+                pieces.append(([x], [y], solid))
+
+        for i in range(len(self.parameter) - 1):
+            if i in cuts:
+                add(i, 0, cuts[i], bool(stable[i]))
+                add(i, cuts[i], 1, bool(stable[i + 1]))
+            else:
+                add(i, 0, 1, bool(stable[i] and stable[i + 1]))
+        return [(np.concatenate(x), np.concatenate(y), solid) for x, y, solid in pieces]

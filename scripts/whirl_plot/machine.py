@@ -1,0 +1,144 @@
+"""The machine as a drawing: profile of the shaft, added masses, bearings, couplings, planes of unbalance."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+
+from .style import BAD, COLOURS, GREY, INK, save
+from .units import number, quantity
+
+STEEL, ADDED = "#d5dbe2", "#aab4bf"
+
+
+def planes_of(deck):
+    """(node, names of the unbalances with a plane there)."""
+    found = {}
+    for name, unbalance in (deck.get("unbalance") or {}).items():
+        for plane in unbalance.get("planes", []):
+            found.setdefault(plane.get("node"), []).append(name)
+    return {n: list(dict.fromkeys(names)) for n, names in found.items() if isinstance(n, int)}
+
+
+def discs_of(deck, shaft):
+    """(node, radius, thickness, whether the deck gives its size) of each disc; one given by its mass alone is drawn as high as the
+    cube root of it goes, up to three radii of the shaft."""
+    found = deck.get("rotor", {}).get("discs") or []
+    heaviest = max((number(d.get("mass")) or 0.0 for d in found), default=0.0)
+    out = []
+    for d in found:
+        radius = (number(d.get("outer_diameter")) or 0.0) / 2
+        mass = number(d.get("mass")) or 0.0
+        if isinstance(d.get("node"), int):
+            out.append((d["node"], radius or shaft * (1 + 2 * (mass / heaviest)**(1 / 3) if heaviest else 2), number(d.get("thickness")) or 0.0, radius > 0))
+    return out
+
+
+def draw_bearings(axis, deck, place, low, high):
+    """A triangle below and a pad on both sides of each journal, as long as the bearing; names above."""
+    for name, bearing in (deck.get("bearings") or {}).items():
+        at = place(bearing.get("node"))
+        if at is None:
+            continue
+        geometry = bearing.get("geometry") or {}
+        length, radius = number(geometry.get("length")) or 0, number(geometry.get("radius")) or 0
+        if length and radius:
+            for side in (1, -1):
+                axis.add_patch(Rectangle((at - length / 2, side * radius if side > 0 else -radius - 0.12 * high), length, 0.12 * high,
+                                         facecolor=COLOURS[1], edgecolor="none", zorder=4))
+        axis.plot(at, low, marker="^", color=COLOURS[1], markersize=9, zorder=4)
+        axis.plot([at, at], [low, -radius], color=COLOURS[1], linewidth=0.8, zorder=1)
+        axis.annotate(name, (at, low), xytext=(0, -8), textcoords="offset points", ha="center", va="top", fontsize=8.5, color=INK)
+
+
+def draw_shaft(results, deck, segments):
+    lengths = [number(s.get("length")) or 0.0 for s in segments]
+    z = np.concatenate([[0.0], np.cumsum(lengths)])
+    outer = [max(number(s.get("outer_mass_diameter")) or 0.0, number(s.get("outer_stiffness_diameter")) or 0.0) / 2 for s in segments]
+    added = [(number(s.get("added_mass_outer_diameter")) or 0.0) / 2 if (number(s.get("added_mass")) or 0) > 0 else 0.0 for s in segments]
+    discs = discs_of(deck, max(*outer, *added))
+    high = max([*outer, *added, *(radius for _, radius, _, _ in discs), 1e-9])
+    # Radii are drawn larger than lengths where the shaft is slender.
+    width = 10.4 / (1.04 * z[-1])  # inches per metre of length
+    stretch = min(4.0, max(1.0, 2.0 / (3.85 * high * width)))
+    figure, axis = plt.subplots(figsize=(11.2, min(6.0, 3.85 * high * width * stretch) + 1.7))
+    for a, b, r, m, s in zip(z, z[1:], outer, added, segments):
+        inner = (number(s.get("inner_mass_diameter")) or 0.0) / 2
+        if m > r:
+            axis.add_patch(Rectangle((a, -m), b - a, 2 * m, facecolor=ADDED, edgecolor="none", zorder=1))
+        axis.add_patch(Rectangle((a, -r), b - a, 2 * r, facecolor=STEEL, edgecolor=GREY, linewidth=0.3, zorder=2))
+        if inner:
+            axis.add_patch(Rectangle((a, -inner), b - a, 2 * inner, facecolor="white", edgecolor=GREY, linewidth=0.3, zorder=3))
+    for node, radius, thickness, _ in discs:
+        if 1 <= node <= len(z):
+            at, thickness = z[node - 1], thickness or 0.012 * z[-1]
+            axis.add_patch(Rectangle((at - thickness / 2, -radius), thickness, 2 * radius, facecolor=ADDED, edgecolor=GREY, linewidth=0.4, zorder=2.5))
+    axis.plot([z[0], z[-1]], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)), zorder=5)
+    place = lambda node: z[node - 1] if isinstance(node, int) and 1 <= node <= len(z) else None  # noqa: E731
+    draw_bearings(axis, deck, place, -1.45 * high, high)
+    rotors = [str(s.get("rotor", "")) for s in segments]
+    edges = [0, *[k for k in range(1, len(rotors)) if rotors[k] != rotors[k - 1]], len(rotors)]
+    for a, b in zip(edges, edges[1:]):
+        if rotors[a]:
+            axis.annotate(rotors[a], (0.5 * (z[a] + z[b]), 1.5 * high), ha="center", va="bottom", fontsize=9, fontweight="bold", color=INK)
+        if a:
+            axis.plot([z[a], z[a]], [-1.2 * high, 1.5 * high], color=GREY, linewidth=0.8, linestyle=":", zorder=6)
+    planes = planes_of(deck)
+    for node in planes:
+        at = place(node)
+        if at is not None:
+            axis.annotate("", (at, 1.02 * high), (at, 1.38 * high), arrowprops={"arrowstyle": "-|>", "color": BAD, "linewidth": 1.0}, zorder=7)
+            axis.annotate(f"{node}", (at, 1.38 * high), ha="center", va="bottom", fontsize=7, color=BAD)
+    axis.set_xlim(z[0] - 0.02 * z[-1], 1.02 * z[-1])
+    axis.set_ylim(-2.0 * high, 1.85 * high)
+    axis.set_aspect(stretch)
+    axis.set_xlabel("z [m]")
+    axis.set_ylabel("radius [m]")
+    axis.grid(False)
+    handles = [Line2D([], [], color=STEEL, linewidth=7, label="shaft"), Line2D([], [], color=COLOURS[1], marker="^", linestyle="none", label="bearing")]
+    if any(m > r for m, r in zip(added, outer)) or discs:
+        handles.insert(1, Line2D([], [], color=ADDED, linewidth=7, label="disc" if discs else "added mass"))
+    if len(edges) > 2:
+        handles.append(Line2D([], [], color=GREY, linestyle=":", label="coupling"))
+    if planes:
+        handles.append(Line2D([], [], color=BAD, marker="v", linestyle="none", label="plane of unbalance, with its node"))
+    note = f"{len(segments)} elements, nodes 1 to {len(z)} from left to right"
+    if any(not known for *_, known in discs):
+        note += "; discs given by mass are drawn by its size, not to scale"
+    if stretch > 1.05:
+        note += f"; radii drawn {stretch:.1f} times larger than lengths"
+    return save(figure, results.whole("the machine"), "machine", note, handles)
+
+
+def draw_rigid(results, deck, rotor):
+    """A rigid rotor has no profile: its mass between its bearings, which all move alike."""
+    bearings = deck.get("bearings") or {}
+    figure, axis = plt.subplots(figsize=(7.2, 3.0))
+    axis.add_patch(Rectangle((-2, -0.12), 4, 0.24, facecolor=STEEL, edgecolor=GREY, linewidth=0.5))
+    axis.add_patch(Rectangle((-0.5, -0.7), 1.0, 1.4, facecolor=STEEL, edgecolor=GREY, linewidth=0.8))
+    axis.annotate(f"mass {quantity(rotor.get('mass', ''))}", (0, 0.1), ha="center", va="center", fontsize=9)
+    if number(rotor.get("load")):
+        axis.annotate("", (0, -1.25), (0, -0.7), arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.2})
+        axis.annotate(f"load {quantity(rotor.get('load'))}", (0.1, -1.1), ha="left", va="center", fontsize=9)
+    places = np.linspace(-1.6, 1.6, len(bearings)) if len(bearings) > 1 else [1.6] * len(bearings)
+    for at, name in zip(places, bearings):
+        for side in (1, -1):
+            axis.add_patch(Rectangle((at - 0.25, 0.16 if side > 0 else -0.3), 0.5, 0.14, facecolor=COLOURS[1], edgecolor="none"))
+        axis.plot(at, -0.55, marker="^", color=COLOURS[1], markersize=10)
+        axis.annotate(name, (at, -0.7), ha="center", va="top", fontsize=9)
+    axis.plot([-2.2, 2.2], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)))
+    axis.set_xlim(-2.4, 2.4)
+    axis.set_ylim(-1.35, 0.95)
+    axis.set_aspect("equal")
+    axis.axis("off")
+    return save(figure, results.whole("the machine, schematic"), "machine", "a rigid rotor that does not tilt: not to scale")
+
+
+def draw(results):
+    deck = results.deck
+    rotor = deck.get("rotor") if isinstance(deck, dict) else None
+    if not isinstance(rotor, dict):
+        return []
+    segments = rotor.get("segments")
+    if isinstance(segments, list) and segments:
+        return draw_shaft(results, deck, segments)
+    return draw_rigid(results, deck, rotor) if rotor.get("type") == "rigid" else []

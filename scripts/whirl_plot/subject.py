@@ -1,0 +1,81 @@
+"""What a picture is of: a study or a whole run, with the names of its files and the units in which it reads best."""
+import contextlib
+import pathlib
+import re
+import sys
+
+import whirl
+
+from .style import length_unit
+
+
+class Subject(whirl.Study):
+    """A study as the pictures see it."""
+
+    @property
+    def run_title(self):
+        return self.results.title
+
+    @property
+    def shown(self):
+        """What the positions of branches and motions are."""
+        return str(self.group["places/name"].attrs["description"]) if "places/name" in self.group else "journal relative to the bearing centre"
+
+    @property
+    def micro(self):
+        """Factor and unit of orbits: micrometres, or as they are where another system than a rotor shows them."""
+        return (1, "1") if "places/name" in self.group else (1e6, "\u00b5m")
+
+    def measure(self, values):
+        """Factor and unit in which positions read best; another system than a rotor need not show lengths."""
+        return (1, "1") if "places/name" in self.group else length_unit(values)
+
+    def file(self, what):
+        """Where a picture of this study goes, without its ending."""
+        name = re.sub(r"[^A-Za-z0-9.+-]+", "_", self.name).strip("_.") or "study"
+        return self.results.directory / f"{name}.{what}"
+
+
+class Whole:
+    """Several studies of a run."""
+
+    def __init__(self, results, name):
+        self.results, self.run_title, self.name, self.status = results, results.title, name, ""
+
+    def file(self, what):
+        return self.results.directory / what
+
+
+class Drawn(whirl.Results):
+    """Results whose studies can be drawn."""
+
+    study_type = Subject
+
+    def whole(self, name):
+        return Whole(self, name)
+
+
+def results_directory(command, argv):
+    """The results folder that a command `scripts/COMMAND DIR` was given, or the exit code if it was not given one."""
+    if len(argv) != 1 or argv[0] in ("-h", "--help"):
+        print(f"usage: scripts/{command} DIR", file=sys.stderr)
+        return 0 if argv and argv[0] in ("-h", "--help") else 2
+    return pathlib.Path(argv[0])
+
+
+@contextlib.contextmanager
+def said_in_a_sentence(command):
+    """Ends the program with one sentence and exit code 2 where results are missing, damaged or of something else."""
+    try:
+        yield
+    except whirl.Error as error:
+        sys.exit(_refuse(command, str(error)))
+    except OSError as error:
+        where = f" {error.filename}" if error.filename else ""
+        sys.exit(_refuse(command, f"cannot use{where}: {error.strerror or error}"))
+
+
+def _refuse(command, sentence):
+    print(f"{command}: {sentence}", file=sys.stderr)
+    return 2
+

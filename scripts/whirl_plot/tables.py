@@ -1,0 +1,354 @@
+"""What was asked for, as tables: loads, journal positions, critical speeds, peaks, thresholds, and what happens beyond them."""
+import math
+import typing
+
+import numpy as np
+
+from .bifurcation import Followed
+from .response import peaks
+from .style import speed_axis
+from .units import digits, number, person, quantity, scale_of, with_bar
+
+
+class Table(typing.NamedTuple):
+    caption: str
+    head: list
+    rows: list
+    note: str = ""
+
+
+def column(values, unit):
+    """Factor and head of a column of SI values in the one unit that suits the largest."""
+    finite = [abs(v) for v in values if v is not None and math.isfinite(v)]
+    factor, name = scale_of(unit, max(finite, default=0.0))
+    return factor, f" [{name}]" if name else ""
+
+
+def table_of(caption, labels, columns, note="", one_unit=False):
+    """A table with one row per label and columns (head, SI unit, values), all in one unit if asked; columns without a value are
+    left out."""
+    head, cells = [""], [[label] for label in labels]
+    for words, unit, values in columns:
+        if not any(v is not None for v in values):
+            continue
+        factor, shown = column([v for _, _, some in columns for v in some] if one_unit else values, unit)
+        head.append(words + shown)
+        for row, value in zip(cells, values):
+            row.append("\u2013" if value is None else digits(value * factor, 4))
+    return Table(caption, head, cells, note) if len(head) > 1 and cells else None
+
+
+def required_margin(factor, below):
+    """API 617 and API 684 (2005), 2.5: none for an amplification factor below 2.5; else 17 (1 - 1/(AF - 1.5)) percent for a peak below
+    the operating speed, ten more for one above it."""
+    if factor is None:
+        return None
+    if factor < 2.5:
+        return 0.0
+    return (0.17 if below else 0.27) - 0.17 / (factor - 1.5)
+
+
+def speed_in(unit, value):
+    """rad/s of a speed in `unit`."""
+    return value * {"rpm": np.pi / 30, "Hz": 2 * np.pi}.get(unit, 1.0)
+
+
+def operating_range(study):
+    """(lowest, highest) operating speed in rad/s: of the study, else the service speed that the deck's unbalances name; None if
+    there is none."""
+    def si(text):
+        return speed_in(str(text).split(" ", 1)[-1].strip(), number(text) or 0.0)
+
+    deck = study.results.deck or {}
+    for entry in deck.get("studies") or []:
+        for options in entry.values() if isinstance(entry, dict) else []:
+            if not isinstance(options, dict) or options.get("name") != study.name:
+                continue
+            if isinstance(options.get("operating"), dict):
+                return si(options["operating"].get("from")), si(options["operating"].get("to"))
+            if "operating_speed" in options:
+                return (si(options["operating_speed"]),) * 2
+    speeds = [si(u["service_speed"]) for u in (deck.get("unbalance") or {}).values() if isinstance(u, dict) and "service_speed" in u]
+    return (min(speeds), max(speeds)) if speeds and min(speeds) > 0 else None
+
+
+def margins(speed, factor, operating):
+    """Cells: actual and required separation margin, as fractions of the nearer border, and whether it suffices."""
+    if operating is None:
+        return []
+    low, high = operating
+    below = speed < low or (speed <= high and high - speed >= speed - low)
+    actual = (low - speed) / low if speed < low else (speed - high) / high if speed > high else 0.0
+    required = required_margin(factor, below)
+    verdict = "\u2013" if required is None else "yes" if actual >= required else "no"
+    return [f"{100 * actual:.1f} %", "\u2013" if required is None else "none" if required == 0 else f"{100 * required:.1f} %", verdict]
+
+
+def range_in(operating, to_unit):
+    return " to ".join(digits(float(v * to_unit), 5) for v in dict.fromkeys(operating))
+
+
+MARGIN_HEAD = ["margin", "required", "enough"]
+MARGIN_NOTE = "margin to the operating speed, required by API 617 and API 684 (2005), 2.5: none below an amplification factor of 2.5"
+
+
+def static(study):
+    values = study.values
+    names = study.bearings(len(study.get("bearings/name", [])))
+    get = lambda key: [values[key.format(n)].value if key.format(n) in values else None for n in names]  # noqa: E731
+    x, y, load = (np.atleast_1d(study.get(f"bearings/{k}", [None] * len(names))).tolist() for k in ("x", "y", "load"))
+    clearance = study.get("bearings/clearance")
+    ratio = [math.hypot(a, b) / c if a is not None and c > 0 else None for a, b, c in zip(x, y, clearance)] if clearance is not None else []
+    out = [table_of("Bearings: loads and journal positions", names,
+                    [("load", "N", load), ("x", "m", x), ("y", "m", y), ("|e|/c", "1", ratio),
+                     ("smallest film", "m", get("bearing.{}.min_thickness")), ("largest pressure", "Pa", get("bearing.{}.max_pressure")),
+                     ("side flow", "m^3/s", get("bearing.{}.side_flow")), ("power loss", "W", get("bearing.{}.power_loss"))],
+                    "load of the journal on the bearing, positive down; place of the journal relative to the bearing centre; c assembled clearance, "
+                    "which a journal between two lobes may exceed sideways")]
+    for letter, unit, words in (("K", "N/m", "Stiffness of the films"), ("C", "N s/m", "Damping of the films")):
+        out.append(table_of(words, names, [(entry, unit, get(f"bearing.{{}}.{letter}.{entry}")) for entry in ("xx", "xy", "yx", "yy")],
+                            "K = \u2212dF/dx, C = \u2212dF/d(dx/dt) of the force on the journal", one_unit=True))
+    return out
+
+
+def alignment(study):
+    values = study.values
+    names = [k.split(".", 1)[1] for k in values if k.startswith("elevation.")]
+    get = lambda key: [values[f"{key}.{n}"].value if f"{key}.{n}" in values else None for n in names]  # noqa: E731
+    return [table_of("Alignment on rigid supports", names, [("elevation", "m", get("elevation")), ("reaction as in the deck", "N", get("reaction")),
+                                                            ("reaction aligned", "N", get("reaction_aligned"))])]
+
+
+def modes(study):
+    out, unit = [], study.attribute("speed_unit", "rad/s")
+    to_speed, _, to_frequency, frequency_unit = speed_axis(unit)
+    if study.has("critical/speed"):
+        decrement = study.get("critical/log_decrement")
+        operating = operating_range(study)
+        rows = []
+        for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
+            delta = None if decrement is None else float(np.atleast_1d(decrement)[k])
+            factor = math.pi / delta if delta and delta > 0 else None
+            rows.append([digits(float(speed * to_speed), 5), int(mode), "\u2013" if delta is None else digits(delta, 3),
+                         "\u2013" if factor is None else digits(factor, 3), *margins(speed, factor, operating)])
+        head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
+        note = f"operating speed {range_in(operating, to_speed)} {unit}; {MARGIN_NOTE}" if operating else ""
+        out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
+    if study.has("spectrum/speed", "spectrum/log_decrement"):
+        rows = {k: study.get(f"spectrum/{k}") for k in ("speed", "mode", "frequency", "log_decrement", "whirl")}
+        last = rows["speed"] == rows["speed"][-1]
+        out.append(Table(f"Modes at {digits(float(rows['speed'][-1] * to_speed), 5)} {unit}",
+                         ["mode", f"frequency [{frequency_unit}]", "log. decrement", "whirl"],
+                         [[int(m), digits(float(f * to_frequency), 5), digits(float(d), 3), str(w)] for m, f, d, w in
+                          zip(rows["mode"][last], rows["frequency"][last], rows["log_decrement"][last], rows["whirl"][last])]))
+    elif study.modes:
+        out.append(Table("Natural frequencies at rest", ["mode", "frequency [Hz]"],
+                         [[k, digits(m["imag"] / (2 * math.pi), 5)] for k, m in enumerate(study.modes, 1) if m.get("imag") is not None]))
+    return out
+
+
+def unbalance_response(study):
+    if not study.has("response/speed"):
+        return []
+    unit = study.attribute("speed_unit", "rad/s")
+    factor_of_speed = speed_axis(unit)[0]
+    speed, operating = study.get("response/speed"), operating_range(study)
+    rows = []
+    places = [("response", f"node {n}", k) for k, n in enumerate(np.atleast_1d(study.get("response/node", [])))]
+    if study.has("bearings/semi_major"):
+        count = study.get("bearings/semi_major").reshape(len(speed), -1).shape[1]
+        places += [("bearings", f"{n}, journal", k) for k, n in enumerate(study.bearings(count))]
+    for group, name, k in places:
+        major = study.get(f"{group}/semi_major").reshape(len(speed), -1)[:, k]
+        for n, (at, top, factor) in enumerate(sorted(peaks(speed, major), key=lambda p: -p[1])[:4]):
+            rows.append([name if n == 0 else "", digits(float(at * factor_of_speed), 5), digits(float(top * 1e6), 4),
+                         "\u2013" if factor is None else digits(float(factor), 3), *margins(at, factor, operating)])
+    head = ["probe", f"peak at [{unit}]", "amplitude [\u00b5m]", "amplification"] + (MARGIN_HEAD if operating else [])
+    note = "0-peak, semi-major axis of the orbit; amplification N/(N2 \u2212 N1) at 0.707 of the peak (API 684), none where the curve does not come down so far"
+    out = [Table("Peaks of the response, the four largest of each probe", head, rows, f"{note}; {MARGIN_NOTE}" if operating else note)] if rows else []
+    at = {k.removeprefix("operating."): v for k, v in study.values.items() if k.startswith("operating.")}
+    if at:
+        words = {k: k.replace("node.", "node ").replace("bearing.", "").replace(".semi_major", "").replace(".", ", ") for k in at}
+        out.append(Table("At the operating speed" + (f", {digits(operating[0] * factor_of_speed, 5)} {unit}" if operating and operating[0] == operating[1] else ""),
+                         ["place", "amplitude 0-peak"], [[words[k], person(v.value, v.unit, 4)] for k, v in at.items()]))
+    return out
+
+
+KINDS = {"hopf": "Hopf point: whirl sets in", "fold": "limit point", "cyclic_fold": "limit point of cycles: the motion jumps",
+         "flip": "flip: the period doubles", "neimark_sacker": "Neimark-Sacker point: a second frequency sets in", "branch_point": "branch point"}
+BEYOND = {
+    ("hopf", "supercritical"): "beyond it a whirl of small amplitude that grows with the distance; back the same way",
+    ("hopf", "subcritical"): "beyond it no small whirl: the rotor jumps to a large one and keeps it below the threshold (hysteresis)",
+    ("flip", "supercritical"): "beyond it a small motion of half the frequency that grows",
+    ("flip", "subcritical"): "beyond it no small motion of half the frequency: a jump, and hysteresis",
+    ("neimark_sacker", "supercritical"): "beyond it a small beat that grows",
+    ("neimark_sacker", "subcritical"): "beyond it no small beat: a jump, and hysteresis",
+}
+
+
+def beyond(b):
+    words = BEYOND.get((b.get("type"), b.get("criticality")), "")
+    if b.get("type") in ("fold", "cyclic_fold") and b.get("criticality") in ("above", "below"):
+        words = f"the solutions of this branch lie {b['criticality']} it"
+    elif not words and b.get("type") in ("hopf", "flip", "neimark_sacker"):
+        words = "what is beyond is undetermined" + (f": {b['criticality_by'].removeprefix('undetermined: ')}" if b.get("criticality_by") else "")
+    return words
+
+
+def frequency(b):
+    """Of the motion that is born, in Hz."""
+    if b.get("whirl_frequency_rad_s"):
+        return digits(b["whirl_frequency_rad_s"] / (2 * math.pi), 4)
+    return "\u2013" if not b.get("period_s") or b["period_s"] <= 0 else digits(1 / b["period_s"] / (2 if b.get("type") == "flip" else 1), 4)
+
+
+def bifurcations(study):
+    found = study.bifurcations
+    if not found:
+        return None
+    unit = next((b.get("unit") for b in found), "")
+    name = str(found[0].get("parameter", "parameter")).rsplit(".", 1)[-1].replace("_", " ")
+    rows = [[KINDS.get(b.get("type"), b.get("type")), with_bar(b.get("value"), b.get("uncertainty")), frequency(b), b.get("criticality") or "\u2013", beyond(b)]
+            for b in found]
+    return Table("Bifurcations", ["what", f"{name} [{unit}]" if unit not in ("", "1") else name, "frequency [Hz]", "criticality", "beyond"], rows,
+                 "the bar estimates the error from film mesh, time mesh and location; the frequency is that of the motion born there")
+
+
+def stability(study, branch):
+    """Where the branch is stable, in words: stretches of the parameter between its changes."""
+    unit = study.attribute("parameter_unit", "")
+    places = [place for _, _, place in branch.events]
+    pieces = branch.curve.stretches(branch.parameter, branch.stable, places)
+    rows = [[f"{digits(float(x[0]), 6)} to {digits(float(x[-1]), 6)}", "stable" if solid else "unstable"] for x, _, solid in pieces]
+    if not 0 < len(rows) <= 12:
+        return None
+    name = study.attribute("parameter", "parameter").rsplit(".", 1)[-1].replace("_", " ")
+    return Table("Along the branch", [f"{name} [{unit}]" if unit not in ("", "1") else name, ""], rows,
+                 "; ".join(f"the branch ends: {e}" for e in branch.ends))
+
+
+def branch(study):
+    if not study.has("branch/parameter"):
+        return [bifurcations(study)]
+    followed = Followed(study)
+    out = [bifurcations(study), stability(study, followed)]
+    if study.kind == "cycle_branch" and study.has("branch/x_max", "branch/y_max"):
+        names = study.bearings(followed.column("x_max").shape[1])
+        factor, unit = study.measure(np.concatenate([followed.column("x_max"), followed.column("y_max")]))
+        rows = []
+        tables = [(names[b], [(followed.column(f"{d}_max")[:, b] - followed.column(f"{d}_min")[:, b]) / 2 for d in "xy"]) for b in range(len(names))]
+        if study.has("nodes/amplitude"):
+            node = {d: study.get(f"nodes/{d}").reshape(followed.points, -1) for d in "xy"}
+            tables += [(f"node {n}, shaft", [node["x"][:, k], node["y"][:, k]]) for k, n in enumerate(np.atleast_1d(study.get("nodes/node")))]
+        for name, (x, y) in tables:
+            row = [name]
+            for values in (x, y):
+                at, stable = followed.along(values)
+                k = int(np.argmax(np.where(stable, values, -np.inf) if stable.any() else values))
+                row += [digits(float(values[k] * factor), 4), digits(float(at[k]), 5)]
+            rows.append(row)
+        at = f"at [{study.attribute('parameter_unit', '')}]" if study.attribute("parameter_unit", "1") != "1" else "at"
+        shown = f" [{unit}]" if unit != "1" else ""
+        what = "Largest vibration of the stable cycles" if followed.stable.any() else "Largest vibration of the cycles, none of which is stable"
+        out.append(Table(what, ["place", f"x{shown}", at, f"y{shown}", at], rows, f"0-peak: half of the travel; {study.shown}"))
+    return out
+
+
+def safe_perturbation(results):
+    """Of self-excited whirl that exists below its threshold: how far the rotor may be disturbed before it jumps to it."""
+    rows = []
+    for study in results.studies:
+        if study.kind != "cycle_branch" or study.attribute("unbalance", "") or not study.has("branch/parameter", "branch/y_max"):
+            continue
+        hopf = next((b["value"] for b in study.bifurcations if b.get("type") == "hopf" and b.get("criticality") == "subcritical"), None)
+        followed = Followed(study)
+        if hopf is None or followed.stable[0]:
+            continue
+        # The unstable cycles from the Hopf point to the first limit point part small from large disturbances.
+        last = int(np.argmax(followed.stable)) if followed.stable.any() else len(followed.parameter)
+        p, names = followed.parameter[:last], study.bearings(followed.column("y_max").shape[1])
+        if last < 2:
+            continue
+        half = [np.hypot(*((followed.column(f"{d}_max")[:last, b] - followed.column(f"{d}_min")[:last, b]) / 2 for d in "xy"))
+                for b in range(len(names))]
+        factor, unit = study.measure(np.concatenate(half))
+        for share in (0.25, 0.5, 0.75, 1.0):
+            k = int(np.argmin(np.abs(p - (hopf + share * (p[-1] - hopf)))))
+            rows.append([study.name, f"{digits(float(p[k]), 5)} {study.attribute('parameter_unit', '')}".strip(), *[digits(float(h[k] * factor), 3) for h in half]])
+        head = ["whirl", study.attribute("parameter", "parameter"), *[f"{n} [{unit}]" if unit != "1" else n for n in names]]
+        return Table("Safe perturbation between the limit point and the threshold", head, rows,
+                     "size of the unstable whirl, 0-peak (root of the squares of x and y): from smaller disturbances the rotor comes back, larger ones "
+                     "lead to the large whirl")
+    return None
+
+
+def motion(study):
+    values = study.values
+    rows = [["kind of motion", str(study.attribute("motion", "")).replace("_", " ")], ["evidence", study.attribute("evidence", "")]]
+    for k in range(1, 5):
+        if f"lyapunov.{k}" in values:
+            bar = values.get(f"lyapunov.{k}.uncertainty")
+            rows.append([f"Lyapunov exponent {k} [1/s]", with_bar(values[f"lyapunov.{k}"].value, values[f"lyapunov.{k}"].uncertainty or (bar.value if bar else None))])
+    rows += [[k.replace("peak_to_peak.", "peak to peak, ").replace(".", " "), person(v.value, v.unit, 4)] for k, v in values.items() if k.startswith("peak_to_peak.")]
+    return [Table("Motion", ["", ""], rows)]
+
+
+def run_up(study):
+    values, rows = study.values, []
+    for key, v in values.items():
+        if key.endswith(".peak.amplitude"):
+            head = key.removesuffix(".amplitude")
+            at = values.get(f"{head}.speed")
+            rows.append([head.removesuffix(".peak").replace("bearing.", "").replace("node.", "node "), person(v.value, v.unit, 4),
+                         f"{digits(at.value, 5)} {at.unit}" if at else "\u2013"])
+    return [Table("Largest vibration on the way", ["place", "amplitude 0-peak", "at"], rows)] if rows else []
+
+
+def locus(study):
+    rows = [[c.get("type", "").replace("_", " "), with_bar(c.get("value"), None), f"{with_bar(c.get('second_value'), c.get('uncertainty'))}"]
+            for c in study.summary.get("codimension_two", [])]
+    first, second = study.attribute("parameter", ""), study.attribute("second", "").rsplit(".", 1)[-1].replace("_", " ")
+    return [Table("Points of codimension two", ["what", f"{first} [{study.attribute('parameter_unit', '')}]", f"{second} [{study.attribute('second_unit', '')}]"],
+                  rows)] if rows else []
+
+
+FINDINGS = {"static": static, "alignment": alignment, "modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch,
+            "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus}
+
+
+def findings(study):
+    """The tables of a study that answer what it was asked, without those that have nothing to say."""
+    return [t for t in FINDINGS.get(study.kind, lambda s: [bifurcations(s)])(study) if t is not None and t.rows]
+
+
+def inputs(results):
+    """Tables of what was computed: bearings, lubricants, unbalance, from the deck as it was understood."""
+    deck = results.deck
+    if not isinstance(deck, dict):
+        return []
+    out, rows = [], []
+    lubricants = deck.get("lubricants") or {}
+    for name, b in (deck.get("bearings") or {}).items():
+        g, f, p = b.get("geometry") or {}, b.get("film") or {}, b.get("pedestal") or {}
+        film = ", ".join(str(f[k]).replace("_", " ") for k in ("type", "cavitation", "turbulence") if k in f)
+        film += ", " + " \u00d7 ".join(map(str, f["cells"])) + " cells" if isinstance(f.get("cells"), list) else ""
+        shape = ", ".join([str(g.get("type", "")).replace("_", " ")] + [f"{k} {quantity(g[k])}" for k in ("arc", "preload", "offset")
+                                                                        if k in g and str(g[k]) not in ("0", "0 m")]).strip(", ")
+        oil = lubricants.get(b.get("lubricant"), {}) if isinstance(b.get("lubricant"), str) else b.get("lubricant") or {}
+        stiffness = " / ".join(quantity(k) for k in p.get("stiffness", [])) if isinstance(p, dict) else ""
+        rows.append([name, b.get("node", ""), shape, *[quantity(g.get(k, "")) for k in ("radius", "length", "clearance")], film,
+                     quantity(oil.get("viscosity", "")) if isinstance(oil, dict) else "", quantity(b.get("elevation", "")), stiffness])
+    if rows:
+        head = ["bearing", "node", "bore", "radius", "length", "clearance", "film", "viscosity", "elevation", "pedestal stiffness x / y"]
+        keep = [k for k in range(len(head)) if k == 0 or any(str(r[k]) not in ("", "0 m", "0 \u00b5m") for r in rows)]
+        out.append(Table("Bearings", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
+    rows = []
+    for name, u in (deck.get("unbalance") or {}).items():
+        planes = ", ".join(f"node {p.get('node')}: " + " ".join(f"{k} {quantity(p[k])}" for k in ("eccentricity", "amount", "fraction", "phase") if k in p)
+                           for p in u.get("planes", []))
+        rows.append([name, u.get("grade", ""), u.get("rotor", ""), quantity(u.get("service_speed", "")), planes])
+    if rows:
+        keep = [k for k in range(5) if any(r[k] for r in rows)]
+        head = ["unbalance", "grade", "rotor", "service speed", "planes"]
+        out.append(Table("Unbalance", [head[k] for k in keep], [[r[k] for k in keep] for r in rows]))
+    return out

@@ -1,0 +1,21 @@
+#pragma once
+// The numbers that a study was asked for, in units that a person reads.
+
+#include <string>
+
+#include "whirl/io/summary.hpp"
+
+namespace whirl::app {
+
+/// Loads and journal positions, critical speeds, peaks with amplification factors and margins, thresholds, cycles asked
+/// for: a few lines or a small table by the kind of the study, from its values. Empty if it has none of these. Lengths
+/// in um (mm from 10 mm on), forces in kN, pressures in MPa, margins in percent.
+[[nodiscard]] std::string highlights(const io::StudySummary& study);
+
+/// "5021.4 +- 6.9 rpm": two digits of the uncertainty, seven of the value at most; the unit 1 is not written.
+[[nodiscard]] std::string with_uncertainty(double value, double uncertainty, const std::string& unit);
+
+/// What a bifurcation means for the one who runs the machine; empty if it cannot be told.
+[[nodiscard]] std::string meaning(const io::Bifurcation& b);
+
+}  // namespace whirl::app

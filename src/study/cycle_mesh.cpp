@@ -1,0 +1,170 @@
+// The same cycle, or its bifurcation, on other meshes of the films and of time.
+
+#include <cmath>
+#include <limits>
+
+#include "cycle_follower.hpp"
+#include "equilibrium_event.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/augmented_problem.hpp"
+
+namespace whirl::study {
+
+using core::check;
+
+namespace {
+
+constexpr std::size_t fewest_intervals = 8;  // of a halved time mesh
+
+// Every other point of the mesh.
+std::vector<double> merged(const std::vector<double>& mesh) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k + 1 < mesh.size(); k += 2) out.push_back(mesh[k]);
+  out.push_back(mesh.back());
+  return out;
+}
+
+}  // namespace
+
+MeshLaw CycleFollower::law() const {
+  MeshLaw law = law_of(context_.machine);
+  law.time_order = order_in_time();
+  return law;
+}
+
+std::vector<CycleMesh> CycleFollower::meshes() const {
+  std::vector<CycleMesh> out{{Axis::time, 0.5, {1, 1}}, {Axis::time, 2, {1, 1}}};
+  if (system_->has_film_mesh())
+    for (const FilmMesh& m : film_meshes(context_.machine)) out.push_back({m.axis, m.spacing, m.factor});
+  return out;
+}
+
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMesh& mesh, system::Plant& system,
+                                                                  const solve::Cycle& cycle) const {
+  if (mesh.axis != Axis::time) return make_problem(system, options_.period, cycle.mesh, 1);
+  if (mesh.spacing < 1) return make_problem(system, options_.period, cycle.mesh, 2);
+  const int steps = steps_of(options_);
+  if (options_.method == CycleBranchOptions::Method::collocation || steps == 1)
+    return cycle.mesh.size() / 2 < fewest_intervals ? nullptr
+                                                    : make_problem(system, options_.period, merged(cycle.mesh), 1);
+  return steps % 2 != 0 ? nullptr : make_problem(system, options_.period, cycle.mesh, 0.5);
+}
+
+// Newton's method at the same parameter.
+std::optional<CycleFollower::Corrected> CycleFollower::corrected_on(const CycleMesh& mesh,
+                                                                    const solve::Cycle& given) const {
+  Corrected out;
+  if (mesh.axis != Axis::time) out.other = make_system(mesh.film);
+  system::Plant& system = out.other ? *out.other : *system_;
+  const solve::Cycle cycle = on_film_of(system, given);
+  out.problem = problem_on(mesh, system, cycle);
+  if (!out.problem) return {};
+  if (autonomous()) out.problem->set_phase_reference(cycle);
+  out.u = out.problem->scatter(cycle);
+  core::Vector row = core::duplicate(out.u.get());
+  solve::parameter_row(*out.problem, row.get());
+  if (!solve::newton(*out.problem, out.u.get(), row.get(), given.parameter / scale_, newton_).converged) return {};
+  out.problem->linearise(out.u.get(), row.get());
+  return out;
+}
+
+// Folds have no cycle beyond them, so the parameter cannot be held: the cycle of the same amplitude along the branch is
+// solved, and the fold sought from there.
+std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+                                                   const solve::Cycle& given) const {
+  const auto other = mesh.axis == Axis::time ? nullptr : make_system(mesh.film);
+  system::Plant& system = other ? *other : *system_;
+  const solve::Cycle cycle = on_film_of(system, given);
+  const auto made = problem_on(mesh, system, cycle);
+  if (!made) return {};
+  solve::PeriodicProblem& problem = *made;
+  if (autonomous()) problem.set_phase_reference(cycle);
+  core::Vector u = problem.scatter(cycle), row = core::duplicate(u.get());
+  // The direction of the branch at its fold has no part in the parameter. It is that of the branch found: the other
+  // discretisation is not at a fold here, and its own direction would hold the parameter instead of the amplitude.
+  core::Vector at = problem_->scatter(given), along = core::duplicate(at.get()), own_row = core::duplicate(at.get()),
+               rhs = core::duplicate(at.get());
+  check(VecCopy(at.get(), along.get()));
+  solve::set_last_entry(problem_->comm(), along.get(), 0);
+  solve::weighted_row(*problem_, along.get(), own_row.get());
+  problem_->linearise(at.get(), own_row.get());
+  check(VecSet(rhs.get(), 0.0));
+  solve::set_last_entry(problem_->comm(), rhs.get(), 1);
+  (void)solve::solve_linear(*problem_, rhs.get(), along.get(), "tangent_");
+  // Own states of a film are resampled with the journal's place, affinely: a direction is the difference of two.
+  solve::Cycle direction = problem_->gather(along.get()), moved = given;
+  moved.x += direction.x;
+  direction.x = on_film_of(system, std::move(moved)).x - cycle.x;
+  const core::Vector tangent = problem.scatter(direction);
+  solve::set_last_entry(problem.comm(), tangent.get(), 0);
+  solve::weighted_row(problem, tangent.get(), row.get());
+  check(VecScale(row.get(), 1 / std::sqrt(solve::inner(problem, tangent.get(), tangent.get()))));
+  double offset = 0;
+  check(VecDot(row.get(), u.get(), &offset));
+  if (auto* cycles = dynamic_cast<solve::CycleProblem*>(&problem)) {
+    const auto there = solve::refine(*cycles, found, u.get(), solve::any_tangent(problem, u.get()).get(), newton_);
+    if (there && std::abs(there->parameter - found.parameter) < continuation_.max_step)
+      return CycleNumbers{there->parameter, 0, problem.gather(there->u.get()).period, there->quadratic};
+  }
+  if (!solve::newton(problem, u.get(), row.get(), offset, newton_).converged) return {};
+  return CycleNumbers{solve::last_entry(problem.comm(), u.get()), 0, problem.gather(u.get()).period, io::no_value};
+}
+
+std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+                                                      const solve::Cycle& cycle, bool with_coefficient) const try {
+  if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
+  auto there = corrected_on(mesh, cycle);
+  if (!there) return {};
+  // In time the mesh is fine enough for the slope to tell.
+  auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
+  if (cycles && mesh.axis != Axis::time) {
+    const auto refined =
+        solve::refine(*cycles, found, there->u.get(), solve::any_tangent(*cycles, there->u.get()).get(), newton_);
+    if (refined) {
+      return CycleNumbers{
+          refined->parameter, std::abs(std::arg(refined->critical)), cycles->gather(refined->u.get()).period,
+          with_coefficient ? normal_form(*cycles, found.event, refined->critical, refined->u.get(), long_step)
+                           : io::no_value};
+    }
+    solve::PeriodicProblem& problem = *there->problem;
+    core::Vector row = core::duplicate(there->u.get());
+    solve::parameter_row(problem, row.get());
+    problem.linearise(there->u.get(), row.get());
+  }
+  // The distance from the border there over its slope along the branch.
+  double nearest = std::numeric_limits<double>::infinity();
+  CycleNumbers out{io::no_value, io::no_value, there->problem->gather(there->u.get()).period, io::no_value};
+  for (const auto& mu : there->problem->multipliers()) {
+    const double apart = std::min(std::abs(mu - found.critical), std::abs(mu - std::conj(found.critical)));
+    if (apart >= nearest) continue;
+    nearest = apart;
+    out.angle = std::abs(std::arg(mu));
+    if (found.sensitivity != 0) out.place = found.parameter - distance_of_multiplier(mu) / found.sensitivity;
+  }
+  return out;
+} catch (const core::DomainError&) {
+  return {};
+} catch (const core::NotConverged&) {
+  return {};
+} catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+  return {};
+}
+
+double CycleFollower::time_error(const Located& at) {
+  problem_ = make_problem(*system_, options_.period, at.cycle.mesh, 1);
+  if (autonomous()) problem_->set_phase_reference(at.cycle);
+  solve::LocatedEvent found;
+  found.event = at.event;
+  found.parameter = at.cycle.parameter / scale_;
+  found.sensitivity = at.sensitivity;
+  found.critical = at.critical;
+  Bars bars({found.parameter}, law());
+  for (const CycleMesh& mesh : meshes())
+    if (mesh.axis == Axis::time) {
+      const auto there = numbers_on(mesh, found, at.cycle, false);
+      bars.add(mesh.axis, mesh.spacing, there ? std::vector{there->place} : std::vector<double>{});
+    }
+  return bars[0].time_mesh;
+}
+
+}  // namespace whirl::study

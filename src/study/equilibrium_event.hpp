@@ -1,0 +1,48 @@
+#pragma once
+// What is recorded of a fold or Hopf point of equilibria beside its place: bars, frequency, criticality.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "film_mesh.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/newton.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// Lengths of the differences behind third derivatives, in steps of the usual ones: a hundredth and a fiftieth of a
+/// clearance. Discrete films have third derivatives that belong to their mesh at the usual length of 1e-4 clearances;
+/// over the amplitudes of the motions that are born their forces are smooth.
+inline constexpr double short_step = 80, long_step = 160;
+
+/// A bifurcation of equilibria that a branch found, and how to meet it on other film meshes.
+struct EquilibriumEvent {
+  system::Plant& system;             ///< the one that is followed; left at the parameter of the event
+  Vec x;                             ///< the equilibrium [SI]
+  const solve::LocatedEvent& found;  ///< in the scaled parameter of the branch
+  double scale = 1;                  ///< SI value of one unit of it
+  double state_weight = 1;           ///< of the arclength
+  solve::NewtonOptions newton = {};
+  std::vector<FilmMesh> meshes = {};
+  MeshLaw law = {};
+  /// The system with these cells over those of the deck.
+  std::function<std::unique_ptr<system::Plant>(const std::array<double, 2>&)> make = {};
+};
+
+/// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with
+/// its coefficient and uncertainty into `b`. On each other film mesh the same bifurcation is located by Newton's method
+/// from the resampled equilibrium. Criticality is that of the first Lyapunov coefficient, or the side on which the
+/// equilibria of a fold exist by its second derivative; "undetermined" where the coefficient's bar contains zero.
+/// Collective.
+void describe(io::Bifurcation& b, const EquilibriumEvent& at);
+
+/// Puts `coefficient` with the verdict on it into `b`: `negative` or `positive`, or "undetermined" where the bar
+/// contains zero.
+void put_criticality(io::Bifurcation& b, double coefficient, double uncertainty, const char* negative,
+                     const char* positive, const std::string& by);
+
+}  // namespace whirl::study

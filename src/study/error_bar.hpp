@@ -1,0 +1,76 @@
+#pragma once
+// How far a number computed on a mesh is from its limit: one estimator for all studies.
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace whirl::study {
+
+/// Directions in which a discretisation has a mesh: around and along a bearing, and in time.
+enum class Axis { around, along, time };
+inline constexpr std::array<Axis, 3> all_axes{Axis::around, Axis::along, Axis::time};
+
+/// The same number on a mesh that differs in one direction; `spacing` is its spacing over that of the mesh in use. NaN:
+/// it could not be had there.
+struct Sample {
+  Axis axis = Axis::around;
+  double spacing = 1;
+  double value = 0;
+};
+
+/// What is known of the discretisation before anything is computed.
+struct MeshLaw {
+  double film_order = 2;
+  double time_order = 2;
+  /// The force of a film has kinks in the journal's place, of its own mesh: errors need not fall regularly.
+  bool kinks = false;
+};
+
+/// An error bar by its parts; NaN: unknown.
+struct Bar {
+  double film_mesh = 0;
+  double time_mesh = 0;
+  double kinks = 0;     ///< the part of it that film_mesh would be without, had the film no kinks
+  double location = 0;  ///< what an iteration left
+  [[nodiscard]] double total() const { return film_mesh + time_mesh + kinks + location; }
+  /// Its parts as a summary names them: uncertainty_film_mesh, ...; time only where there is such a mesh.
+  [[nodiscard]] std::map<std::string, double> parts(bool with_time) const;
+};
+
+/// The error of `value` by the numbers on other meshes; each direction alone.
+///
+/// A number of order p is Q(h) = Q(0) + C h^p. Each sample gives C, that is an estimate of the error here,
+///
+///     e_i = (Q(1) - Q(r_i))/(1 - r_i^p)
+///
+/// with p from theory or, where three meshes show a smaller one, as observed (not below 1/2). The finest sample gives
+/// the error. What the others say differently, and a quarter of the largest of them, is the doubt. Errors of the two
+/// film directions may cancel, and do so differently on each mesh: absolute values are added, bar = sum |e| + sum
+/// doubt, which is zero only where all meshes agree. A direction with one sample cannot show its order: its bar is
+/// three times |e| (Roache 1994). With kinks p is one and the bar three times the largest |e_i| of each direction,
+/// added up.
+[[nodiscard]] Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& law);
+
+/// Bars of many numbers at once, from the same numbers computed on one mesh after another.
+class Bars {
+public:
+  Bars(std::vector<double> values, MeshLaw law) : values_(std::move(values)), law_(law) {}
+  /// What came out on another mesh, in the same order; empty: nothing.
+  void add(Axis axis, double spacing, const std::vector<double>& values);
+  [[nodiscard]] Bar operator[](std::size_t k) const;
+
+private:
+  std::vector<double> values_;
+  MeshLaw law_;
+  std::vector<std::vector<Sample>> samples_;
+};
+
+/// Whether a number with this bar is on one side of `border`.
+[[nodiscard]] inline bool decided(double value, double uncertainty, double border = 0) {
+  return value - border > uncertainty || border - value > uncertainty;
+}
+
+}  // namespace whirl::study

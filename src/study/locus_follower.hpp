@@ -1,0 +1,100 @@
+#pragma once
+// A curve of bifurcations in two parameters: what it is followed with.
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common.hpp"
+#include "located.hpp"
+#include "whirl/solve/augmented_problem.hpp"
+#include "whirl/study/cycle_branch.hpp"
+#include "whirl/study/equilibrium_branch.hpp"
+#include "whirl/study/locus.hpp"
+
+namespace whirl::study {
+
+/// Name of the monitor behind the tests of Hopf points themselves.
+inline constexpr const char* generalised_hopf = "generalised_hopf";
+
+/// A point of a curve, SI.
+struct Row {
+  double first = 0, second = 0, period = 0, angle = 0;
+  int others_unstable = 0;
+};
+
+/// Coefficients of normal forms on the curve, a little behind and ahead of a point of it, and what lies between the two
+/// in the scaled parameters.
+struct Beside {
+  double behind = 0, ahead = 0;
+  Eigen::Vector2d moved = Eigen::Vector2d::Zero();
+};
+
+/// The branch problem at the bifurcation that the curve begins with, in both parameters.
+class LocusFollower {
+public:
+  LocusFollower(Context& context, const LocusOptions& options);
+  StudyResult run();
+
+private:
+  // System, branch problem and condition at the start of the curve.
+  void begin();
+  void make_cycles(const CycleBranchOptions& o);
+  void make_equilibria();
+  // At a first parameter and the present second one.
+  [[nodiscard]] system::Train train_at(double first, bool half_film = false) const;
+  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(double first, bool half_film) const;
+  [[nodiscard]] solve::SecondParameter second(system::RotorSystem& system, bool half_film = false);
+  [[nodiscard]] Row row_at(Vec whole, double second) const;
+  [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
+  // `error` in scaled second parameter; not a number: unknown.
+  void record(const std::string& type, double second, double error, Vec whole);
+  // A zero of the coefficient of a normal form, if it is one of the equations.
+  void record_generalised(const std::string& type, double second, double bracket, Vec whole);
+  [[nodiscard]] Beside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
+  // With the usual film mesh or the halved one, and differences of `step` times their usual length.
+  [[nodiscard]] Beside hopfs_beside(Vec whole, bool half_film, double step, double reach);
+  // On the discretisation of the curve, or on another one.
+  [[nodiscard]] Beside beside(Vec whole, bool other, double reach);
+  // Whether the zero of the coefficient at `whole` is one on another discretisation too: its error in scaled second
+  // parameter, or not a number; and whether there is another one near.
+  struct Verdict {
+    double error = std::numeric_limits<double>::quiet_NaN();
+    bool unclear = false;
+  };
+  [[nodiscard]] Verdict judge(Vec whole, double reach);
+  // Unstable eigenvalues or multipliers beside the critical ones.
+  [[nodiscard]] int others_unstable(Vec whole);
+  [[nodiscard]] std::vector<double> films(Vec whole) const;
+  void suspect(double from, double to, const std::string& reason);
+  // Points in one direction from the start, without it.
+  std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
+
+  Context& context_;
+  const LocusOptions& options_;
+  std::optional<CycleBranchOptions> of_cycles_;
+  const EquilibriumBranchOptions* of_rest_ = nullptr;
+  Located seed_;
+  Parameter first_;
+  std::vector<std::string> unbalance_;
+  deck::Range first_range_;
+  double first_scale_ = 1, second_scale_ = 1;   // SI values of one unit of the scaled parameters: widths of the ranges
+  double start_second_ = 0, second_value_ = 0;  // SI: at the start, and to which the system is set
+  solve::ContinuationOptions continuation_;
+  std::unique_ptr<system::RotorSystem> system_;
+  std::unique_ptr<solve::CycleProblem> cycles_;
+  std::unique_ptr<solve::EquilibriumProblem> rest_;
+  solve::ExtendedProblem* branch_ = nullptr;
+  std::unique_ptr<solve::Condition> condition_;
+  std::unique_ptr<solve::AugmentedProblem> problem_;
+  Row start_, last_;
+  // Generalised points that are confirmed: second parameter, and how far around it was looked at, scaled.
+  std::vector<std::pair<double, double>> generalised_;
+  bool left_ = false, ended_ = false;
+};
+
+}  // namespace whirl::study

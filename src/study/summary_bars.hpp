@@ -1,0 +1,36 @@
+#pragma once
+// Error bars of all named values of a study at once.
+
+#include <string>
+#include <vector>
+
+#include "error_bar.hpp"
+#include "whirl/io/summary.hpp"
+
+namespace whirl::study {
+
+/// Collects the values of a summary on other meshes, and puts bars beside those that change with the mesh.
+class SummaryBars {
+public:
+  /// Of the values that `summary` has now; it outlives this.
+  SummaryBars(io::StudySummary& summary, MeshLaw law);
+  /// Values of the same names on another mesh; those that are missing there are unknown there.
+  void add(Axis axis, double spacing, const io::StudySummary& there);
+  /// Writes the bars. Components of one vector or matrix (names that differ in a last x, y, xx, ...) err together: each
+  /// bar is at least a quarter of the largest of its kin, so that a difference that vanishes by chance hides nothing.
+  /// `relative_location` is what an iteration leaves of a value.
+  void write(double relative_location = 0);
+
+private:
+  io::StudySummary& summary_;
+  std::vector<std::string> names_;
+  std::vector<double> values_;
+  std::vector<bool> moved_;
+  Bars bars_;
+  bool with_time_ = false, any_ = false;
+};
+
+/// "bearing.B1.K." for "bearing.B1.K.xy": what components of one vector or matrix share.
+[[nodiscard]] std::string stem_of(const std::string& name);
+
+}  // namespace whirl::study

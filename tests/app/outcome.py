@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""The console ends with what was asked: the numbers of summary.json in units that a person reads.
+
+outcome.py PROGRAM SOURCE
+"""
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+work = pathlib.Path(tempfile.mkdtemp(prefix="whirl_outcome_"))
+failures = []
+
+
+def run(deck, name, *words):
+    done = subprocess.run([program, "run", str(deck), "-o", str(work / name), *words], capture_output=True, text=True, timeout=300)
+    if done.returncode != 0:
+        sys.exit(f"{deck}: exit {done.returncode}\n{done.stdout}{done.stderr}")
+    studies = json.loads((work / name / "summary.json").read_text())["studies"]
+    return done.stdout, {s["name"]: {k: v["value"] for k, v in s["values"].items()} for s in studies}
+
+
+def row(text, start, expected, digits=2e-3):
+    """The line that begins with `start` (after spaces) holds these numbers in this order."""
+    for line in text.split("\n"):
+        words = line.split()
+        if words[:1] != [start] or len(words) < 1 + len(expected):
+            continue
+        try:
+            found = [float(w) for w in words[1:1 + len(expected)]]
+        except ValueError:
+            continue
+        if all(abs(f - e) <= digits * max(abs(e), 1e-9) for f, e in zip(found, expected)):
+            return
+    failures.append(f"no line '{start}' with {expected} in\n{text}")
+
+
+train = source / "inputs" / "turbine_train"
+text, s = run(train / "static.yaml", "static")
+sits = s["at service speed"]
+for b in "B1", "B3", "B5":
+    row(text, b, [sits[f"load.{b}"] / 1e3, sits[f"bearing.{b}.x"] * 1e6, sits[f"bearing.{b}.y"] * 1e6,
+                  sits[f"bearing.{b}.min_thickness"] * 1e6, sits[f"bearing.{b}.max_pressure"] / 1e6])
+row(text, "B4", [s["alignment"]["elevation.B4"] * 1e6, s["alignment"]["reaction_aligned.B4"] / 1e3])
+
+short = source / "inputs" / "rigid_rotor" / "short_f1.yaml"
+text, s = run(short, "short", "--set", "studies.2.cycle_branch.at=[400 rad/s]")
+if not re.search(r"hopf at speed 437\.\d+ .*subcritical: beyond it whirl jumps up; short of it a push can start it", text):
+    failures.append("what the Hopf point means:\n" + text)
+if not re.search(r"threshold 437\.\d+.* rad/s, whirl at \d+\.\d rpm, 0\.50\d of the speed", text):
+    failures.append("the threshold with its whirl:\n" + text)
+row(text, "left", [s["unbalanced"][f"at.400.peak_to_peak.left.{d}"] * 1e6 for d in "xy"])
+
+response = ["studies=[{unbalance_response: {name: r, unbalance: [gen_pair], range: {from: 2400 rpm, to: 3000 rpm}, points: 25, "
+            "nodes: [120, 6], operating: {from: 3000 rpm, to: 3600 rpm}}}]"]
+text, s = run(train / "response.yaml", "response", "--set", response[0], "--set", "rotor.reduction={type: guyan, masters: [6, 49, 54, 93, 111, 120, 140, 160, 181]}")
+peak = {k: s["r"][f"node.120.peak.1.{k}"] for k in ("speed", "semi_major", "amplification_factor", "separation_margin", "required_margin")}
+af = peak["amplification_factor"]
+if abs(peak["separation_margin"] - (3000 - peak["speed"]) / 3000) > 1e-9 or abs(peak["required_margin"] - 0.17 * (1 - 1 / (af - 1.5))) > 1e-9:
+    failures.append(f"margins of API 617: {peak}")
+row(text, "1", [peak["speed"], peak["semi_major"] * 1e6, af, 100 * peak["separation_margin"], 100 * peak["required_margin"]])
+
+if not failures:
+    shutil.rmtree(work)
+print("\n".join(failures) or "the console ends with what was asked")
+sys.exit(1 if failures else 0)

@@ -1,0 +1,32 @@
+// Separation margins of API 617: 17 (1 - 1/(AF - 1.5)) percent below the operating range, ten percent more above it.
+
+#include "whirl/study/separation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using whirl::study::separation;
+
+TEST(Separation, IsCountedFromTheNearerBorder) {
+  const auto below = separation(2700, 8, 3000, 3600), above = separation(4500, 8, 3000, 3600);
+  EXPECT_DOUBLE_EQ(below.actual, 0.1);
+  EXPECT_NEAR(below.required, 0.143846, 1e-6);
+  EXPECT_DOUBLE_EQ(above.actual, 0.25);
+  EXPECT_NEAR(above.required, 0.243846, 1e-6);
+}
+
+TEST(Separation, IsZeroInsideTheRange) {
+  EXPECT_EQ(separation(3100, 8, 3000, 3600).actual, 0);
+  EXPECT_NEAR(separation(3100, 8, 3000, 3600).required, 0.143846, 1e-6);
+  EXPECT_NEAR(separation(3500, 8, 3000, 3600).required, 0.243846, 1e-6);
+  EXPECT_EQ(separation(3000, 8, 3000, 3000).actual, 0);
+}
+
+TEST(Separation, IsNotAskedOfDampedPeaks) {
+  EXPECT_EQ(separation(2900, 2.49, 3000, 3600).required, 0);
+  EXPECT_NEAR(separation(2900, 2.5, 3000, 3600).required, 0, 1e-15);
+  EXPECT_NEAR(separation(3900, 2.5, 3000, 3600).required, 0.1, 1e-15);
+  EXPECT_TRUE(std::isnan(separation(2900, std::numeric_limits<double>::quiet_NaN(), 3000, 3600).required));
+}

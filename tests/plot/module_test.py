@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""The module `whirl` on synthetic results, and the numbers behind the pictures: curves, clearances, peaks, multipliers."""
+import pathlib
+import sys
+import tempfile
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).parents[2]
+sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
+import synthetic  # noqa: E402
+
+import whirl  # noqa: E402
+from whirl_plot import bore, curves, multipliers, response, tables, units  # noqa: E402
+
+
+def refuses(what, *words):
+    try:
+        what()
+    except (whirl.Error, KeyError) as error:
+        assert all(w in str(error) for w in words), error
+        return
+    raise AssertionError(f"nothing refused {words}")
+
+
+def module():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name) / "x"
+        synthetic.make(folder)
+        results = whirl.read(folder)
+        assert results["balanced"].kind == "equilibrium_branch"
+        assert [s.name for s in results.studies][:3] == ["at service speed", "modes", "generator pair"], "the order of the deck"
+        table = results.table("pair, G2.5")
+        assert table.name == "branch" and table["y_max"].shape == (table.rows, 5) and table.places["y_max"] == synthetic.NAMES
+        assert np.array_equal(table.flat()["y_max.B3"], table["y_max"][:, 2])
+        assert table.array()["x_min"].shape == (table.rows, 5)
+        try:
+            import pandas  # noqa: F401
+        except ImportError:
+            pass
+        else:
+            assert list(table.frame()["y_max.B3"]) == list(table["y_max"][:, 2])
+        assert results.values("at service speed")["mass.total"] == whirl.Quantity(42165.66, "kg")
+        assert results.bifurcations("balanced")[0]["uncertainty"] == 12.0 and results.bifurcations()[0]["study"] == "balanced"
+        orbit = results.orbits("pair, G2.5")[0]
+        assert orbit.x.shape == (120, 5) and orbit.places == synthetic.NAMES
+        assert set(results.fields("at service speed")["B3"]) == {"pad1", "pad2"}
+        refuses(lambda: results["nothing"], "nothing", "balanced")
+        refuses(lambda: results.table("balanced", "orbits"), "balanced", "orbits", "branch")
+        refuses(lambda: table["speed_of_sound"], "speed_of_sound", "parameter")
+        refuses(lambda: whirl.read(folder / "none"), "there is no")
+
+
+def smooth_curves():
+    t = 2 * np.pi * np.arange(32) / 32
+    dense = curves.periodic(np.stack([np.cos(t), np.sin(3 * t)], axis=1), 4)
+    u = 2 * np.pi * np.arange(129) / 128
+    assert dense.shape == (129, 2) and np.allclose(dense[::4][:32], np.stack([np.cos(t), np.sin(3 * t)], axis=1), atol=1e-14)
+    # Error of a cubic spline: at most 5/384 h^4 max|f''''|, and it falls with h^4.
+    h = 2 * np.pi / 32
+    assert np.abs(dense[:, 0] - np.cos(u)).max() < h**4 / 384 * 1.05
+    # A branch around a fold, p = 1 - s^2, y = s: the turning point lies between two points.
+    s = np.linspace(-1, 0.9, 9)
+    p = 1 - s**2
+    branch = curves.Branch(p, np.concatenate([[0], np.diff(s)]), (s > 0).astype(int))
+    place = branch.place("fold", 1.0)
+    assert abs(branch.at(p, place) - 1) < 5e-3 and abs(branch.at(s, place)) < 0.07, (place, branch.at(s, place))
+    # Its other side of stability is met where the parameter passes, not where the branch passes it first.
+    value = 1 - 0.05**2
+    assert abs(branch.at(s, branch.place("hopf", value)) - 0.05) < 0.1
+    pieces = branch.stretches(s, s <= 0, [place])
+    assert [solid for *_, solid in pieces] == [True, False] and abs(pieces[0][1][-1]) < 0.07, "the style changes at the mark"
+    # No overshoot at a kink, no value outside a flat stretch.
+    kink = np.array([0, 0, 0, 1, 2, 3.0])
+    line = curves.Branch(np.arange(6.0), np.ones(6))
+    y = np.concatenate([y for _, y, _ in line.stretches(kink, np.ones(6), [])])
+    assert y.min() >= -1e-12 and y.max() <= 3 + 1e-12
+    assert line.place("hopf", 9.0) is None, "a mark far from the branch is none"
+
+
+class Bearings:
+    """The part of a study that tells of its bearings."""
+
+    def __init__(self, **values):
+        self.values = {f"bearings/{k}": np.atleast_1d(v) for k, v in values.items()}
+
+    def has(self, *names):
+        return all(n in self.values for n in names)
+
+    def get(self, name, default=None):
+        return self.values.get(name, default)
+
+
+def clearances():
+    lemon = bore.pads_of(Bearings(clearance=1e-4, preload=0.5, offset=0.0, arc=np.radians(160), bore="lemon_bore"), 0)
+    down, side, rim = (float(bore.reach(lemon, np.array([a]))[0]) for a in (-np.pi / 2, 0.0, np.radians(-10)))
+    assert abs(down / 1e-4 - 1) < 1e-6, "the assembled clearance under the journal"
+    # Circles of radius 2 c about (0, +-c) meet at y = 0 where x^2 = 4 c^2 - c^2.
+    assert abs(side / 1e-4 - np.sqrt(3)) < 1e-5, side
+    assert abs(rim / 1e-4 - (np.sqrt(3 + np.sin(np.radians(10))**2) - np.sin(np.radians(10)))) < 1e-5, rim
+    # Of short pads the ends decide, 60 degrees off: (c_p - m c_p sin 60)/cos 60.
+    short = bore.pads_of(Bearings(clearance=1e-4, preload=0.5, offset=0.0, arc=np.radians(60), bore="lemon_bore"), 0)
+    assert abs(bore.reach(short, np.array([0.0]))[0] / 1e-4 - (2 - np.sin(np.pi / 3)) / 0.5) < 1e-5
+    # The wall is where the film of the nearest pad is zero, in every direction.
+    for angle in np.linspace(0, 6.2, 40):
+        r = float(bore.reach(lemon, np.array([angle]))[0])
+        theta = [m + np.linspace(-0.5, 0.5, 1441) * arc for *_, m, arc in lemon]
+        film = min(np.min(radius - (r * np.cos(angle) - ox) * np.cos(t) - (r * np.sin(angle) - oy) * np.sin(t))
+                   for t, (ox, oy, radius, _, _) in zip(theta, lemon))
+        assert abs(film) < 1e-12, (angle, film)
+    bored = bore.pads_of(Bearings(clearance=1e-4, preload=0.0, offset=0.0, arc=0.0, bore="cylindrical"), 0)
+    assert np.allclose(bore.reach(bored, np.linspace(0, 6, 7)), 1e-4, rtol=1e-5)
+    arc = bore.pads_of(Bearings(clearance=1e-4, preload=0.0, offset=0.0, arc=np.radians(60), bore="partial_arc"), 0)
+    assert np.isinf(bore.reach(arc, np.array([np.pi / 2]))[0]) and abs(bore.reach(arc, np.array([-np.pi / 2]))[0] - 1e-4) < 1e-10
+
+
+def facts():
+    both = multipliers.both_of_pairs(np.array([[0.9 + 0.1j, -0.5, 0.0], [0.8 + 0.2j, 0.8 - 0.2j, 0.1]]))
+    assert sorted(both[0][np.isfinite(both[0])], key=lambda z: (z.real, z.imag)) == [-0.5, 0.9 - 0.1j, 0.9 + 0.1j]
+    assert np.count_nonzero(np.isfinite(both[1])) == 3, "no pair twice"
+    # One degree of freedom under unbalance, zeta = 0.05: peak at 1/sqrt(1 - 2 zeta^2) of height 1/(2 zeta sqrt(1 - zeta^2)).
+    w, zeta = np.linspace(0.3, 3, 400), 0.05
+    (at, top, factor), = response.peaks(w, w**2 / np.sqrt((1 - w**2)**2 + (2 * zeta * w)**2))
+    assert abs(at * np.sqrt(1 - 2 * zeta**2) - 1) < 1e-4 and abs(top * 2 * zeta * np.sqrt(1 - zeta**2) - 1) < 1e-3
+    half = np.sqrt(1 - 2 * zeta**2 + 2 * zeta * np.sqrt(1 - zeta**2) * np.array([-1, 1]))  # where w^2|H| = top/sqrt(2), from 1/w
+    assert abs(factor / (at / (1 / half[0] - 1 / half[1])) - 1) < 0.02, factor
+    assert tables.required_margin(2.4, True) == 0 and abs(tables.required_margin(5.0, True) - 0.17 * (1 - 1 / 3.5)) < 1e-12
+    assert abs(tables.required_margin(5.0, False) - (0.10 + 0.17 * (1 - 1 / 3.5))) < 1e-12
+    assert tables.margins(90.0, 5.0, (100.0, 120.0)) == ["10.0 %", "12.1 %", "no"] and tables.margins(144.0, 2.0, (100.0, 120.0)) == ["20.0 %", "none", "yes"]
+    assert tables.margins(110.0, 5.0, (100.0, 120.0))[0] == "0.0 %" and tables.margins(90.0, 5.0, None) == []
+    assert units.with_bar(5021.412, 6.93) == "5021.4 \u00b1 6.9" and units.with_bar(2.7353, 1.9e-11) == "2.7353"
+    assert units.person(1.8e-4, "m") == "180 \u00b5m" and units.person(2.134e5, "N") == "213.4 kN" and units.quantity("0.0067 Pa s") == "6.7 mPa s"
+    assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"
+
+
+for check in (module, smooth_curves, clearances, facts):
+    check()
+print("the module and the numbers behind the pictures are right")

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""What the program stores for pictures, and the pictures and the report of real results:  program_test.py PROGRAM"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+os.environ["WHIRL_PROGRAM"] = str(pathlib.Path(sys.argv[1]).resolve())
+import whirl  # noqa: E402
+
+
+def doubled_branch(work):
+    """Short bearings, F0* = 1, a* = 0.2: flips at 2.8743 and 5.7606 Omega_0 (independent values, see the gallery). The branch born at
+    the first runs back into the simple cycle at the second, over a fold at 19.769."""
+    options = ("unbalance: [a2], parameter: speed, range: {from: 400 rad/s, to: 3360 rad/s}, step: {initial: 4 rad/s, min: 0.0001 rad/s, "
+               "max: 64 rad/s}, intervals: 30, degree: 4, points: gauss, detect: [flip, cyclic_fold], follow_flips: true, flips: [1]")
+    results = whirl.run(ROOT / "inputs/rigid_rotor/figure_5_2.yaml", set={"studies": f"[{{cycle_branch: {{name: a2, {options}}}}}]"},
+                        output=work / "doubled")
+    born = results["a2 flip 1"]
+    parameter, high, low = born.get("branch/parameter"), born.get("branch/x_max")[:, 0], born.get("branch/x_min")[:, 0]
+    birth, closing = born.get("birth/parameter")[0], born.get("closing/parameter")[0]
+    assert abs(birth / 160 - 2.8743) < 1e-3 and abs(closing / 160 - 5.7606) < 1e-3, (birth / 160, closing / 160)
+    # The size of the simple cycle where the doubled one ends: the step that landed on it is no point of the branch.
+    simple = results["a2"]
+    order = np.argsort(simple.get("branch/parameter"))
+    size = np.interp(parameter, simple.get("branch/parameter")[order], (simple.get("branch/x_max") - simple.get("branch/x_min"))[order, 0])
+    assert np.all((high - low) / size > 1.001), "a point of the simple cycle on the doubled branch"
+    assert born.summary["points"] == len(parameter) and born.values["returned"].value != parameter[-1]
+    assert born.attribute("end") and not any(s["to"] == born.values["returned"].value for s in born.summary.get("suspected", []))
+    orbits = born.orbits
+    assert all(abs(o.parameter - parameter[o.point]) == 0 and o.stable == (born.get("branch/stable")[o.point] > 0.5) for o in orbits)
+    return results
+
+
+def nodes_of_a_branch(work):
+    """At a hundredth of a balance grade G1 the forced cycle is the linear response of the shaft, at any node."""
+    unbalance = {"unbalance.gen_pair.grade": "G0.01"}
+    reduction = {"rotor.reduction": "{type: guyan, masters: [6, 25, 43, 49, 67, 93, 100, 120, 130, 140, 160, 177, 181]}"}
+    ends = "range: {from: 2600 rpm, to: 2700 rpm}"
+    branch = f"cycle_branch: {{name: b, unbalance: [gen_pair], parameter: speed, {ends}, step: {{initial: 100 rpm, min: 1 rpm, max: 100 rpm}}, " \
+             "intervals: 60, degree: 3, nodes: [120, 130, 67], detect: []}"
+    linear = f"unbalance_response: {{name: r, unbalance: [gen_pair], {ends}, points: 2, nodes: [120, 130, 67]}}"
+    results = whirl.run(ROOT / "inputs/turbine_train/train.yaml", output=work / "nodes",
+                        set={**unbalance, **reduction, "studies": f"[{{{branch}}}, {{{linear}}}]"})
+    table, response = results.table("b", "nodes"), results.table("r")
+    assert table.places["amplitude"] == ["node 120", "node 130", "node 67"]
+    for column, other in (("amplitude", "semi_major"), ("x", "x_amplitude"), ("y", "y_amplitude")):
+        ratio = table[column][[0, -1]] / response[other][[0, -1]]
+        # 128 samples miss a peak by 1 - cos(pi/128) = 3e-4.
+        assert np.all(np.abs(ratio - 1) < 2e-3), (column, ratio)
+    return results
+
+
+def drawn(results, *words):
+    for script in ("plot", "report"):
+        done = subprocess.run([str(ROOT / "scripts" / script), str(results.directory)], capture_output=True, text=True)
+        assert done.returncode == 0 and not done.stderr, done.stderr
+    page = (results.directory / "report.html").read_text()
+    for w in words:
+        assert w in page, f"the report does not say {w}"
+    assert (results.directory / "machine.png").is_file() and (results.directory / "machine.svg").is_file()
+
+
+with tempfile.TemporaryDirectory() as name:
+    drawn(doubled_branch(pathlib.Path(name)), "Largest vibration of the stable cycles", "period doubles", "cylindrical", "25 \u00b5m")
+    drawn(nodes_of_a_branch(pathlib.Path(name)), "node 130, shaft", "lemon bore", "gen_pair")
+print("results are as the pictures need them")

@@ -1,0 +1,294 @@
+#!/usr/bin/env python3
+"""Do error bars cover? Computes the same numbers on many film meshes and compares them with fine meshes.
+
+coverage.py measure PROGRAM SOURCE OUT.json [GROUP...]   runs the decks, two at a time, and writes every number with its bar
+coverage.py table DATA.json                              prints the table of docs/validation.md from such a file
+coverage.py check DATA.json                              exit 1 if fewer than 99 % of the bars cover or their median is above 5 errors
+coverage.py test PROGRAM SOURCE GROUP...                 measures and checks
+
+Groups: threshold (the train's variants), cycles (its forced cycles), compliant (Hopf points, folds, flips and Neimark-Sacker
+points of rotors with compliant films, with the source's scheme, `third_order` and the default).
+The truth of a number is Richardson's limit of two fine meshes, second order, and its own error the last step of it.
+"""
+import concurrent.futures
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+MESHES = ["30x8", "40x12", "60x16", "84x20", "120x24", "120x32", "240x48"]
+FINE = ["240x48", "480x96"]
+TRAIN = ["B1", "B2", "B3", "B4", "B5"]
+LAMBDA = {11: (59, 2107, 3747), 12: (88, 3138, 5168), 15: (142, 6570, 10041)}  # elevations of B1, B4, B5 in um, variants/
+
+
+def slenderness(n):
+    one, four, five = LAMBDA[n]
+    return [f"rotor.segments=variants/segments_lambda{n}.csv", f"bearings.B1.elevation={one} um", f"bearings.B4.elevation={four} um",
+            f"bearings.B5.elevation={five} um"]
+
+
+def clearance(factor):
+    return [f"bearings.{b}.geometry.clearance={c * factor:.6g} um" for b, c in (("B2", 220), ("B3", 400), ("B4", 300))]
+
+
+def lobes(key, text):
+    return [f"bearings.{b}.geometry.{key}={text}" for b in ("B2", "B3", "B4")]
+
+
+def pedestals(factor):
+    k = {"B2": (1.4e9, 2.0e9), "B3": (1.8e9, 2.2e9), "B4": (1.3e9, 1.6e9)}
+    return [f"bearings.{b}.pedestal.stiffness=[{x * factor:g} N/m, {y * factor:g} N/m]" for b, (x, y) in k.items()]
+
+
+VARIANTS = {
+    "base": [], "slenderness 11": slenderness(11), "slenderness 12": slenderness(12), "slenderness 15": slenderness(15),
+    "clearance -20 %": clearance(0.8), "clearance +20 %": clearance(1.2), "preload 0.3": lobes("preload", "0.3"),
+    "preload 0.6": lobes("preload", "0.6"), "arc 120 deg": lobes("arc", "120 deg"), "arc 140 deg": lobes("arc", "140 deg"),
+    "pedestals x0.1": pedestals(0.1), "pedestals x10": pedestals(10), "B5 +500 um": ["bearings.B5.elevation=7175 um"],
+}
+
+
+def cells(mesh, bearings, film="film"):
+    return [f"bearings.{b}.{film}.cells=[{mesh.replace('x', ', ')}]" for b in bearings]
+
+
+class Runner:
+    def __init__(self, program, source):
+        self.program, self.source = program, pathlib.Path(source).resolve()
+        self.work = pathlib.Path(tempfile.mkdtemp(prefix="whirl_coverage_"))
+        self.count = 0
+
+    def run(self, deck, overrides):
+        self.count += 1
+        out = self.work / str(self.count)
+        words = [self.program, "run", str(self.source / "inputs" / deck), "-o", str(out)]
+        for o in overrides:
+            words += ["--set", o]
+        done = subprocess.run(words, capture_output=True, text=True)
+        if not (out / "summary.json").exists():
+            print(f"{deck} {overrides}: {done.stderr}", file=sys.stderr)
+            return {}
+        return {s["name"]: s for s in json.loads((out / "summary.json").read_text())["studies"]}
+
+
+def record(group, case, mesh, point, unit, value, bar, truth, doubt, **more):
+    return {"group": group, "case": case, "mesh": mesh, "point": point, "unit": unit, "value": value, "uncertainty": bar, "truth": truth,
+            "truth_error": doubt, **more}
+
+
+def richardson(coarse, fine):
+    return fine + (fine - coarse) / 3, abs(fine - coarse) / 3
+
+
+# The Hopf point of the balanced train next to `near`, and its whirl frequency.
+def threshold_of(runner, variant, mesh, near, width):
+    study = "studies.1.equilibrium_branch"
+    step = ["step.initial=60 rpm", "step.max=250 rpm"] if width < 1000 else []
+    run = runner.run("turbine_train/balanced.yaml", VARIANTS[variant] + cells(mesh, TRAIN) +
+                     [f"{study}.range.from={near - width:.0f} rpm", f"{study}.range.to={near + width:.0f} rpm"] +
+                     [f"{study}.{s}" for s in step])
+    found = [b for b in run.get("balanced", {}).get("bifurcations", []) if b["type"] == "hopf"]
+    return min(found, key=lambda b: abs(b["value"] - near), default=None)
+
+
+def thresholds(runner, variant):
+    rows = []
+    first = None
+    for middle, width in ((5000, 1200), (6500, 1500), (3500, 1500)):
+        first = threshold_of(runner, variant, "120x24", middle, width)
+        if first:
+            break
+    if not first:
+        print(f"{variant}: no threshold", file=sys.stderr)
+        return rows
+    found = {m: threshold_of(runner, variant, m, first["value"], 200) for m in MESHES + FINE[1:]}
+    for point, key, bar, unit in (("threshold", "value", "uncertainty", "rpm"),
+                                  ("whirl frequency", "whirl_frequency_rad_s", "uncertainty_whirl_frequency_rad_s", "rad/s")):
+        truth, doubt = richardson(*(found[m][key] for m in FINE))
+        for m in MESHES:
+            b = found[m]
+            if b:
+                rows.append(record("threshold", variant, m, point, unit, b[key], b.get(bar), truth, doubt, criticality=b["criticality"],
+                                   coefficient=b.get("criticality_coefficient"), coefficient_error=b.get("criticality_uncertainty")))
+    return rows
+
+
+# All bifurcations of the forced cycles; the truth by mesh_convergence from 60x16 to 480x128.
+def cycles(runner, grade):
+    study = {"G2.5": 1, "G6.3": 2}[grade]
+    drop = []
+    rows, truth = [], []
+    fine = runner.run("turbine_train/unbalance.yaml", cells("60x16", TRAIN) + drop +
+                      [f"studies+=mesh_convergence: {{name: fine, of: {grade}, doublings: 3}}"])
+    for b in fine["fine"]["bifurcations"]:
+        truth.append((b["type"], b["value"], b["uncertainty"]))
+    for m in MESHES:
+        run = runner.run("turbine_train/unbalance.yaml", cells(m, TRAIN))
+        for kind, value, doubt in truth:
+            near = [b for b in run[grade]["bifurcations"] if b["type"] == kind and abs(b["value"] - value) < 150]
+            if near:
+                b = min(near, key=lambda x: abs(x["value"] - value))
+                rows.append(record("cycles", grade, m, f"{kind} {value:.0f}", "rpm", b["value"], b["uncertainty"], value, doubt,
+                                   criticality=b["criticality"], coefficient=b.get("criticality_coefficient"),
+                                   coefficient_error=b.get("criticality_uncertainty")))
+    _ = study
+    return rows
+
+
+HALF = "bearings.half.film"
+SCHEMES = {"source": ["quadrature=simpson", "differences=upwind"], "third_order": ["quadrature=sub_cell", "differences=third_order"],
+           "default": ["quadrature=sub_cell", "differences=central"]}
+
+
+def scheme(name):
+    return [f"{HALF}.{o}" for o in SCHEMES[name]]
+
+
+# Hopf points of the balanced rotor: short and long films, three liners, three schemes.
+def compliant_hopf(runner, case):
+    deck, compliance = case
+    place = {"short": "160 640", "long": "96 480"}[deck].split()
+    ranges = [f"studies=[{{equilibrium_branch: {{name: balanced, parameter: speed, range: {{from: {place[0]} rad/s, to: {place[1]} rad/s}}}}}}]"]
+
+    def hopf(name, n):
+        run = runner.run(f"compliant_rotor/{deck}.yaml", [f"{HALF}.compliance={compliance}", f"{HALF}.cells=[{n}, 4]"] + scheme(name) + ranges)
+        return next((b for b in run.get("balanced", {}).get("bifurcations", []) if b["type"] == "hopf"), None)
+
+    fine = [hopf("default", n) for n in (800, 1600)]
+    if not all(fine):
+        print(f"{case}: no truth", file=sys.stderr)
+        return []
+    rows = []
+    for point, key, bar in (("Hopf", "value", "uncertainty"), ("whirl frequency", "whirl_frequency_rad_s", "uncertainty_whirl_frequency_rad_s")):
+        truth, doubt = richardson(*(b[key] for b in fine))
+        for name in SCHEMES:
+            for n in (30, 50, 80, 120, 200):
+                b = hopf(name, n) if point == "Hopf" else cache.get((deck, compliance, name, n))
+                cache[deck, compliance, name, n] = b
+                if b:
+                    rows.append(record("compliant", f"{deck} B = {compliance}, {name}", str(n), point, "rad/s", b[key], b.get(bar), truth, doubt,
+                                       criticality=b["criticality"], coefficient=b.get("criticality_coefficient"),
+                                       coefficient_error=b.get("criticality_uncertainty")))
+    return rows
+
+
+cache = {}
+
+# Cycles with the source's scheme on its mesh, the numbers found to be outside their bars: deck, liner, study, kind, Omega*.
+NAMED = [("figure_5_8", 0.01, "a2", "flip", 5.86), ("figure_5_8", 0.01, "a2", "flip", 2.988), ("figure_5_8", 1, "a2", "flip", 2.366),
+         ("figure_5_8", 1, "a2", "flip", 3.08), ("figure_5_10", 1, "a2", "neimark_sacker", 1.16), ("figure_5_7", 1, "whirl", "cyclic_fold", 1.9725)]
+
+
+def compliant_cycle(runner, deck, compliance):
+    wanted = [n for n in NAMED if n[:2] == (deck, compliance)]
+
+    def found(name, n):
+        more = ["studies.2.cycle_branch.intervals=80"] if compliance == 0.01 else []
+        if deck == "figure_5_8":
+            more.append("studies.2.cycle_branch.follow_flips=false")
+        return runner.run(f"compliant_rotor/{deck}.yaml", [f"{HALF}.compliance={compliance}", f"{HALF}.cells=[{n}, 4]"] + scheme(name) + more)
+
+    def nearest(run, study, kind, speed):
+        near = [b for b in run.get(study, {}).get("bifurcations", []) if b["type"] == kind and abs(b["nondimensional_speed"] / speed - 1) < 0.1]
+        return min(near, key=lambda b: abs(b["nondimensional_speed"] - speed), default=None)
+
+    fine = [found("default", n) for n in (100, 200)]
+    coarse = {(name, 50): found(name, 50) for name in ("source", "default")}
+    rows = []
+    for _, _, study, kind, speed in wanted:
+        both = [nearest(run, study, kind, speed) for run in fine]
+        if not all(both):
+            print(f"{deck} {compliance} {study} {kind} {speed}: no truth", file=sys.stderr)
+            continue
+        truth, doubt = richardson(*(b["nondimensional_speed"] for b in both))
+        for (name, n), run in coarse.items():
+            b = nearest(run, study, kind, speed)
+            if b:
+                scale = b["nondimensional_speed"] / b["value"]
+                bar = b["uncertainty"] and b["uncertainty"] * scale
+                rows.append(record("compliant cycles", f"{deck} B = {compliance}, {name}", str(n), f"{study} {kind} {speed}", "Omega*", b["nondimensional_speed"], bar,
+                                   truth, doubt, criticality=b["criticality"], coefficient=b.get("criticality_coefficient"),
+                                   coefficient_error=b.get("criticality_uncertainty")))
+    return rows
+
+
+GROUPS = {
+    "threshold": [(thresholds, v) for v in VARIANTS],
+    "cycles": [(cycles, g) for g in ("G2.5", "G6.3")],
+    "compliant": [(compliant_hopf, (d, b)) for d in ("short", "long") for b in (0.01, 0.1, 1)],
+    "compliant_cycles": [(compliant_cycle, d, b) for d, b in sorted({n[:2] for n in NAMED})],
+}
+
+
+def measure(program, source, groups):
+    runner = Runner(program, source)
+    jobs = [job for g in groups or GROUPS for job in GROUPS[g]]
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        rows = []
+        for job, part in zip(jobs, pool.map(lambda j: j[0](runner, *j[1:]), jobs)):
+            rows += part
+            print(job[1:], len(part), file=sys.stderr, flush=True)
+    return rows
+
+
+def error_of(row):
+    return abs(row["value"] - row["truth"])
+
+
+def judged(rows):
+    return [r for r in rows if r["uncertainty"] is not None]
+
+
+# Bar over error, where the truth is known better than the number.
+def ratios(rows):
+    return sorted(r["uncertainty"] / error_of(r) for r in judged(rows) if error_of(r) > 2 * r["truth_error"])
+
+
+def covers(row):
+    return error_of(row) <= row["uncertainty"] + row["truth_error"]
+
+
+def digest(rows):
+    good = judged(rows)
+    ratio = ratios(rows)
+    return {"bars": len(rows), "judged": len(good), "cover": sum(map(covers, good)), "median": statistics.median(ratio) if ratio else float("nan"),
+            "unknown": sum(r["uncertainty"] is None for r in rows), "worst": min(ratio, default=float("nan"))}
+
+
+def table(rows):
+    print("| group | point | bars | judged | covering | median bar/error | smallest | unknown |\n|---|---|---|---|---|---|---|---|")
+    kinds = sorted({(r["group"], r["point"].split()[0] if r["group"] == "cycles" else r["point"] if r["group"] in ("threshold", "compliant") else "all")
+                    for r in rows})
+    for group, point in [*kinds, ("all", "all")]:
+        some = [r for r in rows if group == "all" or (r["group"] == group and (point == "all" or r["point"].startswith(point)))]
+        d = digest(some)
+        share = 100 * d["cover"] / d["judged"] if d["judged"] else float("nan")
+        print(f"| {group} | {point} | {d['bars']} | {d['judged']} | {d['cover']} ({share:.1f} %) | {d['median']:.2g} | {d['worst']:.2g} | {d['unknown']} |")
+    missed = [r for r in judged(rows) if not covers(r)]
+    if missed:
+        print("\n| not covered | mesh | point | value | bar | error |\n|---|---|---|---|---|---|")
+        for r in missed:
+            print(f"| {r['group']}: {r['case']} | {r['mesh']} | {r['point']} | {r['value']:.6g} | {r['uncertainty']:.2g} | {error_of(r):.2g} |")
+
+
+def check(rows):
+    d = digest(rows)
+    print(d)
+    return 0 if d["judged"] > 20 and d["cover"] >= 0.99 * d["judged"] and d["median"] <= 5 else 1
+
+
+if __name__ == "__main__":
+    what, *words = sys.argv[1:]
+    if what == "measure":
+        program, source, out, *groups = words
+        rows = measure(program, source, groups)
+        pathlib.Path(out).write_text("[\n" + ",\n".join(json.dumps(r) for r in rows) + "\n]\n")
+    elif what == "table":
+        table([r for name in words for r in json.loads(pathlib.Path(name).read_text())])
+    elif what == "check":
+        sys.exit(check(json.loads(pathlib.Path(words[0]).read_text())))
+    else:
+        sys.exit(check(measure(words[0], words[1], words[2:])))

@@ -1,0 +1,53 @@
+// Linear response to unbalance against closed forms.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <complex>
+
+#include "rigid_rotor/run_deck.hpp"
+
+namespace {
+
+using namespace whirl;
+using Complex = std::complex<double>;
+
+// A film with states of its own answers a harmonic motion with its coefficients at that frequency, which `static`
+// reports for the frequency of rotation: (K + i Omega C - m Omega^2) z = m e Omega^2 (1, -i).
+TEST(LinearResponse, OfFilmsWithOwnStatesFollowsFromTheirCoefficients) {
+  study::Deck deck = study::load(
+      MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/water_bearing.yaml",
+      {"unbalance={a: {planes: [{node: 1, eccentricity: 1 um}]}}",
+       "studies=[{static: {speed: 400 rad/s}}, {unbalance_response: {unbalance: [a], nodes: [1], points: 4, "
+       "range: {from: 350 rad/s, to: 420 rad/s}, refine: false, operating_speed: 400 rad/s}}]"});
+  const auto studies = test::run_deck(deck, "liner_response");
+  auto rest = test::values_of(studies.at(0)), response = test::values_of(studies.at(1));
+  const double speed = 400, mass = 1, eccentricity = 1e-6;
+  Eigen::Matrix2cd a = -mass * speed * speed * Eigen::Matrix2cd::Identity();
+  const std::string axis[] = {"x", "y"};
+  for (const std::string bearing : {"left", "right"})
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j) {
+        const std::string head = "bearing." + bearing + ".", which = axis[i] + axis[j];
+        a(i, j) += Complex(rest.at(head + "K." + which), speed * rest.at(head + "C." + which));
+      }
+  const Eigen::Vector2cd force = mass * eccentricity * speed * speed * Eigen::Vector2cd(1, Complex(0, -1)),
+                         z = a.lu().solve(force);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_NEAR(response.at("operating.bearing.left." + axis[i]), std::abs(z(i)), 1e-6 * std::abs(z(i)));
+  EXPECT_TRUE(studies.at(1).warnings.empty());
+}
+
+// A linear motion knows no bore; an unbalance of 30 clearances drives it through.
+TEST(LinearResponse, BeyondTheBoreIsMarked) {
+  study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/rigid_rotor/short_f1.yaml",
+                                 {"unbalance.a.planes.1.eccentricity=750 um",
+                                  "studies=[{unbalance_response: {unbalance: [a], nodes: [1], points: 3, "
+                                  "range: {from: 200 rad/s, to: 300 rad/s}, refine: false}}]"});
+  const auto s = test::run_deck(deck, "linear_beyond").at(0);
+  ASSERT_EQ(s.warnings.size(), 2U);
+  EXPECT_NE(s.warnings[0].find("bearing left"), std::string::npos) << s.warnings[0];
+  EXPECT_NE(s.warnings[0].find("no answer between 200 and 300 rad/s"), std::string::npos) << s.warnings[0];
+  EXPECT_LT(test::values_of(s).at("bearing.left.film_min"), 0);
+}
+
+}  // namespace

@@ -1,0 +1,127 @@
+#include "study/error_bar.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace whirl::study {
+namespace {
+
+// A number on a mesh with spacings h (around) and k (along), one and one being the mesh in use.
+using Law = std::function<double(double h, double k)>;
+
+Bar bar_of(const Law& law, const MeshLaw& known = {}, const std::vector<double>& spacings = {0.5, 2}) {
+  std::vector<Sample> samples;
+  for (const double r : spacings) {
+    samples.push_back({Axis::around, r, law(r, 1)});
+    samples.push_back({Axis::along, r, law(1, r)});
+  }
+  return error_bar(law(1, 1), samples, known);
+}
+
+double error_of(const Law& law) {
+  return std::abs(law(1, 1) - law(1e-9, 1e-9));
+}
+
+TEST(ErrorBar, OfARegularLawCoversAndIsClose) {
+  const Law law = [](double h, double k) { return 3 + 0.2 * h * h - 0.05 * k * k; };
+  EXPECT_GE(bar_of(law).total(), error_of(law));
+  EXPECT_LE(bar_of(law).total(), 2.1 * error_of(law));
+}
+
+TEST(ErrorBar, DoesNotVanishWhereTheTwoDirectionsCancel) {
+  const Law law = [](double h, double k) { return 3 + 0.2 * h * h - 0.2 * k * k; };
+  EXPECT_NEAR(error_of(law), 0, 1e-12);
+  EXPECT_GE(bar_of(law).total(), 0.1 * (1 - 1e-12));  // a quarter of each
+}
+
+// Errors that halving both directions at once would hide: 0.3 h^2 - 0.1 k^3.
+TEST(ErrorBar, CoversWhereHalvingBothDirectionsAtOnceShowsLittle) {
+  const double c = 0.3 * 3 / 7;  // 0.3 (4 - 1) = c (8 - 1)
+  const Law law = [c](double h, double k) { return 0.3 * h * h - c * k * k * k; };
+  EXPECT_NEAR(law(2, 2), law(1, 1), 1e-12);
+  EXPECT_GE(bar_of(law).total(), error_of(law));
+}
+
+TEST(ErrorBar, DoesNotVanishWhereTwoMeshesAgreeByChance) {
+  // On the coarser mesh the same as here, on the finer one not; and the other way round.
+  for (const double at : {2.0, 0.5}) {
+    const Law law = [at](double h, double) { return h * h * (h == at ? 1 / (h * h) : 1); };
+    std::vector<Sample> samples{{Axis::around, 0.5, law(0.5, 1)}, {Axis::around, 2, law(2, 1)}};
+    EXPECT_GE(error_bar(1, samples, {}).total(), 1) << at;
+  }
+}
+
+TEST(ErrorBar, SeesALowerOrderThanThatOfTheory) {
+  const Law law = [](double h, double k) { return 0.3 * h + 0.1 * std::sqrt(k); };
+  EXPECT_GE(bar_of(law).total(), error_of(law));
+}
+
+TEST(ErrorBar, OfOneOtherMeshIsThreeTimesItsEstimate) {
+  const Bar bar = error_bar(1, {{Axis::around, 2, 1.3}}, {});
+  EXPECT_NEAR(bar.total(), 0.3, 1e-12);
+}
+
+TEST(ErrorBar, IsUnknownWhereNoOtherMeshHasTheNumber) {
+  EXPECT_TRUE(std::isnan(error_bar(1, {{Axis::around, 2, NAN}, {Axis::along, 2, 1.0}}, {}).total()));
+  EXPECT_EQ(error_bar(1, {}, {}).total(), 0) << "without a mesh there is no error of one";
+}
+
+TEST(ErrorBar, KeepsTimeApart) {
+  const Bar bar =
+      error_bar(1, {{Axis::time, 0.5, 1.07}, {Axis::time, 2, 0.44}, {Axis::around, 0.5, 1.0}}, {2, 3, false});
+  EXPECT_NEAR(bar.time_mesh, 0.08 * 1.25, 1e-12);  // 1.08 - 0.08 r^3
+  EXPECT_EQ(bar.film_mesh, 0);
+}
+
+// A share of 2000 laws whose bar covers, and the median of bar over error.
+struct Coverage {
+  double share, median;
+};
+Coverage coverage(const std::function<Law(double phase)>& family, const MeshLaw& known,
+                  const std::vector<double>& spacings) {
+  std::vector<double> ratio;
+  for (int k = 0; k < 2000; ++k) {
+    const Law law = family(k * std::numbers::phi);
+    ratio.push_back(bar_of(law, known, spacings).total() / error_of(law));
+  }
+  std::sort(ratio.begin(), ratio.end());
+  const auto first = std::lower_bound(ratio.begin(), ratio.end(), 1.0);
+  return {static_cast<double>(ratio.end() - first) / 2000, ratio[1000]};
+}
+
+// The edge of the film moves over the cells: part of the second-order error is periodic in the mesh.
+TEST(ErrorBar, CoversAnOscillatingRemainder) {
+  const auto family = [](double phase) -> Law {
+    return [phase](double h, double k) {
+      return h * h * (1 + 0.5 * std::sin(40 / h + phase)) - 0.5 * k * k + 0.3 * h * h * h * std::cos(phase);
+    };
+  };
+  const Coverage c = coverage(family, {}, {0.5, 2});
+  EXPECT_GE(c.share, 0.99);
+  EXPECT_LE(c.median, 5);
+}
+
+// Weights that jump with the edge: first order, and nothing but oscillation.
+TEST(ErrorBar, CoversKinksWhenToldOfThem) {
+  const auto family = [](double phase) -> Law {
+    return [phase](double h, double) { return h * h * 0.2 + h * std::sin(37 / h + phase); };
+  };
+  const Coverage c = coverage(family, {2, 2, true}, {0.5, 0.75, 1.5, 2});
+  EXPECT_GE(c.share, 0.99);
+  EXPECT_LE(c.median, 12);
+  EXPECT_LT(coverage(family, {}, {0.5, 2}).share, 0.99) << "without the word it would not";
+}
+
+TEST(ErrorBar, DecidesOnlyOutsideTheBar) {
+  EXPECT_TRUE(decided(-2, 1));
+  EXPECT_FALSE(decided(-1, 1));
+  EXPECT_FALSE(decided(1, NAN));
+}
+
+}  // namespace
+}  // namespace whirl::study
