@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include "common.hpp"
@@ -20,7 +19,6 @@
 namespace whirl::study {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
 
 /// A point of the locus with its coefficients at all frequencies.
