@@ -228,7 +228,7 @@ std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vecto
     const auto at = std::find_if(locus.begin(), locus.end(),
                                  [&](const Point& p) { return p.at.eccentricity == wanted.at.eccentricity; });
     if (at == locus.end()) {
-      out.insert(out.end(), with_bars.size(), nan);
+      out.insert(out.end(), with_bars.size(), io::no_value);
       continue;
     }
     out.insert(out.end(), {at->at.attitude, at->at.sommerfeld, at->at.speed_limit, at->at.whirl_ratio});
