@@ -108,6 +108,18 @@ class Followed:
                 mark_end(axis, curve.parameter[-1] * across, values[-1] * scale, size)
 
 
+def without_twins(branches):
+    """The branches without those that are one before run backwards: each of two flips gives birth to the branch that joins them.
+    Drawn on each other their dashes would look like a line."""
+    kept, seen = [], set()
+    for branch in branches:
+        ends = (round(branch.parameter[0], 6), round(branch.parameter[-1], 6)) if branch.born and branch.closed else None
+        if ends is None or ends[::-1] not in seen:
+            kept.append(branch)
+            seen.add(ends)
+    return kept
+
+
 def legend(branches, more=()):
     return branch_legend([k for b in branches for k in b.kinds], more, [e for b in branches for e in b.ends])
 
@@ -222,7 +234,7 @@ def draw_together(results):
     studies = [s for s in studies if parameter_label(s) == label]
     if not studies or all(s.kind == "equilibrium_branch" for s in studies):
         return []
-    branches = [Followed(s) for s in studies]
+    branches = without_twins([Followed(s) for s in studies])
     tables = [b.column("y_max" if b.study.kind == "cycle_branch" else "y") for b in branches]
     count = min(t.shape[1] for t in tables)
     names, shown = studies[0].bearings(count), distinct(*(t[:, :count] for t in tables))

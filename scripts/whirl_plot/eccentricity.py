@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .bifurcation import Followed, legend
+from .bifurcation import Followed, legend, without_twins
 from .style import COLOURS, INK, grid_of, save
 
 KINDS = {0: ("self-excited", COLOURS[2]), 1: ("period 1", COLOURS[0]), 2: ("period 2", COLOURS[1])}
@@ -30,12 +30,11 @@ def draw(results):
                and (s.kind == "equilibrium_branch" or (s.kind == "cycle_branch" and s.has("branch/eccentricity_max")))]
     if len(studies) < 2:
         return []
-    panels, branches = {}, []
-    for s in studies:
+    panels, branches = {}, without_twins([Followed(s) for s in studies])
+    for branch in branches:
         # The equilibria of a rotor with unbalance are those of the balanced one.
-        balanced = s.kind == "equilibrium_branch" or not s.attribute("unbalance", "")
-        branches.append(Followed(s))
-        panels.setdefault(0.0 if balanced else groups(s)[1], []).append(branches[-1])
+        balanced = branch.study.kind == "equilibrium_branch" or not branch.study.attribute("unbalance", "")
+        panels.setdefault(0.0 if balanced else groups(branch.study)[1], []).append(branch)
     figure, axes, _ = grid_of(len(panels), width=4.6, height=2.7 if len(panels) > 1 else 3.8, columns=2)
     kinds = {}
     for axis, (unbalance, members) in zip(axes, sorted(panels.items())):

@@ -23,7 +23,7 @@ RUNS = {
 PICTURES = {
     "bifurcations": ("unbalance", "bifurcations"),
     "train_orbits": ("unbalance", "G2.5.orbits"),
-    "train_response": ("response", "generator_pair_G2.5.response"),
+    "train_response": ("response", "generator_pair_G2.5.response1"),
     "train_whirl": ("self_excited", "whirl.cycles-vertical"),
     "train_run_up": ("train_run_up", "run-up"),
     "rigid_5_3": ("figure_5_3", "whirl.frequency"),

@@ -30,7 +30,11 @@ public:
     const auto at = all_.find(name);
     return at == all_.end() ? "" : at->second.unit;
   }
-  [[nodiscard]] double bar(const std::string& name) const { return get(name + ".uncertainty").value_or(io::no_value); }
+  [[nodiscard]] double bar(const std::string& name) const {
+    const auto at = all_.find(name);
+    if (at == all_.end() || !at->second.more.contains("uncertainty")) return io::no_value;
+    return at->second.more.at("uncertainty");
+  }
   /// What stands between `head` and `tail` in the names that have both, in the order of the study.
   [[nodiscard]] static std::vector<std::string> between(const io::StudySummary& s, const std::string& head,
                                                         const std::string& tail) {

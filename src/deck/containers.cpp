@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "known.hpp"
+#include "name_of_value.hpp"
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/load.hpp"
@@ -15,10 +16,6 @@ namespace whirl::deck {
 namespace {
 
 using core::InputError;
-
-std::string name_of_value(const Node& n) {
-  return n.key.empty() ? std::string("this value") : fmt::format("'{}'", n.key);
-}
 
 // Item `step` (1-based) of a list of n; throws if there is none.
 std::size_t index_of(const std::string& step, std::size_t n) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "known.hpp"
+#include "name_of_value.hpp"
 #include "plausible.hpp"
 #include "schema.hpp"
 #include "whirl/core/printable.hpp"
@@ -15,10 +16,6 @@ namespace whirl::deck {
 namespace {
 
 using core::InputError;
-
-std::string name_of_value(const Node& n) {
-  return n.key.empty() ? std::string("this value") : fmt::format("'{}'", n.key);
-}
 
 // True if `node` is a scalar; otherwise says what was wanted.
 bool is_scalar(const Node& node, const std::string& wanted, Reading& r) {

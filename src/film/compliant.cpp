@@ -12,7 +12,7 @@
 namespace whirl::film {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 using Array = Eigen::Map<const Eigen::ArrayXd>;
 
@@ -45,7 +45,7 @@ public:
     const double ld = 0.5 * g_.length / g_.radius;
     side_ = 1.5 / (ld * ld);
     const bool top = long_ && options.grooves.empty();
-    place(grooved(n_, top ? std::vector{Groove{0.5 * kPi, 0.0}} : options.grooves));
+    place(grooved(n_, top ? std::vector{Groove{0.5 * pi, 0.0}} : options.grooves));
     for (auto* values : {&u_, &moved_, &full_[0], &full_[1], &left_[0], &left_[1], &slope_[0], &slope_[1]})
       values->resize(at(n_));
     for (auto* values : {&h_, &cos_, &sin_}) values->resize(at(n_) + kFront + kBehind);

@@ -10,7 +10,7 @@
 namespace whirl::film {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // Flexibility U/p of the liner [m/Pa].
 double flexibility(const Geometry& g, const Options& o, const Lubricant& lubricant) {
@@ -111,7 +111,7 @@ std::array<Field, 4> CompliantModel::empty_fields(std::size_t along) const {
 }
 
 RingQuadrature::RingQuadrature(int n, Options::Quadrature rule)
-    : n_(n), simpson_(rule == Options::Quadrature::simpson), step_(2.0 * kPi / n) {
+    : n_(n), simpson_(rule == Options::Quadrature::simpson), step_(2.0 * pi / n) {
   for (int k = 0; k < n; ++k) {
     cos_.push_back(std::cos(angle(k)));
     sin_.push_back(std::sin(angle(k)));
@@ -128,7 +128,7 @@ RingQuadrature::RingQuadrature(int n, Options::Quadrature rule)
 }
 
 double RingQuadrature::angle(int k) const {
-  return 0.5 * kPi + step_ * k;
+  return 0.5 * pi + step_ * k;
 }
 
 // Gauss's rule of three points on the positive part of the cell, about its middle.

@@ -8,15 +8,13 @@
 #include "film/groove.hpp"
 #include "film/kinds.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/index.hpp"
 
 namespace whirl::film {
 namespace {
 
+using core::at;
 using Array = Eigen::Map<const Eigen::ArrayXd>;
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 // Between every node and the one `ahead` of it in the work space, a and b, goes f = w ((h_a + h_b)/2)^3 (P_b - P_a)
 // from b to a: df/dh_a = df/dh_b = q, df/dP_b = -df/dP_a = k.

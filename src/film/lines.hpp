@@ -3,17 +3,16 @@
 // vector registers.
 
 #include <array>
-#include <cstddef>
 #include <vector>
+
+#include "whirl/core/index.hpp"
 
 namespace whirl::film {
 
 /// Of a preconditioner, which no digit of the result depends on: half the bytes, twice the lanes of a register.
 using Real = float;
 
-inline std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
+using core::at;
 
 // Values at lines first .. first + count - 1 of one colour, with one neighbour's column on either side.
 struct Columns {

@@ -12,7 +12,7 @@ namespace whirl::film {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double cross(const Complex& a, const Complex& b) {
   return a.real() * b.imag() - a.imag() * b.real();
@@ -77,12 +77,12 @@ double LongInlet::root(double falling, double from, double to, double level) con
 Impedance LongInlet::evaluate() {
   // l = 0 at the extremes of p; the highest pressure is where the journal moves to.
   const double beta = std::arg(v_), lag = std::asin(-0.5 * k_ / std::abs(v_));
-  const double low = zeta(std::polar(1.0, beta - kPi + lag));
-  const auto after = [low](double x) { return low + (x - low) - 2.0 * kPi * std::floor((x - low) / (2.0 * kPi)); };
+  const double low = zeta(std::polar(1.0, beta - pi + lag));
+  const auto after = [low](double x) { return low + (x - low) - 2.0 * pi * std::floor((x - low) / (2.0 * pi)); };
   const double high = after(zeta(std::polar(1.0, beta - lag))), top = after(zeta(Complex(0.0, 1.0)));
   const double level = pressure(point(top));
   const bool rising = top <= high;  // at the inlet
-  const double other = rising ? root(1.0, high, low + 2.0 * kPi, level) : root(-1.0, low, high, level);
+  const double other = rising ? root(1.0, high, low + 2.0 * pi, level) : root(-1.0, low, high, level);
   const double from = rising ? top : other, to = rising ? other : top;
   const Complex free = point(other).nu;
 
@@ -92,7 +92,7 @@ Impedance LongInlet::evaluate() {
   constexpr int kNodes = 7;  // interpolate degree 3 exactly
   const std::array<Complex, 2> axes = {Complex(1.0, 0.0), i_unit};
   for (int n = 0; n < kNodes; ++n) {
-    const double node = 2.0 * kPi * n / kNodes;
+    const double node = 2.0 * pi * n / kNodes;
     double weight = to - from;
     for (int k = 1; k <= 3; ++k) weight += 2.0 / k * (std::sin(k * (to - node)) - std::sin(k * (from - node)));
     weight /= kNodes;

@@ -11,7 +11,7 @@
 namespace whirl::film {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 class RigidFilm final : public Model {
 public:
@@ -71,7 +71,7 @@ Summary RigidFilm::summary(const Motion& motion) {
   s.min_thickness = response.min_thickness;
   const double U = motion.speed * g_.radius, r = std::sqrt(1.0 - e[0] * e[0] - e[1] * e[1]);
   s.power_loss =
-      U * (2.0 * kPi * viscosity_ * U * g_.radius * g_.length / (g_.clearance * r) +
+      U * (2.0 * pi * viscosity_ * U * g_.radius * g_.length / (g_.clearance * r) +
            (motion.position[0] * response.force[1] - motion.position[1] * response.force[0]) / (2.0 * g_.radius));
   if (kind_ == Options::Kind::short_bearing)
     s.side_flow = 2.0 * g_.radius * g_.clearance * g_.length * std::hypot(v[0], v[1]);
@@ -84,8 +84,8 @@ Summary RigidFilm::summary(const Motion& motion) {
   constexpr int kSamples = 720;
   int best = 0;
   for (int i = 1; i < kSamples; ++i)
-    if (p(2.0 * kPi * i / kSamples) > p(2.0 * kPi * best / kSamples)) best = i;
-  double left = 2.0 * kPi * (best - 1) / kSamples, right = 2.0 * kPi * (best + 1) / kSamples;
+    if (p(2.0 * pi * i / kSamples) > p(2.0 * pi * best / kSamples)) best = i;
+  double left = 2.0 * pi * (best - 1) / kSamples, right = 2.0 * pi * (best + 1) / kSamples;
   for (int i = 0; i < 40; ++i) {
     const double step = (right - left) * 0.5 * (3.0 - std::sqrt(5.0));
     if (p(left + step) < p(right - step))
@@ -108,7 +108,7 @@ std::vector<Field> RigidFilm::fields(const Motion& motion) {
   for (std::size_t j = 0; j < along; ++j)
     z.values.push_back(g_.length * (static_cast<double>(j) / static_cast<double>(along - 1) - 0.5));
   for (std::size_t i = 0; i < kAround; ++i) {
-    const double at = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(kAround - 1);
+    const double at = 2.0 * pi * static_cast<double>(i) / static_cast<double>(kAround - 1);
     theta.values.push_back(at);
     const double mid = pressure_ * mid_pressure(kind_, ld_, e, v, at);
     const double thickness = g_.clearance * (1.0 - e[0] * std::cos(at) - e[1] * std::sin(at));

@@ -15,10 +15,10 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 // The map P over one period: DP = M, and its higher derivatives along solutions of the variational equations.
-class Map {
+class PeriodMap {
 public:
   using Path = CycleProblem::Path;
-  Map(CycleProblem& problem, Vec u, double step = 1) : problem_(problem), u_(u), step_(step) {}
+  PeriodMap(CycleProblem& problem, Vec u, double step = 1) : problem_(problem), u_(u), step_(step) {}
 
   // D^2 R[a, b] at the collocation points.
   MatrixXd second(const Path& a, const Path& b) {
@@ -87,7 +87,7 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
             p = eigenvector_in(bordered.left(), joined.times_transposed(bordered.left()), std::conj(multiplier));
   q *= std::sqrt(static_cast<double>(q.size())) / q.norm();
   p /= std::conj(p.dot(q));
-  Map map(problem, u, step);
+  PeriodMap map(problem, u, step);
   const Complex i(0, 1);
   const auto r = map.path(q.real()), s = map.path(q.imag());
   const VectorXd rr = map.bilinear(r, r), ss = map.bilinear(s, s), rs = map.bilinear(r, s);
@@ -111,12 +111,12 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
 }
 
 double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step) {
-  Map map(problem, u, step);
-  const Map::Path a = map.path(v);
+  PeriodMap map(problem, u, step);
+  const PeriodMap::Path a = map.path(v);
   // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
-  Map::Path b;
+  PeriodMap::Path b;
   const VectorXd h = solve_polynomial(problem, {1, -1}, map.bilinear(a, a, &b));
-  const Map::Path more = map.path(h);
+  const PeriodMap::Path more = map.path(h);
   b.start += more.start;
   b.nodes += more.nodes;
   VectorXd end;

@@ -3,19 +3,14 @@
 #include <algorithm>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/index.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::solve {
-namespace {
 
+using core::at;
 using core::check;
 using Eigen::Index;
-
-std::size_t at(PetscInt i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
 
 void EliminatedResponse::read(Mat jx, Mat jd, const double* row, const double* column) {
   check(MatGetSize(jx, &n_, nullptr));

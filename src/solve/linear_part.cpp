@@ -16,7 +16,6 @@
 namespace whirl::solve {
 namespace {
 
-using Eigen::all;
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
@@ -120,8 +119,8 @@ void LinearPart::factorise() {
 void LinearPart::solve(MatrixXd& x) const {
   const Index m = scheme.degree, kept = n - eliminated();
   Map<MatrixXd> points(x.data(), n, m * x.cols());
-  const MatrixXd y_i = points(rate_row_, all);
-  MatrixXd x_k = points(row_, all);
+  const MatrixXd y_i = points(rate_row_, Eigen::all);
+  MatrixXd x_k = points(row_, Eigen::all);
   x_k.noalias() -= coupling_ * along(value_integral_, y_i);
   if (x.cols() == 1) {  // the kernel for matrices is twice as slow for one column
     Map<VectorXd> v(x_k.data(), m * kept);
@@ -130,17 +129,17 @@ void LinearPart::solve(MatrixXd& x) const {
     Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
     v = lu_.solve(v).eval();
   }
-  const MatrixXd x_b = along(value_, x_k(rate_of_, all));
-  points(state_, all) = x_k;
-  points(rate_state_, all) =
+  const MatrixXd x_b = along(value_, x_k(rate_of_, Eigen::all));
+  points(state_, Eigen::all) = x_k;
+  points(rate_state_, Eigen::all) =
       along(integral_, alpha_.inverse().matrix().asDiagonal() * (y_i - beta_.matrix().asDiagonal() * x_b));
 }
 
 void LinearPart::solve_transposed(MatrixXd& x) const {
   const Index m = scheme.degree, kept = n - eliminated();
   Map<MatrixXd> points(x.data(), n, m * x.cols());
-  MatrixXd u = along(integral_.transpose(), alpha_.inverse().matrix().asDiagonal() * points(rate_state_, all));
-  MatrixXd x_k = points(state_, all);
+  MatrixXd u = along(integral_.transpose(), alpha_.inverse().matrix().asDiagonal() * points(rate_state_, Eigen::all));
+  MatrixXd x_k = points(state_, Eigen::all);
   const MatrixXd vu = beta_.matrix().asDiagonal() * along(value_.transpose(), u);
   for (Index e = 0; e < eliminated(); ++e) x_k.row(rate_of_[static_cast<std::size_t>(e)]) -= vu.row(e);
   if (x.cols() == 1) {
@@ -151,8 +150,8 @@ void LinearPart::solve_transposed(MatrixXd& x) const {
     v = lu_.transpose().solve(v).eval();
   }
   u -= along(value_integral_.transpose(), coupling_.transpose() * x_k);
-  points(row_, all) = x_k;
-  points(rate_row_, all) = u;
+  points(row_, Eigen::all) = x_k;
+  points(rate_row_, Eigen::all) = u;
 }
 
 MatrixXd LinearPart::inputs(const MatrixXd& x) const {

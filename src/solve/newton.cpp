@@ -17,7 +17,7 @@ namespace {
 using core::check;
 
 // All callbacks of one solve see this.
-struct Context {
+struct SolveContext {
   ExtendedProblem& problem;
   Vec row = nullptr;
   double offset = 0;
@@ -25,7 +25,7 @@ struct Context {
 };
 
 PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
-  auto& c = *static_cast<Context*>(raw);
+  auto& c = *static_cast<SolveContext*>(raw);
   const PetscErrorCode code = c.gate.run([&] {
     c.problem.residual(u, r);
     double value = 0;
@@ -36,38 +36,38 @@ PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
 }
 
 PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
-  auto& c = *static_cast<Context*>(raw);
+  auto& c = *static_cast<SolveContext*>(raw);
   const PetscErrorCode code = c.gate.run([&] { c.problem.linearise(u, c.row); });
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
-PetscErrorCode shell_multiply(Mat m, Vec v, Vec y) {
+PetscErrorCode multiply_by_jacobian(Mat m, Vec v, Vec y) {
   void* raw = nullptr;
   PetscCall(MatShellGetContext(m, &raw));
-  auto& c = *static_cast<Context*>(raw);
+  auto& c = *static_cast<SolveContext*>(raw);
   return c.gate.run([&] { c.problem.multiply(v, y); });
 }
 
-PetscErrorCode shell_solve(PC pc, Vec rhs, Vec x) {
+PetscErrorCode solve_with_jacobian(PC pc, Vec rhs, Vec x) {
   void* raw = nullptr;
   PetscCall(PCShellGetContext(pc, &raw));
-  auto& c = *static_cast<Context*>(raw);
+  auto& c = *static_cast<SolveContext*>(raw);
   return c.gate.run([&] { c.problem.solve(rhs, x); });
 }
 
-core::Matrix make_shell(Context& c, Vec like) {
+core::Matrix make_shell(SolveContext& c, Vec like) {
   PetscInt local = 0, global = 0;
   check(VecGetLocalSize(like, &local));
   check(VecGetSize(like, &global));
   core::Matrix m;
   check(MatCreateShell(c.problem.comm(), local, local, global, global, &c, m.put()));
-  check(MatShellSetOperation(m.get(), MATOP_MULT, reinterpret_cast<void (*)()>(shell_multiply)));
+  check(MatShellSetOperation(m.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply_by_jacobian)));
   return m;
 }
 
 // The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
 // The flexible method keeps the preconditioned vectors, which saves another solve for the answer.
-void configure(KSP ksp, Context& c, double relative, double absolute) {
+void configure(KSP ksp, SolveContext& c, double relative, double absolute) {
   check(KSPSetType(ksp, KSPFGMRES));
   check(KSPSetPCSide(ksp, PC_RIGHT));
   check(KSPSetTolerances(ksp, relative, absolute, PETSC_DEFAULT, 20));
@@ -75,7 +75,7 @@ void configure(KSP ksp, Context& c, double relative, double absolute) {
   check(KSPGetPC(ksp, &pc));
   check(PCSetType(pc, PCSHELL));
   check(PCShellSetContext(pc, &c));
-  check(PCShellSetApply(pc, shell_solve));
+  check(PCShellSetApply(pc, solve_with_jacobian));
 }
 
 const char* text_of(SNESConvergedReason reason) {
@@ -131,7 +131,7 @@ struct Newton::Objects {
   void make_nonlinear(const NewtonOptions& options, Vec like);
   void make_linear(const std::string& prefix);
 
-  Context context;
+  SolveContext context;
   PetscInt local = 0, global = 0;
   core::Matrix shell;
   core::Vector residual;

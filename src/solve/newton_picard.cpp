@@ -6,9 +6,11 @@
 #include "solve/local_part.hpp"
 #include "solve/sparse_step.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/index.hpp"
 
 namespace whirl::solve {
 
+using core::at;
 using core::check;
 using Eigen::Index;
 using Eigen::Map;
@@ -18,10 +20,6 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int stale_after = 12;
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

@@ -5,21 +5,15 @@
 
 #include "solve/local_part.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/index.hpp"
 
 namespace whirl::solve {
 
+using core::at;
 using core::check;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
 
 MatrixXd StepProduct::change(const MatrixXd& v, const Columns& lift, const Columns& load) const {
   std::vector<MatrixXd> k;

@@ -3,19 +3,17 @@
 #include <cmath>
 
 #include "solve/sparse_step.hpp"
+#include "whirl/core/index.hpp"
 
 namespace whirl::solve {
 
+using core::at;
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
 
 // out += length sum over the first `count` of weights_l k_l.
 template <class Weights, class Vector>

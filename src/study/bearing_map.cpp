@@ -3,13 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include "common.hpp"
+#include "film_mesh.hpp"
 #include "one_bearing.hpp"
+#include "summary_bars.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/system/groups.hpp"
@@ -17,7 +19,6 @@
 namespace whirl::study {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
 
 /// A point of the locus with its coefficients at all frequencies.
@@ -208,6 +209,84 @@ void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<L
   table.put("thickness", shape, thickness, "1", "film thickness in clearances [load][theta]");
 }
 
+void put_threshold(io::StudySummary& summary, const Mapper& map, const std::optional<system::Groups>& groups) {
+  if (!map.threshold) return;
+  const double speed = groups->load / (groups->bearings * map.threshold->sommerfeld);
+  summary.set("threshold.nondimensional_speed", speed, "1");
+  summary.set("threshold.speed", speed * groups->speed_scale, "rad/s");
+  summary.set("threshold.eccentricity", map.threshold->eccentricity, "1");
+  summary.set("threshold.whirl_ratio", map.threshold->whirl_ratio, "1");
+}
+
+// What the locus says at one eccentricity, in the order of `with_bars`.
+constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio",
+                                                   "k_xx",     "k_xy",       "k_yx",        "k_yy",
+                                                   "b_xx",     "b_xy",       "b_yx",        "b_yy"};
+std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vector<Point>& like) {
+  std::vector<double> out;
+  for (const Point& wanted : like) {
+    const auto at = std::find_if(locus.begin(), locus.end(),
+                                 [&](const Point& p) { return p.at.eccentricity == wanted.at.eccentricity; });
+    if (at == locus.end()) {
+      out.insert(out.end(), with_bars.size(), io::no_value);
+      continue;
+    }
+    out.insert(out.end(), {at->at.attitude, at->at.sommerfeld, at->at.speed_limit, at->at.whirl_ratio});
+    const BearingCoefficients& c = at->coefficients.front();
+    out.insert(out.end(), c.k.begin(), c.k.end());
+    out.insert(out.end(), c.b.begin(), c.b.end());
+  }
+  return out;
+}
+
+// The map on other film meshes: bars of the locus and of all that the summary says of it.
+void put_bars(const Context& context, const BearingMapOptions& options, std::size_t which, const Mapper& map,
+              const std::optional<system::Groups>& groups) {
+  io::StudySummary& summary = context.results.summary();
+  Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
+  SummaryBars of_summary(summary, law_of(context.machine));
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  for (const FilmMesh& mesh : meshes) {
+    std::vector<double> numbers;
+    io::StudySummary there;
+    core::agree(context.comm, [&] {
+      try {
+        const system::Train train = with_film_mesh(system::train_of(context.machine), mesh.factor);
+        Mapper other(options, train.supports[which]);
+        other.follow();
+        other.find_threshold(groups);
+        other.load();
+        numbers = numbers_of(other.locus, map.locus);
+        io::Group unused;
+        put_loaded(unused, there, other.loaded);
+        put_threshold(there, other, groups);
+      } catch (const core::NotConverged&) {
+        numbers.clear();
+      } catch (const core::DomainError&) {
+        numbers.clear();
+      } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+        numbers.clear();
+      }
+    });
+    bars.add(mesh.axis, mesh.spacing, numbers);
+    of_summary.add(mesh.axis, mesh.spacing, there);
+  }
+  of_summary.write(1e-9);
+  if (meshes.empty()) return;
+  auto& table = context.results.group().child("locus");
+  for (std::size_t k = 0; k < with_bars.size(); ++k) {
+    std::vector<double> column;
+    for (std::size_t i = 0; i < map.locus.size(); ++i) column.push_back(bars[i * with_bars.size() + k].total());
+    // Neighbours on the locus err alike: a difference of meshes that vanishes by chance hides nothing.
+    std::vector<double> floored = column;
+    for (std::size_t i = 0; i < column.size(); ++i)
+      for (const std::size_t j : {i - 1, i + 1})
+        if (j < column.size()) floored[i] = std::max(floored[i], column[j] / 2);
+    table.put(std::string(with_bars[k]) + "_uncertainty", floored, k == 0 ? "rad" : "1",
+              std::string("estimated error of ") + with_bars[k] + " from the film mesh");
+  }
+}
+
 }  // namespace
 
 StudyResult BearingMap::run(Context& context) {
@@ -241,13 +320,8 @@ StudyResult BearingMap::run(Context& context) {
     table.put("W_along", shape, map->along, "1", "impedance [eccentricity][angle], resisting the squeeze");
     table.put("W_across", shape, map->across, "1", "impedance [eccentricity][angle], to the left of the squeeze");
   }
-  if (map->threshold) {
-    const double speed = groups->load / (groups->bearings * map->threshold->sommerfeld);
-    summary.set("threshold.nondimensional_speed", speed, "1");
-    summary.set("threshold.speed", speed * groups->speed_scale, "rad/s");
-    summary.set("threshold.eccentricity", map->threshold->eccentricity, "1");
-    summary.set("threshold.whirl_ratio", map->threshold->whirl_ratio, "1");
-  }
+  put_threshold(summary, *map, groups);
+  put_bars(context, options, which, *map, groups);
   summary.points = static_cast<long>(map->locus.size());
   if (!map->refused.empty()) return results.finish(map->refused, false);
   return results.finish(map->touches() ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",

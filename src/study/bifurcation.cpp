@@ -8,7 +8,7 @@
 namespace whirl::study {
 namespace {
 
-void put_groups(io::Bifurcation& b, const std::optional<system::Groups>& groups, double speed) {
+void add_groups(io::Bifurcation& b, const std::optional<system::Groups>& groups, double speed) {
   if (!groups) return;
   b.more["nondimensional_speed"] = speed / groups->speed_scale;
   b.more["nondimensional_load"] = groups->load;
@@ -67,9 +67,9 @@ io::Bifurcation bifurcation_at(io::BifurcationType type, double value, const std
   b.unit = unit;
   const double si = value * deck::number_to_si(1, unit);
   if (path == "speed")
-    put_groups(b, system.groups(), si);
+    add_groups(b, system.groups(), si);
   else if (system::is_rotor(machine))
-    put_groups(b, system::groups_of(system::train_of(with_parameter(machine, path, si), unbalance)), system.speed());
+    add_groups(b, system::groups_of(system::train_of(with_parameter(machine, path, si), unbalance)), system.speed());
   return b;
 }
 

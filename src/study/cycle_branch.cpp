@@ -30,9 +30,9 @@ private:
 };
 
 // The branch that begins at a forced cycle beside the first one of another branch.
-class BesideBranch final : public Study {
+class BesideCycleBranch final : public Study {
 public:
-  BesideBranch(std::string name, CycleBranchOptions options, solve::Cycle first)
+  BesideCycleBranch(std::string name, CycleBranchOptions options, solve::Cycle first)
       : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
   [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
   [[nodiscard]] std::string name() const override { return name_; }
@@ -73,7 +73,7 @@ std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result
   beside.parameter.deflation.reset();
   beside.follow_flips = false;
   for (std::size_t k = 2; auto& first : read_solutions(result))
-    born.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), beside, std::move(first)));
+    born.push_back(std::make_unique<BesideCycleBranch>(name_of_solution(name(), k++), beside, std::move(first)));
   if (!options.follow_flips) return born;
   std::vector<FlipSeed> seeds;
   if (result.has_group("flips")) seeds = read_seeds(result.group("flips"));

@@ -42,7 +42,9 @@ double CycleFollower::normal_form(solve::CycleProblem& problem, solve::Event eve
 void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u) {
   CycleNumbers here{found.parameter, std::abs(std::arg(found.critical)), cycle.period, io::no_value};
   auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
-  const bool fold = found.event == solve::Event::cyclic_fold, forms = cycles && found.refined && !fold && !autonomous();
+  const bool fold = found.event == solve::Event::cyclic_fold, flip = found.event == solve::Event::flip,
+             // Of a flip without film mesh the branch born there tells more: see set_criticality().
+      forms = cycles && found.refined && !fold && !autonomous() && (!flip || system_->has_film_mesh());
   double doubt = 0;
   if (fold && found.refined) here.coefficient = found.quadratic;
   if (forms) {
@@ -55,7 +57,8 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
   Bars bars(here.list(), law()), of_coefficient({here.coefficient}, law());
   for (const CycleMesh& mesh : meshes()) {
     // A verdict that is lost on one mesh needs no others.
-    const bool film = mesh.axis != Axis::time, also = (fold || film) && decided(here.coefficient, doubt);
+    const bool coarse = mesh.axis != Axis::time && mesh.spacing > 1,
+               also = (fold || coarse) && decided(here.coefficient, doubt);
     // Near contact the same cycle may leave the validity of the film on another mesh: no number there.
     const auto there =
         pieces_->numbers(piece(fmt::format("on mesh {} {:.3f}", static_cast<int>(mesh.axis), mesh.spacing)), [&] {

@@ -115,9 +115,9 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
   if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
   auto there = corrected_on(mesh, cycle);
   if (!there) return {};
-  // In time the mesh is fine enough for the slope to tell.
+  // On a coarser film the bifurcation is far and the film cheap: it is located there. Elsewhere the slope tells.
   auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
-  if (cycles && mesh.axis != Axis::time) {
+  if (cycles && mesh.axis != Axis::time && mesh.spacing > 1) {
     const auto refined =
         solve::refine(*cycles, found, there->u.get(), solve::any_tangent(*cycles, there->u.get()).get(), newton_);
     if (refined) {
@@ -133,12 +133,16 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
   }
   // The distance from the border there over its slope along the branch.
   double nearest = std::numeric_limits<double>::infinity();
-  CycleNumbers out{io::no_value, io::no_value, there->problem->gather(there->u.get()).period, io::no_value};
+  CycleNumbers out{io::no_value, io::no_value, io::no_value, io::no_value};
   for (const auto& mu : there->problem->multipliers()) {
     const double apart = std::min(std::abs(mu - found.critical), std::abs(mu - std::conj(found.critical)));
     if (apart >= nearest) continue;
     nearest = apart;
-    out.angle = std::abs(std::arg(mu));
+    // In time the bifurcation hardly moves; by a film it does, and angle and period with it.
+    if (mesh.axis == Axis::time || !cycles) {
+      out.angle = std::abs(std::arg(mu));
+      out.period = there->problem->gather(there->u.get()).period;
+    }
     if (found.sensitivity != 0) out.place = found.parameter - distance_of_multiplier(mu) / found.sensitivity;
   }
   return out;

@@ -24,18 +24,25 @@
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::study {
-namespace {
 
 using core::check;
 
-std::unique_ptr<system::Plant> make_system(const Context& context, const EquilibriumBranchOptions& o,
-                                           const std::array<double, 2>& film_cells = {1, 1}) {
+std::unique_ptr<system::Plant> plant_of(const Context& context, const EquilibriumBranchOptions& o,
+                                        const std::array<double, 2>& film_cells) {
   PlantRequest wanted{{}, &o.parameter};
   wanted.value = o.parameter.range.from;
   wanted.speed = o.speed ? o.speed->value : 0;
   wanted.film_cells = film_cells;
   return make_plant(Groups::split(context.comm, context.machine).space, context.machine, wanted);
 }
+
+double state_weight_of(const EquilibriumBranchOptions& o) {
+  const auto& range = o.parameter.range;
+  const double scale = deck::number_to_si(1, range.unit), width = std::abs(range.to - range.from) / scale;
+  return std::pow((o.parameter.step ? o.parameter.step->max.value / scale : width / 25) / 0.5, 2);
+}
+
+namespace {
 
 // Follows the branch from `first`, or from the equilibrium that is easiest to find.
 StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& options, const solve::Cycle* first) {
@@ -56,9 +63,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
   continuation.newton.max_iterations = 20;
 
-  const auto system = make_system(context, options);
-  // A change of the root mean square state by half a clearance counts as one longest step.
-  const double state_weight = std::pow(continuation.max_step / 0.5, 2);
+  const auto system = plant_of(context, options);
+  const double state_weight = state_weight_of(options);
   solve::EquilibriumProblem problem(*system, scale, state_weight);
   core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
   if (first) {
@@ -135,7 +141,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     problem.to_state(v, x.get());
     pieces.complete(fmt::format("event {}", results.summary().bifurcations.size() + 1), b, [&] {
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
-                   law_of(context.machine), [&](const auto& cells) { return make_system(context, options, cells); }});
+                   law_of(context.machine), [&](const auto& cells) { return plant_of(context, options, cells); }});
     });
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});
@@ -148,7 +154,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                          {{0, 1},
                           Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
                           b.period_s,
-                          found.parameter * scale}});
+                          found.parameter * scale},
+                         found.sensitivity});
     }
   };
   callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {

@@ -46,9 +46,10 @@ std::vector<double> by_slope(system::Plant& system, Vec x, const solve::LocatedE
   return {found.parameter - distance / found.sensitivity, omega, unknown};
 }
 
-// The numbers of the same bifurcation on another film mesh; empty if it cannot be had there.
-std::vector<double> on_mesh(const EquilibriumEvent& at, const FilmMesh& mesh) try {
-  const auto made = at.make(mesh.factor);
+}  // namespace
+
+std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) try {
+  const auto made = at.make(film_cells);
   system::Plant& system = *made;
   system.set_parameter(at.found.parameter * at.scale);
   core::Vector x = resampled(system, at.system, at.system.gather(at.x));
@@ -77,8 +78,6 @@ std::vector<double> on_mesh(const EquilibriumEvent& at, const FilmMesh& mesh) tr
 } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
   return {};
 }
-
-}  // namespace
 
 void put_criticality(io::Bifurcation& b, double value, double uncertainty, const char* negative, const char* positive,
                      const std::string& by) {
@@ -114,7 +113,7 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   double doubt = hopf ? std::abs(lyapunov(at.system, at.x, omega, short_step) - here[coefficient]) : 0;
   Bars bars(here, at.law);
   for (const FilmMesh& mesh : at.meshes) {
-    const std::vector<double> there = on_mesh(at, mesh);
+    const std::vector<double> there = numbers_on(at, mesh.factor);
     bars.add(mesh.axis, mesh.spacing, there);
     // A sign that changes with the mesh is none.
     const double c = there.empty() ? unknown : there[coefficient];

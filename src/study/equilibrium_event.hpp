@@ -10,6 +10,7 @@
 #include "whirl/io/summary.hpp"
 #include "whirl/solve/continuation.hpp"
 #include "whirl/solve/newton.hpp"
+#include "whirl/study/equilibrium_branch.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {
@@ -39,6 +40,16 @@ struct EquilibriumEvent {
 /// equilibria of a fold exist by its second derivative; "undetermined" where the coefficient's bar contains zero.
 /// Collective.
 void describe(io::Bifurcation& b, const EquilibriumEvent& at);
+
+/// Place, whirl frequency and coefficient of the same bifurcation with these cells over those of the deck; empty if it
+/// cannot be had there. Collective.
+[[nodiscard]] std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells);
+
+/// The system of a branch of equilibria, and the weight of its states in the arclength: a change of the root mean
+/// square state by half a clearance counts as one longest step. Collective.
+[[nodiscard]] std::unique_ptr<system::Plant> plant_of(const Context& context, const EquilibriumBranchOptions& options,
+                                                      const std::array<double, 2>& film_cells = {1, 1});
+[[nodiscard]] double state_weight_of(const EquilibriumBranchOptions& options);
 
 /// Puts `coefficient` with the verdict on it into `b`: `negative` or `positive`, or "undetermined" where the bar
 /// contains zero.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "whirl/film/smoothness.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::study {
@@ -38,7 +39,7 @@ MeshLaw law_of(const system::Machine& machine) {
   for (const auto& b : machine.bearings) {
     if (!film::has_mesh(b.film.kind)) continue;
     if (b.film.differences == film::Options::Differences::upwind) law.film_order = 1;
-    law.kinks |= b.film.quadrature == film::Options::Quadrature::simpson;
+    law.kinks |= film::smoothness(b.film).derivatives == 0;
   }
   return law;
 }

@@ -10,6 +10,7 @@
 #include "common.hpp"
 #include "cycle_follower.hpp"
 #include "located.hpp"
+#include "mesh_convergence.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -38,14 +39,6 @@ struct History {
   double time_error = io::no_value;
 };
 
-io::Table table(const std::string& unit) {
-  return io::Table({{"bifurcation", "1", "which one of the branch, from 1"},
-                    {"refinement", "1", "cells in each direction per cells of the deck"},
-                    {"parameter", unit, "where"},
-                    {"bracket", unit, "what the location left"},
-                    {"seconds", "s", "wall time"}});
-}
-
 // The options of a branch by its name in the results.
 CycleBranchOptions options_of(const Context& context, const std::string& name) {
   for (const auto& s : context.studies)
@@ -54,6 +47,14 @@ CycleBranchOptions options_of(const Context& context, const std::string& name) {
 }
 
 }  // namespace
+
+io::Table convergence_table(const std::string& unit) {
+  return io::Table({{"bifurcation", "1", "which one of the branch, from 1"},
+                    {"refinement", "1", "cells in each direction per cells of the deck"},
+                    {"parameter", unit, "where"},
+                    {"bracket", unit, "what the location left"},
+                    {"seconds", "s", "wall time"}});
+}
 
 MeshLimit mesh_limit(const std::vector<double>& values) {
   MeshLimit out;
@@ -71,7 +72,6 @@ MeshLimit mesh_limit(const std::vector<double>& values) {
 }
 
 StudyResult MeshConvergence::run(Context& context) {
-  const CycleBranchOptions branch = options_of(context, options.of);
   if (!context.earlier.has_group(io::safe_name(options.of)))
     throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
   const io::Group& of = context.earlier.group(io::safe_name(options.of));
@@ -89,10 +89,13 @@ StudyResult MeshConvergence::run(Context& context) {
     if (static_cast<std::size_t>(k) > all.size())
       throw core::NotConverged(fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), k));
 
+  if (const EquilibriumBranch* rest = equilibria_called(context, options.of))
+    return converge(context, options, rest->options, all, chosen);
+  const CycleBranchOptions branch = options_of(context, options.of);
   auto& results = context.results;
   const std::string& unit = branch.parameter.range.unit;
   const double scale = deck::number_to_si(1, unit);
-  io::Table rows = table(unit);
+  io::Table rows = convergence_table(unit);
   History now;
   std::size_t first = 0;
   std::string trouble;
@@ -166,12 +169,18 @@ StudyResult MeshConvergence::run(Context& context) {
     results.summary().bifurcations.push_back(b);
     now = {};
   }
+  return finish_convergence(context, options, rows, branch.parameter, trouble);
+}
+
+StudyResult finish_convergence(Context& context, const MeshConvergenceOptions& options, const io::Table& rows,
+                               const Parameter& parameter, const std::string& trouble) {
+  auto& results = context.results;
   auto& group = results.group();
   rows.write(group.child("convergence"));
   put_bifurcations(group, results.summary().bifurcations);
   group.set("of", options.of);
-  group.set("parameter", branch.parameter.path);
-  group.set("parameter_unit", unit);
+  group.set("parameter", parameter.path);
+  group.set("parameter_unit", parameter.range.unit);
   results.summary().points = static_cast<long>(rows.rows());
   return results.finish(trouble.empty() ? "completed" : trouble, !results.summary().bifurcations.empty());
 }

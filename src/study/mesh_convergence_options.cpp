@@ -5,6 +5,7 @@
 #include "common.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/study/cycle_branch.hpp"
+#include "whirl/study/equilibrium_branch.hpp"
 #include "whirl/study/mesh_convergence.hpp"
 
 namespace whirl::study {
@@ -12,10 +13,9 @@ namespace whirl::study {
 void describe(deck::Description<MeshConvergenceOptions>& d) {
   using O = MeshConvergenceOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add(
-       "of", &O::of,
-       "name of an earlier cycle_branch, or 'NAME flip K' for the branch born at its K-th flip, whose bifurcations are "
-       "located anew on finer films")
+  d.add("of", &O::of,
+        "name of an earlier equilibrium_branch or cycle_branch, or 'NAME flip K' for the branch born at its K-th flip, "
+        "whose bifurcations are located anew on finer films")
       .required();
   d.add("bifurcations", &O::bifurcations, deck::positive,
         "which ones: 1 is the first that the summary of the branch lists; all if not given");
@@ -33,11 +33,15 @@ void MeshConvergence::validate(const system::Machine& machine, const deck::Repor
 void MeshConvergence::validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const {
   std::vector<std::string> names;
   for (const auto& s : before) {
+    if (dynamic_cast<const EquilibriumBranch*>(s.get())) {
+      names.push_back(s->name());
+      if (s->name() == options.of) return;
+    }
     if (!dynamic_cast<const CycleBranch*>(s.get())) continue;
     names.push_back(s->name());
     if (branch_called(*s, options.of)) return;
   }
-  report.fail("of", fmt::format("there is no cycle_branch '{}' before this study{}", options.of,
+  report.fail("of", fmt::format("there is no equilibrium_branch or cycle_branch '{}' before this study{}", options.of,
                                 deck::did_you_mean(options.of, names)));
 }
 

@@ -9,6 +9,7 @@
 
 #include "common.hpp"
 #include "groups.hpp"
+#include "mode_bars.hpp"
 #include "pieces.hpp"
 #include "verdict.hpp"
 #include "whirl/deck/units.hpp"
@@ -239,6 +240,15 @@ StudyResult Modes::run(Context& context) {
     return *std::find_if(stations.begin(), stations.end(), [&](const Station& s) { return s.speed == speed; });
   };
 
+  std::vector<SampledModes> sampled;
+  for (const std::size_t i : few_of(stations.size())) {
+    sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes)});
+    for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
+  }
+  const ModeBars bars(context, groups, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
+    return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit));
+  });
+
   const std::vector<double> mass = rotor::node_masses(system.train().rotor);
   std::vector<double> speed_column, frequency, real, decrement, factor, whirl_column, forward_column;
   std::vector<std::int64_t> id_column;
@@ -264,6 +274,7 @@ StudyResult Modes::run(Context& context) {
       stability_column.emplace_back(stability);
       summary.modes.push_back(
           {deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense, unit, {}, stability});
+      summary.modes.back().more = bars.named(m.id, speed);
     }
   }
 
@@ -303,11 +314,15 @@ StudyResult Modes::run(Context& context) {
   struct Critical {
     double speed, decrement;
     int id;
+    double error, decrement_error;
   };
   std::vector<Critical> criticals;
-  for (std::size_t i = 0; i < crossings.size(); ++i)
-    criticals.push_back(
-        {refined[i][0], spectral::log_decrement({refined[i][1], refined[i][2]}), crossings[i].guide.id});
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const Crossing& c = crossings[i];
+    const auto bar = bars.at(c.guide.id, refined[i][0]);
+    criticals.push_back({refined[i][0], spectral::log_decrement({refined[i][1], refined[i][2]}), c.guide.id,
+                         bar[1] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)), bar[2]});
+  }
 
   auto& spectrum = group.child("spectrum");
   spectrum.put("speed", speed_column, "rad/s", "shaft speed");
@@ -315,6 +330,7 @@ StudyResult Modes::run(Context& context) {
   spectrum.put("frequency", frequency, "rad/s", "damped frequency, imaginary part of the eigenvalue");
   spectrum.put("damping_real", real, "1/s", "real part of the eigenvalue");
   spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
+  bars.put(spectrum, id_column, speed_column);
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
   spectrum.put("whirl", sense_column, "sense of whirl by the kinetic energy of the shaft's nodes");
   spectrum.put("whirl_share", whirl_column, "1", "of the kinetic energy: 0 every node on a line, 1 on a circle");
@@ -327,8 +343,10 @@ StudyResult Modes::run(Context& context) {
   std::vector<double> critical_speed, critical_decrement;
   std::vector<std::int64_t> critical_mode;
   for (std::size_t k = 0; k < criticals.size(); ++k) {
-    summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit);
-    summary.set(fmt::format("critical.{}.log_decrement", k + 1), criticals[k].decrement, "1");
+    summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit,
+                bars.as_bar(deck::from_si(criticals[k].error, unit)));
+    summary.set(fmt::format("critical.{}.log_decrement", k + 1), criticals[k].decrement, "1",
+                bars.as_bar(criticals[k].decrement_error));
     critical_speed.push_back(criticals[k].speed);
     critical_decrement.push_back(criticals[k].decrement);
     critical_mode.push_back(criticals[k].id);

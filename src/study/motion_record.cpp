@@ -12,7 +12,7 @@
 namespace whirl::study {
 namespace {
 
-constexpr const char* axis[] = {"x", "y"};
+constexpr const char* axis_names[] = {"x", "y"};
 // Tones named in the summary; the spectrum holds all.
 constexpr int tones_named = 5;
 
@@ -133,10 +133,10 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
       const std::vector<double> s = signal(b, d);
       all.back().push_back(transient::amplitude_spectrum(s, period_ / options_.samples, window));
       const auto [low, high] = std::minmax_element(s.begin(), s.end());
-      summary.set(fmt::format("peak_to_peak.{}.{}", places_.names[b], axis[d]), *high - *low, places_.unit);
+      summary.set(fmt::format("peak_to_peak.{}.{}", places_.names[b], axis_names[d]), *high - *low, places_.unit);
       int k = 0;
       for (const auto& tone : transient::tones(all.back().back(), named)) {
-        const std::string head = fmt::format("tone.{}.{}.{}.", places_.names[b], axis[d], ++k);
+        const std::string head = fmt::format("tone.{}.{}.{}.", places_.names[b], axis_names[d], ++k);
         summary.set(head + "frequency", tone.frequency, "Hz");
         summary.set(head + "order", tone.frequency * period_, "1");
         summary.set(head + "amplitude", tone.amplitude, places_.unit);

@@ -8,7 +8,7 @@
 namespace whirl::study {
 namespace {
 
-constexpr int samples = 128;
+constexpr int samples_per_turn = 128;
 
 std::vector<io::Table::Column> columns(const std::string& unit, std::size_t nodes) {
   const io::Shape n{nodes};
@@ -28,8 +28,8 @@ void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
   if (nodes_.empty() || !rotor) return;
   std::vector<std::vector<double>> x(nodes_.size()), y(nodes_.size());
-  for (int k = 0; k < samples; ++k) {
-    const Eigen::VectorXd state = cycle.at(scheme, static_cast<double>(k) / samples);
+  for (int k = 0; k < samples_per_turn; ++k) {
+    const Eigen::VectorXd state = cycle.at(scheme, static_cast<double>(k) / samples_per_turn);
     const std::vector<double> shaft = rotor->shaft(state.data(), 0, false);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const auto at = static_cast<std::size_t>(4 * (nodes_[i] - 1));

@@ -42,13 +42,13 @@ struct Setting {
   std::vector<deck::Edit> edits;
   std::optional<double> at;
 };
-struct Axis {
+struct SweepAxis {
   std::string quantity;  // the path of a grid; empty for named variants
   std::vector<Setting> settings;
 };
 
-Axis named(const Node& variants) {
-  Axis axis;
+SweepAxis named(const Node& variants) {
+  SweepAxis axis;
   for (const Node& v : variants.items) {
     Setting s{v.key, {}, {}};
     if (v.kind != Node::Kind::map && v.kind != Node::Kind::none)
@@ -125,8 +125,8 @@ std::vector<Node> values_of(const Node& n) {
   return all;
 }
 
-Axis gridded(const Node& values) {
-  Axis axis{values.key, {}};
+SweepAxis gridded(const Node& values) {
+  SweepAxis axis{values.key, {}};
   const std::string last = values.key.substr(values.key.rfind('.') + 1);
   for (const Node& v : values_of(values))
     axis.settings.push_back({fmt::format("{} {}", last, deck::to_line(v)), {deck::make_edit(values.key, v)}, {}});
@@ -209,7 +209,7 @@ std::vector<std::size_t> repeated(const Sweep& sweep, std::span<const std::uniqu
 
 void Sweep::prepare(const Node& root, std::span<const std::unique_ptr<Study>> before, const deck::Files& files,
                     deck::Problems& problems) {
-  std::vector<Axis> axes;
+  std::vector<SweepAxis> axes;
   try {
     if (!options.variants.items.empty()) axes.push_back(named(options.variants));
     for (const Node& values : options.grid.items) axes.push_back(gridded(values));
@@ -218,7 +218,7 @@ void Sweep::prepare(const Node& root, std::span<const std::unique_ptr<Study>> be
   }
   const deck::Place place = axes.front().quantity.empty() ? options.variants.place : options.grid.place;
   std::size_t count = 1;
-  for (const Axis& a : axes) count = std::min(count * a.settings.size(), most_variants + 1);
+  for (const SweepAxis& a : axes) count = std::min(count * a.settings.size(), most_variants + 1);
   if (count > most_variants)
     return problems.add(place, fmt::format("the sweep has more than {} variants", most_variants));
   const std::vector<std::size_t> kept = repeated(*this, before);

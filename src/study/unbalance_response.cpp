@@ -4,15 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "common.hpp"
 #include "film_limit.hpp"
+#include "film_mesh.hpp"
 #include "groups.hpp"
 #include "pieces.hpp"
+#include "response_bars.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -77,8 +81,11 @@ double film_left(const system::Support& s, const std::array<double, 2>& at, cons
 
 class Machine {
 public:
-  Machine(Context& context, const Groups& groups, const UnbalanceResponseOptions& options, std::vector<int> nodes)
-      : system_(groups.space, system::train_of(context.machine, options.unbalance), options.range.from),
+  /// `cells`: of the films over those of the deck.
+  Machine(const Context& context, const Groups& groups, const UnbalanceResponseOptions& options, std::vector<int> nodes,
+          const std::array<double, 2>& cells = {1, 1})
+      : system_(groups.space, with_film_mesh(system::train_of(context.machine, options.unbalance), cells),
+                options.range.from),
         walker_(system_),
         solver_(system_),
         nodes_(std::move(nodes)) {}
@@ -159,6 +166,17 @@ double amplification(const std::vector<Response>& curve, std::size_t node, std::
   return curve[top].speed / (crossing(right - 1, right) - crossing(left + 1, left));
 }
 
+void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r,
+                   io::StudySummary& summary) {
+  const auto names = names_of_bearings(context.machine);
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
+    summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
+  }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+}
+
 void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place,
                 const std::string& text) {
   const io::Shape shape{curve.size(), (curve.front().*place).size()};
@@ -231,18 +249,20 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Responses at several speeds, shared between the groups of ranks.
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
-  const auto at_speeds = [&](const std::vector<double>& speeds) {
+  const auto solve_at = [&](Machine& which, const std::vector<double>& speeds, const std::string& piece) {
     const auto compute = [&](std::size_t i) {
-      auto packed = pack(machine.at(speeds[i]));
+      auto packed = pack(which.at(speeds[i]));
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
                                    deck::from_si(speeds[i], unit), unit, results.seconds()));
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat :
-         distribute(groups, speeds.size(), compute, pieces, fmt::format("{} speed", ++calls), machine.trail()))
+    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, piece, which.trail()))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
+  };
+  const auto at_speeds = [&](const std::vector<double>& speeds) {
+    return solve_at(machine, speeds, fmt::format("{} speed", ++calls));
   };
   std::vector<double> grid;
   for (int k = 0; k < options.points; ++k)
@@ -271,49 +291,66 @@ StudyResult UnbalanceResponse::run(Context& context) {
         const double u = (s1 - s0) * (s1 - s0) * (f1 - f2), v = (s1 - s2) * (s1 - s2) * (f1 - f0),
                      w = (s1 - s0) * (f1 - f2) - (s1 - s2) * (f1 - f0);
         const double vertex = w != 0 ? s1 - 0.5 * (u - v) / w : s1;
-        if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > 1e-5 * s1) speeds.push_back(vertex);
+        if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > peak_tolerance * s1) speeds.push_back(vertex);
       }
       if (speeds.empty()) break;
       for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
       std::sort(curve.begin(), curve.end(), by_speed);
     }
 
-  const auto put_peak = [&](const std::string& head, const Peak& peak) {
-    summary.set(head + "speed", deck::from_si(peak.speed, unit), unit);
-    summary.set(head + "semi_major", peak.amplitude, "m");
-    summary.set(head + "amplification_factor", peak.amplification, "1");
+  const auto put_peak = [&](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {
+    to.set(head + "speed", deck::from_si(speed, unit), unit);
+    to.set(head + "semi_major", height, "m");
+    to.set(head + "amplification_factor", factor, "1");
     if (!options.operating && !options.operating_speed) return;
-    const double from = options.operating ? options.operating->from : options.operating_speed->value,
-                 to = options.operating ? options.operating->to : from;
-    const Separation margin = separation(peak.speed, peak.amplification, from, to);
-    summary.set(head + "separation_margin", margin.actual, "1");
-    summary.set(head + "required_margin", margin.required, "1");
+    const double lowest = options.operating ? options.operating->from : options.operating_speed->value,
+                 highest = options.operating ? options.operating->to : lowest;
+    const Separation margin = separation(speed, factor, lowest, highest);
+    to.set(head + "separation_margin", margin.actual, "1");
+    to.set(head + "required_margin", margin.required, "1");
   };
   std::vector<Peak> peaks;
+  std::vector<NamedPeak> named;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
     for (const std::size_t k : tops(node))
       own.push_back({nodes[node], curve[k].speed, curve[k].nodes[node].semi_major(), amplification(curve, node, k)});
     std::stable_sort(own.begin(), own.end(), [](const Peak& a, const Peak& b) { return a.amplitude > b.amplitude; });
-    for (std::size_t k = 0; k < own.size(); ++k) put_peak(fmt::format("node.{}.peak.{}.", nodes[node], k + 1), own[k]);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
+      put_peak(summary, head, own[k].speed, own[k].amplitude, own[k].amplification);
+      named.push_back({head, node, own[k].speed, own[k].amplitude, own[k].amplification});
+      if (node == 0)
+        named.push_back({fmt::format("peak.{}.", k + 1), node, own[k].speed, own[k].amplitude, own[k].amplification});
+    }
     if (node == 0) peaks = own;
   }
   // The first node named in the deck is the one the report speaks of; its highest peak comes first.
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const std::string head = fmt::format("peak.{}.", k + 1);
     summary.set(head + "node", peaks[k].node, "1");
-    put_peak(head, peaks[k]);
+    put_peak(summary, head, peaks[k].speed, peaks[k].amplitude, peaks[k].amplification);
   }
   if (options.operating_speed) {
-    const Response r = at_speeds({options.operating_speed->value}).front();
-    const auto names = names_of_bearings(context.machine);
-    for (std::size_t b = 0; b < names.size(); ++b) {
-      summary.set("operating.bearing." + names[b] + ".x", std::abs(r.bearings[b].x), "m");
-      summary.set("operating.bearing." + names[b] + ".y", std::abs(r.bearings[b].y), "m");
-    }
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-      summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
+    put_operating(context, nodes, at_speeds({options.operating_speed->value}).front(), summary);
   }
+  put_response_bars(context, named, put_peak,
+                    [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
+                      std::optional<Machine> other;
+                      if (cells != std::array<double, 2>{1, 1}) other.emplace(context, groups, options, nodes, cells);
+                      if (options.operating_speed) at.push_back(options.operating_speed->value);
+                      std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
+                      MeshResponse out;
+                      if (options.operating_speed) {
+                        put_operating(context, nodes, all.back(), out.operating);
+                        all.pop_back();
+                      }
+                      for (const Response& r : all) {
+                        out.height.emplace_back();
+                        for (const Motion& m : r.nodes) out.height.back().push_back(m.semi_major());
+                      }
+                      return out;
+                    });
 
   auto& group = results.group();
   put_films(group, summary, machine.places(), curve, unit);

@@ -94,6 +94,18 @@ TEST(Summary, ReadsBackWhatItWrote) {
   EXPECT_TRUE(std::isnan(back.studies[0].values[1].second.value));
 }
 
+TEST(Summary, BarsStandBesideTheirValuesAndComeBack) {
+  Summary all = example();
+  all.studies[0].set("load.B1", 5, "N", {{"uncertainty", 0.5}, {"uncertainty_film_mesh", NAN}});
+  all.studies[0].modes[0].more["imag_uncertainty"] = 0.25;
+  const auto j = nlohmann::json::parse(all.to_json())["studies"][0];
+  EXPECT_EQ(j["values"]["load.B1"]["uncertainty"], 0.5);
+  EXPECT_TRUE(j["values"]["load.B1"]["uncertainty_film_mesh"].is_null());
+  EXPECT_FALSE(j["values"]["mass.total"].contains("uncertainty"));
+  EXPECT_EQ(j["modes"][0]["imag_uncertainty"], 0.25);
+  EXPECT_EQ(Summary::from_json(all.to_json()).to_json(), all.to_json());
+}
+
 TEST(Summary, PointsOfCodimensionTwoAndSuspicionsComeBack) {
   Summary s = example();
   EXPECT_FALSE(nlohmann::json::parse(s.to_json())["studies"][0].contains("suspected"));

@@ -4,7 +4,7 @@
 coverage.py measure PROGRAM SOURCE OUT.json [GROUP...]   runs the decks, two at a time, and writes every number with its bar
 coverage.py table DATA.json                              prints the table of docs/validation.md from such a file
 coverage.py check DATA.json                              exit 1 if fewer than 99 % of the bars cover or their median is above 5 errors
-coverage.py test PROGRAM SOURCE GROUP...                 measures and checks
+coverage.py PROGRAM SOURCE GROUP...                      measures and checks; group `named`: the bars that were found not to cover
 
 Groups: threshold (the train's variants), cycles (its forced cycles), compliant (Hopf points, folds, flips and Neimark-Sacker
 points of rotors with compliant films, with the source's scheme, `third_order` and the default).
@@ -57,7 +57,7 @@ def cells(mesh, bearings, film="film"):
 
 class Runner:
     def __init__(self, program, source):
-        self.program, self.source = program, pathlib.Path(source).resolve()
+        self.program, self.source = str(pathlib.Path(program).resolve()), pathlib.Path(source).resolve()
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="whirl_coverage_"))
         self.count = 0
 
@@ -67,7 +67,7 @@ class Runner:
         words = [self.program, "run", str(self.source / "inputs" / deck), "-o", str(out)]
         for o in overrides:
             words += ["--set", o]
-        done = subprocess.run(words, capture_output=True, text=True)
+        done = subprocess.run(["nice", "-n", "3", *words], capture_output=True, text=True, cwd=self.source / "inputs" / "turbine_train")
         if not (out / "summary.json").exists():
             print(f"{deck} {overrides}: {done.stderr}", file=sys.stderr)
             return {}
@@ -105,6 +105,9 @@ def thresholds(runner, variant):
         print(f"{variant}: no threshold", file=sys.stderr)
         return rows
     found = {m: threshold_of(runner, variant, m, first["value"], 200) for m in MESHES + FINE[1:]}
+    # Two modes may lose their stability side by side: the one nearer on another mesh need not be the same.
+    whirl = found[FINE[-1]]["whirl_frequency_rad_s"]
+    found = {m: b if b and abs(b["whirl_frequency_rad_s"] / whirl - 1) < 0.2 else None for m, b in found.items()}
     for point, key, bar, unit in (("threshold", "value", "uncertainty", "rpm"),
                                   ("whirl frequency", "whirl_frequency_rad_s", "uncertainty_whirl_frequency_rad_s", "rad/s")):
         truth, doubt = richardson(*(found[m][key] for m in FINE))
@@ -118,23 +121,21 @@ def thresholds(runner, variant):
 
 # All bifurcations of the forced cycles; the truth by mesh_convergence from 60x16 to 480x128.
 def cycles(runner, grade):
-    study = {"G2.5": 1, "G6.3": 2}[grade]
-    drop = []
-    rows, truth = [], []
-    fine = runner.run("turbine_train/unbalance.yaml", cells("60x16", TRAIN) + drop +
-                      [f"studies+=mesh_convergence: {{name: fine, of: {grade}, doublings: 3}}"])
-    for b in fine["fine"]["bifurcations"]:
-        truth.append((b["type"], b["value"], b["uncertainty"]))
+    branch = ("{cycle_branch: {name: forced, unbalance: [%s], parameter: speed, range: {from: 1000 rpm, to: 6000 rpm}, "
+              "step: {initial: 20 rpm, min: 0.01 rpm, max: 150 rpm}, intervals: 60, degree: 2}}") % {"G2.5": "gen_pair", "G6.3": "gen_pair_g63"}[grade]
+    fine = runner.run("turbine_train/unbalance.yaml", cells("60x16", TRAIN) +
+                      [f"studies=[{branch}, {{mesh_convergence: {{name: fine, of: forced, doublings: 3}}}}]"])
+    truth = [(b["type"], b["value"], b["uncertainty"]) for b in fine["fine"]["bifurcations"]]
+    rows = []
     for m in MESHES:
-        run = runner.run("turbine_train/unbalance.yaml", cells(m, TRAIN))
+        run = runner.run("turbine_train/unbalance.yaml", cells(m, TRAIN) + [f"studies=[{branch}]"])
         for kind, value, doubt in truth:
-            near = [b for b in run[grade]["bifurcations"] if b["type"] == kind and abs(b["value"] - value) < 150]
+            near = [b for b in run["forced"]["bifurcations"] if b["type"] == kind and abs(b["value"] - value) < 150]
             if near:
                 b = min(near, key=lambda x: abs(x["value"] - value))
                 rows.append(record("cycles", grade, m, f"{kind} {value:.0f}", "rpm", b["value"], b["uncertainty"], value, doubt,
                                    criticality=b["criticality"], coefficient=b.get("criticality_coefficient"),
                                    coefficient_error=b.get("criticality_uncertainty")))
-    _ = study
     return rows
 
 
@@ -223,6 +224,24 @@ GROUPS = {
 }
 
 
+# Bars that once vanished because two meshes agreed, against the limits of fine meshes in the data kept. The errors of the
+# two directions of the film nearly cancel here, which a bar must not rely on: it is longer than elsewhere.
+FOUND = [("slenderness 12", "120x24"), ("slenderness 11", "60x16"), ("clearance +20 %", "120x32")]
+
+
+def named(program, source):
+    runner, failed = Runner(program, source), 0
+    known = json.loads((runner.source / "tests/reference/coverage.json").read_text())
+    for case, mesh in FOUND:
+        old = next(r for r in known if (r["case"], r["mesh"], r["point"]) == (case, mesh, "threshold"))
+        b = threshold_of(runner, case, mesh, old["truth"], 200)
+        error = abs(b["value"] - old["truth"])
+        good = error <= b["uncertainty"] <= 20 * error
+        failed += not good
+        print(f"{' ' if good else '!'} {case:<18} {mesh:<8} {b['value']:.2f} +- {b['uncertainty']:.2f} rpm, error {error:.2f}")
+    return failed
+
+
 def measure(program, source, groups):
     runner = Runner(program, source)
     jobs = [job for g in groups or GROUPS for job in GROUPS[g]]
@@ -290,5 +309,7 @@ if __name__ == "__main__":
         table([r for name in words for r in json.loads(pathlib.Path(name).read_text())])
     elif what == "check":
         sys.exit(check(json.loads(pathlib.Path(words[0]).read_text())))
+    elif words[1:] == ["named"]:
+        sys.exit(named(what, words[0]))
     else:
-        sys.exit(check(measure(words[0], words[1], words[2:])))
+        sys.exit(check(measure(what, words[0], words[1:])))

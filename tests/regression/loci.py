@@ -74,8 +74,8 @@ def generalised_flips(h, found):
         run = h.run(deck, f"born_{eccentricity:.3f}", overrides=[f"unbalance.a.planes.1.eccentricity={eccentricity:.6f} um"])
         flips = [b for b in run["branch"]["bifurcations"] if b["type"] == "flip"]
         for flip, turns in zip(flips, (lower, upper)):
-            h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um: by its branch",
-                   "small amplitudes" in flip.get("criticality_by", ""), flip.get("criticality_by"))
+            h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um: compared with its branch",
+                   flip.get("branch_curvature") is not None, flip.get("criticality_by"))
             h.true(f"flip at {flip['value']:.1f} rad/s, {eccentricity:.3f} um",
                    flip.get("criticality") == ("subcritical" if eccentricity < turns else "supercritical"),
                    flip.get("criticality"))

@@ -65,4 +65,27 @@ TEST(MeshConvergence, FinestMeshIsThatOfABranchComputedOnIt) {
   }
 }
 
+// The Hopf point of the rotor in a compliant short bearing, and its bar on the deck's own mesh.
+TEST(MeshConvergence, OfAHopfPointIsWhatItsBarPromised) {
+  study::Deck deck = study::load(
+      MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/compliant_rotor/short.yaml",
+      {"bearings.half.film.cells=[30, 4]",
+       "studies=[{equilibrium_branch: {name: rest, parameter: speed, range: {from: 380 rad/s, to: 470 rad/s}}}, "
+       "{mesh_convergence: {name: fine, of: rest, doublings: 3}}]"});
+  const auto studies = test::run_deck(deck, "mesh_convergence_hopf");
+  ASSERT_EQ(studies.at(0).bifurcations.size(), 1U);
+  ASSERT_EQ(studies.at(1).bifurcations.size(), 1U);
+  EXPECT_EQ(studies.at(1).status, "completed");
+  const io::Bifurcation &here = studies[0].bifurcations[0], &fine = studies[1].bifurcations[0];
+  EXPECT_EQ(fine.type, io::BifurcationType::hopf);
+  EXPECT_EQ(fine.more.at("refined_1"), here.value);
+  EXPECT_NEAR(fine.more.at("observed_order"), 2, 0.5);
+  EXPECT_LT(fine.uncertainty, here.uncertainty / 4);
+  const double error = std::abs(here.value - fine.value);
+  EXPECT_LT(error, here.uncertainty);
+  EXPECT_GT(5 * error, here.uncertainty);
+  EXPECT_LT(std::abs(here.more.at("whirl_frequency_rad_s") - fine.more.at("whirl_frequency_rad_s")),
+            here.more.at("uncertainty_whirl_frequency_rad_s"));
+}
+
 }  // namespace

@@ -6,7 +6,9 @@
 #include <numeric>
 
 #include "rotor/shafts.hpp"
+#include "support/dense.hpp"
 #include "support/turbine_train.hpp"
+#include "whirl/rotor/rotor.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 using namespace whirl;

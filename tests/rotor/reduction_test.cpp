@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "rotor/shafts.hpp"
+#include "support/dense.hpp"
 #include "support/turbine_train.hpp"
+#include "whirl/rotor/rotor.hpp"
 
 using namespace whirl;
 using Eigen::Index;

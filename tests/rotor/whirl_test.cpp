@@ -7,6 +7,7 @@
 
 #include "reference/rotor/published.hpp"
 #include "rotor/shafts.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/rotor/frequencies.hpp"
 
 using namespace whirl;

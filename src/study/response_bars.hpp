@@ -1,0 +1,41 @@
+#pragma once
+// Error bars of the peaks of a linear response.
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "whirl/io/summary.hpp"
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+inline constexpr double peak_tolerance = 1e-5;  ///< of the speed of a peak
+
+/// The peak of the node with this number among those of the study; its values in the summary start with `head`.
+struct NamedPeak {
+  std::string head;
+  std::size_t node = 0;
+  double speed = 0, height = 0, amplification = 0;  ///< [rad/s, m, 1]
+};
+
+/// The response on one film mesh: semi-major axes [speed][node], and the values at operating speed.
+struct MeshResponse {
+  std::vector<std::vector<double>> height;
+  io::StudySummary operating;
+};
+using SolveOnMesh = std::function<MeshResponse(const std::array<double, 2>& film_cells, std::vector<double> speeds,
+                                               const std::string& piece)>;
+using PutPeak = std::function<void(io::StudySummary& to, const std::string& head, double speed, double height,
+                                   double amplification)>;
+
+/// Puts bars beside all values of the summary. On each other film mesh a peak is the top of the parabola through three
+/// speeds about it; it moves as that top does against the one of the mesh in use. Peaks that stand together share their
+/// three speeds. The amplification factor changes like the root of the curvature over the height, Q of a resonance.
+/// Collective.
+void put_response_bars(const Context& context, const std::vector<NamedPeak>& peaks, const PutPeak& put,
+                       const SolveOnMesh& solve);
+
+}  // namespace whirl::study
