@@ -16,7 +16,7 @@ double Follower::distance(const State& a, Vec b) const {
 bool Follower::end_at_limit(const State& a, State& b, BranchEnd& end) {
   LocatedEvent found{};
   State at;
-  const Test limit = [this](const State& s) { return callbacks_.limit(s.u.get()); };
+  const Test limit = [this](const State& s) { return questions_.limit(s.u.get()); };
   if (!locate(a, b, limit, options_.location_tolerance, found, at)) return false;
   const int index = b.point.index;
   b = std::move(at);
@@ -43,7 +43,7 @@ bool Follower::turns_back(const State& here) {
       continue;
     }
     turned = rounded(from.point.slope * to.point.slope) < 0;
-    if (turned && callbacks_.on_event) folds(from, to, 0);
+    if (turned && questions_.events) folds(from, to, 0);
     from = std::move(to);
   }
   kind_ = Continuation::natural;

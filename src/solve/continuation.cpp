@@ -53,8 +53,8 @@ void Follower::inspect(State& s, Vec along) {
   check(VecScale(s.tangent.get(), 1 / std::sqrt(inner(problem_, s.tangent.get(), s.tangent.get()))));
   s.point.parameter = last_entry(problem_.comm(), s.u.get());
   s.point.slope = last_entry(problem_.comm(), s.tangent.get());
-  s.point.stability = callbacks_.stability ? callbacks_.stability(s.u.get()) : Stability{};
-  if (callbacks_.monitors) s.point.monitors = callbacks_.monitors(s.u.get(), s.tangent.get());
+  s.point.stability = questions_.stability ? questions_.stability(s.u.get()) : Stability{};
+  if (questions_.monitors) s.point.monitors = questions_.monitors(s.u.get(), s.tangent.get());
 }
 
 // The angles between the predictor and the chord, in all unknowns and in those without the parameter. Steps below the
@@ -117,7 +117,7 @@ bool Follower::settle(State& here, NewtonResult& result) {
   const auto facts = [](const State& s) { return std::pair(s.point.stability.unstable(), s.point.slope > 0); };
   const auto old = facts(here);
   inspect(here, along.get());
-  if (!callbacks_.on_event || facts(here) == old) return true;
+  if (!questions_.events || facts(here) == old) return true;
   const double step = here.point.step;
   for (double ds = rounded(step / 256); ds <= step; ds *= 4) {
     State other;
@@ -141,104 +141,161 @@ bool Follower::settle(State& here, NewtonResult& result) {
   return true;
 }
 
-BranchEnd Follower::run(core::Vector u, std::optional<Restart> restart) {
-  State here, before, earlier;  // the last two without u: none on this mesh
-  double ds = options_.initial_step;
-  if (restart) {
-    here.u = std::move(restart->u);
-    here.tangent = std::move(restart->tangent);
-    here.point = restart->point;
-    ds = restart->step;
-  } else {
-    const NewtonResult first = correct_at(u, options_.from);
-    if (!first.converged)
-      return {fmt::format("no solution at the start of the branch: {}", first.reason), false, 0, options_.from};
-    here.u = std::move(u);
-    here.point.newton_iterations = first.iterations;
-    inspect(here, nullptr);
-    if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
-    if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
-      return {"stopped on request", false, 1, options_.from};
-    if (callbacks_.limit && !(callbacks_.limit(here.u.get()) > 0))
-      return {callbacks_.why(here.u.get()), false, 1, options_.from, true};
-    here.point.slope = last_entry(problem_.comm(), here.tangent.get());  // a checkpoint may renew the tangent
-  }
+Follower::Follower(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
+                   BranchQuestions questions, std::optional<Restart> restart)
+    : problem_(problem),
+      options_(options),
+      questions_(std::move(questions)),
+      newton_(problem, options_.newton),
+      kind_(options_.kind),
+      direction_(options_.to >= options_.from ? 1 : -1),
+      ds_(options_.initial_step) {
+  here_.u = std::move(u);
+  if (!restart) return;
+  here_.u = std::move(restart->u);
+  here_.tangent = std::move(restart->tangent);
+  here_.point = std::move(restart->point);
+  ds_ = restart->step;
+  stage_ = Stage::advance;
+}
 
-  const auto ended = [&](std::string reason, bool completed) {
-    release_held();
-    return BranchEnd{std::move(reason), completed, here.point.index + 1, here.point.parameter};
-  };
+std::optional<BranchItem> Follower::next() {
+  while (found_.empty()) {
+    if (stage_ == Stage::ended) return std::nullopt;
+    if (stage_ == Stage::start)
+      begin();
+    else if (stage_ == Stage::settle)
+      settle_here();
+    else
+      step();
+  }
+  taken_ = std::move(found_.front());
+  found_.pop_front();
+  if (taken_.u) taken_.item.u = taken_.u.get();
+  return taken_.item;
+}
+
+void Follower::finish(std::string reason, bool completed) {
+  if (stage_ == Stage::ended) return;
+  release_held();
+  const int points = stage_ == Stage::start ? 0 : here_.point.index + 1;
+  end_ = {std::move(reason), completed, points, stage_ == Stage::start ? options_.from : here_.point.parameter};
+  stage_ = Stage::ended;
+}
+
+void Follower::begin() {
+  const NewtonResult first = correct_at(here_.u, options_.from);
+  if (!first.converged) return finish(fmt::format("no solution at the start of the branch: {}", first.reason), false);
+  here_.point.newton_iterations = first.iterations;
+  inspect(here_, nullptr);
+  accept_point();
+  found_.push_back({{Settled{here_.point, ds_}, here_.u.get(), here_.tangent.get()}, {}});
+  stage_ = Stage::renew;
+  at_start_ = true;
+}
+
+// One step, with halved lengths where it fails, and what lies on it.
+void Follower::step() {
+  // Whoever had the settled point may have renewed its tangent.
+  if (std::exchange(at_start_, false) && questions_.limit && !(questions_.limit(here_.u.get()) > 0)) {
+    finish(questions_.why(here_.u.get()), false);
+    end_.limited = true;
+    return;
+  }
+  if (stage_ == Stage::renew) here_.point.slope = last_entry(problem_.comm(), here_.tangent.get());
+  stage_ = Stage::advance;
   // The last point stands at the limit but for rounding, whose sign must not decide whether another one follows.
   const double margin = 1e-10 * std::max(std::abs(options_.to), std::abs(options_.to - options_.from));
-  const auto beyond = [&](double p) { return direction_ * (p - options_.to) >= -margin; };
-  while (here.point.index + 1 < options_.max_points) {
-    if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
-    if (options_.back ? direction_ * rounded(here.point.parameter - *options_.back) < 0
-                      : direction_ * rounded(here.point.parameter - options_.from) < -std::abs(options_.max_step))
-      return ended("turned back beyond the start of its range", true);
-    State next;
-    NewtonResult result;
-    bool ok = advance(here, ds, next, result);
+  if (direction_ * (here_.point.parameter - options_.to) >= -margin)
+    return finish("reached the end of its range", true);
+  if (here_.point.index + 1 >= options_.max_points) return finish("reached the largest number of points", false);
+  if (options_.back ? direction_ * rounded(here_.point.parameter - *options_.back) < 0
+                    : direction_ * rounded(here_.point.parameter - options_.from) < -std::abs(options_.max_step))
+    return finish("turned back beyond the start of its range", true);
+  State next;
+  NewtonResult result;
+  BranchEnd limit;
+  while (true) {
+    bool ok = advance(here_, ds_, next, result);
     if (ok && direction_ * (next.point.parameter - options_.to) > margin) {
       // End exactly at the limit: the arclength that leads there, by one secant step, then natural continuation.
       State last;
       last.u = copy(next.u.get());
-      const double fraction = (options_.to - here.point.parameter) / (next.point.parameter - here.point.parameter);
-      check(VecAXPBY(last.u.get(), 1 - fraction, fraction, here.u.get()));
+      const double fraction = (options_.to - here_.point.parameter) / (next.point.parameter - here_.point.parameter);
+      check(VecAXPBY(last.u.get(), 1 - fraction, fraction, here_.u.get()));
       result = correct_at(last.u, options_.to);
       ok = result.converged;
       if (ok) {
-        last.point = here.point;
-        last.point.step = distance(here, last.u.get());
+        last.point = here_.point;
+        last.point.step = distance(here_, last.u.get());
         last.point.newton_iterations = result.iterations;
-        inspect(last, here.tangent.get());
+        inspect(last, here_.tangent.get());
         next = std::move(last);
       }
     }
-    BranchEnd limit;
-    if (ok && callbacks_.limit && !(callbacks_.limit(next.u.get()) > 0) && !end_at_limit(here, next, limit)) {
-      result.reason = callbacks_.why(next.u.get());
+    limit = {};
+    if (ok && questions_.limit && !(questions_.limit(next.u.get()) > 0) && !end_at_limit(here_, next, limit)) {
+      result.reason = questions_.why(next.u.get());
       ok = false;
     }
-    if (!ok) {
-      ds = rounded(ds / 2);
-      if (ds >= options_.min_step) continue;
-      if (turns_back(here))
-        return ended("the branch turns back at a fold, which natural continuation does not pass", false);
-      return ended("the step fell below its minimum: " + result.reason, false);
-    }
-    next.point.index = here.point.index + 1;
-    // With stability facts missing at this point alone (a branch that starts at a bifurcation) there is nothing to
-    // compare with.
-    const bool comparable = !callbacks_.stability || !here.point.stability.values.empty();
-    if (callbacks_.on_event && comparable)
-      events(earlier.u ? &earlier : nullptr, before.u ? &before : nullptr, here, next);
-    earlier = std::move(before);
-    before = std::move(here);
-    if (!comparable) earlier = {}, before = {};
-    here = std::move(next);
-    const int k = result.effort;
-    ds = rounded(std::min(options_.max_step, ds * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
-    ds = std::max(ds, options_.min_step);
-    if (callbacks_.on_point) callbacks_.on_point(here.point, here.u.get());
-    if (limit.limited) {
-      BranchEnd end = ended(callbacks_.why(here.u.get()), false);
-      end.limited = true;
-      end.bracket = limit.bracket;
-      return end;
-    }
-    if (options_.adapt_every > 0 && here.point.index % options_.adapt_every == 0 &&
-        problem_.adapt(here.u, here.tangent)) {
-      earlier = {}, before = {};
-      NewtonResult again;
-      if (!settle(here, again)) return ended(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
-    }
-    if (callbacks_.checkpoint && !callbacks_.checkpoint(here.point, here.u.get(), here.tangent.get(), ds))
-      return ended("stopped on request", false);
-    here.point.slope = last_entry(problem_.comm(), here.tangent.get());
+    if (ok) break;
+    ds_ = rounded(ds_ / 2);
+    if (ds_ < options_.min_step)
+      return finish(turns_back(here_) ? "the branch turns back at a fold, which natural continuation does not pass"
+                                      : "the step fell below its minimum: " + result.reason,
+                    false);
+    next = {};
   }
-  if (beyond(here.point.parameter)) return ended("reached the end of its range", true);
-  return ended("reached the largest number of points", false);
+  next.point.index = here_.point.index + 1;
+  // With stability facts missing at this point alone (a branch that starts at a bifurcation) there is nothing to
+  // compare with.
+  const bool comparable = !questions_.stability || !here_.point.stability.values.empty();
+  if (questions_.events && comparable)
+    events(earlier_.u ? &earlier_ : nullptr, before_.u ? &before_ : nullptr, here_, next);
+  earlier_ = std::move(before_);
+  before_ = std::move(here_);
+  if (!comparable) earlier_ = {}, before_ = {};
+  here_ = std::move(next);
+  const int k = result.effort;
+  ds_ = rounded(std::min(options_.max_step, ds_ * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
+  ds_ = std::max(ds_, options_.min_step);
+  accept_point();
+  stage_ = Stage::settle;
+  if (limit.limited) {
+    finish(questions_.why(here_.u.get()), false);
+    end_.limited = true;
+    end_.bracket = limit.bracket;
+  }
+}
+
+void Follower::settle_here() {
+  if (options_.adapt_every > 0 && here_.point.index % options_.adapt_every == 0 &&
+      problem_.adapt(here_.u, here_.tangent)) {
+    earlier_ = {}, before_ = {};
+    NewtonResult again;
+    if (!settle(here_, again)) return finish(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
+  }
+  found_.push_back({{Settled{here_.point, ds_}, here_.u.get(), here_.tangent.get()}, {}});
+  stage_ = Stage::renew;
+}
+
+BranchIterator::BranchIterator(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
+                             BranchQuestions questions, std::optional<Restart> restart)
+    : follower_(std::make_unique<Follower>(problem, std::move(u), options, std::move(questions), std::move(restart))) {}
+BranchIterator::BranchIterator(BranchIterator&&) noexcept = default;
+BranchIterator& BranchIterator::operator=(BranchIterator&&) noexcept = default;
+BranchIterator::~BranchIterator() = default;
+
+std::optional<BranchItem> BranchIterator::next() {
+  return follower_->next();
+}
+
+void BranchIterator::stop(const std::string& reason) {
+  follower_->finish(reason, false);
+}
+
+const BranchEnd& BranchIterator::end() const {
+  return follower_->end();
 }
 
 Stability make_stability(std::vector<std::complex<double>> values,
@@ -271,7 +328,25 @@ const char* name_of(Event event) {
 
 BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
                         const BranchCallbacks& callbacks, std::optional<Restart> restart) {
-  return Follower(problem, options, callbacks).run(std::move(u), std::move(restart));
+  BranchQuestions questions = callbacks;
+  questions.events = callbacks.events && callbacks.on_event;
+  questions.zeros = callbacks.zeros && callbacks.on_zero;
+  BranchIterator branch(problem, std::move(u), options, std::move(questions), std::move(restart));
+  while (const auto item = branch.next()) {
+    if (const auto* point = std::get_if<BranchPoint>(&item->what)) {
+      if (callbacks.on_point) callbacks.on_point(*point, item->u);
+    } else if (const auto* event = std::get_if<LocatedEvent>(&item->what)) {
+      callbacks.on_event(*event, item->u);
+    } else if (const auto* zero = std::get_if<LocatedZero>(&item->what)) {
+      callbacks.on_zero(*zero, item->u);
+    } else if (const auto* suspicion = std::get_if<Suspicion>(&item->what)) {
+      if (callbacks.on_suspicion) callbacks.on_suspicion(*suspicion);
+    } else if (const auto* settled = std::get_if<Settled>(&item->what); callbacks.checkpoint) {
+      if (!callbacks.checkpoint(settled->point, item->u, item->tangent, settled->next_step))
+        branch.stop("stopped on request");
+    }
+  }
+  return branch.end();
 }
 
 }  // namespace whirl::solve

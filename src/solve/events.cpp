@@ -69,7 +69,7 @@ bool Follower::split(const State& a, const State& b, State& middle, State& rest)
 }
 
 void Follower::suspect(const State& a, const State& b, std::string why) {
-  if (callbacks_.on_suspicion) callbacks_.on_suspicion({a.point.parameter, b.point.parameter, std::move(why)});
+  found_.push_back({{Suspicion{a.point.parameter, b.point.parameter, std::move(why)}}, {}});
 }
 
 // False position (Illinois variant) of a test function along the arclength from the point a.
@@ -117,12 +117,12 @@ bool Follower::locate(const State& a, const State& b, const Test& test, double t
 // The event roughly, then to rounding by the callback; by false position alone where that leads elsewhere.
 void Follower::pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
                         LocatedEvent& found, State& at) {
-  if (callbacks_.refine) {
+  if (questions_.refine) {
     const double rough = 1e-2 * std::abs(b.point.parameter - a.point.parameter);
     found.located = locate(a, b, test, std::max(options_.location_tolerance, rough), found, at);
     name(at);
     if (found.located) {
-      std::optional<Refined> refined = callbacks_.refine(found, at.u.get(), at.tangent.get());
+      std::optional<Refined> refined = questions_.refine(found, at.u.get(), at.tangent.get());
       const double h = b.point.step, s = refined ? distance(a, refined->u.get()) : 0;
       if (refined && s > std::min(0.0, h) - 0.1 * std::abs(h) && s < std::max(0.0, h) + 0.1 * std::abs(h)) {
         State exact;
@@ -153,7 +153,7 @@ void Follower::folds(const State& a, const State& b, int depth) {
   if (a.point.slope * b.point.slope < 0) {
     LocatedEvent found{};
     State at;
-    found.event = callbacks_.cycles ? Event::cyclic_fold : Event::fold;
+    found.event = questions_.cycles ? Event::cyclic_fold : Event::fold;
     const int before = a.point.stability.unstable(), after = b.point.stability.unstable();
     found.others_unstable = std::min(before, after);
     found.loses = after > before;
@@ -163,7 +163,7 @@ void Follower::folds(const State& a, const State& b, int depth) {
     if (found.located)
       folds_.emplace_back(found.parameter, std::max(std::abs(a.point.parameter - found.parameter),
                                                     std::abs(b.point.parameter - found.parameter)));
-    callbacks_.on_event(found, at.u.get());
+    meet(found, std::move(at));
     return;
   }
   const double h = b.point.step, cosine = inner(problem_, a.tangent.get(), b.tangent.get());
@@ -223,11 +223,11 @@ void Follower::crossings(const State& a, const State& b, int depth) {
         found.critical = values.empty() ? 0.0 : values[std::min(k, values.size() - 1)];
         // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits
         // the double value into a pair of the size of its square root.
-        const double tolerance = callbacks_.cycles && found.critical.real() > 0 ? 5e-3 : 1e-7;
+        const double tolerance = questions_.cycles && found.critical.real() > 0 ? 5e-3 : 1e-7;
         real = std::abs(found.critical.imag()) <= tolerance * std::abs(found.critical);
         if (!real)
-          found.event = callbacks_.cycles ? Event::neimark_sacker : Event::hopf;
-        else if (callbacks_.cycles && found.critical.real() < 0)
+          found.event = questions_.cycles ? Event::neimark_sacker : Event::hopf;
+        else if (questions_.cycles && found.critical.real() < 0)
           found.event = Event::flip;
         else
           found.event = Event::branch_point;
@@ -246,7 +246,7 @@ void Follower::crossings(const State& a, const State& b, int depth) {
       return;
     }
   }
-  callbacks_.on_event(found, at.u.get());
+  meet(found, std::move(at));
 }
 
 // Whether the branch is about to turn right behind `at`: a multiplier passes +1 at the fold itself only as exactly as
@@ -266,7 +266,7 @@ void Follower::zeros(const State& a, const State& b) {
     State at;
     const bool located = locate(
         a, b, [k](const State& s) { return s.point.monitors[k]; }, options_.location_tolerance, found, at);
-    callbacks_.on_zero({k, found.parameter, found.bracket, located}, at.u.get());
+    found_.push_back({{LocatedZero{k, found.parameter, found.bracket, located}}, std::move(at.u)});
   }
 }
 
@@ -322,7 +322,7 @@ bool Follower::kinks(const State& first, const State& a, const State& b, const S
     const double sign = k < count ? -1 : 1;
     const auto height = [&](const State& s) {
       const double d = s.point.stability.distance[order];
-      return sign * (callbacks_.cycles ? std::log(std::max(1 + d, 1e-300)) : d);
+      return sign * (questions_.cycles ? std::log(std::max(1 + d, 1e-300)) : d);
     };
     const double h = b.point.step, f0 = height(a), f1 = height(b);
     const double rise = (f0 - height(first)) / a.point.step, fall = (height(last) - f1) / last.point.step;
@@ -360,7 +360,7 @@ void Follower::around(const State& a, State& middle, const State& b) {
 
 // The branch did not turn after all.
 void Follower::release_held() {
-  if (held_) callbacks_.on_event(held_->first, held_->second.u.get());
+  if (held_) meet(held_->first, std::move(held_->second));
   held_.reset();
 }
 
@@ -370,7 +370,7 @@ void Follower::events(const State* first, const State* before, const State& a, c
   if (folds_.empty()) release_held();
   held_.reset();
   crossings(a, b, 0);
-  if (callbacks_.on_zero) zeros(a, b);
+  if (questions_.zeros) zeros(a, b);
   bool seen = std::exchange(visited_, false);  // between `before` and a
   if (first && before && !seen) seen = kinks(*first, *before, a, b);
   if (before) visits(*before, a, b, seen);

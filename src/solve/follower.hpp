@@ -1,6 +1,7 @@
 #pragma once
 // One branch on its way: steps here, events between two points beside it.
 
+#include <deque>
 #include <functional>
 #include <optional>
 
@@ -22,17 +23,21 @@ struct State {
 
 class Follower {
 public:
-  Follower(ExtendedProblem& problem, const ContinuationOptions& options, const BranchCallbacks& callbacks)
-      : problem_(problem),
-        options_(options),
-        callbacks_(callbacks),
-        newton_(problem, options.newton),
-        kind_(options.kind),
-        direction_(options.to >= options.from ? 1 : -1) {}
+  Follower(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options, BranchQuestions questions,
+           std::optional<Restart> restart);
 
-  BranchEnd run(core::Vector u, std::optional<Restart> restart);
+  [[nodiscard]] std::optional<BranchItem> next();
+  void finish(std::string reason, bool completed);
+  [[nodiscard]] const BranchEnd& end() const { return end_; }
 
 private:
+  // Work is done in stages, each of which leaves items; the next one begins when these were taken.
+  enum class Stage { start, advance, settle, renew, ended };
+  void begin();
+  void step();
+  void settle_here();
+  void meet(LocatedEvent found, State at) { found_.push_back({{std::move(found)}, std::move(at.u)}); }
+  void accept_point() { found_.push_back({{here_.point, here_.u.get()}, {}}); }
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
   NewtonResult correct(Vec u, Vec row, double offset) { return newton_.solve(u, row, offset); }
@@ -74,9 +79,15 @@ private:
   bool split(const State& a, const State& b, State& middle, State& rest);
   void suspect(const State& a, const State& b, std::string why);
 
+  // An item that waits, with its solution unless that is here_'s.
+  struct Found {
+    BranchItem item;
+    core::Vector u;
+  };
+
   ExtendedProblem& problem_;
-  const ContinuationOptions& options_;
-  const BranchCallbacks& callbacks_;
+  const ContinuationOptions options_;
+  const BranchQuestions questions_;
   Newton newton_;
   Continuation kind_;
   int direction_;
@@ -85,6 +96,13 @@ private:
   // there.
   std::vector<std::pair<double, double>> folds_, last_folds_;
   std::optional<std::pair<LocatedEvent, State>> held_;  // a crossing that is none if a fold follows
+  Stage stage_ = Stage::start;
+  State here_, before_, earlier_;  // the last two without u: none on this mesh
+  bool at_start_ = false;          // of the branch, whose first point was just taken
+  double ds_;
+  std::deque<Found> found_;
+  Found taken_;
+  BranchEnd end_;
 };
 
 }  // namespace whirl::solve

@@ -4,9 +4,11 @@
 #include <complex>
 #include <functional>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "whirl/solve/extended_problem.hpp"
@@ -103,28 +105,23 @@ struct Refined {
   std::complex<double> critical;  ///< eigenvalue or multiplier
 };
 
-/// What a study hands over; all collective.
-struct BranchCallbacks {
+/// What a continuation asks about the solutions that it finds; all collective.
+struct BranchQuestions {
   /// Stability at u, called after linearise(u).
   std::function<Stability(Vec u)> stability;
-  std::function<void(const BranchPoint&, Vec u)> on_point;
-  std::function<void(const LocatedEvent&, Vec u)> on_event;
   /// The event near u on the branch with the given tangent, to rounding; nothing if that fails. The problem may be left
   /// linearised anywhere.
   std::function<std::optional<Refined>(const LocatedEvent&, Vec u, Vec tangent)> refine;
   /// Smooth functions of a point whose zeros are located as well, called after linearise(u) with the tangent there; as
   /// many at every point.
   std::function<std::vector<double>(Vec u, Vec tangent)> monitors;
-  std::function<void(const LocatedZero&, Vec u)> on_zero;
   /// Positive where the solution is one of the equations' validity (a film thick enough): the branch ends at its zero,
   /// which is located, or at a start where it is not positive. `why` says what the limit is.
   std::function<double(Vec u)> limit;
   std::function<std::string(Vec u)> why;
-  /// Where events may have been missed.
-  std::function<void(const Suspicion&)> on_suspicion;
-  /// After each accepted point, with all that a restart needs; return false to stop.
-  std::function<bool(const BranchPoint&, Vec u, Vec tangent, double next_step)> checkpoint;
   bool cycles = false;  ///< names the events of cycles instead of those of equilibria
+  bool events = true;   ///< looks for events between points
+  bool zeros = true;    ///< and for zeros of the monitors
 };
 
 /// Where to go on after an interruption.
@@ -132,6 +129,19 @@ struct Restart {
   core::Vector u, tangent;
   double step = 0;
   BranchPoint point;
+};
+
+/// A point from which the branch can be taken up again: after its discretisation was adapted.
+struct Settled {
+  BranchPoint point;
+  double next_step = 0;
+};
+
+/// What is met on the way along a branch.
+struct BranchItem {
+  std::variant<BranchPoint, LocatedEvent, LocatedZero, Suspicion, Settled> what;
+  Vec u = nullptr;        ///< the solution there; null for suspicions
+  Vec tangent = nullptr;  ///< of settled points; may be changed
 };
 
 struct BranchEnd {
@@ -143,10 +153,49 @@ struct BranchEnd {
   double bracket = 0;    ///< whose location left this scaled width
 };
 
-/// Follows the branch through u (a guess at options.from, corrected there first) to options.to.
+class Follower;
+
+/// The branch through u (a guess at options.from, corrected there first) to options.to, item by item:
 ///
-/// Decisions use integer counts and rounded values only, so that any number of ranks takes the same steps. Collective
-/// on problem.comm().
+///     while (auto item = branch.next()) ...
+///     branch.end().reason ...
+///
+/// Of each step first what lies on it (events, zeros, suspicions), then its point, then what an adaptation of the
+/// discretisation passed over, then the settled point. Work is done in next() alone, so that whoever stops asking stops
+/// the continuation. Decisions use integer counts and rounded values only: any number of ranks takes the same steps.
+/// Collective on problem.comm(); `problem` must outlive it.
+class BranchIterator {
+public:
+  BranchIterator(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
+                 BranchQuestions questions, std::optional<Restart> restart = std::nullopt);
+  BranchIterator(BranchIterator&&) noexcept;
+  BranchIterator& operator=(BranchIterator&&) noexcept;
+  ~BranchIterator();
+
+  /// The next item, nothing at the end of the branch. Its vectors are this object's and live until the next call; the
+  /// problem has the item's discretisation meanwhile and may be linearised anywhere.
+  [[nodiscard]] std::optional<BranchItem> next();
+  /// Ends the branch at its last point; next() returns what was still held back.
+  void stop(const std::string& reason);
+  /// How it ended; valid after next() has returned nothing.
+  [[nodiscard]] const BranchEnd& end() const;
+
+private:
+  std::unique_ptr<Follower> follower_;
+};
+
+/// What a study hands over instead of asking for items; all collective.
+struct BranchCallbacks : BranchQuestions {
+  std::function<void(const BranchPoint&, Vec u)> on_point;
+  std::function<void(const LocatedEvent&, Vec u)> on_event;
+  std::function<void(const LocatedZero&, Vec u)> on_zero;
+  /// Where events may have been missed.
+  std::function<void(const Suspicion&)> on_suspicion;
+  /// After each accepted point, with all that a restart needs; return false to stop.
+  std::function<bool(const BranchPoint&, Vec u, Vec tangent, double next_step)> checkpoint;
+};
+
+/// Calls back for every item of a BranchIterator. Collective.
 BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
                         const BranchCallbacks& callbacks, std::optional<Restart> restart = std::nullopt);
 
