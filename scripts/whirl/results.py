@@ -48,7 +48,7 @@ def damaged(path):
     """What HDF5 says of a damaged file, in one sentence."""
     try:
         yield
-    except (OSError, RuntimeError, UnicodeDecodeError) as error:
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
         raise Error(f"{path} is damaged: {' '.join(str(error).split())}") from None
 
 

@@ -57,13 +57,17 @@ def run(deck, set=None, ranks=1, output=None, resume=False, options=(), check=Tr
     output = pathlib.Path(output) if output is not None else pathlib.Path("results") / deck.stem
     command = [str(program()), "run", str(deck), "-o", str(output), "--resume" if resume else "--force"]
     for path, value in (set or {}).items():
-        command += ["--set", f"{path}={word(value)}"]
+        said = word(value)
+        # A bare negative number would be added: `==` sets it.
+        number = isinstance(value, (int, float)) and said.startswith("-")
+        command += ["--set", f"{path}={'=' if number else ''}{said}"]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks), "--quiet", "--bind-to", "none", *command]
     done = subprocess.run([*command, *map(str, options)], env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, errors="replace", check=False)
     if done.returncode != 0 and (check or done.returncode != 3):
         said = [line for line in done.stdout.splitlines() if line.strip()]
-        reason = next((line for line in said if "error" in line.lower() or ": " in line), said[-1] if said else "")
+        reason = next((line for line in said if line.startswith("whirl: ")), None) or \
+            next((line for line in said if ": " in line and ": completed" not in line), said[-1] if said else "")
         raise RunError(f"{deck}: exit code {done.returncode}: {reason}", done.returncode, done.stdout)
     return read(output)

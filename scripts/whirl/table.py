@@ -58,4 +58,7 @@ class Table(collections.abc.Mapping):
         return frame
 
     def _flat_units(self):
-        return {name: self.units[name.split(".")[0]] for name in self.flat()}
+        units = {}
+        for name, values in self._columns.items():
+            units.update(dict.fromkeys([name] if values.ndim == 1 else [f"{name}.{place}" for place in self.places[name]], self.units[name]))
+        return units

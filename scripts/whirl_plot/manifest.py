@@ -6,7 +6,11 @@ def register(path):
     """Appends the file to `manifest.txt` of its folder; a folder without one belongs to no run."""
     path = pathlib.Path(path)
     manifest = path.parent / "manifest.txt"
-    if manifest.exists() and path.name not in manifest.read_text(encoding="utf-8").split("\n"):
+    if not manifest.exists():
+        return path
+    text = manifest.read_text(encoding="utf-8")
+    if path.name not in text.split("\n"):
         with open(manifest, "a", encoding="utf-8") as f:
-            f.write(path.name + "\n")
+            # A kill may have cut the last line short.
+            f.write(("\n" if text and not text.endswith("\n") else "") + path.name + "\n")
     return path

@@ -117,7 +117,9 @@ def write(figure, stem):
 
 def shorter(svg):
     """Coordinates to a hundredth of a point, which no eye sees, and no indentation."""
-    svg = re.sub(r"(?<=[ ML\n\"(,])-?\d+\.\d{3,}", lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), svg)
+    number = re.compile(r"(?<=[ ML\n\"(,])-?\d+\.\d{3,}")
+    # Inside tags only: labels are text between them, and their numbers stay as they are.
+    svg = re.sub(r"<(?!!)[^>]*>", lambda tag: number.sub(lambda m: f"{float(m[0]):.2f}".rstrip("0").rstrip("."), tag[0]), svg)
     return re.sub(r"\n *", "\n", svg)
 
 

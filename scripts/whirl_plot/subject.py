@@ -70,6 +70,8 @@ def said_in_a_sentence(command):
         yield
     except whirl.Error as error:
         sys.exit(_refuse(command, str(error)))
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        sys.exit(_refuse(command, f"these results are damaged or of another version: {error}"))
     except OSError as error:
         where = f" {error.filename}" if error.filename else ""
         sys.exit(_refuse(command, f"cannot use{where}: {error.strerror or error}"))

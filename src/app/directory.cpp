@@ -47,7 +47,10 @@ void write_whole(const fs::path& path, const std::string& text) {
 }
 
 bool holds_results(const fs::path& directory, const io::Manifest& manifest) {
-  const auto there = [&](const std::string& name) { return name != deck_name && fs::exists(directory / name); };
+  // Of a checkpoint a kill between two renames leaves the one before.
+  const auto there = [&](const std::string& name) {
+    return name != deck_name && (fs::exists(directory / name) || fs::exists(directory / (name + ".prev")));
+  };
   return std::any_of(std::begin(always), std::end(always), there) ||
          std::any_of(manifest.names().begin(), manifest.names().end(), there);
 }

@@ -43,7 +43,8 @@ double BandedPad::move_rupture() {
                           : rupture::cut(u)     ? 0.5 * u + p / (scale * u)
                                                 : p / scale + 0.5;
       const bool stays = (u >= 1.0 && next >= 1.0) || (u <= 0.0 && next <= 0.0);
-      if (!stays) moved = std::max(moved, std::abs(next - u));
+      // Once not a number, it stays so.
+      if (!stays && !std::isnan(moved)) moved = std::isnan(next) ? next : std::max(moved, std::abs(next - u));
       u_[k] = next;
     }
   }
@@ -89,7 +90,10 @@ void BandedPad::solve_ruptured(Need need) {
   double moved = 0.0;
   int iteration = 0;
   do {
-    if (++iteration > kMost) throw core::NotConverged("the cavitated region of a film did not settle");
+    if (++iteration > kMost) {
+      enter_ruptured();  // the next one shall not start from here
+      throw core::NotConverged("the cavitated region of a film did not settle");
+    }
     factor();
     for (std::size_t k = 0; k < x_.size(); ++k) {
       const double filled = rupture::cut(u_[k]) ? 0.5 * (1.0 + u_[k]) : 1.0;
@@ -97,7 +101,7 @@ void BandedPad::solve_ruptured(Need need) {
     }
     band_.solve(x_);
     moved = move_rupture();
-  } while (moved > kNear);
+  } while (!(moved <= kNear));
   // The adjoints want the equations at the solution.
   if (need == Need::tangents && moved > kExact) factor();
 }

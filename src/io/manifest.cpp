@@ -63,7 +63,10 @@ void Manifest::remove_files(const std::string& keep) {
     if (name == keep) continue;
     const fs::path path = folder_ / name;
     if (fs::is_directory(fs::symlink_status(path))) continue;
-    for (const char* suffix : {"", ".part", ".prev", ".next", ".next.part"}) fs::remove(path.string() + suffix);
+    fs::remove(path);
+    fs::remove(path.string() + ".part");
+    if (name.ends_with(".checkpoint.h5"))
+      for (const char* suffix : {".prev", ".next", ".next.part"}) fs::remove(path.string() + suffix);
     // Folders that are not empty refuse, and stay.
     std::error_code ignored;
     for (fs::path inner = fs::path(name).parent_path(); !inner.empty(); inner = inner.parent_path())

@@ -280,7 +280,7 @@ void Follower::settle_here() {
 }
 
 BranchIterator::BranchIterator(ExtendedProblem& problem, core::Vector u, const ContinuationOptions& options,
-                             BranchQuestions questions, std::optional<Restart> restart)
+                               BranchQuestions questions, std::optional<Restart> restart)
     : follower_(std::make_unique<Follower>(problem, std::move(u), options, std::move(questions), std::move(restart))) {}
 BranchIterator::BranchIterator(BranchIterator&&) noexcept = default;
 BranchIterator& BranchIterator::operator=(BranchIterator&&) noexcept = default;

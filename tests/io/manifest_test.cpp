@@ -42,11 +42,11 @@ TEST(Manifest, NamesEachFileOnceAndReadsThemBack) {
 
 TEST(Manifest, RemovesWhatItNamesAndWhatAKillLeftOfThat) {
   const whirl::test::Temporary folder;
-  for (const char* name :
-       {"a.h5", "b.h5.prev", "b.h5.next.part", "csv/s/t.csv", "csv/own.csv", "mine.png", "mine.part"})
+  for (const char* name : {"a.h5", "b.checkpoint.h5.prev", "b.checkpoint.h5.next.part", "csv/s/t.csv", "csv/own.csv",
+                           "mine.png", "mine.part"})
     make(folder / name);
   Manifest m(folder.path());
-  for (const char* name : {"a.h5", "b.h5", "csv/s/t.csv", "gone.h5", "kept.yaml"}) m.add(name);
+  for (const char* name : {"a.h5", "b.checkpoint.h5", "csv/s/t.csv", "gone.h5", "kept.yaml"}) m.add(name);
   make(folder / "kept.yaml");
   m.remove_files("kept.yaml");
   std::vector<std::string> left;
