@@ -83,7 +83,8 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
     b.more["uncertainty_whirl_frequency_rad_s"] =
         angle / cycle.period + b.more["whirl_frequency_rad_s"] * period / cycle.period;
   }
-  const double error = std::max(of_coefficient[0].total(), doubt);
+  // What the steps of the differences leave open no mesh decides.
+  const double error = decided(here.coefficient, doubt) ? std::max(of_coefficient[0].total(), doubt) : doubt;
   if (fold && std::isfinite(here.coefficient) && here.coefficient != 0)
     put_criticality(b, here.coefficient, error, "below", "above",
                     "second derivative of the parameter along the branch: the side on which the cycles exist");

@@ -21,7 +21,7 @@ def run(what, deck, out, code, said="", overrides=(), flags=()):
 
 def files(name):
     path = h.work / name
-    return sorted(p.name for p in path.iterdir()) if path.is_dir() else None
+    return sorted(str(p.relative_to(path)) for p in path.rglob("*") if p.is_file()) if path.is_dir() else None
 
 
 # Where results cannot go.
@@ -41,7 +41,7 @@ for deck, study in CASES.items():
     s = h.studies(name)[study]
     h.true(f"{deck}: the reason is in the status", "completed" not in s["status"] and len(s["status"]) > 20, s["status"])
     h.true(f"{deck}: no values, no bifurcations", not s["values"] and not s["bifurcations"] and s["points"] == 0)
-    h.true(f"{deck}: only finished files", all(n.endswith((".json", ".h5", ".yaml", ".xdmf")) and "checkpoint" not in n
+    h.true(f"{deck}: only finished files", all(n.endswith((".json", ".h5", ".yaml", ".xdmf", ".csv", "manifest.txt")) and "checkpoint" not in n
                                                for n in files(name)), str(files(name)))
     if deck == "static.yaml":
         h.true("the other study goes on", h.studies(name)["alignment"]["status"] == "completed")
@@ -59,7 +59,7 @@ run("damaged results, replaced", "static.yaml", work, 0, flags=["--force"])
 (work / "at_service_speed.checkpoint.h5").write_bytes(b"not HDF5")
 run("a checkpoint that the study does not use", "static.yaml", work, 0, flags=["--resume"])
 
-short = ["studies.1.cycle_branch.range={from: 4000 rpm, to: 4100 rpm}", "studies.1.cycle_branch.at=[]",
+short = ["studies.1.cycle_branch.range={from: 4000 rpm, to: 4100 rpm}", "studies.1.cycle_branch.at=[]", "studies.1.cycle_branch.follow_flips=false", "studies.1.cycle_branch.flips=[]",
          "studies.2.cycle_branch.max_points=1", "studies.2.cycle_branch.follow_flips=false", "studies.2.cycle_branch.flips=[]"]
 work = h.work / "checkpoint"
 work.mkdir()

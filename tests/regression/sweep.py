@@ -32,9 +32,10 @@ def plain(x):
 
 
 def apart(a, b):
-    """The largest relative difference of two trees of the same shape; infinite if something else differs."""
+    """The largest relative difference of two trees of the same shape; infinite if something else differs. A bar, about a thousandth
+    of its number, is a difference of such numbers and has their accuracy."""
     if isinstance(a, dict) and isinstance(b, dict) and list(a) == list(b):
-        return max((apart(a[k], b[k]) for k in a), default=0)
+        return max((apart(a[k], b[k]) * (1e-3 if "uncertaint" in k else 1) for k in a), default=0)
     if isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
         return max((apart(x, y) for x, y in zip(a, b)), default=0)
     if isinstance(a, (int, float)) and isinstance(b, (int, float)):
