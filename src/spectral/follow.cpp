@@ -11,7 +11,7 @@ namespace {
 // mix, and only a shorter step tells which is which.
 constexpr double possible_mac = 0.4, possible_apart = 0.25, sure_mac = 0.9, sure_apart = 0.01, sure_likeness = 0.6;
 
-struct Pair {
+struct Match {
   double mac, apart;
   std::size_t a, b;
   [[nodiscard]] double score() const { return mac - 2 * apart; }
@@ -23,7 +23,7 @@ struct Pair {
 }  // namespace
 
 ModeMatching match_modes(const std::vector<ModePoint>& first, const std::vector<ModePoint>& second, std::size_t count) {
-  std::vector<Pair> pairs;
+  std::vector<Match> pairs;
   for (std::size_t a = 0; a < first.size(); ++a)
     for (std::size_t b = 0; b < second.size(); ++b) {
       const double size = std::max({std::abs(first[a].lambda), std::abs(second[b].lambda), 1e-300});
@@ -32,11 +32,11 @@ ModeMatching match_modes(const std::vector<ModePoint>& first, const std::vector<
       const double likeness = mac(first[a].shape, second[b].shape);
       if (likeness > possible_mac || apart < sure_apart) pairs.push_back({likeness, apart, a, b});
     }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return p.score() > q.score(); });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Match& p, const Match& q) { return p.score() > q.score(); });
   ModeMatching out;
   out.before.assign(second.size(), -1);
   std::vector<bool> taken(first.size(), false), settled(first.size(), false), found(second.size(), false);
-  for (const Pair& p : pairs) {
+  for (const Match& p : pairs) {
     if (taken[p.a] || out.before[p.b] >= 0) continue;
     taken[p.a] = true;
     out.before[p.b] = static_cast<int>(p.a);
