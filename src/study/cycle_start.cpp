@@ -139,7 +139,7 @@ solve::Restart CycleFollower::start_at_hopf() {
 
 std::vector<solve::Cycle> CycleFollower::coexisting() {
   system_->set_parameter(continuation_.from * scale_);
-  const auto made = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), false);
+  const auto made = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), 1);
   solve::PeriodicProblem& problem = *made;
   std::vector<core::Vector> known;
   known.push_back(start(problem));

@@ -121,11 +121,12 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   }
   at.system.set_parameter(at.found.parameter * at.scale);
   Bar bar = bars[place];
-  bar.location = at.found.bracket;
+  // Newton's method leaves a residual, and no two solutions agree better.
+  bar.location = at.found.bracket + at.newton.tolerance * std::abs(at.found.parameter);
   b.uncertainty = bar.total();
   for (const auto& [name, value] : bar.parts(false)) b.more[name] = value;
-  if (hopf) b.more["uncertainty_whirl_frequency_rad_s"] = bars[frequency].total();
-  const double error = std::max(bars[coefficient].total(), doubt);
+  if (hopf) b.more["uncertainty_whirl_frequency_rad_s"] = bars[frequency].total() + at.newton.tolerance * omega;
+  const double error = std::isnan(doubt) ? doubt : std::max(bars[coefficient].total(), doubt);
   if (hopf)
     put_criticality(b, here[coefficient], error, "supercritical", "subcritical",
                     "first Lyapunov coefficient (Kuznetsov 2004, 5.39)");

@@ -1,6 +1,7 @@
 #include "job_queue.hpp"
 
 #include <algorithm>
+#include <exception>
 
 #include "whirl/core/petsc.hpp"
 
@@ -19,6 +20,8 @@ JobQueue::JobQueue(MPI_Comm comm, int ranks, std::size_t n) : n_(n), size_(core:
 }
 
 JobQueue::~JobQueue() {
+  // An error that only this rank has ends the run: the others are at work and would not come to free anything.
+  if (std::uncaught_exceptions() > flying_) return;
   if (window_ != MPI_WIN_NULL) {
     MPI_Win_unlock_all(window_);
     MPI_Win_free(&window_);

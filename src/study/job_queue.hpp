@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 
 namespace whirl::study {
@@ -31,6 +32,7 @@ private:
   MPI_Win window_ = MPI_WIN_NULL;
   long* counter_ = nullptr;
   int size_ = 1;
+  int flying_ = std::uncaught_exceptions();
 };
 
 }  // namespace whirl::study

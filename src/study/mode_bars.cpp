@@ -94,7 +94,8 @@ std::array<double, 3> ModeBars::at(int id, double speed) const {
   auto right = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.speed >= speed; });
   const auto left = right == points.begin() ? right : std::prev(right);
   if (right == points.end()) right = left;
-  for (std::size_t k = 0; k < 3; ++k) out[k] = std::max(left->bar[k], right->bar[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = std::isnan(left->bar[k]) || std::isnan(right->bar[k]) ? unknown : std::max(left->bar[k], right->bar[k]);
   return out;
 }
 

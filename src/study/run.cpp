@@ -23,10 +23,15 @@ void run_one(Study& study, MPI_Comm comm, const Deck& deck, const Say& say, bool
 
 // Whether the study stands in the deck for the variants of a sweep only.
 bool is_pattern(const Study& study, const Deck& deck) {
-  bool pattern = false, needed = false;
+  bool pattern = false, needed = false, behind = false;
   for (const auto& s : deck.studies) {
+    if (s.get() == &study) {
+      behind = true;
+      continue;
+    }
     const auto* sweep = dynamic_cast<const Sweep*>(s.get());
-    const bool repeats = sweep && sweep->repeats(study.name());
+    // A sweep repeats what stands before it.
+    const bool repeats = behind && sweep && sweep->repeats(study.name());
     pattern = pattern || (repeats && !sweep->options.as_given);
     needed = needed || (repeats && sweep->options.as_given) || s->starts_from() == study.name();
   }

@@ -128,6 +128,10 @@ StudyResult Static::run(Context& context) {
   auto& summary = context.results.summary();
   auto& group = context.results.group();
 
+  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
+  put_values(context, system, x, summary);
+  // Of all that the summary holds so far: what follows has no mesh.
+  put_bars(context, system, options.speed.value, x);
   const auto& rotor = system.train().rotor;
   summary.set("mass.total", rotor::total_mass(rotor), "kg");
   for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
@@ -135,9 +139,6 @@ StudyResult Static::run(Context& context) {
     if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
   }
   summary.set("length.total", rotor::node_positions(rotor).back(), "m");
-  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
-  put_values(context, system, x, summary);
-  put_bars(context, system, options.speed.value, x);
   std::vector<double> px, py, load;
   for (std::size_t b = 0; b < names.size(); ++b) {
     px.push_back(journals[b].position[0]);

@@ -27,12 +27,18 @@ std::string BranchVerdict::text() const {
 }
 
 int threshold_among(const std::vector<BorderEvent>& events, bool rising) {
-  for (const bool loses : {true, false}) {
-    if (!loses && rising) break;
-    for (std::size_t k = 0; k < events.size(); ++k)
-      if (events[k].is_border && events[k].loses == loses) return static_cast<int>(k);
+  int found = -1;
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    if (!events[k].is_border) continue;
+    // On the way down the last one at which stability is regained is the first at which it is lost on the way up.
+    if (events[k].loses == rising) {
+      found = static_cast<int>(k);
+      if (rising) return found;
+    }
   }
-  return -1;
+  for (std::size_t k = 0; found < 0 && !rising && k < events.size(); ++k)
+    if (events[k].is_border) found = static_cast<int>(k);
+  return found;
 }
 
 }  // namespace whirl::study
