@@ -109,8 +109,8 @@ void BandedPad::assemble() {
   }
 }
 
-void BandedPad::solve(Need need) {
-  if (cavitation_ == Options::Cavitation::reynolds) return solve_ruptured(need);
+void BandedPad::solve() {
+  if (cavitation_ == Options::Cavitation::reynolds) return solve_ruptured();
   assemble();
   band_.factor();
   for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -source_[k]);
@@ -225,16 +225,23 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
 }
 
 void BandedPad::add(const Motion& motion, Need need, Response& response) {
-  coefficients(motion);
-  solve(need);
+  if (solved_ != motion) {
+    solved_.reset();
+    coefficients(motion);
+    solve();
+    solved_ = motion;
+  }
+  // The adjoints want the equations at the solution.
+  if (need == Need::tangents && stale_) factor_ruptured();
   integrate(need, response);
   response.min_thickness = std::min(response.min_thickness, h_min_);
   if (need == Need::tangents) adjoint(motion, response);
 }
 
 std::vector<double> BandedPad::pressure(const Motion& motion) {
+  solved_.reset();
   coefficients(motion);
-  solve(Need::force);
+  solve();
   const bool truncated = cavitation_ != Options::Cavitation::none;
   std::vector<double> values;
   for (int i = 0; i <= grid_.n_theta; ++i) {

@@ -9,6 +9,7 @@
 // With lambda = A^-1 dF/dp the derivative of a force in any parameter is dF = -lambda . (d src + dA p). Reynolds
 // cavitation adds a part of each cell that is filled (see rupture.hpp) and moves the rupture by Newton's method.
 
+#include <optional>
 #include <vector>
 
 #include "film/band.hpp"
@@ -32,10 +33,11 @@ private:
   };
   void coefficients(const Motion& motion);
   void assemble();
-  void solve(Need need);
+  void solve();
   void integrate(Need need, Response& response);
   void adjoint(const Motion& motion, Response& response);
-  void solve_ruptured(Need need);
+  void solve_ruptured();
+  void factor_ruptured();
   void enter_ruptured();
   double move_rupture();
   double residual(int i, int j) const;
@@ -87,6 +89,10 @@ private:
   // cells cut or in the cavity add to the diagonal; dF = -(by_source_ d src + by_mobility_ da) beside the adjoint of A.
   std::vector<double> u_, more_;
   std::vector<Quad> by_source_, by_mobility_;
+  int mark_ = 0;        // rows from here on change while the rupture moves (Band::factor)
+  bool stale_ = false;  // the rupture has moved since band_ was factorised
+  // What x_ and band_ belong to: solvers ask for the force first, then for the tangents at the same place.
+  std::optional<Motion> solved_;
 };
 
 }  // namespace whirl::film

@@ -51,7 +51,30 @@ double BandedPad::move_rupture() {
   return moved;
 }
 
-void BandedPad::solve_ruptured(Need need) {
+// Rows in front of the rupture stay as they are while it moves: `mark_` tells from where on they change.
+void BandedPad::factor_ruptured() {
+  constexpr double kOut = std::numeric_limits<double>::infinity();
+  stale_ = false;
+  int first = static_cast<int>(u_.size()), changed = first;
+  for (int i = first_; i < grid_.n_theta; ++i) {
+    if (wall(i)) continue;
+    for (int j = 0; j < rows_; ++j) {
+      const std::size_t k = at(i, j);
+      const double u = u_[k];
+      const double more = rupture::in_cavity(u) ? kOut
+                          : rupture::cut(u)     ? share(j) * mobility_at(i, j) * rupture::slope(u)
+                                                : 0.0;
+      if (more != 0.0) first = std::min(first, static_cast<int>(k));
+      if (more != more_[k]) changed = std::min(changed, static_cast<int>(k));
+      more_[k] = more;
+    }
+  }
+  if (changed >= mark_) return band_.factor(base_, more_, mark_, mark_);
+  mark_ = std::max(1, first - 2 * rows_);
+  band_.factor(base_, more_, 0, mark_);
+}
+
+void BandedPad::solve_ruptured() {
   constexpr int kMost = 200;
   constexpr double kNone = 1e-13;  // of the largest source: nothing that could rupture a film
   constexpr double kNear = 1e-4;   // steps of the mesh; the next ones would be its square
@@ -65,28 +88,7 @@ void BandedPad::solve_ruptured(Need need) {
       u_[k] = 1.0;
   }
   assemble();
-  int mark = static_cast<int>(u_.size()) + 1;  // nothing is factorised yet
-  const auto factor = [&] {
-    constexpr double kOut = std::numeric_limits<double>::infinity();
-    int first = static_cast<int>(u_.size()), changed = first;
-    for (int i = first_; i < grid_.n_theta; ++i) {
-      if (wall(i)) continue;
-      for (int j = 0; j < rows_; ++j) {
-        const std::size_t k = at(i, j);
-        const double u = u_[k];
-        const double more = rupture::in_cavity(u) ? kOut
-                            : rupture::cut(u)     ? share(j) * mobility_at(i, j) * rupture::slope(u)
-                                                  : 0.0;
-        if (more != 0.0) first = std::min(first, static_cast<int>(k));
-        if (more != more_[k]) changed = std::min(changed, static_cast<int>(k));
-        more_[k] = more;
-      }
-    }
-    // In front of the rupture the equations stay as they are while it moves.
-    if (changed >= mark) return band_.factor(base_, more_, mark, mark);
-    mark = std::max(1, first - 2 * rows_);
-    band_.factor(base_, more_, 0, mark);
-  };
+  mark_ = static_cast<int>(u_.size()) + 1;  // nothing is factorised yet
   double moved = 0.0;
   int iteration = 0;
   do {
@@ -94,7 +96,7 @@ void BandedPad::solve_ruptured(Need need) {
       enter_ruptured();  // the next one shall not start from here
       throw core::NotConverged("the cavitated region of a film did not settle");
     }
-    factor();
+    factor_ruptured();
     for (std::size_t k = 0; k < x_.size(); ++k) {
       const double filled = rupture::cut(u_[k]) ? 0.5 * (1.0 + u_[k]) : 1.0;
       x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -filled * source_[k]);
@@ -102,8 +104,7 @@ void BandedPad::solve_ruptured(Need need) {
     band_.solve(x_);
     moved = move_rupture();
   } while (!(moved <= kNear));
-  // The adjoints want the equations at the solution.
-  if (need == Need::tangents && moved > kExact) factor();
+  stale_ = moved > kExact;
 }
 
 // Force, and its derivatives in the nodal pressures into load_.

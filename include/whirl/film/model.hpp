@@ -16,6 +16,8 @@ struct Motion {
   std::array<double, 4> position{};  // x, y [m], tilt dx/dz, dy/dz [-] about the mid-plane of the bearing
   std::array<double, 4> velocity{};  // their rates [m/s, 1/s]
   double speed = 0.0;                // Omega [rad/s]
+
+  friend bool operator==(const Motion&, const Motion&) = default;
 };
 
 /// What the caller of evaluate() wants; `tangents` includes the force.
