@@ -1,6 +1,8 @@
 #include "film/band.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 namespace whirl::film {
 
@@ -46,6 +48,70 @@ void Band::eliminate(std::span<const double> extra, int first, int mark) {
     }
     for (std::size_t c = 0; c < row_packs; ++c) own[c] = inverse * own[c];
     scalars(data_)[static_cast<std::size_t>(i) * stride_] = inverse;
+  }
+}
+
+void Band::forward_from(int first, double* x) const {
+  for (int i = first; i < size_; ++i)
+    for (int r = 1; r <= std::min(width_, size_ - 1 - i); ++r) x[i + r] -= row(i)[r] * x[i];
+}
+
+// The unknowns that row i still changes, x[i] .. x[i + 8 n - 1], stay in registers and move on by one place a row.
+template <std::size_t n>
+void Band::forward(double* x) const {
+  constexpr int length = kLanes * static_cast<int>(n);
+  const int whole = size_ - length;  // rows whose window ends before x does
+  if (whole <= 0) return forward_from(0, x);
+  const Pack* own = data_.data();
+  std::array<Pack, n> window;
+  for (std::size_t c = 0; c < n; ++c) window[c] = Pack::load(x + kLanes * c);
+  for (int i = 0; i < whole; ++i, own += n) {
+    x[i] = window[0][0];
+    const double now = x[i];
+    for (std::size_t c = 0; c < n; ++c) window[c] -= now * own[c];
+    for (std::size_t c = 0; c + 1 < n; ++c) window[c] = next(window[c], window[c + 1]);
+    window[n - 1] = next(window[n - 1], Pack::fill(x[i + length]));
+  }
+  for (std::size_t c = 0; c < n; ++c) std::memcpy(x + whole + kLanes * static_cast<int>(c), &window[c], sizeof(Pack));
+  forward_from(whole, x);
+}
+
+void Band::solve(std::span<double> x) const {
+  double* const at = x.data();
+  switch (stride_ / kLanes) {
+    case 1:
+      forward<1>(at);
+      break;
+    case 2:
+      forward<2>(at);
+      break;
+    case 3:
+      forward<3>(at);
+      break;
+    case 4:
+      forward<4>(at);
+      break;
+    case 5:
+      forward<5>(at);
+      break;
+    default:
+      forward_from(0, at);
+  }
+  // Only the product with the unknown found just before waits for it.
+  for (int i = size_ - 1; i >= 0; --i) {
+    const double* entry = row(i);
+    const int reach = std::min(width_, size_ - 1 - i);
+    double even = entry[0] * at[i], odd = 0.0, third = 0.0, fourth = 0.0;
+    int r = reach;
+    for (; r > 4; r -= 4) {
+      even -= entry[r] * at[i + r];
+      odd -= entry[r - 1] * at[i + r - 1];
+      third -= entry[r - 2] * at[i + r - 2];
+      fourth -= entry[r - 3] * at[i + r - 3];
+    }
+    for (; r > 1; --r) odd -= entry[r] * at[i + r];
+    at[i] = (even + third) + (odd + fourth);
+    if (reach > 0) at[i] -= entry[1] * at[i + 1];
   }
 }
 

@@ -20,11 +20,16 @@ public:
   /// remembers what it finds in those from `mark` on; later ones, with first = mark, only do these. An infinite extra
   /// holds its unknown at zero. `base` is A.
   void factor(const Band& base, std::span<const double> extra, int first, int mark);
+  /// x := A^-1 x after factor().
+  void solve(std::span<double> x) const;
   /// x := A^-1 x for four right-hand sides side by side, after factor().
   void solve(std::span<Quad> x) const;
 
 private:
   void eliminate(std::span<const double> extra, int first, int mark);
+  template <std::size_t n>
+  void forward(double* x) const;
+  void forward_from(int first, double* x) const;
   int size_, width_;
   std::size_t stride_;
   std::vector<Pack> data_, pivot_;

@@ -35,7 +35,7 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
   for (int i = first_; i < grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = wall(i);
   if (cavitation_ == Options::Cavitation::reynolds) enter_ruptured();
-  x_.assign(size, Quad::zero());
+  x_.assign(size, 0.0);
   load_.assign(size, Quad::zero());
 }
 
@@ -113,7 +113,7 @@ void BandedPad::solve() {
   if (cavitation_ == Options::Cavitation::reynolds) return solve_ruptured();
   assemble();
   band_.factor();
-  for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -source_[k]);
+  for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = cavitated_[k] ? 0.0 : -source_[k];
   band_.solve(x_);
 }
 
@@ -137,7 +137,7 @@ void BandedPad::integrate(Need need, Response& response) {
       const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
       Quad &load_first = load_[at(first, j)], &load_second = load_[at(second, j)];
-      const double p = x_[at(first, j)][0], q = x_[at(second, j)][0];
+      const double p = x_[at(first, j)], q = x_[at(second, j)];
       double d_p = 0.5, d_q = edge ? 0.0 : 0.5, integral = d_p * p + d_q * q;
       if (truncated && edge) {
         const EdgeInterval part = truncated_edge(p, q);

@@ -56,7 +56,7 @@ private:
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(place(i) * rows_ + j); }
   std::size_t around(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * rows_ + j : i); }
   std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
-  double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)][0]; }
+  double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)]; }
   double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
   // Mobility around the pad at a node, for the curvature of the pressure at the rupture.
   double mobility_at(int i, int j) const {
@@ -84,7 +84,8 @@ private:
   std::vector<double> source_;   // v_j src_ij
   std::vector<char> cavitated_;  // nodes that are held at p = 0: in a groove
   Band band_, base_;             // factorised; of ruptured films the equations of a full one
-  std::vector<Quad> x_, load_;   // pressure in lane 0; adjoint variables of F_x, F_y, M_x, M_y
+  std::vector<double> x_;        // pressure
+  std::vector<Quad> load_;       // adjoint variables of F_x, F_y, M_x, M_y
   // Reynolds cavitation only: distance of the rupture from each node, kept as the start of the next evaluation; what
   // cells cut or in the cavity add to the diagonal; dF = -(by_source_ d src + by_mobility_ da) beside the adjoint of A.
   std::vector<double> u_, more_;

@@ -38,7 +38,7 @@ double BandedPad::move_rupture() {
       const std::size_t k = at(i, j);
       const double u = u_[k], source = source_[k];
       if (u == std::numeric_limits<double>::infinity()) continue;
-      const double p = x_[k][0], scale = source / (share(j) * mobility_at(i, j));
+      const double p = x_[k], scale = source / (share(j) * mobility_at(i, j));
       const double next = rupture::in_cavity(u) ? 0.5 - residual(i, j) / source
                           : rupture::cut(u)     ? 0.5 * u + p / (scale * u)
                                                 : p / scale + 0.5;
@@ -99,7 +99,7 @@ void BandedPad::solve_ruptured() {
     factor_ruptured();
     for (std::size_t k = 0; k < x_.size(); ++k) {
       const double filled = rupture::cut(u_[k]) ? 0.5 * (1.0 + u_[k]) : 1.0;
-      x_[k] = Quad::fill(cavitated_[k] ? 0.0 : -filled * source_[k]);
+      x_[k] = cavitated_[k] ? 0.0 : -filled * source_[k];
     }
     band_.solve(x_);
     moved = move_rupture();
@@ -123,8 +123,8 @@ void BandedPad::integrate_ruptured(Need need, Response& response) {
       const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
       const double a = mobility_at(i, j), scale = source_[k] / (share(j) * a);
-      if (rupture::cut(u_[k])) x_[k] = Quad::fill(0.5 * scale * u_[k] * u_[k]);
-      const rupture::Counted c = rupture::counted(u_[k], x_[k][0], scale);
+      if (rupture::cut(u_[k])) x_[k] = 0.5 * scale * u_[k] * u_[k];
+      const rupture::Counted c = rupture::counted(u_[k], x_[k], scale);
       force += c.pressure * weight;
       if (need == Need::force) continue;
       load_[k] = c.by_pressure * weight;
@@ -146,7 +146,7 @@ void BandedPad::weigh_ruptured() {
         continue;
       }
       const double scale = source_[k] / (share(j) * mobility_at(i, j));
-      const rupture::Counted c = rupture::counted(u_[k], x_[k][0], scale);
+      const rupture::Counted c = rupture::counted(u_[k], x_[k], scale);
       by_source_[k] += (share(j) * c.by_pressure) * load_[k];
       by_mobility_[k] += (share(j) * c.by_mobility * scale) * load_[k];
     }

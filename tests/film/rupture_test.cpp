@@ -201,5 +201,29 @@ TEST(Rupture, OrderTwo) {
   }
 }
 
+// A film asked for its force and then for its tangents at the same place answers as one asked for both at once, and
+// does not take another place for the same.
+TEST(Rupture, TangentsAfterTheForceAreThoseOfOneCall) {
+  Random random;
+  for (const Geometry& g : {lemon(), cylinder()})
+    for (const auto cavitation : {Options::Cavitation::reynolds, Options::Cavitation::half_sommerfeld})
+      for (const bool tilt : {false, true}) {
+        Options o = ruptured({24, 8}, tilt);
+        o.cavitation = cavitation;
+        auto twice = make_model(g, o, oil()), once = make_model(g, o, oil());
+        Motion m = random.motion(g, tilt);
+        for (const double change : {0.0, 1e-7, 0.3}) {
+          m.speed *= 1.0 + change;
+          const Response force = evaluate(*twice, m, Need::force), tangents = evaluate(*twice, m),
+                         both = evaluate(*once, m);
+          EXPECT_EQ(force.force, both.force);
+          EXPECT_EQ(tangents.force, both.force);
+          EXPECT_EQ(tangents.d_position, both.d_position);
+          EXPECT_EQ(tangents.d_velocity, both.d_velocity);
+          EXPECT_EQ(tangents.d_speed, both.d_speed);
+        }
+      }
+}
+
 }  // namespace
 }  // namespace whirl::film::testing
