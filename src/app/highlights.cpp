@@ -15,6 +15,15 @@ namespace {
 
 constexpr double rpm = std::numbers::pi / 30;
 
+// Four digits are what a table of a console is for.
+std::string number(std::optional<double> value) {
+  if (!value) return "-";
+  const double size = std::abs(*value);
+  if (size != 0 && (size < 1e-3 || size >= 1e6)) return fmt::format("{:.3e}", *value);
+  const int before = size == 0 ? 1 : static_cast<int>(std::floor(std::log10(size))) + 1;
+  return fmt::format("{:.{}f}", *value, std::max(0, 4 - before));
+}
+
 // Values by name.
 class Values {
 public:
@@ -35,6 +44,13 @@ public:
     if (at == all_.end() || !at->second.more.contains("uncertainty")) return io::no_value;
     return at->second.more.at("uncertainty");
   }
+  /// The value and its bar in other units, as in a sentence; "-" if there is none.
+  [[nodiscard]] std::string cell(const std::string& name, double factor = 1) const {
+    const auto value = get(name);
+    if (!value) return "-";
+    const double error = factor * bar(name);
+    return std::isfinite(error) && error > 0 ? with_uncertainty(factor * *value, error, "") : number(factor * *value);
+  }
   /// What stands between `head` and `tail` in the names that have both, in the order of the study.
   [[nodiscard]] static std::vector<std::string> between(const io::StudySummary& s, const std::string& head,
                                                         const std::string& tail) {
@@ -48,15 +64,6 @@ public:
 private:
   std::map<std::string, io::Quantity> all_;
 };
-
-// Four digits are what a table of a console is for.
-std::string number(std::optional<double> value) {
-  if (!value) return "-";
-  const double size = std::abs(*value);
-  if (size != 0 && (size < 1e-3 || size >= 1e6)) return fmt::format("{:.3e}", *value);
-  const int before = size < 1 ? 1 : static_cast<int>(std::floor(std::log10(size))) + 1;
-  return fmt::format("{:.{}f}", *value, std::max(0, 4 - before));
-}
 
 std::optional<double> times(std::optional<double> value, double factor) {
   if (value) *value *= factor;
@@ -93,9 +100,8 @@ std::string of_static(const io::StudySummary& s, const Values& v) {
   Grid grid({"bearing", "load [kN]", "x [um]", "y [um]", "least film [um]", "pressure [MPa]"});
   for (const std::string& b : Values::between(s, "load.", "")) {
     const std::string head = "bearing." + b + ".";
-    grid.add({b, number(times(v.get("load." + b), 1e-3)), number(times(v.get(head + "x"), 1e6)),
-              number(times(v.get(head + "y"), 1e6)), number(times(v.get(head + "min_thickness"), 1e6)),
-              number(times(v.get(head + "max_pressure"), 1e-6))});
+    grid.add({b, v.cell("load." + b, 1e-3), v.cell(head + "x", 1e6), v.cell(head + "y", 1e6),
+              v.cell(head + "min_thickness", 1e6), v.cell(head + "max_pressure", 1e-6)});
   }
   return grid.text();
 }
@@ -103,24 +109,36 @@ std::string of_static(const io::StudySummary& s, const Values& v) {
 std::string of_alignment(const io::StudySummary& s, const Values& v) {
   Grid grid({"bearing", "elevation [um]", "load [kN]"});
   for (const std::string& b : Values::between(s, "elevation.", ""))
-    grid.add({b, number(times(v.get("elevation." + b), 1e6)), number(times(v.get("reaction_aligned." + b), 1e-3))});
+    grid.add({b, v.cell("elevation." + b, 1e6), v.cell("reaction_aligned." + b, 1e-3)});
+  return grid.text();
+}
+
+// The least damped modes at the last speed.
+std::string least_damped(const io::StudySummary& s) {
+  constexpr std::size_t most = 8;
+  std::vector<io::ModeEntry> last;
+  for (const io::ModeEntry& m : s.modes)
+    if (m.speed == s.modes.back().speed && m.imag > 0) last.push_back(m);
+  std::stable_sort(last.begin(), last.end(),
+                   [](const io::ModeEntry& a, const io::ModeEntry& b) { return a.log_decrement < b.log_decrement; });
+  if (last.empty()) return {};
+  Grid grid({fmt::format("mode at {:.6g} {}", last.front().speed, last.front().speed_unit), "[Hz]", "log decrement",
+             "whirl", ""});
+  for (std::size_t k = 0; k < std::min(most, last.size()); ++k)
+    grid.add({fmt::format("{}", k + 1), number(last[k].imag / (2 * std::numbers::pi)), number(last[k].log_decrement),
+              last[k].whirl.empty() ? "-" : last[k].whirl, last[k].stability == "stable" ? "" : last[k].stability});
   return grid.text();
 }
 
 std::string of_modes(const io::StudySummary& s, const Values& v) {
   const auto criticals = Values::between(s, "critical.", ".speed");
-  if (criticals.empty()) return {};
+  if (criticals.empty()) return least_damped(s);
   const std::string unit = v.unit("critical." + criticals.front() + ".speed");
   Grid grid({"critical speed", "[" + unit + "]", "log decrement", "amplification", "margin [%]", "required [%]"});
   for (const std::string& k : criticals) {
     const std::string head = "critical." + k + ".";
-    const auto decrement = v.get(head + "log_decrement");
-    // N/(N2 - N1) of a mode by itself is 1/(2 zeta), its log decrement 2 pi zeta.
-    auto amplification = v.get(head + "amplification_factor");
-    if (!amplification && decrement && *decrement > 0) amplification = std::numbers::pi / *decrement;
-    grid.add({k, number(v.get(head + "speed")), number(decrement), number(amplification),
-              number(times(v.get(head + "separation_margin"), 100)),
-              number(times(v.get(head + "required_margin"), 100))});
+    grid.add({k, v.cell(head + "speed"), v.cell(head + "log_decrement"), v.cell(head + "amplification_factor"),
+              v.cell(head + "separation_margin", 100), v.cell(head + "required_margin", 100)});
   }
   return grid.text();
 }
@@ -143,8 +161,9 @@ std::string of_response(const io::StudySummary& s, const Values& v) {
       const std::string verdict = damped                                      ? "damped, not critical"
                                   : margin && required && *margin < *required ? "TOO NEAR"
                                                                               : "";
-      grid.add({k, number(v.get(head + "speed")), number(times(v.get(head + "semi_major"), 1e6)), number(factor),
-                number(times(margin, 100)), damped ? "-" : number(times(required, 100)), verdict});
+      grid.add({k, v.cell(head + "speed"), v.cell(head + "semi_major", 1e6), v.cell(head + "amplification_factor"),
+                v.cell(head + "separation_margin", 100), damped ? "-" : v.cell(head + "required_margin", 100),
+                verdict});
     }
     out += grid.text();
   }
@@ -164,22 +183,100 @@ std::string of_cycles(const io::StudySummary& s, const Values& v) {
                length ? "x [um, peak to peak]" : "x, peak to peak",
                length ? "y [um, peak to peak]" : "y, peak to peak"});
     for (const std::string& p : places)
-      grid.add({p, number(times(v.get(head + "peak_to_peak." + p + ".x"), length ? 1e6 : 1)),
-                number(times(v.get(head + "peak_to_peak." + p + ".y"), length ? 1e6 : 1))});
+      grid.add({p, v.cell(head + "peak_to_peak." + p + ".x", length ? 1e6 : 1),
+                v.cell(head + "peak_to_peak." + p + ".y", length ? 1e6 : 1)});
     out += grid.text();
   }
   return out;
 }
 
+// The threshold is that of the study, and not the first Hopf point of the list: on a falling range that is another one.
 std::string of_equilibria(const io::StudySummary& s, const Values& v) {
   const auto threshold = v.get("threshold"), whirl = v.get("whirl_frequency");
   if (!threshold || v.unit("threshold") != "rad/s") return {};
-  const auto first = std::find_if(s.bifurcations.begin(), s.bifurcations.end(),
-                                  [](const io::Bifurcation& b) { return b.type == io::BifurcationType::hopf; });
-  if (first == s.bifurcations.end()) return {};
-  std::string out = fmt::format("  threshold {}", with_uncertainty(first->value, first->uncertainty, first->unit));
+  const auto hopf = std::find_if(s.bifurcations.begin(), s.bifurcations.end(), [&](const io::Bifurcation& b) {
+    const double factor = b.unit == "rpm" ? rpm : b.unit == "Hz" ? 2 * std::numbers::pi : 1;
+    return b.type == io::BifurcationType::hopf && std::abs(b.value * factor - *threshold) <= 1e-9 * *threshold;
+  });
+  std::string out = "  threshold ";
+  if (hopf == s.bifurcations.end())
+    out += with_uncertainty(*threshold / rpm, v.bar("threshold") / rpm, "rpm");
+  else
+    out += with_uncertainty(hopf->value, hopf->uncertainty, hopf->unit);
   if (whirl) out += fmt::format(", whirl at {:.1f} rpm, {:.3f} of the speed", *whirl / rpm, *whirl / *threshold);
   return out + "\n";
+}
+
+std::string of_motion(const io::StudySummary& s, const Values& v) {
+  std::string out;
+  for (const std::string& kind : Values::between(s, "motion.", "")) {
+    std::string name = kind;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    out += "  motion: " + name;
+    if (const auto period = v.get("period")) out += fmt::format(", returns after {:.0f} revolutions", *period);
+    out += "\n";
+  }
+  if (const auto exponent = v.get("lyapunov.1.per_revolution")) {
+    const auto error = v.get("lyapunov.1.uncertainty"), rate = v.get("lyapunov.1");
+    const double bar = error && rate && *rate != 0 ? std::abs(*exponent * *error / *rate) : io::no_value;
+    out += fmt::format("  largest Lyapunov exponent {} per revolution\n", with_uncertainty(*exponent, bar, ""));
+  }
+  const auto places = Values::between(s, "peak_to_peak.", ".x");
+  if (places.empty()) return out;
+  const bool length = v.unit("peak_to_peak." + places.front() + ".x") == "m";
+  Grid grid({"place", length ? "x [um, peak to peak]" : "x, peak to peak",
+             length ? "y [um, peak to peak]" : "y, peak to peak", "strongest tone in y [Hz]", "per revolution"});
+  for (const std::string& p : places)
+    grid.add({p, v.cell("peak_to_peak." + p + ".x", length ? 1e6 : 1),
+              v.cell("peak_to_peak." + p + ".y", length ? 1e6 : 1), v.cell("tone." + p + ".y.1.frequency"),
+              v.cell("tone." + p + ".y.1.order")});
+  return out + grid.text();
+}
+
+std::string of_bearing_map(const io::StudySummary& s, const Values& v) {
+  std::string out;
+  if (v.get("threshold.speed"))
+    out += fmt::format(
+        "  a rigid rotor of this load is stable up to {}, at eccentricity {}, and whirls at {} of the speed\n",
+        with_uncertainty(*v.get("threshold.speed"), v.bar("threshold.speed"), "rad/s"),
+        v.cell("threshold.eccentricity"), v.cell("threshold.whirl_ratio"));
+  Grid grid({"Sommerfeld number", "eccentricity", "attitude [deg]", "speed limit", "whirl ratio"});
+  for (const std::string& load : Values::between(s, "sommerfeld.", ".eccentricity")) {
+    const std::string head = "sommerfeld." + load + ".";
+    grid.add({load, v.cell(head + "eccentricity"), v.cell(head + "attitude", 180 / std::numbers::pi),
+              v.cell(head + "speed_limit"), v.cell(head + "whirl_ratio")});
+  }
+  return out + grid.text();
+}
+
+// Variants down, values across, those with bars first; the rest is in the tables.
+std::string of_sweep(const io::StudySummary& s) {
+  constexpr std::size_t most = 6;
+  std::vector<const io::SweepColumn*> columns;
+  for (const io::SweepColumn& c : s.columns) columns.push_back(&c);
+  const auto has_bar = [](const io::SweepColumn* c) {
+    return std::any_of(c->uncertainties.begin(), c->uncertainties.end(), [](double u) { return u > 0; });
+  };
+  std::stable_partition(columns.begin(), columns.end(), has_bar);
+  const std::size_t shown = std::min(most, columns.size());
+  std::vector<std::string> heads{"variant"};
+  for (std::size_t c = 0; c < shown; ++c) {
+    const bool bare = columns[c]->unit.empty() || columns[c]->unit == "1";
+    heads.push_back(columns[c]->name + (bare ? "" : " [" + columns[c]->unit + "]"));
+  }
+  Grid grid(heads);
+  for (std::size_t i = 0; i < s.variants.size(); ++i) {
+    std::vector<std::string> row{s.variants[i].name};
+    for (std::size_t c = 0; c < shown; ++c) {
+      const double value = columns[c]->values[i];
+      row.push_back(std::isfinite(value) ? with_uncertainty(value, columns[c]->uncertainties[i], "") : "-");
+    }
+    grid.add(std::move(row));
+  }
+  std::string out = grid.text();
+  if (shown < columns.size())
+    out += fmt::format("    and {} more values: see the report or the CSV table\n", columns.size() - shown);
+  return out;
 }
 
 std::string of_run_up(const io::StudySummary& s, const Values& v) {
@@ -231,6 +328,9 @@ std::string highlights(const io::StudySummary& s) {
   if (s.kind == "equilibrium_branch") return of_equilibria(s, v);
   if (s.kind == "cycle_branch") return of_cycles(s, v);
   if (s.kind == "run_up") return of_run_up(s, v);
+  if (s.kind == "motion") return of_motion(s, v);
+  if (s.kind == "bearing_map") return of_bearing_map(s, v);
+  if (s.kind == "sweep") return of_sweep(s);
   return {};
 }
 

@@ -7,9 +7,10 @@
 
 namespace whirl::app {
 
-/// Loads and journal positions, critical speeds, peaks with amplification factors and margins, thresholds, cycles asked
-/// for: a few lines or a small table by the kind of the study, from its values. Empty if it has none of these. Lengths
-/// in um (mm from 10 mm on), forces in kN, pressures in MPa, margins in percent.
+/// Loads and journal positions, critical speeds with margins or the least damped modes, peaks with amplification
+/// factors and margins, thresholds, cycles asked for, kinds of motion, limits of a bearing map, variants of a sweep,
+/// with their bars: a few lines or a small table by the kind of the study, from its values. Empty if it has none of
+/// these. Lengths in um (mm from 10 mm on), forces in kN, pressures in MPa, margins in percent.
 [[nodiscard]] std::string highlights(const io::StudySummary& study);
 
 /// "5021.4 +- 6.9 rpm": two digits of the uncertainty, seven of the value at most; the unit 1 is not written.

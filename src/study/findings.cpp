@@ -23,6 +23,11 @@ StudyResult Findings::finish(const std::string& status, bool delivered) {
   result_.delivered = delivered;
   result_.summary.status = status;
   result_.summary.wall_seconds = seconds();
+  // Nobody knows what lies behind the end of a branch that did not reach its own.
+  constexpr std::string_view whole = " throughout";
+  std::string& stability = result_.summary.stability;
+  if (status != "completed" && stability.ends_with(whole))
+    stability.replace(stability.size() - whole.size(), whole.size(), " as far as followed");
   result_.group.set("status", status);
   result_.group.set("delivered", delivered ? 1 : 0);
   return std::move(result_);

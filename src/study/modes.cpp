@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
+#include <optional>
 
 #include "common.hpp"
 #include "groups.hpp"
@@ -19,6 +21,7 @@
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/follow.hpp"
 #include "whirl/spectral/whirl.hpp"
+#include "whirl/study/separation.hpp"
 
 namespace whirl::study {
 namespace {
@@ -186,6 +189,23 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   return context.results.finish("completed", true);
 }
 
+// N/(N2 - N1) of a mode by itself is 1/(2 zeta), its log decrement 2 pi zeta.
+void put_margins(io::StudySummary& summary, const std::string& head, double speed, double speed_error, double decrement,
+                 double decrement_error, const std::optional<deck::Range>& operating) {
+  if (!(decrement > 0)) return;
+  const auto bar = [](double x) {
+    return std::isfinite(x) ? std::map<std::string, double>{{"uncertainty", x}} : std::map<std::string, double>{};
+  };
+  const double factor = std::numbers::pi / decrement, error = factor * decrement_error / decrement;
+  summary.set(head + "amplification_factor", factor, "1", bar(error));
+  if (!operating) return;
+  const Separation margin = separation(speed, factor, operating->from, operating->to),
+                   other = separation(speed, factor + error, operating->from, operating->to);
+  summary.set(head + "separation_margin", margin.actual, "1",
+              bar(margin.actual == 0 ? 0 : speed_error / (speed < operating->from ? operating->from : operating->to)));
+  summary.set(head + "required_margin", margin.required, "1", bar(std::abs(other.required - margin.required)));
+}
+
 }  // namespace
 
 StudyResult Modes::run(Context& context) {
@@ -347,6 +367,8 @@ StudyResult Modes::run(Context& context) {
                 bars.as_bar(deck::from_si(criticals[k].error, unit)));
     summary.set(fmt::format("critical.{}.log_decrement", k + 1), criticals[k].decrement, "1",
                 bars.as_bar(criticals[k].decrement_error));
+    put_margins(summary, fmt::format("critical.{}.", k + 1), criticals[k].speed, criticals[k].error,
+                criticals[k].decrement, criticals[k].decrement_error, options.operating);
     critical_speed.push_back(criticals[k].speed);
     critical_decrement.push_back(criticals[k].decrement);
     critical_mode.push_back(criticals[k].id);

@@ -25,10 +25,15 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("count", &ModesOptions::count, deck::in(1, 1e5), "modes at each speed, those of lowest frequency");
   d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
         "whirl frequency up to which modes are reported");
+  d.add("operating", &ModesOptions::operating, "rad/s", deck::positive,
+        "operating speeds, lowest to highest, from which separation margins of critical speeds are counted",
+        "API 617, API 684");
   d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
         "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
   d.check([](const ModesOptions& o, const deck::Report& r) {
     if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
+    if (o.operating && !(o.operating->from <= o.operating->to))
+      r.fail("operating", "the lowest operating speed comes first");
     // Without films the shaft is taken at rest, whatever its speed.
     if (o.supports != ModesOptions::Supports::films) return;
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");

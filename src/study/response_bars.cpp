@@ -53,12 +53,27 @@ private:
   std::vector<double> centres_;
 };
 
+// What refining leaves: a margin is a difference of speeds over one of them.
+double location_of(const std::string& name, double value) {
+  if (name.ends_with("separation_margin")) return value == 0 ? 0 : peak_tolerance * (1 + value);
+  const bool width = name.ends_with("amplification_factor") || name.ends_with("required_margin");
+  return (width ? width_tolerance : peak_tolerance) * std::abs(value);
+}
+
+// Films in closed form have no mesh: what the refinement of the peaks leaves is all.
+void put_locations(io::StudySummary& summary, const std::vector<NamedPeak>& peaks) {
+  for (auto& [name, q] : summary.values)
+    for (const NamedPeak& p : peaks)
+      if (name.starts_with(p.head) && !name.ends_with(".node"))
+        q.more["uncertainty"] = q.more["uncertainty_location"] = location_of(name, q.value);
+}
+
 }  // namespace
 
 void put_response_bars(const Context& context, const std::vector<NamedPeak>& peaks, const PutPeak& put,
                        const SolveOnMesh& solve) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine);
-  if (meshes.empty()) return;
+  if (meshes.empty()) return put_locations(context.results.summary(), peaks);
   const Tops tops(peaks);
   const std::vector<double> speeds = tops.speeds();
   const MeshResponse here = solve({1, 1}, speeds, "bars");
@@ -82,7 +97,7 @@ void put_response_bars(const Context& context, const std::vector<NamedPeak>& pea
     }
     bars.add(meshes[i].axis, meshes[i].spacing, there);
   }
-  bars.write(peak_tolerance);
+  bars.write(location_of);
 }
 
 }  // namespace whirl::study

@@ -12,7 +12,8 @@
 
 namespace whirl::study {
 
-inline constexpr double peak_tolerance = 1e-5;  ///< of the speed of a peak
+inline constexpr double peak_tolerance = 1e-5;   ///< of the speed of a peak
+inline constexpr double width_tolerance = 1e-3;  ///< of the width of a peak, for its amplification factor
 
 /// The peak of the node with this number among those of the study; its values in the summary start with `head`.
 struct NamedPeak {

@@ -41,13 +41,13 @@ void SummaryBars::add(Axis axis, double spacing, const io::StudySummary& there) 
   any_ = true;
 }
 
-void SummaryBars::write(double relative_location) {
+void SummaryBars::write(const Location& location) {
   if (!any_) return;
   std::map<std::string, Bar> largest;
   std::vector<Bar> bars;
   for (std::size_t k = 0; k < names_.size(); ++k) {
     bars.push_back(bars_[k]);
-    bars[k].location = relative_location * std::abs(values_[k]);
+    bars[k].location = location(names_[k], values_[k]);
     Bar& kin = largest[stem_of(names_[k])];
     kin.film_mesh = std::max(kin.film_mesh, bars[k].film_mesh);
     kin.time_mesh = std::max(kin.time_mesh, bars[k].time_mesh);

@@ -1,6 +1,8 @@
 #pragma once
 // Error bars of all named values of a study at once.
 
+#include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,8 +20,13 @@ public:
   void add(Axis axis, double spacing, const io::StudySummary& there);
   /// Writes the bars. Components of one vector or matrix (names that differ in a last x, y, xx, ...) err together: each
   /// bar is at least a quarter of the largest of its kin, so that a difference that vanishes by chance hides nothing.
-  /// `relative_location` is what an iteration leaves of a value.
-  void write(double relative_location = 0);
+  /// `location` is what an iteration leaves of the value with this name.
+  using Location = std::function<double(const std::string& name, double value)>;
+  void write(const Location& location);
+  /// The same part of every value.
+  void write(double relative_location) {
+    write([=](const std::string&, double value) { return relative_location * std::abs(value); });
+  }
 
 private:
   io::StudySummary& summary_;

@@ -151,19 +151,44 @@ struct Peak {
   double speed = 0, amplitude = 0, amplification = 0;
 };
 
-// Width at 0.707 of the height on the sampled curve, for the amplification factor N/(N2 - N1) (API 684).
-double amplification(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
+// Where the curve falls to 0.707 of a peak's height on either side of it (API 684): between two speeds of the curve,
+// and by the line through them. Nothing where the curve ends first.
+struct Side {
+  double inner = 0, outer = 0, crossing = 0;
+};
+std::array<std::optional<Side>, 2> sides_of(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
   const auto value = [&](std::size_t k) { return curve[k].nodes[node].semi_major(); };
   const double level = value(top) / std::sqrt(2.0);
-  const auto crossing = [&](std::size_t inside, std::size_t outside) {
-    const double w = (value(inside) - level) / (value(inside) - value(outside));
-    return curve[inside].speed + w * (curve[outside].speed - curve[inside].speed);
-  };
-  std::size_t left = top, right = top;
-  while (left > 0 && value(left) > level) --left;
-  while (right + 1 < curve.size() && value(right) > level) ++right;
-  if (value(left) > level || value(right) > level) return std::numeric_limits<double>::quiet_NaN();
-  return curve[top].speed / (crossing(right - 1, right) - crossing(left + 1, left));
+  std::array<std::optional<Side>, 2> sides;
+  for (std::size_t s = 0; s < 2; ++s) {
+    std::size_t outer = top;
+    while ((s == 0 ? outer > 0 : outer + 1 < curve.size()) && value(outer) > level) s == 0 ? --outer : ++outer;
+    if (value(outer) > level) continue;
+    const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
+    const double w = (value(inner) - level) / (value(inner) - value(outer));
+    sides[s] = {curve[inner].speed, curve[outer].speed,
+                curve[inner].speed + w * (curve[outer].speed - curve[inner].speed)};
+  }
+  return sides;
+}
+
+// N/(N2 - N1)
+double amplification(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
+  const auto sides = sides_of(curve, node, top);
+  if (!sides[0] || !sides[1]) return std::numeric_limits<double>::quiet_NaN();
+  return curve[top].speed / (sides[1]->crossing - sides[0]->crossing);
+}
+
+// Speeds that settle the width of a peak: its crossings, where the line through their neighbours may still be off by
+// more than `width_tolerance` of the width. Between two speeds a crossing counts as settled if one of them is as near.
+void unsettled_width(const std::vector<Response>& curve, std::size_t node, std::size_t top,
+                     std::vector<double>& speeds) {
+  const auto sides = sides_of(curve, node, top);
+  if (!sides[0] || !sides[1]) return;
+  const double near = width_tolerance * (sides[1]->crossing - sides[0]->crossing);
+  for (const auto& side : sides)
+    if (std::min(std::abs(side->crossing - side->inner), std::abs(side->crossing - side->outer)) > near)
+      speeds.push_back(side->crossing);
 }
 
 void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r,
@@ -281,6 +306,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
     }
     return found;
   };
+  const auto add = [&](const std::vector<double>& speeds) {
+    for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
+    std::sort(curve.begin(), curve.end(), by_speed);
+  };
   for (std::size_t node = 0; node < nodes.size() && options.refine; ++node)
     for (int pass = 0; pass < 8; ++pass) {
       std::vector<double> speeds;
@@ -294,8 +323,15 @@ StudyResult UnbalanceResponse::run(Context& context) {
         if (vertex > s0 && vertex < s2 && std::abs(vertex - s1) > peak_tolerance * s1) speeds.push_back(vertex);
       }
       if (speeds.empty()) break;
-      for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
-      std::sort(curve.begin(), curve.end(), by_speed);
+      add(speeds);
+    }
+  // Then speeds around the two places where each peak has fallen to 0.707 of its height.
+  for (std::size_t node = 0; node < nodes.size() && options.refine; ++node)
+    for (int pass = 0; pass < 12; ++pass) {
+      std::vector<double> speeds;
+      for (const std::size_t k : tops(node)) unsettled_width(curve, node, k, speeds);
+      if (speeds.empty()) break;
+      add(speeds);
     }
 
   const auto put_peak = [&](io::StudySummary& to, const std::string& head, double speed, double height, double factor) {

@@ -4,6 +4,7 @@
 outcome.py PROGRAM SOURCE
 """
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -27,7 +28,7 @@ def run(deck, name, *words):
 def row(text, start, expected, digits=2e-3):
     """The line that begins with `start` (after spaces) holds these numbers in this order."""
     for line in text.split("\n"):
-        words = line.split()
+        words = re.sub(r" \+- \S+", "", line).split()
         if words[:1] != [start] or len(words) < 1 + len(expected):
             continue
         try:
@@ -63,6 +64,32 @@ af = peak["amplification_factor"]
 if abs(peak["separation_margin"] - (3000 - peak["speed"]) / 3000) > 1e-9 or abs(peak["required_margin"] - 0.17 * (1 - 1 / (af - 1.5))) > 1e-9:
     failures.append(f"margins of API 617: {peak}")
 row(text, "1", [peak["speed"], peak["semi_major"] * 1e6, af, 100 * peak["separation_margin"], 100 * peak["required_margin"]])
+
+# On a falling range the threshold is not the first Hopf point of the list.
+rigid = source / "inputs" / "rigid_rotor"
+text, s = run(train / "balanced.yaml", "falling", "--set", "studies=[{equilibrium_branch: {name: down, parameter: speed, "
+              "range: {from: 6000 rpm, to: 4500 rpm}}}]", "bearings.*.film.cells=[30, 8]",
+              "rotor.reduction={type: guyan, masters: [6, 49, 54, 93, 111, 120, 140, 160, 181]}")
+said = re.search(r"threshold (\S+) .*rpm, whirl", text)
+if not said or abs(float(said[1]) * math.pi / 30 / s["down"]["threshold"] - 1) > 1e-3 or text.count("  hopf at") < 2:
+    failures.append(f"the threshold {s['down']['threshold']} rad/s of a falling range:\n{text}")
+# Critical speeds with margins; modes where there are none.
+text, s = run(source / "tests" / "app" / "friswell_591.yaml", "criticals", "--set", "studies=[{modes: {name: m, range: {from: 100 rpm, "
+              "to: 3000 rpm}, points: 30, operating: {from: 2500 rpm, to: 2800 rpm}}}, {modes: {name: one, speeds: [500 rpm]}}]",
+              "rotor.stiffness_damping=1e-5 s")
+m = s["m"]
+row(text, "1", [m[f"critical.1.{k}"] for k in ("speed", "log_decrement", "amplification_factor")]
+    + [100 * m["critical.1.separation_margin"], 100 * m["critical.1.required_margin"]])
+if abs(m["critical.1.amplification_factor"] * m["critical.1.log_decrement"] - math.pi) > 1e-9:
+    failures.append(f"amplification factor and log decrement: {m}")
+if "mode at 500 rpm" not in text:
+    failures.append("modes at a single speed:\n" + text)
+text, s = run(rigid / "bearing_map.yaml", "map")
+if "stable up to 437.64" not in text:
+    failures.append("what a bearing map says of the rotor:\n" + text)
+text, s = run(rigid / "short_f1.yaml", "more", "--set", "studies=[{motion: {name: free, speed: 200 rad/s, discard: 20, revolutions: 4}}]")
+if "motion: fixed point" not in text:
+    failures.append("the kind of a motion:\n" + text)
 
 if not failures:
     shutil.rmtree(work)

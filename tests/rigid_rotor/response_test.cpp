@@ -50,4 +50,25 @@ TEST(LinearResponse, BeyondTheBoreIsMarked) {
   EXPECT_LT(test::values_of(s).at("bearing.left.film_min"), 0);
 }
 
+// The width of a peak does not depend on the speeds that were asked for.
+TEST(LinearResponse, AmplificationFactorsAreSettledOnAnyGrid) {
+  std::vector<double> factors;
+  for (const char* points : {"8", "300"}) {
+    study::Deck deck = study::load(
+        MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/tests/app/friswell_591.yaml",
+        {"unbalance={u: {planes: [{node: 3, amount: 1 kg mm}]}}",
+         "bearings.*.film.damping=[2 kN s/m, 0 N s/m, 0 N s/m, 2 kN s/m]",
+         "studies=[{unbalance_response: {unbalance: [u], nodes: [1], range: {from: 300 rpm, to: 1500 rpm}}}]",
+         std::string("studies.1.unbalance_response.points=") + points});
+    const auto s = test::run_deck(deck, "linear_width").at(0);
+    const auto at = std::find_if(s.values.begin(), s.values.end(),
+                                 [](const auto& v) { return v.first == "node.1.peak.1.amplification_factor"; });
+    ASSERT_NE(at, s.values.end()) << points;
+    factors.push_back(at->second.value);
+    EXPECT_LE(at->second.more.at("uncertainty"), 2e-3 * factors.back());
+  }
+  EXPECT_GT(factors[0], 1.0);
+  EXPECT_NEAR(factors[0], factors[1], 2e-3 * factors[1]);
+}
+
 }  // namespace

@@ -43,6 +43,12 @@ TEST(Verdict, OfAnEquilibriumBranchSaysWhereItBegins) {
   EXPECT_EQ(stable.stability, "stable throughout");
   EXPECT_FALSE(has(stable, "threshold"));
 
+  const auto cut = run("cut", "inputs/rigid_rotor/short_f1.yaml",
+                       {"studies=[{equilibrium_branch: {range: {from: 160 rad/s, to: 300 rad/s}, max_points: 3}}]"})
+                       .at(0);
+  EXPECT_NE(cut.status, "completed");
+  EXPECT_EQ(cut.stability, "stable as far as followed");
+
   const auto unstable = balanced("480 rad/s", "560 rad/s");
   EXPECT_EQ(unstable.stability, "unstable throughout");
   EXPECT_EQ(unstable.status, "completed");

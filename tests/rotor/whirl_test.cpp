@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <numbers>
 
@@ -153,6 +155,19 @@ TEST(Beam, TimoshenkoElementConvergesToTheExactFrequenciesWithTheErrorOfItsConst
         (sg * sg / shear * b * b + spin * spin / ei) / (ei * b * b + sg * sg / shear) / (64 * 64 * 24);
     EXPECT_NEAR(error[2][n] / predicted, 1, 0.02) << "mode " << n + 1;
     EXPECT_LT(std::abs((4 * error[2][n] - error[1][n]) / 3), 3e-7 * std::pow(3, n)) << "extrapolated, mode " << n + 1;
+  }
+}
+
+// As many modes as a small shaft has, and more: the whole spectrum, whatever is asked for.
+TEST(Beam, AllModesOfAShaftOfFewElements) {
+  const rotor::Options o = test::uniform_shaft(1, 0.05, 4);
+  const auto most = rotor::natural_frequencies(MPI_COMM_WORLD, o, {}, 5);
+  for (const int count : {7, 8, 14}) {
+    const auto all = rotor::natural_frequencies(MPI_COMM_WORLD, o, {}, count);
+    ASSERT_EQ(all.size(), static_cast<std::size_t>(std::min(count, 8)));  // 10 freedoms, 2 rigid motions
+    for (std::size_t k = 0; k < most.size(); ++k) EXPECT_NEAR(all[k], most[k], 1e-6 * most[k]);
+    EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+    EXPECT_GT(all.front(), 1.0);
   }
 }
 

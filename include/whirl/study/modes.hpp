@@ -12,12 +12,12 @@ struct ModesOptions {
   enum class Supports { films, pinned, free };
   std::string name;
   Supports supports = Supports::films;
-  std::optional<deck::Range> range;     ///< of speed [rad/s]
-  int points = 40;                      ///< speeds in the range, evenly spaced with both ends
-  std::vector<deck::Quantity> speeds;   ///< [rad/s], instead of a range
-  int count = 14;                       ///< modes to find, those of lowest frequency
-  std::optional<double> max_frequency;  ///< |imaginary part| up to which modes are reported [rad/s]
-
+  std::optional<deck::Range> range;       ///< of speed [rad/s]
+  int points = 40;                        ///< speeds in the range, evenly spaced with both ends
+  std::vector<deck::Quantity> speeds;     ///< [rad/s], instead of a range
+  int count = 14;                         ///< modes to find, those of lowest frequency
+  std::optional<double> max_frequency;    ///< |imaginary part| up to which modes are reported [rad/s]
+  std::optional<deck::Range> operating;   ///< [rad/s] from which separation margins are counted
   std::vector<deck::Quantity> shapes_at;  ///< speeds at which shapes are kept [rad/s]; the last one if empty
 
   /// Those of `shapes_at` in rad/s, or the last of all speeds.
