@@ -118,8 +118,8 @@ std::string of_modes(const io::StudySummary& s, const Values& v) {
     // N/(N2 - N1) of a mode by itself is 1/(2 zeta), its log decrement 2 pi zeta.
     auto amplification = v.get(head + "amplification_factor");
     if (!amplification && decrement && *decrement > 0) amplification = std::numbers::pi / *decrement;
-    grid.add({k, number(v.get(head + "speed")), number(decrement), number(amplification),
-              number(times(v.get(head + "separation_margin"), 100)),
+    grid.add({k, number(v.get(head + "speed")), decrement && *decrement == 0 ? "undamped" : number(decrement),
+              number(amplification), number(times(v.get(head + "separation_margin"), 100)),
               number(times(v.get(head + "required_margin"), 100))});
   }
   return grid.text();
