@@ -361,7 +361,8 @@ TEST(Sweep, KnowsWhoGoesOnFromABranchThatIsAdded) {
   const study::Deck deck = load(
       "  - cycle_branch: {name: A, unbalance: [gen_pair], range: {from: 2000 rpm, to: 3000 rpm}, follow_flips: true}\n"
       "  - cycle_branch: {name: B, unbalance: [gen_pair], range: {from: 2000 rpm, to: 3000 rpm}}\n"
-      "  - locus: {of: A flip 1, bifurcation: 1, parameter: unbalance.gen_pair.grade, range: {from: 2 mm/s, to: 3 mm/s}}\n"
+      "  - locus: {of: A flip 1, bifurcation: 1, parameter: unbalance.gen_pair.grade, range: {from: 2 mm/s, to: 3 "
+      "mm/s}}\n"
       "  - locus: {name: other, of: B, bifurcation: 1, parameter: unbalance.gen_pair.grade, "
       "range: {from: 2 mm/s, to: 3 mm/s}}\n");
   const auto &a = *deck.studies[0], &b = *deck.studies[1], &of_flip = *deck.studies[2], &of_b = *deck.studies[3];
