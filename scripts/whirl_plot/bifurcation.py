@@ -24,6 +24,9 @@ class Followed:
         if stable is None:
             stable = unstable == 0 if unstable is not None else np.ones(len(self.parameter))
         self.stable = np.asarray(stable) > 0.5
+        undamped = study.get("branch/undamped_count")
+        undamped = np.zeros(len(self.parameter)) if undamped is None else np.asarray(undamped)
+        self.solid = {(True,): "undamped", (False,): "stable"}.get(tuple(np.unique(undamped[self.stable] > 0)), "stable or undamped")
         unstable, step = unstable if unstable is not None else (~self.stable).astype(int), study.get("branch/step")
         self.bare = self.curve = Branch(self.parameter, step, unstable)
         self.bare_parameter, self.bare_stable = self.parameter, self.stable
@@ -121,7 +124,9 @@ def without_twins(branches):
 
 
 def legend(branches, more=()):
-    return branch_legend([k for b in branches for k in b.kinds], more, [e for b in branches for e in b.ends])
+    kinds = list(dict.fromkeys(b.solid for b in branches if b.stable.any()))
+    return branch_legend([k for b in branches for k in b.kinds], more, [e for b in branches for e in b.ends],
+                         kinds[0] if len(kinds) == 1 else "stable or undamped" if kinds else "stable")
 
 
 def distinct(*tables):
@@ -156,6 +161,8 @@ def draw_equilibria(study):
         axis.axhline(0, color=BAD, linewidth=0.9)
         branch.draw(axis, growth, INK)
         branch.mark(axis, [growth])
+        if not np.any(growth):
+            axis.set_ylim(-1, 1)
         finish(axis, "least stable eigenvalue", "real part [1/s]", parameter_label(study))
     directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")]
     return save(figure, study, "equilibria", study.shown, legend([branch], directions))

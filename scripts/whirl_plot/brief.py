@@ -40,6 +40,8 @@ def modes(study):
              if 0 < d < math.pi / 2.5 or d <= 0]
     out = [f"critical speeds with an amplification above 2.5: {', '.join(known) or 'none'}" + (f" {unit}" if known else "")]
     unstable = study.get("spectrum/speed")[study.get("spectrum/log_decrement") < 0]
+    if np.any(study.get("spectrum/log_decrement") == 0):
+        out.append("undamped" if np.all(study.get("spectrum/log_decrement") == 0) else "some modes are undamped")
     if len(unstable):
         out.append(f"unstable from {digits(float(unstable.min() * factor), 4)} {unit}")
     return out
@@ -67,7 +69,7 @@ def branch(study):
     unit = "" if unit == "1" else unit
     losing = [b for b in study.bifurcations if b.get("type") in ("hopf", "flip", "neimark_sacker", "cyclic_fold", "fold")]
     if followed.stable.all():
-        out.append("stable throughout")
+        out.append("stable throughout" if followed.solid == "stable" else study.summary.get("stability", followed.solid))
     elif not followed.stable.any():
         out.append("unstable throughout")
     elif not followed.stable[0]:

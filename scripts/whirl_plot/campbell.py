@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, WARN, levels, runs, save, speed_axis
+from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, UNDAMPED, WARN, levels, runs, save, speed_axis
 
 LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4))}
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
@@ -12,7 +12,7 @@ BOX = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6}
 
 
 def colour_of(decrement):
-    return BAD if decrement < 0 else WARN if decrement < LOW_DAMPING else GOOD
+    return BAD if decrement < 0 else UNDAMPED if decrement == 0 else WARN if decrement < LOW_DAMPING else GOOD
 
 
 def modes_of(study):
@@ -95,6 +95,8 @@ def draw(study):
                   pad=6 + (12 + 9 * max(levels(critical, ends[1] - ends[0], 0.045), default=0)) * bool(len(critical)))
     handles = [Line2D([], [], color=GOOD, label=f"log. decrement \u2265 {LOW_DAMPING}"),
                Line2D([], [], color=WARN, label=f"0 to {LOW_DAMPING}"), Line2D([], [], color=BAD, label="unstable")]
+    if any(np.any(m[3] == 0) for m in modes):
+        handles.append(Line2D([], [], color=UNDAMPED, label="undamped"))
     if any(np.any(m[3] > OVERDAMPED) for m in modes):
         handles.append(Line2D([], [], color=LIGHT, label=f"above {OVERDAMPED:.0f}"))
     occurring = {w for m in modes for w in m[4]}

@@ -20,6 +20,7 @@ INK, GREY, LIGHT = "#222222", "#7a7a7a", "#d9d9d9"
 Y, X = "#0b62a4", "#d1670c"
 COLOURS = ["#7b3fa0", "#12868f", "#8a5a2b", "#c2477f", "#7d8a1f", "#4a5a78", "#a98a00", "#5e4fa2"]
 GOOD, WARN, BAD = "#2a8c55", "#e69f00", "#c8102e"
+UNDAMPED = "#3b6fb6"  # neither stable nor unstable
 SHADE = "#f3f6f9"
 DASHED = (0, (3.2, 1.8))
 ROTATION = "rotation x \u2192 y, counter-clockwise with x right and y up"
@@ -171,9 +172,9 @@ def mark_end(axis, x, y, size=6):
               linestyle="none", zorder=7)
 
 
-def branch_legend(kinds, more=(), ends=()):
+def branch_legend(kinds, more=(), ends=(), solid="stable"):
     """Handles for stable, unstable, the kinds of bifurcation that occur, and the ends of branches (name, reason)."""
-    handles = list(more) + [Line2D([], [], color=GREY, label="stable"),
+    handles = list(more) + [Line2D([], [], color=GREY, label=solid),
                             Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.3, label="unstable")]
     for kind in dict.fromkeys(k for k in kinds if k in MARKS):
         short, marker, words = MARKS[kind]

@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 using core::InputError;
 
 constexpr const char* deck_name = "resolved.yaml";
+// The deck of a run that replaces an earlier one: it stands from before the first file is removed until the last is.
+constexpr const char* replacing_name = "resolved.yaml.next";
 // Those of every run; a folder of a version without manifest has them, too.
 constexpr const char* always[] = {"results.h5", "summary.json"};
 
@@ -37,12 +39,16 @@ fs::path unfinished_name(const fs::path& path) {
   return path.string() + ".new";
 }
 
-void write_whole(const fs::path& path, const std::string& text) {
-  const fs::path temporary = unfinished_name(path);
-  std::ofstream out(temporary, std::ios::binary);
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
   out << text << std::flush;
   out.close();
-  if (!out) throw core::Error(fmt::format("cannot write '{}'", temporary.string()));
+  if (!out) throw core::Error(fmt::format("cannot write '{}'", path.string()));
+}
+
+void write_whole(const fs::path& path, const std::string& text) {
+  const fs::path temporary = unfinished_name(path);
+  write(temporary, text);
   fs::rename(temporary, path);
 }
 
@@ -57,20 +63,23 @@ bool holds_results(const fs::path& directory, const io::Manifest& manifest) {
 
 }  // namespace
 
+Directory::Lock::~Lock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
 void Directory::lock() {
-  lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) return;
+  const int folder = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  Lock lock(folder);
   // The ranks of a run that has just been killed need a moment to vanish.
   for (int attempt = 0; attempt < 20; ++attempt) {
-    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-    if (errno != EWOULDBLOCK) {
-      ::close(lock_);
-      lock_ = -1;
+    if (::flock(folder, LOCK_EX | LOCK_NB) == 0) {
+      lock_ = std::move(lock);
       return;
     }
+    if (errno != EWOULDBLOCK) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  ::close(std::exchange(lock_, -1));
   throw InputError(fmt::format("another run is at work in '{}': wait for its end or choose another directory with -o",
                                path_.string()));
 }
@@ -81,13 +90,16 @@ void Directory::prepare(const std::string& resolved, Earlier earlier) {
   made_ = fs::create_directories(path_);
   lock();
   io::Manifest manifest(path_);
-  const fs::path deck = path_ / deck_name, unfinished = unfinished_name(deck);
+  const fs::path deck = path_ / deck_name, unfinished = unfinished_name(deck), replacing = path_ / replacing_name;
   const bool ours = fs::exists(deck) || manifest.exists();
   // A run killed while it wrote its deck leaves only that.
-  const bool empty = std::all_of(fs::directory_iterator(path_), fs::directory_iterator(),
-                                 [&](const fs::directory_entry& e) { return e.path() == unfinished; });
+  const bool empty =
+      std::all_of(fs::directory_iterator(path_), fs::directory_iterator(),
+                  [&](const fs::directory_entry& e) { return e.path() == unfinished || e.path() == replacing; });
   fresh_ = empty;
   if (!empty && !ours) throw InputError(fmt::format("'{}' holds files that are not results of whirl", path_.string()));
+  // What a killed --force has left of the results that it was to replace goes the same way.
+  if (fs::exists(replacing)) earlier = Earlier::replace;
   // A deck by itself that a manifest names is what a run left that came to nothing.
   const bool used = holds_results(path_, manifest) || (fs::exists(deck) && !manifest.has(deck_name));
   if (used && earlier == Earlier::refuse)
@@ -97,13 +109,16 @@ void Directory::prepare(const std::string& resolved, Earlier earlier) {
                     path_.string()));
   if (used && earlier == Earlier::resume && contents(deck) != resolved)
     throw InputError(fmt::format("'{}' holds results of another deck: --resume needs the same one", path_.string()));
-  if (earlier == Earlier::replace) {
-    // The deck stays until it is replaced below: it says whose directory this is.
-    manifest.remove_files(deck_name);
-    for (const char* name : always) fs::remove(path_ / name);
+  if (earlier != Earlier::replace) {
+    manifest.add(deck_name);
+    return write_whole(deck, resolved);
   }
+  write(replacing, resolved);
+  // The deck stays until it is replaced: it says whose directory this is.
+  manifest.remove_files(deck_name);
+  for (const char* name : always) fs::remove(path_ / name);
   manifest.add(deck_name);
-  write_whole(deck, resolved);
+  fs::rename(replacing, deck);
 }
 
 Directory::Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier)
@@ -118,12 +133,8 @@ Directory::Directory(MPI_Comm comm, const std::string& directory, const std::str
   });
 }
 
-Directory::~Directory() {
-  if (lock_ >= 0) ::close(lock_);
-}
-
 void Directory::abandon() noexcept {
-  if (lock_ < 0) return;  // not rank 0, or somebody else may be at work here
+  if (!lock_.held()) return;  // not rank 0, or somebody else may be at work here
   std::error_code ignored;
   try {
     io::Manifest manifest(path_);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace whirl::app {
 
@@ -22,22 +23,34 @@ public:
   /// does not say what to do with them, if they belong to another deck, or if the directory is not one of ours.
   /// `Earlier::replace` removes what the manifest names and nothing else.
   Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier);
-  Directory(const Directory&) = delete;
-  Directory& operator=(const Directory&) = delete;
-  ~Directory();
-
   /// Takes back what the constructor made, if no study has left a result since: a deck that turned out to be wrong must
   /// not stand in the way of the right one. Rank 0 acts; throws nothing.
   void abandon() noexcept;
   /// Whether this rank holds the lock; rank 0 does unless the file system has none.
-  [[nodiscard]] bool locked() const { return lock_ >= 0; }
+  [[nodiscard]] bool locked() const { return lock_.held(); }
 
 private:
+  // The descriptor whose lock goes when it is closed.
+  class Lock {
+  public:
+    Lock() = default;
+    explicit Lock(int descriptor) : descriptor_(descriptor) {}
+    Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    Lock& operator=(Lock&& other) noexcept {
+      std::swap(descriptor_, other.descriptor_);
+      return *this;
+    }
+    ~Lock();
+    [[nodiscard]] bool held() const { return descriptor_ >= 0; }
+
+  private:
+    int descriptor_ = -1;
+  };
   void lock();
   void prepare(const std::string& resolved, Earlier earlier);
 
   std::filesystem::path path_;
-  int lock_ = -1;
+  Lock lock_;
   bool made_ = false, fresh_ = false;  // the directory was not there before, or held nothing
 };
 

@@ -137,8 +137,10 @@ std::string of_modes(const io::StudySummary& s, const Values& v) {
   Grid grid({"critical speed", "[" + unit + "]", "log decrement", "amplification", "margin [%]", "required [%]"});
   for (const std::string& k : criticals) {
     const std::string head = "critical." + k + ".";
-    grid.add({k, v.cell(head + "speed"), v.cell(head + "log_decrement"), v.cell(head + "amplification_factor"),
-              v.cell(head + "separation_margin", 100), v.cell(head + "required_margin", 100)});
+    const auto decrement = v.get(head + "log_decrement");
+    grid.add({k, v.cell(head + "speed"), decrement && *decrement == 0 ? "undamped" : v.cell(head + "log_decrement"),
+              v.cell(head + "amplification_factor"), v.cell(head + "separation_margin", 100),
+              v.cell(head + "required_margin", 100)});
   }
   return grid.text();
 }

@@ -110,7 +110,16 @@ std::optional<Relative> relative_of(std::string_view text, bool append) {
 }
 
 // `text` after the factor or the offset, in the unit that it had.
-std::string changed(const std::string& text, const Relative& r, const std::string& unit) {
+std::string changed(const std::string& text, const Relative& r, const Spec& spec) {
+  const std::string& unit = spec.unit;
+  if (!spec.letter.empty()) {
+    if (!r.offset.empty())
+      throw InputError(
+          fmt::format("'{}' takes a factor (x2, +20 %) or a new value, not the offset '{}'", text, r.offset));
+    if (!text.starts_with(spec.letter))
+      throw InputError(fmt::format("'{}' has no '{}' before its number", text, spec.letter));
+    return spec.letter + scaled(text.substr(spec.letter.size()), r.factor);
+  }
   if (r.offset.empty()) return scaled(text, r.factor);
   const Split now = split_quantity(text);
   double sum = 0;
@@ -198,6 +207,7 @@ private:
   [[nodiscard]] std::size_t entry(Node& at, const std::string& step, std::size_t i) const {
     if (at.kind == Node::Kind::none) at.kind = Node::Kind::map;
     if (const Node* found = at.find(step)) return static_cast<std::size_t>(found - at.items.data());
+    if (Node* found = other_word(at, step)) return static_cast<std::size_t>(found - at.items.data());
     // A part of something new beside something of nearly this name is a slip where all are of a kind: a bearing is
     // not begun by its clearance.
     std::vector<std::string> names;
@@ -212,6 +222,30 @@ private:
     Node& next = at.set(step, Node{});
     next.place = next.key_place = edit_.place;
     return at.items.size() - 1;
+  }
+
+  // The entry of `at` under another word for the option `step`, which it has from here on, and its value with it: a
+  // radius of 0.1 m becomes a diameter of 0.2 m. Null if there is none.
+  [[nodiscard]] Node* other_word(Node& at, const std::string& step) const {
+    std::vector<std::string> path = path_;
+    path.push_back(step);
+    const std::vector<Alias> words = leaf_at(path).words;
+    const auto meant = std::find_if(words.begin(), words.end(), [&](const Alias& a) { return a.key == step; });
+    for (const Alias& word : words) {
+      Node* found = at.find(word.key);
+      if (!found) continue;
+      const double factor = meant->factor / word.factor;
+      if (factor != 1 && found->kind == Node::Kind::scalar) {
+        try {
+          found->text = scaled(found->text, factor);
+        } catch (const InputError& e) {
+          throw InputError(fmt::format("'{}': {}", word.key, e.what()));
+        }
+      }
+      found->key = step;
+      return found;
+    }
+    return nullptr;
   }
 
   // The value at the end of the path.
@@ -245,9 +279,10 @@ private:
   }
 
   // What the description says; nothing for what it does not know, of which the reader will complain.
-  [[nodiscard]] Leaf known_leaf() const {
+  [[nodiscard]] Leaf known_leaf() const { return leaf_at(path_); }
+  [[nodiscard]] Leaf leaf_at(const std::vector<std::string>& path) const {
     try {
-      return leaf_of(structure_, nullptr, path_);
+      return leaf_of(structure_, nullptr, path);
     } catch (const InputError&) {
       return {};
     }
@@ -263,7 +298,7 @@ private:
     for (Node& i : n.items) shift(i, r, spec);
     if (n.kind != Node::Kind::scalar) return;
     try {
-      n.text = changed(n.text, r, spec.unit);
+      n.text = changed(n.text, r, spec);
     } catch (const InputError& e) {
       throw InputError(fmt::format("'{}': {}", walked(), e.what()));
     }

@@ -12,6 +12,9 @@ namespace whirl::deck {
 struct Leaf {
   const Spec* spec = nullptr;  ///< of a number, or of the numbers of a list or a range; null for all else
   Node preset;                 ///< the value if the deck is silent, kind none if there is none
+  /// The words for the option at the path, its key first; empty where the path leads to an item or into nothing known.
+  /// The factors are those to the value of the key.
+  std::vector<Alias> words{};
 };
 
 /// A codec that tells what it knows; a codec that does not derive from it is a value without parts.
@@ -21,7 +24,6 @@ public:
   Knows(const Knows&) = delete;
   Knows& operator=(const Knows&) = delete;
   virtual ~Knows() = default;
-  [[nodiscard]] virtual const Spec* spec() const { return nullptr; }
   /// Values of a choice, or of the items of a list of choices; empty for all else.
   [[nodiscard]] virtual std::vector<Choice> choices() const { return {}; }
   /// What is known at the rest of a path that is not empty; `preset` is the default at the start of it, null if
@@ -33,8 +35,6 @@ public:
 [[nodiscard]] Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path);
 /// The same below a struct, whose own defaults hold where `preset` is null.
 [[nodiscard]] Leaf leaf_of(const Structure& structure, const void* preset, std::span<const std::string> path);
-/// Facts of the number that `codec` reads, or of the numbers of a list or a range; null for all else.
-[[nodiscard]] const Spec* spec_of(const Codec& codec);
 /// Values of a choice, or of the items of a list of choices; empty for all else.
 [[nodiscard]] std::vector<Choice> choices_of(const Codec& codec);
 

@@ -188,11 +188,6 @@ Access Structure::find(void* object, std::span<const std::string> path) const {
   return a;
 }
 
-const Spec* spec_of(const Codec& codec) {
-  const auto* knows = dynamic_cast<const Knows*>(&codec);
-  return knows ? knows->spec() : nullptr;
-}
-
 std::vector<Choice> choices_of(const Codec& codec) {
   const auto* knows = dynamic_cast<const Knows*>(&codec);
   return knows ? knows->choices() : std::vector<Choice>{};
@@ -203,7 +198,7 @@ Leaf Knows::leaf(const void*, std::span<const std::string> path) const {
 }
 
 Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path) {
-  if (path.empty()) return {spec_of(codec), preset ? codec.write(preset) : Node{}};
+  if (path.empty()) return {codec.spec(), preset ? codec.write(preset) : Node{}};
   const auto* knows = dynamic_cast<const Knows*>(&codec);
   if (!knows) throw InputError(fmt::format("'{}' leads into a value that has no parts", path.front()));
   return knows->leaf(preset, path);
@@ -211,11 +206,18 @@ Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string
 
 Leaf leaf_of(const Structure& s, const void* preset, std::span<const std::string> path) {
   if (path.empty()) return {};
+  double factor = 1;
   const Option* o = s.option(path.front());
+  if (!o) o = s.aliased(path.front(), factor);
   if (!o)
     throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), s.keys())));
   void* object = const_cast<void*>(preset ? preset : s.defaults.get());
-  return leaf_of(*o->codec, object ? o->member(object) : nullptr, path.subspan(1));
+  Leaf leaf = leaf_of(*o->codec, object ? o->member(object) : nullptr, path.subspan(1));
+  if (path.size() > 1) return leaf;
+  if (leaf.preset.kind == Node::Kind::scalar && factor != 1) leaf.preset.text = scaled(leaf.preset.text, factor);
+  leaf.words = {{o->key, 1}};
+  leaf.words.insert(leaf.words.end(), o->aliases.begin(), o->aliases.end());
+  return leaf;
 }
 
 Access find_in(const Structure& structure, void* object, std::string_view path) {

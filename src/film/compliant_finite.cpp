@@ -1,130 +1,16 @@
-// Film of finite length in a full cylindrical bore with an elastic liner: the thickness on a mesh around and along the
-// bearing is the state.
+// Force, residual and tangents of the film of finite length.
+#include "film/compliant_finite.hpp"
+
 #include <Eigen/Core>
 #include <algorithm>
-#include <utility>
 
-#include "film/compliant.hpp"
-#include "film/groove.hpp"
 #include "film/kinds.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/index.hpp"
 
 namespace whirl::film {
-namespace {
 
 using core::at;
 using Array = Eigen::Map<const Eigen::ArrayXd>;
-
-// Between every node and the one `ahead` of it in the work space, a and b, goes f = w ((h_a + h_b)/2)^3 (P_b - P_a)
-// from b to a: df/dh_a = df/dh_b = q, df/dP_b = -df/dP_a = k.
-struct Faces {
-  std::vector<double> f, k, q;
-  void set(double w, std::size_t ahead, const std::vector<double>& h, const std::vector<double>& p, Need need) {
-    for (auto* values : {&f, &k, &q}) values->resize(h.size() - ahead);
-    if (need == Need::tangents)
-      fill<true>(w, f.size(), h.data(), h.data() + ahead, p.data(), p.data() + ahead, f.data(), k.data(), q.data());
-    else
-      fill<false>(w, f.size(), h.data(), h.data() + ahead, p.data(), p.data() + ahead, f.data(), k.data(), q.data());
-  }
-
-private:
-  template <bool tangents>
-  static void fill(double w, std::size_t n, const double* __restrict ha, const double* __restrict hb,
-                   const double* __restrict pa, const double* __restrict pb, double* __restrict to,
-                   double* __restrict by_p, double* __restrict by_h) {
-    for (std::size_t x = 0; x < n; ++x) {
-      const double h = 0.5 * (ha[x] + hb[x]), square = w * h * h, rise = pb[x] - pa[x];
-      to[x] = square * h * rise;
-      if constexpr (tangents) {
-        by_p[x] = square * h;
-        by_h[x] = 1.5 * square * rise;
-      }
-    }
-  }
-};
-
-// Line i lies at theta = 90 deg + i d, its states j = 0 .. M - 2 at z = L ((j + 1)/M - 1/2); P = 0 on both edges,
-// where the liner gives way to the asperities alone, without its damping: h = 1 - e_x cos - e_y sin if there are none.
-// With the scales of the other compliant films and s = 1/(4 (L/D)^2 (dz/L)^2), (4.22) reads
-//
-//     dh/dt = -Omega/2 dh/dtheta + 1/2 (delta_theta (h^3 delta_theta P)/d^2 + s delta_z (h^3 delta_z P))
-//
-// with h at faces midway between nodes from both neighbours. A line in a groove has P = 0 and stays among the states,
-// so that lines form a ring: its deflection u falls by du/dt = -kappa u and is zero if it was, kappa being the rate at
-// which a film of nominal thickness would let a node go.
-class FiniteFilm final : public CompliantModel {
-public:
-  FiniteFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : CompliantModel(geometry, options, lubricant),
-        cells_(options.cells[1]),
-        fixed_(grooved(options.cells[0], options.grooves)) {
-    const double slenderness = g_.length / g_.radius;  // 2 L/D
-    by_step_ = 0.5 / (ring_.step() * ring_.step());
-    by_length_ = 0.5 * cells_ * cells_ / (slenderness * slenderness);
-    const double per_cell = 1.0 / cells_;
-    for (int j = 1; j < cells_; ++j)
-      z_weight_.push_back((ring_.nodal() ? (j % 2 == 0 ? 2.0 : 4.0) / 3.0 : 1.0) * per_cell);
-    edge_weight_ = per_cell / (ring_.nodal() ? 3.0 : 2.0);
-    for (auto* values : {&x_, &y_}) values->resize(at(inner()));
-  }
-
-  [[nodiscard]] std::size_t states() const override { return at(ring_.nodes() * inner()); }
-  [[nodiscard]] Ring ring() const override { return {ring_.nodes(), reach()}; }
-  [[nodiscard]] int row_entries() const override { return Stencil::n_places + (liner_.damped() ? 5 : 1); }
-  void unloaded(const Motion& motion, std::span<double> states) const override {
-    for (int i = 0; i < ring_.nodes(); ++i)
-      std::fill_n(states.begin() + i * inner(), inner(), rigid(motion, i) * g_.clearance);
-  }
-  void evaluate_lines(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates,
-                      Need need, StateResponse& response) override;
-  void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
-                std::span<double> to) const override;
-  Summary summary(const Motion& motion, std::span<const double> states) override;
-  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
-
-private:
-  [[nodiscard]] int inner() const { return cells_ - 1; }
-  [[nodiscard]] int reach() const { return neighbours_.reach; }
-  [[nodiscard]] bool fixed(int line) const { return fixed_[ring_.index(line)]; }
-  [[nodiscard]] std::array<double, 2> normal(int line) const { return {ring_.cosine(line), ring_.sine(line)}; }
-  // Velocity of the journal away from a line.
-  [[nodiscard]] double away(const Motion& m, int line) const {
-    return m.velocity[0] * ring_.cosine(line) + m.velocity[1] * ring_.sine(line);
-  }
-  // Node j (0 and `cells_` on the edges) of the line at `row` of the work space.
-  [[nodiscard]] std::size_t node(int row, int j) const { return at(row * (cells_ + 1) + j); }
-  void set(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates);
-  void set_settled(const Motion& motion, std::span<const double> states);
-  void slopes(Lines part);
-  void integrate(Lines part, Need need, StateResponse& response);
-  // x_ and y_ to the states of a line, of which the first one is `begin`.
-  void put(std::size_t begin, std::vector<std::array<double, 4>>& to) const {
-    for (std::size_t j = 0; j < x_.size(); ++j) to[begin + j] = {x_[j], y_[j], 0.0, 0.0};
-  }
-  void add_edges(int line, const LinerLaw::Edge& edge, Need need, Response& out) const;
-  void rows(Lines part, const Motion& motion, std::span<const double> rates, Need need, StateResponse& response);
-  void hold(int i, int line, const Motion& motion, const double* rates, Need need, StateResponse& response) const;
-  void residual(int i, double speed, const double* rates, double* g) const;
-  void by_states(int i, double speed, StateResponse& response) const;
-  void by_journal(int i, int line, StateResponse& response);
-  // kappa
-  [[nodiscard]] double release() const { return 2.0 * (by_step_ + by_length_) * liner_.stiffness(); }
-
-  int cells_;                               // along the bearing
-  std::vector<bool> fixed_;                 // lines in grooves
-  double by_step_ = 0.0, by_length_ = 0.0;  // 1/(2 d^2), s/2
-  std::vector<double> z_weight_;            // of the mean along z, per inner node
-  double edge_weight_ = 0.0;                // the same of an edge
-  // Of the lines at hand and their neighbours, with the edges: in clearances thickness, deflection and its rate.
-  std::vector<double> h_, u_, moved_;
-  Carried carried_;
-  std::vector<LinerLaw::Edge> edge_;  // of both edges of a line
-  Faces around_, along_;
-  std::array<std::vector<double>, 2> slope_;  // d force*/d P at the states of the lines at hand
-  std::vector<int> mixed_;                    // those in front of cells in which P changes its sign
-  std::vector<double> x_, y_;                 // of one line
-};
 
 void FiniteFilm::set(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates) {
   const int rows = part.count() + 2 * reach(), first = part.begin - reach();
@@ -417,72 +303,6 @@ void FiniteFilm::evaluate_lines(const Motion& motion, Lines part, std::span<cons
   integrate(part, need, response);
   rows(part, motion, rates, need, response);
 }
-
-// Deflections, periodic around and zero at the edges, are interpolated linearly in both directions.
-void FiniteFilm::resample(const Motion& motion, const StateModel& other, std::span<const double> from,
-                          std::span<double> to) const {
-  const auto* mesh = dynamic_cast<const FiniteFilm*>(&other);
-  core::require(mesh != nullptr && from.size() == mesh->states(), "states of another film of finite length");
-  const auto deflection = [&](int i, int j) {
-    if (j == 0 || j == mesh->cells_) return 0.0;
-    const int line = i % mesh->ring_.nodes();
-    return from[at(line * mesh->inner() + j - 1)] - g_.clearance * mesh->rigid(motion, line);
-  };
-  const auto place = [](int k, int n, int m) {  // node k of n in cells of m
-    const double x = static_cast<double>(k) * m / n;
-    const int cell = std::min(static_cast<int>(x), m - 1);
-    return std::pair{cell, x - cell};
-  };
-  for (int i = 0; i < ring_.nodes(); ++i) {
-    const auto [a, s] = place(i, ring_.nodes(), mesh->ring_.nodes());
-    for (int j = 1; j < cells_; ++j) {
-      const auto [b, t] = place(j, cells_, mesh->cells_);
-      to[at(i * inner() + j - 1)] = rigid(motion, i) * g_.clearance +
-                                    (1.0 - s) * ((1.0 - t) * deflection(a, b) + t * deflection(a, b + 1)) +
-                                    s * ((1.0 - t) * deflection(a + 1, b) + t * deflection(a + 1, b + 1));
-    }
-  }
-}
-
-// Side flow (H^3/12 mu) dp/dz through both edges with one-sided slopes of second order; friction mu U/H on the whole
-// circumference and half the pressure flow, -U/(2 R) int p dH/dtheta.
-Summary FiniteFilm::summary(const Motion& motion, std::span<const double> states) {
-  const Lines all{0, ring_.nodes()};
-  set_settled(motion, states);
-  Summary s;
-  s.min_thickness = g_.clearance * *std::min_element(h_.begin(), h_.end());
-  const double U = motion.speed * g_.radius, area = ring_.step() * g_.radius * g_.length / cells_;
-  const std::size_t stride = node(1, 0);
-  for (int i = 0; i < all.end; ++i)
-    for (int j = 0; j <= cells_; ++j) {
-      const bool edge = j == 0 || j == cells_;
-      const std::size_t k = node(i + reach(), j);
-      const double p = scales_.pressure * std::max(carried_.p[k], 0.0), h = g_.clearance * h_[k];
-      s.max_pressure = std::max(s.max_pressure, p);
-      const double slope = g_.clearance * (h_[k + stride] - h_[k - stride]) / (2.0 * ring_.step());
-      s.power_loss += (edge ? 0.5 : 1.0) * area * U * (viscosity_ * U / h - 0.5 * p * slope / g_.radius);
-      if (!edge) continue;
-      const std::size_t first = j == 0 ? k + 1 : k - 1, second = j == 0 ? k + 2 : k - 2;
-      const double rise =
-          scales_.pressure * (4.0 * std::max(carried_.p[first], 0.0) - std::max(carried_.p[second], 0.0)) / 2.0;
-      s.side_flow += ring_.step() * g_.radius * h * h * h / (12.0 * viscosity_) * rise * cells_ / g_.length;
-    }
-  return s;
-}
-
-std::vector<Field> FiniteFilm::fields(const Motion& motion, std::span<const double> states) {
-  const Lines all{0, ring_.nodes()};
-  set_settled(motion, states);
-  auto [theta, z, pressure, h] = empty_fields(at(cells_ + 1));
-  for (int i = 0; i <= all.end; ++i)
-    for (int j = 0; j <= cells_; ++j) {
-      pressure.values.push_back(scales_.pressure * carried_.p[node(i + reach(), j)]);
-      h.values.push_back(g_.clearance * h_[node(i + reach(), j)]);
-    }
-  return {theta, z, pressure, h};
-}
-
-}  // namespace
 
 std::unique_ptr<StateModel> make_compliant_finite(const Geometry& g, const Options& options,
                                                   const Lubricant& lubricant) {

@@ -167,7 +167,7 @@ void describe(deck::Description<Options>& d) {
   d.add("cells", &Options::cells, deck::in(4, 2000),
         "intervals around and along each pad; of a short or long compliant film around only")
       .only(&Options::kind, {reynolds, compliant_short, compliant_long, compliant_finite});
-  d.add("tilt", &Options::tilt, "follow the slope of the journal; otherwise moments are zero")
+  d.add("tilt", &Options::tilt, "follow the slope of the journal (bearings of a machine do not)")
       .only(&Options::kind, {reynolds});
   d.add("stiffness", &Options::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
       .isotropic()

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "io/atomic_file.hpp"
@@ -120,7 +121,7 @@ private:
 void collect(const Columns& columns, const Group& group, const std::string& path, std::vector<CsvFile>& out) {
   if (group.has_attribute("restart")) return;
   if (!path.empty())
-    if (std::string text = columns.text(group); !text.empty()) out.push_back({path, std::move(text)});
+    if (std::string text = columns.text(group); !text.empty()) out.push_back({path, std::move(text), {}});
   for (const auto& [name, inner] : group.groups())
     collect(columns, inner, path.empty() ? name : path + "." + name, out);
 }
@@ -134,6 +135,12 @@ void write_csv(const std::filesystem::path& path, const CsvFile& table) {
 std::vector<CsvFile> csv_tables(const Group& tree) {
   std::vector<CsvFile> out;
   collect(Columns(tree), tree, "", out);
+  std::set<std::string> taken;
+  for (CsvFile& table : out) {
+    const std::string name = plain_name(table.name);
+    table.file = name + ".csv";
+    for (int k = 2; !taken.insert(table.file).second; ++k) table.file = name + "_" + std::to_string(k) + ".csv";
+  }
   return out;
 }
 

@@ -20,6 +20,13 @@ bool stays_inside(const std::string& name) {
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".." || part == "."; });
 }
 
+// Whether a folder on the way from `folder` to the file `name` below it is a link, which leads elsewhere.
+bool passes_a_link(const fs::path& folder, const fs::path& name) {
+  for (fs::path inner = name.parent_path(); !inner.empty(); inner = inner.parent_path())
+    if (fs::is_symlink(fs::symlink_status(folder / inner))) return true;
+  return false;
+}
+
 std::string contents(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -60,7 +67,7 @@ void Manifest::add(const std::string& name) {
 
 void Manifest::remove_files(const std::string& keep) {
   for (const std::string& name : names_) {
-    if (name == keep) continue;
+    if (name == keep || passes_a_link(folder_, name)) continue;
     const fs::path path = folder_ / name;
     if (fs::is_directory(fs::symlink_status(path))) continue;
     fs::remove(path);

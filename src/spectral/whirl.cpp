@@ -58,7 +58,7 @@ Sense sense_of_whirl(const std::vector<std::complex<double>>& x, const std::vect
 double log_decrement(std::complex<double> lambda) {
   if (lambda.imag() == 0)
     return lambda.real() < 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
-  return -2 * std::numbers::pi * lambda.real() / std::abs(lambda.imag());
+  return -2 * std::numbers::pi * lambda.real() / std::abs(lambda.imag()) + 0.0;  // no negative zero
 }
 
 double stability_factor(std::complex<double> lambda) {

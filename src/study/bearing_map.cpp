@@ -244,13 +244,14 @@ void put_bars(const Context& context, const BearingMapOptions& options, std::siz
               const std::optional<system::Groups>& groups) {
   io::StudySummary& summary = context.results.summary();
   Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
-  SummaryBars of_summary(summary, law_of(context.machine));
+  SummaryBars of_summary(summary, law_of(context.machine),
+                         [](const std::string& name) { return name.starts_with("nondimensional."); });
   const std::vector<FilmMesh> meshes = film_meshes(context.machine);
   for (const FilmMesh& mesh : meshes) {
     std::vector<double> numbers;
     io::StudySummary there;
     core::agree(context.comm, [&] {
-      try {
+      const bool answered = has_answer([&] {
         const system::Train train = with_film_mesh(system::train_of(context.machine), mesh.factor);
         Mapper other(options, train.supports[which]);
         other.follow();
@@ -260,13 +261,8 @@ void put_bars(const Context& context, const BearingMapOptions& options, std::siz
         io::Group unused;
         put_loaded(unused, there, other.loaded);
         put_threshold(there, other, groups);
-      } catch (const core::NotConverged&) {
-        numbers.clear();
-      } catch (const core::DomainError&) {
-        numbers.clear();
-      } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-        numbers.clear();
-      }
+      });
+      if (!answered) numbers.clear();
     });
     bars.add(mesh.axis, mesh.spacing, numbers);
     of_summary.add(mesh.axis, mesh.spacing, there);

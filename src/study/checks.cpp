@@ -1,8 +1,14 @@
 #include <fmt/core.h>
 
+#include "whirl/io/record.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
+
+bool Study::goes_on_from(const Study& earlier) const {
+  const std::string from = starts_from();
+  return !from.empty() && (from == earlier.name() || earlier.may_add(io::plain_name(from)));
+}
 
 void check_unbalance(const std::vector<std::string>& names, const system::Machine& machine,
                      const deck::Report& report) {

@@ -120,21 +120,12 @@ void CycleFollower::report(const std::string& key, Vec u) {
   record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_), own);
   const solve::Cycle cycle = problem_->gather(u);
   SummaryBars bars(own, law());
-  for (const CycleMesh& mesh : meshes()) {
-    io::StudySummary there;
-    try {
+  for (const CycleMesh& mesh : meshes())
+    bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
       if (const auto other = corrected_on(mesh, cycle))
         record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
                        other->other ? *other->other : *system_, stability_of(*other->problem), there);
-    } catch (const core::NotConverged&) {
-      there = {};
-    } catch (const core::DomainError&) {
-      there = {};
-    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-      there = {};
-    }
-    bars.add(mesh.axis, mesh.spacing, there);
-  }
+    });
   bars.write(newton_.tolerance);
   for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
 }

@@ -71,7 +71,7 @@ std::vector<io::Table::Column> columns(const system::Places& places, const std::
           {"y_max", length, "largest y of " + places.text, b},
           {"y_min", length, "smallest", b},
           {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
-          {"film_min", length, "smallest film thickness over the cycle, not a number without a film", b},
+          {"film_min", length, "smallest film thickness at mid-plane over the cycle, not a number without a film", b},
           {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
           {"multipliers_imag", "1", "their imaginary parts", m}};
 }

@@ -81,17 +81,19 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   problem.from_state(x.get(), range.from, u.get());
 
   const system::Places places = system->places();
-  io::Table table(
-      {{"parameter", unit, "parameter of the branch"},
-       {"stable", "1", "1 if no eigenvalue has a positive real part"},
-       {"unstable_count", "1", "eigenvalues with positive real part"},
-       {"undamped_count", "1", "eigenvalues whose real part is rounding"},
-       {"step", unit, "arclength from the previous point"},
-       {"leading_real", "1/s", "real part of the least stable eigenvalue"},
-       {"leading_imag", "rad/s", "its imaginary part"},
-       {"x", places.unit, places.text, {places.names.size()}},
-       {"y", places.unit, places.text, {places.names.size()}},
-       {"film", places.unit, "smallest film thickness, not a number without a film", {places.names.size()}}});
+  io::Table table({{"parameter", unit, "parameter of the branch"},
+                   {"stable", "1", "1 if no eigenvalue has a positive real part"},
+                   {"unstable_count", "1", "eigenvalues with positive real part"},
+                   {"undamped_count", "1", "eigenvalues whose real part is rounding"},
+                   {"step", unit, "arclength from the previous point"},
+                   {"leading_real", "1/s", "real part of the least stable eigenvalue"},
+                   {"leading_imag", "rad/s", "its imaginary part"},
+                   {"x", places.unit, places.text, {places.names.size()}},
+                   {"y", places.unit, places.text, {places.names.size()}},
+                   {"film",
+                    places.unit,
+                    "smallest film thickness at mid-plane, not a number without a film",
+                    {places.names.size()}}});
   std::vector<Located> located;      // one for each bifurcation of the summary
   std::vector<BorderEvent> borders;  // likewise
   BranchVerdict verdict;
@@ -118,7 +120,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     }
     const auto& s = point.stability;
     verdict.add(class_of(s));
-    const std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
+    std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
+    if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
     table.append({{point.parameter},
                   {s.unstable() == 0 ? 1.0 : 0.0},
                   {static_cast<double>(s.unstable())},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::study {
@@ -56,6 +57,20 @@ void JobQueue::run(const std::function<void(std::size_t)>& job) {
     }
     throw;
   }
+}
+
+std::string from_owner(MPI_Comm comm, int owner, const std::function<std::string()>& make) {
+  std::string bytes;
+  core::agree(comm, [&] {
+    if (core::rank_of(comm) == owner) bytes = make();
+  });
+  unsigned long size = bytes.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, owner, comm);
+  core::agree(comm, [&] { bytes.resize(size); });
+  constexpr unsigned long most = 1UL << 30;  // a count of MPI is an int
+  for (unsigned long at = 0; at < size; at += most)
+    MPI_Bcast(bytes.data() + at, static_cast<int>(std::min(most, size - at)), MPI_CHAR, owner, comm);
+  return bytes;
 }
 
 }  // namespace whirl::study

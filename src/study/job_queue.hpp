@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <string>
 
 namespace whirl::study {
 
@@ -34,5 +35,9 @@ private:
   int size_ = 1;
   int flying_ = std::uncaught_exceptions();
 };
+
+/// What `make` returns on the rank `owner` of `comm`, on all ranks; the others do not call it. If it throws, all ranks
+/// throw as in core::agree(). Collective.
+[[nodiscard]] std::string from_owner(MPI_Comm comm, int owner, const std::function<std::string()>& make);
 
 }  // namespace whirl::study

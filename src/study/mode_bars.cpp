@@ -7,7 +7,7 @@
 
 #include "common.hpp"
 #include "film_mesh.hpp"
-#include "whirl/core/error.hpp"
+#include "summary_bars.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
@@ -53,7 +53,7 @@ ModeBars::ModeBars(const Context& context, const Groups& groups, Pieces& pieces,
   if (!any_ || sampled.empty()) return;
   const auto compute = [&](std::size_t i) {
     std::vector<double> all;
-    try {
+    const bool answered = has_answer([&] {
       system::RotorSystem there(groups.space, with_film_mesh(system::train_of(context.machine), meshes[i].factor),
                                 sampled.front().speed);
       Walker walker(there);
@@ -61,13 +61,8 @@ ModeBars::ModeBars(const Context& context, const Groups& groups, Pieces& pieces,
         const auto numbers = paired(s.modes, modes_at(there, walker.at(s.speed)));
         all.insert(all.end(), numbers.begin(), numbers.end());
       }
-    } catch (const core::NotConverged&) {
-      all.clear();
-    } catch (const core::DomainError&) {
-      all.clear();
-    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-      all.clear();
-    }
+    });
+    if (!answered) all.clear();
     return all;
   };
   // Each mesh starts anew and leaves nothing behind.

@@ -8,7 +8,6 @@
 #include "film_mesh.hpp"
 #include "findings.hpp"
 #include "summary_bars.hpp"
-#include "whirl/core/error.hpp"
 
 namespace whirl::study {
 namespace {
@@ -77,10 +76,10 @@ void put_response_bars(const Context& context, const std::vector<NamedPeak>& pea
   const Tops tops(peaks);
   const std::vector<double> speeds = tops.speeds();
   const MeshResponse here = solve({1, 1}, speeds, "bars");
-  SummaryBars bars(context.results.summary(), law_of(context.machine));
-  for (std::size_t i = 0; i < meshes.size(); ++i) {
-    io::StudySummary there;
-    try {
+  SummaryBars bars(context.results.summary(), law_of(context.machine),
+                   [](const std::string& name) { return name.ends_with(".node"); });
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    bars.add(meshes[i].axis, meshes[i].spacing, [&](io::StudySummary& there) {
       const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
       there = moved.operating;
       for (const NamedPeak& p : peaks) {
@@ -88,15 +87,7 @@ void put_response_bars(const Context& context, const std::vector<NamedPeak>& pea
         put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
             p.amplification * b.quality / a.quality);
       }
-    } catch (const core::NotConverged&) {
-      there = {};
-    } catch (const core::DomainError&) {
-      there = {};
-    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-      there = {};
-    }
-    bars.add(meshes[i].axis, meshes[i].spacing, there);
-  }
+    });
   bars.write(location_of);
 }
 

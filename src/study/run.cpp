@@ -33,7 +33,7 @@ bool is_pattern(const Study& study, const Deck& deck) {
     // A sweep repeats what stands before it.
     const bool repeats = behind && sweep && sweep->repeats(study.name());
     pattern = pattern || (repeats && !sweep->options.as_given);
-    needed = needed || (repeats && sweep->options.as_given) || s->starts_from() == study.name();
+    needed = needed || (repeats && sweep->options.as_given) || s->goes_on_from(study);
   }
   return pattern && !needed && study.kind() != Sweep::key;
 }

@@ -4,27 +4,42 @@
 #include <cmath>
 #include <map>
 
+#include "whirl/core/error.hpp"
+
 namespace whirl::study {
 namespace {
 
 constexpr double share_of_kin = 0.25;
 
-std::vector<double> values_of(const io::StudySummary& summary) {
-  std::vector<double> out;
-  for (const auto& entry : summary.values) out.push_back(entry.second.value);
-  return out;
-}
-
 }  // namespace
+
+bool has_answer(const std::function<void()>& compute) {
+  try {
+    compute();
+    return true;
+  } catch (const core::NotConverged&) {
+    return false;
+  } catch (const core::DomainError&) {
+    return false;
+  } catch (const core::InputError&) {
+    return false;
+  }
+}
 
 std::string stem_of(const std::string& name) {
   const std::size_t end = name.find_last_not_of("xy");
   return end == std::string::npos ? name : name.substr(0, end + 1);
 }
 
-SummaryBars::SummaryBars(io::StudySummary& summary, MeshLaw law)
-    : summary_(summary), values_(values_of(summary)), moved_(values_.size(), false), bars_(values_, law) {
-  for (const auto& entry : summary.values) names_.push_back(entry.first);
+SummaryBars::SummaryBars(io::StudySummary& summary, MeshLaw law, const std::function<bool(const std::string&)>& exact)
+    : summary_(summary), bars_({}, law) {
+  for (const auto& [name, q] : summary.values) {
+    if (exact && exact(name)) continue;
+    names_.push_back(name);
+    values_.push_back(q.value);
+  }
+  moved_.assign(values_.size(), false);
+  bars_ = Bars(values_, law);
 }
 
 void SummaryBars::add(Axis axis, double spacing, const io::StudySummary& there) {
@@ -39,6 +54,12 @@ void SummaryBars::add(Axis axis, double spacing, const io::StudySummary& there) 
   bars_.add(axis, spacing, values);
   with_time_ |= axis == Axis::time;
   any_ = true;
+}
+
+void SummaryBars::add(Axis axis, double spacing, const std::function<void(io::StudySummary& there)>& compute) {
+  io::StudySummary there;
+  if (!has_answer([&] { compute(there); })) there = {};
+  add(axis, spacing, there);
 }
 
 void SummaryBars::write(const Location& location) {

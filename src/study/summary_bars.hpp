@@ -14,10 +14,13 @@ namespace whirl::study {
 /// Collects the values of a summary on other meshes, and puts bars beside those that change with the mesh.
 class SummaryBars {
 public:
-  /// Of the values that `summary` has now; it outlives this.
-  SummaryBars(io::StudySummary& summary, MeshLaw law);
+  /// Of the values that `summary` has now; it outlives this. Names for which `exact` is true get no bar: counts,
+  /// numbers of nodes and what the deck gives depend on no mesh, also where another mesh gave nothing.
+  SummaryBars(io::StudySummary& summary, MeshLaw law, const std::function<bool(const std::string&)>& exact = {});
   /// Values of the same names on another mesh; those that are missing there are unknown there.
   void add(Axis axis, double spacing, const io::StudySummary& there);
+  /// The same with what `compute` puts there; nothing if that mesh has no answer.
+  void add(Axis axis, double spacing, const std::function<void(io::StudySummary& there)>& compute);
   /// Writes the bars. Components of one vector or matrix (names that differ in a last x, y, xx, ...) err together: each
   /// bar is at least a quarter of the largest of its kin, so that a difference that vanishes by chance hides nothing.
   /// `location` is what an iteration leaves of the value with this name.
@@ -36,6 +39,10 @@ private:
   Bars bars_;
   bool with_time_ = false, any_ = false;
 };
+
+/// Runs `compute`; false if a mesh that serves an estimate only has no answer: no convergence, a film that leaves its
+/// validity, grooves that leave nothing of a coarser mesh.
+[[nodiscard]] bool has_answer(const std::function<void()>& compute);
 
 /// "bearing.B1.K." for "bearing.B1.K.xy": what components of one vector or matrix share.
 [[nodiscard]] std::string stem_of(const std::string& name);

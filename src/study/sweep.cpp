@@ -90,16 +90,6 @@ private:
   std::vector<io::StudySummary> summaries_;
 };
 
-// Gives all ranks of `comm` the bytes that `owner` holds.
-void broadcast(MPI_Comm comm, int owner, std::string& bytes) {
-  unsigned long size = bytes.size();
-  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, owner, comm);
-  bytes.resize(size);
-  constexpr unsigned long most = 1UL << 30;
-  for (unsigned long at = 0; at < size; at += most)
-    MPI_Bcast(bytes.data() + at, static_cast<int>(std::min(most, size - at)), MPI_CHAR, owner, comm);
-}
-
 }  // namespace
 
 // The numbers of a variant do not depend on who computes it: groups of ranks take the next one as soon as they are
@@ -137,9 +127,10 @@ StudyResult Sweep::run(Context& context) {
   });
   MPI_Allreduce(mine.data(), owner.data(), static_cast<int>(n), MPI_INT, MPI_MAX, context.comm);
   for (std::size_t k = 0; k < n; ++k) {
-    std::string bytes = mine[k] == owner[k] ? io::to_bytes(stores[k]->state()) : std::string();
-    broadcast(context.comm, owner[k], bytes);
-    if (mine[k] != owner[k]) stores[k]->set(io::from_bytes(bytes));
+    const std::string bytes = from_owner(context.comm, owner[k], [&] { return io::to_bytes(stores[k]->state()); });
+    core::agree(context.comm, [&] {
+      if (mine[k] != owner[k]) stores[k]->set(io::from_bytes(bytes));
+    });
     results.leave_behind(stores[k]->path());
     results.leave_behind(stores[k]->running_path());
   }

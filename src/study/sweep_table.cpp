@@ -36,8 +36,10 @@ std::vector<Line> lines_of(const std::vector<SweepRow>& rows) {
       for (std::size_t b = 0; b < rows[r].coordinates.size(); ++b) {
         const Coordinate& o = rows[r].coordinates[b];
         if (b == a) continue;
-        beside += fmt::format("{}{} {:.9g}{}{}", beside.empty() ? "" : ", ", o.quantity, o.value,
-                              o.unit == "1" ? "" : " ", o.unit == "1" ? "" : o.unit);
+        beside += beside.empty() ? "" : ", ";
+        beside += std::isfinite(o.value) ? fmt::format("{} {:.9g}{}{}", o.quantity, o.value, o.unit == "1" ? "" : " ",
+                                                       o.unit == "1" ? "" : o.unit)
+                                         : o.quantity;
         given = given && alike(o.value, o.given);
       }
       const auto [place, added] = known.emplace(c.quantity + "|" + c.unit + "|" + beside, lines.size());

@@ -134,10 +134,12 @@ SweepAxis gridded(const Node& values) {
   return axis;
 }
 
-// The numbers that a value holds, each with its unit.
+// The numbers that a value holds, each with its unit; that of a balance grade is a speed, G2.5 is 2.5 mm/s.
 void leaves(const Node& n, std::vector<deck::Split>& out) {
   for (const Node& i : n.items) leaves(i, out);
-  if (n.kind == Node::Kind::scalar) out.push_back(deck::split_quantity(n.text));
+  if (n.kind != Node::Kind::scalar) return;
+  const bool grade = n.text.size() > 1 && n.text[0] == 'G' && n.text[1] >= '0' && n.text[1] <= '9';
+  out.push_back(deck::split_quantity(grade ? n.text.substr(1) + " mm/s" : n.text));
 }
 
 // One number for what an edit did: the new value if all are alike, else the common ratio, else the common difference.
@@ -195,8 +197,7 @@ std::vector<std::size_t> repeated(const Sweep& sweep, std::span<const std::uniqu
     if (s.kind() == Sweep::key) continue;
     wanted[i] = sweep.repeats(s.name());
     for (std::size_t later = i + 1; later < before.size() && !wanted[i]; ++later) {
-      const std::string from = wanted[later] ? before[later]->starts_from() : std::string();
-      wanted[i] = from == s.name() || (!from.empty() && from.starts_with(s.name() + " flip "));
+      wanted[i] = wanted[later] && before[later]->goes_on_from(s);
     }
   }
   std::vector<std::size_t> all;
@@ -241,7 +242,8 @@ void Sweep::prepare(const Node& root, std::span<const std::unique_ptr<Study>> be
           if (!where) where = coordinate(edit.path, changes);
         }
         if (s.at) where = Coordinate{"at", *s.at, options.at.value_or(std::numeric_limits<double>::quiet_NaN()), "1"};
-        if (!where) where = Coordinate{axes[a].quantity, std::numeric_limits<double>::quiet_NaN(), 0, ""};
+        // What is no number has its own name: "round" and "lemon" are different companions of a line.
+        if (!where) where = Coordinate{s.name, std::numeric_limits<double>::quiet_NaN(), 0, ""};
         v.coordinates.push_back(*where);
       }
       keep_studies(tree, kept);

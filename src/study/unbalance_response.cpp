@@ -232,7 +232,7 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::Places
   }
   group.child("bearings")
       .put("film_min", {curve.size(), places.names.size()}, all, "m",
-           "smallest film thickness that the linear motion leaves, not a number without a film");
+           "smallest film thickness at mid-plane that the linear motion leaves, not a number without a film");
   for (std::size_t b = 0; b < places.names.size(); ++b) {
     const Response *worst = nullptr, *first = nullptr, *last = nullptr;
     for (const Response& r : curve) {

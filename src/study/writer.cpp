@@ -96,7 +96,7 @@ void Writer::add(StudyResult result) {
     if (rank_ != 0) return;
     if (!result.grids.empty()) io::write_xdmf(this->file(file + ".xdmf"), "results.h5", result.grids);
     for (const auto& table : io::csv_tables(root_.group("studies").group(file)))
-      io::write_csv(this->file("csv/" + io::plain_name(name) + "/" + io::plain_name(table.name) + ".csv"), table);
+      io::write_csv(this->file("csv/" + io::plain_name(name) + "/" + table.file), table);
   });
   write();
   core::agree(comm_, [&] {

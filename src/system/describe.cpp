@@ -34,10 +34,14 @@ public:
     return n;
   }
   std::string type() const override { return "balance grade such as G2.5 (mm/s)"; }
+  const Spec* spec() const override { return &spec_; }
   Access find(void* value, std::span<const std::string> path) const override {
     if (!path.empty()) return {};
     return {&static_cast<system::BalanceGrade*>(value)->velocity, "m/s", false, positive};
   }
+
+private:
+  Spec spec_{"m/s", positive, "G"};
 };
 
 }  // namespace
@@ -73,9 +77,13 @@ void describe(deck::Description<Bearing>& d) {
   d.add("lubricant", &Bearing::lubricant, "name of a lubricant of the deck, or a lubricant written in place");
   d.add("pedestal", &Bearing::pedestal, "what stands under the bearing; rigid if absent");
   d.add("minimum_film", &Bearing::minimum_film, "m", non_negative,
-        "film thickness below which journal and bearing touch, as for all bearings; that of the machine if not given");
+        "film thickness at mid-plane below which journal and bearing touch; that of the machine if not given");
   d.check([](const Bearing& b, const deck::Report& r) {
     if (b.film.kind == film::Options::Kind::linear) return;
+    if (b.film.tilt)
+      r.fail("film.tilt",
+             "films of a machine do not follow the slope of its shaft: each journal stays parallel to its "
+             "bearing. Leave 'tilt' out");
     if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
     const bool closed = b.geometry && b.geometry->type == film::Geometry::Bore::cylindrical;
     if (b.geometry && !closed && b.film.kind != film::Options::Kind::reynolds)

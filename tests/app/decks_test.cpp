@@ -220,6 +220,25 @@ TEST(TurbineTrain, OverridesReachCellsBearingsAndStudies) {
               300 * std::numbers::pi, 1e-11);
 }
 
+TEST(TurbineTrain, OverridesKnowDiametersAndBalanceGrades) {
+  const std::string train = inputs + "/turbine_train/train.yaml";
+  const study::Deck as_given = load(train), d = load(train, {"bearings.*.geometry.diameter=x1.1",
+                                                             "unbalance.*.grade=x2", "unbalance.gen_pair.grade=-20 %"});
+  for (std::size_t b = 0; b < d.machine.bearings.size(); ++b)
+    EXPECT_NEAR(d.machine.bearings[b].geometry->radius, 1.1 * as_given.machine.bearings[b].geometry->radius, 1e-15);
+  EXPECT_EQ(d.machine.unbalance[0].grade->velocity, 4e-3);
+  EXPECT_EQ(d.machine.unbalance[1].grade->velocity, 12.6e-3);
+  try {
+    (void)load(train, {"unbalance.gen_pair.grade=+1 mm/s"});
+    ADD_FAILURE() << "an offset of a grade";
+  } catch (const core::InputError& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "--set unbalance.gen_pair.grade=+1 mm/s: 'unbalance.gen_pair.grade': 'G2.5' takes a factor (x2, +20 %) or "
+        "a new value, not the offset '+1 mm/s'");
+  }
+}
+
 TEST(Parameter, ContinuableOptionsCanBeVaried) {
   const study::Deck d = load(inputs + "/turbine_train/train.yaml");
   const std::string path = "bearings.B2.geometry.clearance";

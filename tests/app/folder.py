@@ -74,6 +74,16 @@ process.wait()
 true("nothing but the deck is left", set(left(early)) <= {"manifest.txt", "resolved.yaml"}, str(left(early)))
 whirl(*SHORT, "-o", early)
 
+# An input that only shows itself as wrong while it runs leaves nothing: neither a folder of its own nor a deck in one that was there.
+MOTION = [*SHORT, "--set", "studies=[{motion: {speed: 200 rad/s, revolutions: 2, discard: 0}}]"]
+for there in False, True:
+    wrong = work / f"wrong {there}"
+    if there:
+        wrong.mkdir()
+    whirl(*MOTION, "-o", wrong, "--", "-motion_ts_type", "bdf", code=2, err="Lyapunov exponents need the scheme of this program")
+    true("a wrong run leaves nothing", wrong.exists() == there and (not there or not left(wrong)), str(list(work.iterdir())))
+    whirl(*MOTION, "-o", wrong)
+
 # --force replaces what the manifest names: pictures beside it too, the user's own files never.
 mine = ["notes.txt", "mine.png", "mine.xdmf", "mine.part", "mine.checkpoint.h5", "csv/mine.csv"]
 (held / "csv").mkdir(exist_ok=True)
@@ -87,6 +97,23 @@ whirl(*SHORT, "-o", held, code=2, err="holds results already")
 whirl(*SHORT, "-o", held, "--force")
 true("--force leaves the user's files", all((held / n).read_text() == "mine\n" for n in mine) and (work / "outside").exists())
 true("--force removes what the manifest names", not (held / "old.png").exists())
+
+# A kill while --force removes what is there, at whatever file: the next run goes on with it, without --force.
+many = work / "many"
+whirl(*SHORT, "-o", many)
+with open(many / "manifest.txt", "a") as f:
+    for k in range(20000):
+        (many / f"old{k}.png").write_text("")
+        f.write(f"old{k}.png\n")
+process = subprocess.Popen(command([*SHORT, "-o", many, "--force"]), cwd=work, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+limit = time.monotonic() + 60
+while (many / "old0.png").exists() and time.monotonic() < limit:
+    time.sleep(1e-4)
+process.send_signal(signal.SIGKILL)
+process.wait()
+true("the kill came while files were removed", (many / "old19999.png").exists())
+whirl(*SHORT, "-o", many)
+true("the rest of the old results is gone", not list(many.glob("old*.png")))
 
 # Without a manifest, as older versions left it: the two files of every run are replaced, the rest stays.
 (held / "manifest.txt").unlink()

@@ -21,11 +21,13 @@ namespace fs = std::filesystem;
 
 struct Bore {
   double clearance = 1e-4;
+  double radius = 0.1;
   double temperature = 333.15;
   std::array<int, 2> cells{60, 16};
 };
 void describe(deck::Description<Bore>& d) {
   d.add("clearance", &Bore::clearance, "m", deck::positive, "radial clearance");
+  d.add("radius", &Bore::radius, "m", deck::positive, "radius of the journal").alias("diameter", 2).alias("bore", 2);
   d.add("temperature", &Bore::temperature, "K", deck::positive, "temperature of the oil");
   d.add("cells", &Bore::cells, deck::positive, "cells around and along");
 }
@@ -47,7 +49,7 @@ struct Row {
 };
 void describe(deck::Description<Row>& d) {
   d.add("length", &Row::length, "m", deck::positive, "length").required();
-  d.add("outer", &Row::outer, "m", deck::positive, "outer diameter").required();
+  d.add("outer", &Row::outer, "m", deck::positive, "outer diameter").required().alias("diameter");
 }
 struct Machine {
   std::string title = "nothing";
@@ -121,6 +123,32 @@ TEST(Edit, FactorsMultiplyTheValueOrItsDefault) {
   EXPECT_EQ(lists.bearings.at("B1").stiffness, (std::array<double, 2>{1e8, 1.5e8})) << "each item of the default";
   EXPECT_EQ(after("bearings.B1.geometry.cells.1=x1.1").bearings["B1"].geometry.cells[0], 66) << "not 66.00000000000001";
   EXPECT_NEAR(after("range.to=x2").range.to, 400, 1e-10);
+}
+
+// Both words at once would be an error of the reader.
+TEST(Edit, AnotherWordForAnOptionIsThatOption) {
+  const auto radius = [](const std::vector<std::string>& edits) {
+    deck::Node root = deck::parse_yaml(
+        "bearings:\n  B1: {geometry: {clearance: 1 um}}\nsegments: [{length: 1 m, outer: 1 m}]\n", "d.yaml");
+    for (const std::string& e : edits)
+      (void)deck::apply(deck::parse_edit(e), root, deck::structure_of<Machine>(), files);
+    deck::Problems problems;
+    const auto m = deck::read<Machine>(root, files, problems);
+    problems.raise();
+    return m.bearings.at("B1").geometry.radius;
+  };
+  const std::string g = "bearings.B1.geometry.";
+  EXPECT_NEAR(radius({g + "radius=200 mm", g + "diameter=x1.1"}), 0.22, 1e-15);
+  EXPECT_NEAR(radius({g + "diameter=500 mm", g + "radius=x1.1"}), 0.275, 1e-15);
+  EXPECT_NEAR(radius({g + "diameter=500 mm", g + "bore=+10 mm"}), 0.255, 1e-15);
+  EXPECT_NEAR(radius({g + "diameter=x1.1"}), 0.11, 1e-15) << "from the default, of which it is twice the value";
+  EXPECT_EQ(radius({g + "radius=200 mm", g + "diameter=300 mm"}), 0.15);
+  EXPECT_EQ(radius({g + "radius=200 mm", g + "diameter="}), 0.1) << "taken away";
+  const Machine m = after("segments.*.diameter=x2");
+  EXPECT_EQ(m.segments[0].outer, 0.4);
+  EXPECT_EQ(m.segments[1].outer, 0.6);
+  EXPECT_NE(refusal(g + "diametre=x2").find("did you mean"), std::string::npos);
+  EXPECT_NE(refusal(g + "diameter=x2 mm").find("a factor is a bare number"), std::string::npos);
 }
 
 TEST(Edit, OffsetsAreInAnyUnitOfTheKind) {

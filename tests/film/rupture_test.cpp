@@ -1,9 +1,11 @@
 // Reynolds cavitation whose rupture moves through the cells.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "film/cases.hpp"
+#include "whirl/core/error.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -182,6 +184,27 @@ TEST(Rupture, CoefficientsDoNotScatterOverEccentricity) {
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_LT(far[i], i < 4 ? 0.006 : 0.011) << i;
     EXPECT_LT(near[i], 0.32 * far[i]) << i;  // second order, and what the fine mesh lacks
+  }
+}
+
+// A film starts from the rupture that it left; where the search for it came to nothing that is no start.
+TEST(Rupture, AFailureLeavesNothingBehind) {
+  for (const bool tilt : {false, true}) {
+    const Motion good = motion(lemon(), {0.6, -0.3, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
+    auto fresh = make_model(lemon(), ruptured({40, 8}, tilt), oil()),
+         film = make_model(lemon(), ruptured({40, 8}, tilt), oil());
+    const Response expected = evaluate(*fresh, good);
+    (void)evaluate(*film, good);
+    Motion bad = good;
+    bad.velocity[1] = std::numeric_limits<double>::quiet_NaN();
+    Response response;
+    EXPECT_THROW(film->evaluate(bad, Need::force, response), core::NotConverged);
+    const Response again = evaluate(*film, good);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(again.force[i], expected.force[i], 1e-9 * size(expected.force));
+      for (std::size_t j = 0; j < 2; ++j)
+        EXPECT_NEAR(again.d_velocity[i][j], expected.d_velocity[i][j], 1e-6 * std::abs(expected.d_velocity[1][1]));
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
 
 #include "whirl/io/table.hpp"
 
@@ -43,6 +44,16 @@ TEST(Csv, ASecondAxisIsNamedByTheDatasetOfItsLength) {
   g.put("amplitude", {3, 2}, {1, 2, 3, 4, 5, 6}, "m", "");
   EXPECT_EQ(text(csv_tables(tree), "response"),
             "speed [rad/s],amplitude.6 [m],amplitude.120 [m]\n1,1,2\n2,3,4\n3,5,6\n");
+}
+
+TEST(Csv, TwoTablesAreNeverOneFile) {
+  Group tree;
+  for (const char* variant : {"a b", "a_b", "a_b_2"})
+    tree.child("variants").child(safe_name(variant)).child("t").put("x", {1}, "m", "");
+  std::set<std::string> names;
+  for (const auto& table : csv_tables(tree)) names.insert(table.file);
+  EXPECT_EQ(names, (std::set<std::string>{"variants.a_b.t.csv", "variants.a_b.t_2.csv", "variants.a_b_2.t.csv"}));
+  EXPECT_EQ(csv_tables(tree).front().name, "variants.a b.t");
 }
 
 TEST(Csv, LeavesOutWhatIsNoTable) {

@@ -76,6 +76,20 @@ TEST(Manifest, LeadsNowhereElse) {
   EXPECT_FALSE(fs::exists(folder / "run/x"));
 }
 
+TEST(Manifest, RemovesNothingBehindALink) {
+  const whirl::test::Temporary folder;
+  make(folder / "elsewhere/s/t.csv");
+  fs::create_directories(folder / "run/csv");
+  fs::create_directory_symlink(folder / "elsewhere", folder / "run/pictures");
+  fs::create_symlink(folder / "elsewhere/s/t.csv", folder / "run/csv/u.csv");
+  Manifest m(folder / "run");
+  for (const char* name : {"pictures/s/t.csv", "csv/u.csv"}) m.add(name);
+  m.remove_files();
+  EXPECT_TRUE(fs::exists(folder / "elsewhere/s/t.csv"));
+  EXPECT_TRUE(fs::is_symlink(folder / "run/pictures"));
+  EXPECT_FALSE(fs::is_symlink(folder / "run/csv/u.csv")) << "a link of that name is itself a file of the run";
+}
+
 TEST(Record, NamesOfFilesAreThoseOfThePictures) {
   using whirl::io::plain_name;
   EXPECT_EQ(plain_name("a b"), "a_b");

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """The module `whirl` on synthetic results, and the numbers behind the pictures: curves, clearances, peaks, multipliers."""
+import os
 import pathlib
 import sys
 import tempfile
+import types
 
 import numpy as np
 
@@ -11,7 +13,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
 
 import whirl  # noqa: E402
-from whirl_plot import bore, curves, multipliers, response, tables, units  # noqa: E402
+from whirl_plot import bore, curves, multipliers, response, style, tables, units  # noqa: E402
 
 
 def refuses(what, *words):
@@ -49,6 +51,51 @@ def module():
         refuses(lambda: results.table("balanced", "orbits"), "balanced", "orbits", "branch")
         refuses(lambda: table["speed_of_sound"], "speed_of_sound", "parameter")
         refuses(lambda: whirl.read(folder / "none"), "there is no")
+
+
+def frames():
+    """A frame has the units of its columns, also where a column's own name has dots as those of a sweep's table have."""
+    class DataFrame(dict):  # of pandas, as far as it is used
+        def __init__(self, columns):
+            super().__init__(columns)
+            self.attrs = {}
+
+    table = whirl.table.Table("table", {"balanced.hopf.1": np.array([5000.0, 5100.0]), "x_max": np.ones((2, 2))},
+                              {"balanced.hopf.1": "rpm", "x_max": "m"}, {}, {"x_max": ["B1", "B.2"]})
+    real = sys.modules.get("pandas")
+    sys.modules["pandas"] = types.SimpleNamespace(DataFrame=DataFrame)
+    try:
+        frame = table.frame()
+    finally:
+        sys.modules.pop("pandas") if real is None else sys.modules.update(pandas=real)
+    assert list(frame) == ["balanced.hopf.1", "x_max.B1", "x_max.B.2"]
+    assert frame.attrs["units"] == {"balanced.hopf.1": "rpm", "x_max.B1": "m", "x_max.B.2": "m"}
+
+
+def command_lines():
+    """What `run` hands to the program: a negative number replaces a value, a text with a sign is added to it."""
+    with tempfile.TemporaryDirectory() as name:
+        program = pathlib.Path(name) / "program"
+        program.write_text("#!/bin/sh\nfor word in \"$@\"; do echo \"$word\"; done\nexit 2\n")
+        program.chmod(0o755)
+        os.environ["WHIRL_PROGRAM"] = str(program)
+        try:
+            whirl.run("d.yaml", set={"a": 1.5, "b": -2, "c": -0.25, "d": [-1, 2], "e": "-20 um", "f": True}, output=name)
+        except whirl.RunError as error:
+            words = error.log.splitlines()
+        finally:
+            del os.environ["WHIRL_PROGRAM"]
+        assert [w for k, w in enumerate(words) if words[k - 1] == "--set"] == \
+            ["a=1.5", "b==-2", "c==-0.25", "d=[-1, 2]", "e=-20 um", "f=true"], words
+
+
+def labels():
+    """Coordinates of a picture are shortened, numbers in its words never."""
+    svg = '<svg>\n  <path d="M 1.23456 2.5 L 3.999999,4.0001"/>\n  <!-- 1.23456 -->\n  <text x="0.123456">529.97726 rad/s</text>\n</svg>'
+    short = style.shorter(svg)
+    assert 'd="M 1.23 2.5 L 4,4"' in short and 'x="0.12"' in short, short
+    assert ">529.97726 rad/s<" in short, short
+    assert "1.1234 2.56789 (3.45678" in style.shorter("<text>1.1234 2.56789 (3.45678</text>"), "numbers behind spaces and brackets"
 
 
 def smooth_curves():
@@ -133,6 +180,6 @@ def facts():
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"
 
 
-for check in (module, smooth_curves, clearances, facts):
+for check in (module, frames, command_lines, labels, smooth_curves, clearances, facts):
     check()
 print("the module and the numbers behind the pictures are right")

@@ -56,6 +56,30 @@ def nodes_of_a_branch(work):
     return results
 
 
+def undamped_friends(work):
+    """Two rotors in undamped bearings, once drawn unstable because of a log. decrement of -5e-15. Their frequencies are published:
+    Friswell et al. (2010), example 5.9.2, as reproduced by ROSS in rad/s; critical speeds of Nelson and McVaugh (1976) in rpm, whose
+    beams have no shear."""
+    friswell = whirl.run(ROOT / "tests/app/friswell_592.yaml", output=work / "friswell")
+    for name, published in (("at rest", (82.65303734, 86.65811435, 254.52047828, 274.31285391, 679.48903239, 716.78631221)),
+                            ("running", (82.32547398, 86.86369902, 239.64228361, 287.24958074, 583.48782916, 806.8872843))):
+        found = [m["imag"] for m in friswell[name].modes]
+        assert np.allclose(found, published, rtol=1e-8), (name, found)
+    nelson = whirl.run(ROOT / "tests/app/nelson.yaml", output=work / "nelson", set={"rotor.material.shear_modulus": "1e13 Pa"})
+    for k, published in enumerate((15470, 17159), 1):
+        assert abs(nelson["over speed"].values[f"critical.{k}.speed"].value / published - 1) < 1e-3
+    for results in (friswell, nelson):
+        for study in results.studies:
+            assert all(m["stability"] == "undamped" and m["real"] == 0 and m["log_decrement"] == 0 for m in study.modes), study.name
+        assert all(v.value == 0 and not np.signbit(v.value) for k, v in results["over speed"].values.items() if k.endswith("log_decrement"))
+        assert results["branch"].summary["stability"] == "undamped throughout" and not results["branch"].bifurcations
+        assert not results["branch"].get("branch/leading_real").any() and results["branch"].get("branch/undamped_count").all()
+        drawn(results, "undamped throughout")
+        for picture, words, not_words in (("over_speed.campbell.svg", ("undamped",), ()), ("branch.equilibria.svg", ("undamped",), (">stable<",))):
+            text = (results.directory / picture).read_text()
+            assert all(w in text for w in words) and not any(w in text for w in not_words), picture
+
+
 def drawn(results, *words):
     for script in ("plot", "report"):
         done = subprocess.run([str(ROOT / "scripts" / script), str(results.directory)], capture_output=True, text=True)
@@ -68,5 +92,6 @@ def drawn(results, *words):
 
 with tempfile.TemporaryDirectory() as name:
     drawn(doubled_branch(pathlib.Path(name)), "Largest vibration of the stable cycles", "period doubles", "cylindrical", "25 \u00b5m")
+    undamped_friends(pathlib.Path(name))
     drawn(nodes_of_a_branch(pathlib.Path(name)), "node 130, shaft", "lemon bore", "gen_pair")
 print("results are as the pictures need them")

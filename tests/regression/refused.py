@@ -47,6 +47,12 @@ for deck, study in CASES.items():
         h.true("the other study goes on", h.studies(name)["alignment"]["status"] == "completed")
         run("what failed is tried again", deck, h.work / name, 3, f"{study}: no equilibrium near", overrides=impossible, flags=["--resume"])
 
+# A mass as large as a deck may have one, on every segment of the shaft: each kind of study ends, with the reason.
+for deck, study in {**CASES, "modes.yaml": "in films", "run_up.yaml": "in 10 s", "self_excited.yaml": "whirl"}.items():
+    name = "heavy " + deck
+    run(f"{deck} of 1e10 kg a segment", deck, h.work / name, 3, f"{study}: no equilibrium near", overrides=["rotor.segments.*.added_mass=1e10 kg"])
+    h.true(f"{deck}: the film and its bearing are named", "bearing B" in h.studies(name)[study]["status"], h.studies(name)[study]["status"])
+
 # Results and checkpoints that are damaged are named, not used.
 work = h.work / "damaged"
 run("a study", "static.yaml", work, 0)

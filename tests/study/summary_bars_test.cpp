@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "whirl/core/error.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -36,6 +38,19 @@ TEST(SummaryBars, AreUnknownWhereAnotherMeshLacksTheValue) {
   bars.add(Axis::around, 2, less);
   bars.write();
   EXPECT_TRUE(std::isnan(s.values[1].second.more.at("uncertainty")));
+}
+
+TEST(SummaryBars, ExactValuesHaveNoneWhateverOtherMeshesGave) {
+  io::StudySummary s = at(1);
+  s.set("peak.1.node", 7, "1");
+  SummaryBars bars(s, {}, [](const std::string& name) { return name.ends_with(".node"); });
+  bars.add(Axis::around, 2, [](io::StudySummary& there) {
+    there.set("load", 1, "N");
+    throw core::NotConverged("no equilibrium");
+  });
+  bars.write();
+  EXPECT_TRUE(s.values[4].second.more.empty());
+  EXPECT_TRUE(std::isnan(s.values[1].second.more.at("uncertainty"))) << "others keep theirs";
 }
 
 TEST(SummaryBars, ComponentsAreKin) {

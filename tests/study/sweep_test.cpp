@@ -98,6 +98,39 @@ TEST(JobQueue, AfterAnErrorNobodyTakesAnotherJob) {
   EXPECT_LT(taken, 1000);
 }
 
+// The rank that fails leaves its queue without waiting for the others, who are at work and would never come.
+TEST(JobQueue, WhoFailsAloneWaitsForNobody) {
+  const int rank = core::rank_of(MPI_COMM_WORLD), size = core::size_of(MPI_COMM_WORLD), last = size - 1;
+  int left = 0;
+  try {
+    study::JobQueue queue(MPI_COMM_WORLD, 1, static_cast<std::size_t>(10 * size));
+    // The others do not come to the end of their queue before the last rank has left its own.
+    if (rank != last) MPI_Recv(&left, 1, MPI_INT, last, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    throw core::Error("disk full");
+  } catch (const core::Error&) {
+    if (rank == last) left = 1;
+    for (int to = 0; to < last && rank == last; ++to) MPI_Send(&left, 1, MPI_INT, to, 0, MPI_COMM_WORLD);
+  }
+  EXPECT_EQ(left, 1);
+}
+
+// What one rank holds, on all; an error of that rank is one of all, and nobody waits for the bytes.
+TEST(FromOwner, BytesOrTheErrorReachEveryRank) {
+  const int rank = core::rank_of(MPI_COMM_WORLD), last = core::size_of(MPI_COMM_WORLD) - 1;
+  const std::string bytes = study::from_owner(MPI_COMM_WORLD, last, [&] {
+    EXPECT_EQ(rank, last);
+    return std::string("a\0b", 3);
+  });
+  EXPECT_EQ(bytes, std::string("a\0b", 3));
+  try {
+    (void)study::from_owner(MPI_COMM_WORLD, last,
+                            []() -> std::string { throw core::Error("no memory for a variant"); });
+    ADD_FAILURE() << "no error on rank " << rank;
+  } catch (const core::Error& e) {
+    EXPECT_STREQ(e.what(), "no memory for a variant");
+  }
+}
+
 TEST(Sweep, VariantsAreDecksOfTheirOwn) {
   const study::Deck deck =
       load(branch +
@@ -239,6 +272,46 @@ TEST(SweepTable, LinesOfAGridKeepTheOtherQuantities) {
   EXPECT_EQ(of_b, 2);
 }
 
+// Companions that are no numbers are told apart by their names, and neither takes the other's points.
+TEST(SweepTable, LinesBesideNamedVariantsAreTheirOwn) {
+  const study::Deck deck = load(
+      branch +
+      "  - sweep:\n"
+      "      of: [balanced]\n"
+      "      variants:\n"
+      "        thin: {bearings.B1.lubricant: hot_vg46}\n"
+      "        plain: {bearings.B2.geometry: {type: cylindrical, radius: 0.2 m, length: 0.2 m, clearance: 200 um}}\n"
+      "      grid:\n"
+      "        bearings.B3.geometry.clearance: [x0.9, x1.1]\n");
+  const auto& variants = sweep_of(deck).variants();
+  ASSERT_EQ(variants.size(), 4U);
+  std::vector<study::SweepRow> rows{{"as given", {}, {with_hopf({{100, 1}})}}};
+  for (std::size_t k = 0; k < 4; ++k)
+    rows.push_back({variants[k].name, variants[k].coordinates, {with_hopf({{k == 1 ? 110 : k == 3 ? 90 : 100, 1}})}});
+  std::vector<std::string> beside, sign;
+  for (const auto& t : study::trends_of(rows, study::table_of(rows))) {
+    if (t.column != "balanced.hopf.1") continue;
+    beside.push_back(t.beside);
+    sign.push_back(t.sign);
+  }
+  EXPECT_EQ(beside, (std::vector<std::string>{"thin", "plain"}));
+  EXPECT_EQ(sign, (std::vector<std::string>{"+", "-"}));
+}
+
+// A balance grade is a number in mm/s.
+TEST(Sweep, GradesAreNumbers) {
+  const study::Deck deck =
+      load(branch + "  - sweep:\n      of: [balanced]\n      grid: {unbalance.gen_pair.grade: [x2, G6.3]}\n");
+  const auto& variants = sweep_of(deck).variants();
+  ASSERT_EQ(variants.size(), 2U);
+  EXPECT_NEAR(variants[0].deck->machine.unbalance[0].grade->velocity, 5e-3, 1e-18);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(variants[k].coordinates[0].value, k == 0 ? 5 : 6.3, 1e-12);
+    EXPECT_NEAR(variants[k].coordinates[0].given, 2.5, 1e-12);
+    EXPECT_EQ(variants[k].coordinates[0].unit, "mm/s");
+  }
+}
+
 TEST(SweepTable, ComesBackFromItsFile) {
   io::StudySummary s;
   s.name = "sweep";
@@ -280,4 +353,22 @@ TEST(Advice, OnlyUnusualSegments) {
       << lines[0];
   EXPECT_NE(lines[1].find("factor of 4.05"), std::string::npos) << lines[1];
   EXPECT_NE(lines[2].find("rotor.segments.5: length over stiffness diameter is 0.049"), std::string::npos) << lines[2];
+}
+
+// A study that only stands for the variants of a sweep does not run by itself, unless another one goes on from it or
+// from a branch that it adds.
+TEST(Sweep, KnowsWhoGoesOnFromABranchThatIsAdded) {
+  const study::Deck deck = load(
+      "  - cycle_branch: {name: A, unbalance: [gen_pair], range: {from: 2000 rpm, to: 3000 rpm}, follow_flips: true}\n"
+      "  - cycle_branch: {name: B, unbalance: [gen_pair], range: {from: 2000 rpm, to: 3000 rpm}}\n"
+      "  - locus: {of: A flip 1, bifurcation: 1, parameter: unbalance.gen_pair.grade, range: {from: 2 mm/s, to: 3 "
+      "mm/s}}\n"
+      "  - locus: {name: other, of: B, bifurcation: 1, parameter: unbalance.gen_pair.grade, "
+      "range: {from: 2 mm/s, to: 3 mm/s}}\n");
+  const auto &a = *deck.studies[0], &b = *deck.studies[1], &of_flip = *deck.studies[2], &of_b = *deck.studies[3];
+  EXPECT_TRUE(of_flip.goes_on_from(a));
+  EXPECT_FALSE(of_flip.goes_on_from(b));
+  EXPECT_TRUE(of_b.goes_on_from(b));
+  EXPECT_FALSE(of_b.goes_on_from(a));
+  EXPECT_FALSE(b.goes_on_from(a));
 }

@@ -70,6 +70,7 @@ struct Name {
 struct Spec {
   std::string unit = "1";
   Check check;
+  std::string letter{};  ///< stands before the number, which then has no unit: "G" of a balance grade G2.5
 };
 
 /// What reading needs beside the tree: where tables come from, where problems go.
@@ -101,6 +102,8 @@ public:
   [[nodiscard]] virtual Node schema(bool whole) const = 0;
   /// The value in words for the reference: "length in m", "one of a, b".
   [[nodiscard]] virtual std::string type() const = 0;
+  /// Facts of the number that it reads, or of the numbers of a list or a range; null for all else.
+  [[nodiscard]] virtual const Spec* spec() const { return nullptr; }
   /// Options below this one, null for leaves, and how a path gets to them (`NAME`, `1`), empty for structs.
   [[nodiscard]] virtual const Structure* structure() const { return nullptr; }
   [[nodiscard]] virtual std::string step() const { return {}; }

@@ -12,6 +12,7 @@ namespace whirl::io {
 struct CsvFile {
   std::string name;  ///< of the table: the path of its group, with '.' for '/'
   std::string text;  ///< one line of headers `key [unit]` (`key` alone without a unit), then one line a row
+  std::string file;  ///< the name as that of a file, `NAME.csv` (plain_name); `NAME_2.csv` where another table has it
 };
 
 /// The tables in a tree of results, as CSV.

@@ -10,7 +10,8 @@ namespace whirl::io {
 /// The names of the files that a run and its pictures made in a folder: `manifest.txt`, one a line, relative to it.
 ///
 /// Whoever makes a file appends its name first, in whatever language; a name that stands there twice does no harm.
-/// Names that lead out of the folder are passed over, and so is a last line without its end, which a kill left.
+/// Names that lead out of the folder are passed over, and so is a last line without its end, which a kill left. Files
+/// behind a link to another folder are written there if the user made one, but never removed.
 /// Serial: call on one rank.
 class Manifest {
 public:

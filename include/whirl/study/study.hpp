@@ -73,6 +73,8 @@ public:
   [[nodiscard]] virtual double memory(const system::Machine& /*machine*/) const { return 0; }
   /// Name of the study whose bifurcations this one goes on from; empty if it needs none.
   [[nodiscard]] virtual std::string starts_from() const { return {}; }
+  /// True if that study is `earlier`, or one that `earlier` adds to the results.
+  [[nodiscard]] bool goes_on_from(const Study& earlier) const;
   /// Computes; ends with `return context.results.finish(...)`. Throws core::NotConverged or core::DomainError if it can
   /// deliver nothing. Collective.
   [[nodiscard]] virtual StudyResult run(Context& context) = 0;

@@ -27,8 +27,8 @@ void describe(deck::Description<SweepOptions>& d);
 
 /// A quantity that tells the variants of one line of the sweep apart.
 struct Coordinate {
-  std::string quantity;  ///< path as written, or `at`
-  double value = 0;      ///< of the variant: SI, or a ratio to the deck as it stands
+  std::string quantity;  ///< path as written, or `at`; of what is no number its name: "lemon", "lubricant cold"
+  double value = 0;      ///< of the variant: SI, or a ratio to the deck as it stands; NaN: no number
   double given = 0;      ///< of the deck as it stands
   std::string unit;      ///< "1" for ratios
 };
