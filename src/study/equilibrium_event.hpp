@@ -16,8 +16,8 @@
 namespace whirl::study {
 
 /// Lengths of the differences behind third derivatives, in steps of the usual ones: a hundredth and a fiftieth of a
-/// clearance. Discrete films have third derivatives that belong to their mesh at the usual length of 1e-4 clearances;
-/// over the amplitudes of the motions that are born their forces are smooth.
+/// clearance at the place that moves most. Discrete films have third derivatives that belong to their mesh at the usual
+/// length of 1e-4 clearances; over the amplitudes of the motions that are born their forces are smooth.
 inline constexpr double short_step = 80, long_step = 160;
 
 /// A bifurcation of equilibria that a branch found, and how to meet it on other film meshes.
@@ -36,9 +36,9 @@ struct EquilibriumEvent {
 
 /// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with
 /// its coefficient and uncertainty into `b`. On each other film mesh the same bifurcation is located by Newton's method
-/// from the resampled equilibrium. Criticality is that of the first Lyapunov coefficient, or the side on which the
-/// equilibria of a fold exist by its second derivative; "undetermined" where the coefficient's bar contains zero.
-/// Collective.
+/// from the resampled equilibrium. Criticality is that of the first Lyapunov coefficient, or where its bar contains
+/// zero and forces are smooth by pieces only, that of cycles at three amplitudes; of a fold the side on which the
+/// equilibria exist by its second derivative; "undetermined" where the bar of that contains zero, too. Collective.
 void describe(io::Bifurcation& b, const EquilibriumEvent& at);
 
 /// Place, whirl frequency and coefficient of the same bifurcation with these cells over those of the deck; empty if it
