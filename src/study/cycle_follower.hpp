@@ -134,8 +134,8 @@ private:
   /// The same bifurcation on another mesh; nothing if it cannot be had.
   [[nodiscard]] std::optional<CycleNumbers> numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                        const solve::Cycle& cycle, bool with_coefficient) const;
-  [[nodiscard]] double normal_form(solve::CycleProblem& problem, solve::Event event, std::complex<double> critical,
-                                   Vec u, double step) const;
+  [[nodiscard]] double normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
+                                   std::complex<double> critical, Vec u, double step) const;
   void put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;

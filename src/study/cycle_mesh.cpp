@@ -121,10 +121,11 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     const auto refined =
         solve::refine(*cycles, found, there->u.get(), solve::any_tangent(*cycles, there->u.get()).get(), newton_);
     if (refined) {
-      return CycleNumbers{
-          refined->parameter, std::abs(std::arg(refined->critical)), cycles->gather(refined->u.get()).period,
-          with_coefficient ? normal_form(*cycles, found.event, refined->critical, refined->u.get(), long_step)
-                           : io::no_value};
+      return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
+                          cycles->gather(refined->u.get()).period,
+                          with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
+                                                         refined->critical, refined->u.get(), steps_of(law()).longer)
+                                           : io::no_value};
     }
     solve::PeriodicProblem& problem = *there->problem;
     core::Vector row = core::duplicate(there->u.get());

@@ -138,7 +138,7 @@ std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<doub
     }
     if (!hopf) return {there->found->parameter, 0, there->found->quadratic};
     const double omega = there->found->critical.imag();
-    return {there->found->parameter, omega, lyapunov(*there->system, there->x.get(), omega, long_step)};
+    return {there->found->parameter, omega, lyapunov(*there->system, there->x.get(), omega, steps_of(at.law).longer)};
   });
 }
 
@@ -172,8 +172,9 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   here[place] = at.found.parameter;
   here[frequency] = hopf ? omega : 0;
   at.system.set_parameter(at.found.parameter * at.scale);
-  here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, long_step) : at.found.quadratic;
-  double doubt = hopf ? std::abs(lyapunov(at.system, at.x, omega, short_step) - here[coefficient]) : 0;
+  const DifferenceSteps steps = steps_of(at.law);
+  here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, steps.longer) : at.found.quadratic;
+  double doubt = hopf ? doubt_of_steps(lyapunov(at.system, at.x, omega, steps.shorter), here[coefficient]) : 0;
   Bars bars(here, at.law);
   for (const FilmMesh& mesh : at.meshes) {
     const std::vector<double> there = numbers_on(at, mesh.factor);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "whirl/core/error.hpp"
 #include "whirl/solve/harmonic_cycle.hpp"
@@ -9,6 +10,28 @@
 namespace whirl::study {
 
 using core::check;
+
+solve::MotionSize motion_of_places(system::Plant& system) {
+  const system::Places places = system.places();
+  if (!(std::reduce(places.clearances.begin(), places.clearances.end()) > 0)) return solve::largest_state;
+  core::Vector scale = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE),
+               rows = core::duplicate(scale.get());
+  system.scales(scale.get(), rows.get());
+  return [&system, unit = core::gather(scale.get()), clearances = places.clearances](const Eigen::VectorXd& v) {
+    // Places are affine in the state.
+    std::vector<double> at(unit.size(), 0.0);
+    const auto still = system.shown(at.data());
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = unit[i] * v(static_cast<Eigen::Index>(i));
+    const auto moved = system.shown(at.data());
+    double most = 0;
+    for (std::size_t k = 0; k < moved.size(); ++k)
+      if (clearances[k] > 0)
+        most = std::max(
+            most, std::hypot(moved[k].position[0] - still[k].position[0], moved[k].position[1] - still[k].position[1]) /
+                      clearances[k]);
+    return most;
+  };
+}
 
 CriticalMotion critical_motion(system::Plant& system, Vec x, double omega) {
   CriticalMotion out{solve::critical_vector(system, x, omega), 1, {}};

@@ -9,9 +9,14 @@
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/solve/normal_form.hpp"
 #include "whirl/system/plant.hpp"
 
 namespace whirl::study {
+
+/// How far a motion of scaled states moves the place that moves most, in clearances; of a plant without clearances the
+/// largest scaled state. `system` outlives it.
+[[nodiscard]] solve::MotionSize motion_of_places(system::Plant& system);
 
 /// The motion of a Hopf point, scaled states [n], of such a length that the place that moves most describes an ellipse
 /// whose larger half-axis is one clearance (of a plant without clearances: the largest scaled state moves by one).
