@@ -100,6 +100,23 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
                     "cubic term of the flip's normal form (Kuznetsov 2004, 5.68)");
 }
 
+// A fold right beside the birth of the branch may be the work of a film's kinks alone.
+void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
+  const auto& all = context_.results.summary().bifurcations;
+  if (all.empty() || all.front().type != io::BifurcationType::hopf) return;
+  const double apart = std::abs(b.value - all.front().value);
+  if (decided(apart, b.uncertainty)) return;
+  b.more["distance_from_birth"] = apart;
+  b.criticality = "undetermined";
+  b.criticality_by = fmt::format(
+      "{:.3g} {} from the Hopf point where the branch is born, within the uncertainty: there may be no such fold",
+      apart, b.unit);
+  context_.results.summary().warnings.push_back(
+      fmt::format("the cyclic fold at {:.6g} {} lies within its uncertainty of the Hopf point where the branch is "
+                  "born: there may be none",
+                  b.value, b.unit));
+}
+
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
@@ -131,6 +148,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     pieces_->complete(piece("criticality"), b,
                       [&] { set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity); });
   }
+  if (autonomous() && found.event == solve::Event::cyclic_fold) doubt_at_birth(b);
   ++events_;
   context_.results.summary().bifurcations.push_back(b);
   if (keeps_located_)

@@ -99,6 +99,10 @@ private:
   void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
                        double sensitivity) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
+  /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
+  [[nodiscard]] double margin(const solve::Cycle& orbit, const system::Plant& system) const;
+  [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
+  void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& orbit) const;
   /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
@@ -106,7 +110,7 @@ private:
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
-  [[nodiscard]] double room(const solve::Cycle& orbit) const;
+  [[nodiscard]] double room(const solve::Cycle& orbit, const system::Plant& system) const;
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   /// Name of a piece of work about the event that comes next.
@@ -160,6 +164,7 @@ private:
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   FilmLimit films_;
+  MarginSlope margins_;
   NodeRecord nodes_;
   std::optional<solve::Cycle> last_;
   std::unique_ptr<Pieces> pieces_;  // of the study that runs

@@ -155,6 +155,25 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
   return {};
 }
 
+// The cycle at the same parameter on other meshes, and how far it is from contact there.
+std::vector<MarginThere> CycleFollower::margins_there(const solve::Cycle& cycle) const {
+  std::vector<MarginThere> out;
+  for (const CycleMesh& mesh : meshes()) {
+    out.push_back({mesh.axis, mesh.spacing, io::no_value});
+    try {
+      if (const auto there = corrected_on(mesh, cycle))
+        out.back().margin = margin(there->problem->orbit(there->u.get()), there->other ? *there->other : *system_);
+    } catch (const core::NotConverged&) {
+      // stays unknown
+    } catch (const core::DomainError&) {
+      // stays unknown
+    } catch (const core::InputError&) {
+      // stays unknown: grooves leave nothing of a coarser mesh
+    }
+  }
+  return out;
+}
+
 double CycleFollower::time_error(const Located& at) {
   problem_ = make_problem(*system_, options_.period, at.cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(at.cycle);

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "film_mesh.hpp"
-#include "findings.hpp"
 #include "summary_bars.hpp"
 #include "whirl/core/error.hpp"
 
@@ -55,31 +54,42 @@ private:
 
 }  // namespace
 
-void put_response_bars(const Context& context, const std::vector<NamedPeak>& peaks, const PutPeak& put,
-                       const SolveOnMesh& solve) {
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
+                       const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
   if (meshes.empty()) return;
   const Tops tops(peaks);
   const std::vector<double> speeds = tops.speeds();
-  const MeshResponse here = solve({1, 1}, speeds, "bars");
-  SummaryBars bars(context.results.summary(), law_of(context.machine));
+  SummaryBars bars(summary, law);
+  const auto response = [&]() -> std::optional<MeshResponse> {
+    try {
+      return solve({1, 1}, speeds, "bars");
+    } catch (const core::NotConverged&) {
+      return {};
+    } catch (const core::DomainError&) {
+      return {};
+    }
+  };
+  // Without the response about the peaks on this mesh all bars are unknown; the response itself stays.
+  const std::optional<MeshResponse> known = response();
+  if (!known) summary.warnings.emplace_back("the response beside its peaks could not be computed: no error bars");
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     io::StudySummary there;
-    try {
-      const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
-      there = moved.operating;
-      for (const NamedPeak& p : peaks) {
-        const Top a = tops.of(p, here), b = tops.of(p, moved);
-        put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
-            p.amplification * b.quality / a.quality);
+    if (known) try {
+        const MeshResponse& here = *known;
+        const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
+        there = moved.operating;
+        for (const NamedPeak& p : peaks) {
+          const Top a = tops.of(p, here), b = tops.of(p, moved);
+          put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
+              p.amplification * b.quality / a.quality);
+        }
+      } catch (const core::NotConverged&) {
+        there = {};
+      } catch (const core::DomainError&) {
+        there = {};
+      } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+        there = {};
       }
-    } catch (const core::NotConverged&) {
-      there = {};
-    } catch (const core::DomainError&) {
-      there = {};
-    } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-      there = {};
-    }
     bars.add(meshes[i].axis, meshes[i].spacing, there);
   }
   bars.write(peak_tolerance);
