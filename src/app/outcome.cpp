@@ -21,8 +21,8 @@ std::string text_of(const io::StudySummary& s) {
                         meaning(b).empty() ? "" : ": " + meaning(b));
   }
   for (const io::CodimensionTwo& c : s.codimension_two)
-    text += fmt::format("  {} at {} {}, {} {}\n", c.type, c.parameter,
-                        with_uncertainty(c.value.value, io::no_value, c.value.unit), c.second_parameter,
+    text += fmt::format("  {}{} at {} {}, {} {}\n", c.more.contains("end_of_curve") ? "ends at " : "", c.type,
+                        c.parameter, with_uncertainty(c.value.value, io::no_value, c.value.unit), c.second_parameter,
                         with_uncertainty(c.second_value.value, c.uncertainty, c.second_value.unit));
   for (const io::Suspicion& x : s.suspected)
     text += fmt::format("  not resolved from {:.7g} to {:.7g} {}: {}\n", x.from, x.to, x.unit, x.reason);

@@ -18,16 +18,18 @@ using Eigen::VectorXd;
 class PeriodMap {
 public:
   using Path = CycleProblem::Path;
-  PeriodMap(CycleProblem& problem, Vec u, double step = 1) : problem_(problem), u_(u), step_(step) {}
+  PeriodMap(CycleProblem& problem, Vec u, double step, const MotionSize& size)
+      : problem_(problem), u_(u), step_(step), size_(size) {}
 
   // D^2 R[a, b] at the collocation points.
   MatrixXd second(const Path& a, const Path& b) {
-    const double h = step_ * difference_step(size(a));
+    // Differences that are to look over kinks do so in second derivatives as well.
+    const double h = step_ > 1 ? reach(a) : difference_step(size(a));
     return (problem_.tangent(u_, h, a, b) - problem_.tangent(u_, -h, a, b)) / (2 * h);
   }
   // D^3 R[a, a, b].
   MatrixXd third(const Path& a, const Path& b) {
-    const double h = step_ * std::pow(std::numeric_limits<double>::epsilon(), 0.25) / size(a);
+    const double h = reach(a);
     return (problem_.tangent(u_, h, a, b) - 2 * problem_.tangent(u_, 0, a, b) + problem_.tangent(u_, -h, a, b)) /
            (h * h);
   }
@@ -50,14 +52,17 @@ public:
   Path path(const VectorXd& v) const { return problem_.forward(v); }
 
 private:
+  double reach(const Path& a) const { return step_ * std::pow(std::numeric_limits<double>::epsilon(), 0.25) / size(a); }
   double size(const Path& a) const {
-    double value = std::max(a.start.cwiseAbs().maxCoeff(), a.nodes.cwiseAbs().maxCoeff());
+    double value = size_(a.start);
+    for (Index k = 0; k < a.nodes.cols(); ++k) value = std::max(value, size_(a.nodes.col(k)));
     MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, problem_.comm());
     return value > 0 ? value : 1;
   }
   CycleProblem& problem_;
   Vec u_;
   double step_;
+  const MotionSize& size_;
 };
 
 // The null vectors of a polynomial of M that loses rank by k; the first borders are generic, the second ones the null
@@ -78,7 +83,8 @@ VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex
 
 }  // namespace
 
-double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier, double step) {
+double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multiplier, double step,
+                                  const MotionSize& size) {
   Composition& joined = problem.composition();
   BorderedMonodromy bordered(problem, 2);
   find_null_vectors(bordered, {1, -2 * multiplier.real() / std::abs(multiplier), 1});
@@ -87,7 +93,7 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
             p = eigenvector_in(bordered.left(), joined.times_transposed(bordered.left()), std::conj(multiplier));
   q *= std::sqrt(static_cast<double>(q.size())) / q.norm();
   p /= std::conj(p.dot(q));
-  PeriodMap map(problem, u, step);
+  PeriodMap map(problem, u, step, size);
   const Complex i(0, 1);
   const auto r = map.path(q.real()), s = map.path(q.imag());
   const VectorXd rr = map.bilinear(r, r), ss = map.bilinear(s, s), rs = map.bilinear(r, s);
@@ -110,8 +116,9 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   return (c1 / multiplier * std::abs(multiplier)).real();
 }
 
-double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step) {
-  PeriodMap map(problem, u, step);
+double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step,
+                  const MotionSize& size) {
+  PeriodMap map(problem, u, step, size);
   const PeriodMap::Path a = map.path(v);
   // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
   PeriodMap::Path b;
@@ -124,13 +131,13 @@ double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorX
   return w.dot(end) / 6;
 }
 
-double flip_coefficient(CycleProblem& problem, Vec u, double step) {
+double flip_coefficient(CycleProblem& problem, Vec u, double step, const MotionSize& size) {
   BorderedMonodromy bordered(problem, 1);
   find_null_vectors(bordered, {1, 1});
   const VectorXd w = bordered.left().col(0);
   VectorXd v = bordered.v.col(0).normalized();
   v *= std::sqrt(static_cast<double>(v.size()));
-  return flip_cubic(problem, u, v, w, step) / w.dot(v);
+  return flip_cubic(problem, u, v, w, step, size) / w.dot(v);
 }
 
 }  // namespace whirl::solve

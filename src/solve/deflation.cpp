@@ -36,7 +36,12 @@ double DeflatedProblem::factor(Vec u, Vec gradient) const {
   if (gradient) check(VecSet(gradient, 0.0));
   for (const auto& r : known_) {
     const double d2 = square(u, r.get(), difference.get());
-    if (!(d2 > 0)) throw core::DomainError("a solution that is known already");
+    if (!(d2 > 0)) {
+      // Every rank has the same sum over all of them.
+      core::DomainError known("a solution that is known already");
+      known.mark_agreed();
+      throw known;
+    }
     const double pole = std::pow(d2, -power_ / 2), one = pole + 1;
     m *= one;
     if (!gradient) continue;
@@ -89,7 +94,11 @@ void DeflatedProblem::solve(Vec rhs, Vec x) {
   double along = 0, bend = 0;
   check(VecDot(gradient_.get(), x, &along));
   check(VecDot(gradient_.get(), z_.get(), &bend));
-  if (1 + bend == 0) throw core::NotConverged("the deflated equations are singular");
+  if (1 + bend == 0) {
+    core::NotConverged singular("the deflated equations are singular");
+    singular.mark_agreed();
+    throw singular;
+  }
   check(VecAXPY(x, -along / (1 + bend), z_.get()));
 }
 

@@ -72,6 +72,22 @@ void Follower::suspect(const State& a, const State& b, std::string why) {
   found_.push_back({{Suspicion{a.point.parameter, b.point.parameter, std::move(why)}}, {}});
 }
 
+// A closer look at a stretch may lead to what was found there before.
+void Follower::meet(LocatedEvent found, State at) {
+  const auto same = [&](const LocatedEvent& other) {
+    const double apart = std::max({found.bracket, other.bracket, options_.location_tolerance});
+    return found.located && other.located && other.event == found.event && found.critical != 0.0 &&
+           std::abs(other.parameter - found.parameter) <= apart &&
+           std::abs(other.critical.real() - found.critical.real()) <= 1e-4 * std::abs(found.critical) &&
+           std::abs(std::abs(other.critical.imag()) - std::abs(found.critical.imag())) <=
+               1e-4 * std::abs(found.critical);
+  };
+  for (const auto* all : {&met_, &last_met_})
+    if (std::any_of(all->begin(), all->end(), same)) return;
+  met_.push_back(found);
+  found_.push_back({{std::move(found)}, std::move(at.u)});
+}
+
 // False position (Illinois variant) of a test function along the arclength from the point a.
 bool Follower::locate(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
                       State& at) {
@@ -366,6 +382,7 @@ void Follower::release_held() {
 
 void Follower::events(const State* first, const State* before, const State& a, const State& b) {
   last_folds_ = std::exchange(folds_, {});
+  last_met_ = std::exchange(met_, {});
   folds(a, b, 0);
   if (folds_.empty()) release_held();
   held_.reset();

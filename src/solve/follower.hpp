@@ -36,7 +36,7 @@ private:
   void begin();
   void step();
   void settle_here();
-  void meet(LocatedEvent found, State at) { found_.push_back({{std::move(found)}, std::move(at.u)}); }
+  void meet(LocatedEvent found, State at);
   void accept_point() { found_.push_back({{here_.point, here_.u.get()}, {}}); }
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
@@ -95,6 +95,7 @@ private:
   // Folds of the step whose events are sought, and of the one before: parameter, and how far the step reaches from
   // there.
   std::vector<std::pair<double, double>> folds_, last_folds_;
+  std::vector<LocatedEvent> met_, last_met_;            // likewise, what was found
   std::optional<std::pair<LocatedEvent, State>> held_;  // a crossing that is none if a fold follows
   Stage stage_ = Stage::start;
   State here_, before_, earlier_;  // the last two without u: none on this mesh

@@ -20,16 +20,23 @@ struct Motion {
 };
 using RealVector = std::vector<double>;
 
+const double third_order_length = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
+
 RealVector part(const ComplexVector& z, bool imaginary) {
   RealVector out(z.size());
   for (std::size_t k = 0; k < z.size(); ++k) out[k] = imaginary ? z[k].imag() : z[k].real();
   return out;
 }
 
-// Derivatives of F in (x, dx/dt) together, at a resting state.
+// Derivatives of F in (x, dx/dt) together, at a resting state. Lengths of differences are those of x: rates follow, by
+// the frequency.
 class Derivatives {
 public:
-  Derivatives(problem::System& system, Vec x, double step) : system_(system), x_(x), step_(step) {
+  // The largest scaled state of motions along which differences are taken is `size`.
+  Derivatives(problem::System& system, Vec x, double step, double size)
+      : system_(system), x_(x), second_(difference_step(size)), third_(step * third_order_length / size) {
+    // Differences that are to look over kinks do so in second derivatives as well.
+    if (step > 1) second_ = third_;
     rest_ = core::duplicate(x);
     at_ = core::duplicate(x);
     rate_ = core::duplicate(x);
@@ -43,11 +50,11 @@ public:
   using Real = Motion<double>;
   // B(a, b) and C(a, a, b), scaled and whole.
   RealVector second(const Real& a, const Real& b) {
-    const double h = step_ * difference_step(size(a));
+    const double h = second_;
     return combine({{h, 1 / (2 * h)}, {-h, -1 / (2 * h)}}, a, b);
   }
   RealVector third(const Real& a, const Real& b) {
-    const double h = step_ * std::pow(std::numeric_limits<double>::epsilon(), 0.25) / size(a);
+    const double h = third_;
     return combine({{h, 1 / (h * h)}, {0, -2 / (h * h)}, {-h, 1 / (h * h)}}, a, b);
   }
   // B of complex motions.
@@ -63,12 +70,6 @@ public:
   }
 
 private:
-  static double size(const Real& a) {
-    double value = std::numeric_limits<double>::min();
-    for (const RealVector* v : {&a.value, &a.rate})
-      for (double e : *v) value = std::max(value, std::abs(e));
-    return value;
-  }
   // to = from + factor * scale * v
   void put(Vec from, double factor, const RealVector& v, Vec to) const {
     PetscInt begin = 0;
@@ -96,7 +97,7 @@ private:
 
   problem::System& system_;
   Vec x_;
-  double step_;
+  double second_, third_;
   core::Vector rest_, at_, rate_, y_, direction_, state_scale_, residual_scale_;
   core::Matrix jacobian_;
 };
@@ -110,26 +111,7 @@ double hopf_coefficient(problem::System& system, Vec x, double omega, double ste
   ShiftedSystem shifted(system);
   shifted.linearise(x);
   const std::size_t n = shifted.size();
-  ComplexVector b(n), c(n), q, p, none(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto t = static_cast<double>(k);
-    b[k] = {std::sin(1 + t), std::cos(2 + 0.7 * t)};
-    c[k] = {std::cos(3 + 1.3 * t), std::sin(2 + 1.7 * t)};
-  }
-  // The first borders are generic, the second ones the null vectors themselves.
-  for (int pass = 0; pass < 2; ++pass) {
-    shifted.factorise(omega, b, c);
-    Complex corner = 1, other = 1;
-    shifted.solve(none, q, corner);
-    shifted.solve_adjoint(none, p, other);
-    for (ComplexVector* v : {&q, &p}) {
-      double sum = 0;
-      for (const Complex& e : *v) sum += std::norm(e);
-      for (Complex& e : *v) e *= std::sqrt(static_cast<double>(n) / sum);
-    }
-    b = p;
-    c = q;
-  }
+  const auto [q, p] = critical_vectors(shifted, omega);
   const Complex i(0, 1);
   const auto with_rate = [&](const ComplexVector& v, Complex exponent) {
     Motion<Complex> m{v, v};
@@ -139,7 +121,9 @@ double hopf_coefficient(problem::System& system, Vec x, double omega, double ste
   ComplexVector conjugate = q;
   for (Complex& e : conjugate) e = std::conj(e);
   const Motion<Complex> forward = with_rate(q, i * omega), backward = with_rate(conjugate, -i * omega);
-  Derivatives f(system, x, step);
+  double size = 0;
+  for (const Complex& e : q) size = std::max(size, std::abs(e));
+  Derivatives f(system, x, step, size);
   ComplexVector qq = f.second(forward, forward), qc = f.second(forward, backward), h20, h11;
   for (ComplexVector* v : {&qq, &qc})
     for (Complex& e : *v) e = -e;

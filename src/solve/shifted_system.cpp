@@ -2,6 +2,8 @@
 
 #include <petscksp.h>
 
+#include <cmath>
+
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -112,6 +114,32 @@ void ShiftedSystem::solve(const ComplexVector& rhs, ComplexVector& x, Complex& c
 
 void ShiftedSystem::solve_adjoint(const ComplexVector& rhs, ComplexVector& x, Complex& corner) {
   solve(true, rhs, x, corner);
+}
+
+// The first borders are generic, the second ones the null vectors themselves.
+CriticalVectors critical_vectors(ShiftedSystem& shifted, double omega) {
+  const std::size_t n = shifted.size();
+  ComplexVector b(n), c(n), none(n);
+  CriticalVectors out;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto t = static_cast<double>(k);
+    b[k] = {std::sin(1 + t), std::cos(2 + 0.7 * t)};
+    c[k] = {std::cos(3 + 1.3 * t), std::sin(2 + 1.7 * t)};
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    shifted.factorise(omega, b, c);
+    Complex corner = 1, other = 1;
+    shifted.solve(none, out.q, corner);
+    shifted.solve_adjoint(none, out.p, other);
+    for (ComplexVector* v : {&out.q, &out.p}) {
+      double sum = 0;
+      for (const Complex& e : *v) sum += std::norm(e);
+      for (Complex& e : *v) e *= std::sqrt(static_cast<double>(n) / sum);
+    }
+    b = out.p;
+    c = out.q;
+  }
+  return out;
 }
 
 ComplexVector ShiftedSystem::rates_times(const ComplexVector& v) const {

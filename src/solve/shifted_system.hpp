@@ -41,4 +41,12 @@ private:
   bool bordered_ = false;
 };
 
+/// Right and left null vectors of dF/dx + i omega dF/d(dx/dt) where it is singular, A q = 0 and p^* A = 0, each of root
+/// mean square one.
+struct CriticalVectors {
+  ComplexVector q, p;
+};
+/// Leaves `shifted` factorised anew. Collective.
+[[nodiscard]] CriticalVectors critical_vectors(ShiftedSystem& shifted, double omega);
+
 }  // namespace whirl::solve

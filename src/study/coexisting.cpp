@@ -112,11 +112,25 @@ solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& sch
   return out;
 }
 
-void put_solutions(io::Group& group, io::StudySummary& summary, const std::vector<solve::Cycle>& further) {
+std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
+                                        const std::function<std::vector<solve::Cycle>()>& find) {
+  std::vector<solve::Cycle> further;
+  const auto lost = [&](const core::Error& e) {
+    summary.warnings.push_back(
+        fmt::format("deflation was given up, other solutions at the start are not known: {}", e.what()));
+  };
+  try {
+    further = find();
+  } catch (const core::NotConverged& e) {
+    lost(e);
+  } catch (const core::DomainError& e) {
+    lost(e);
+  }
   auto& all = group.child("solutions");
   all.set("count", static_cast<int>(further.size()));
   for (std::size_t k = 0; k < further.size(); ++k) write_cycle(all.child(fmt::format("{}", k + 2)), further[k]);
   summary.set("solutions", static_cast<double>(further.size() + 1), "1");
+  return further;
 }
 
 std::vector<solve::Cycle> read_solutions(const io::Group& group) {

@@ -1,6 +1,7 @@
 #pragma once
 // Solutions that coexist with the first one of a branch, found by deflation.
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,8 +28,11 @@ namespace whirl::study {
 /// slower; the k-th of them.
 [[nodiscard]] solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& scheme, int turns, int k);
 
-/// The further solutions into `group`/solutions, and their number with the first one as the value `solutions`.
-void put_solutions(io::Group& group, io::StudySummary& summary, const std::vector<solve::Cycle>& further);
+/// What `find` finds into `group`/solutions, and the number of solutions with the first one as the value `solutions`. A
+/// search that ends in core::NotConverged or core::DomainError found nothing, which a warning says: the branch itself
+/// stays. Returns what was found.
+std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
+                                        const std::function<std::vector<solve::Cycle>()>& find);
 [[nodiscard]] std::vector<solve::Cycle> read_solutions(const io::Group& group);
 
 /// Name of the branch that begins at the k-th solution (the first is the branch's own) of the study `name`.

@@ -7,6 +7,7 @@
 #include "bifurcation.hpp"
 #include "cycle_follower.hpp"
 #include "equilibrium_event.hpp"
+#include "hopf_cycles.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/normal_form.hpp"
 
@@ -23,15 +24,16 @@ std::string CycleFollower::piece(const std::string& what) const {
 }
 
 // At u, where `problem` is linearised anew; not a number where there is no such normal form.
-double CycleFollower::normal_form(solve::CycleProblem& problem, solve::Event event, std::complex<double> critical,
-                                  Vec u, double step) const {
+double CycleFollower::normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
+                                  std::complex<double> critical, Vec u, double step) const {
   if (autonomous() || (event != solve::Event::neimark_sacker && event != solve::Event::flip)) return io::no_value;
   core::Vector row = core::duplicate(u);
   solve::parameter_row(problem, row.get());
   try {
     problem.linearise(u, row.get());
-    return event == solve::Event::flip ? solve::flip_coefficient(problem, u, step)
-                                       : solve::neimark_sacker_coefficient(problem, u, critical, step);
+    const solve::MotionSize size = motion_of_places(system);
+    return event == solve::Event::flip ? solve::flip_coefficient(problem, u, step, size)
+                                       : solve::neimark_sacker_coefficient(problem, u, critical, step, size);
   } catch (const core::NotConverged&) {
     return io::no_value;
   } catch (const core::DomainError&) {
@@ -49,10 +51,12 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
   if (fold && found.refined) here.coefficient = found.quadratic;
   if (forms) {
     const auto with = [&](const char* name, double step) {
-      return pieces_->number(piece(name), [&] { return normal_form(*cycles, found.event, found.critical, u, step); });
+      return pieces_->number(piece(name),
+                             [&] { return normal_form(*cycles, *system_, found.event, found.critical, u, step); });
     };
-    here.coefficient = with("long normal form", long_step);
-    doubt = std::abs(with("short normal form", short_step) - here.coefficient);
+    const DifferenceSteps steps = steps_of(law());
+    here.coefficient = with("long normal form", steps.longer);
+    doubt = doubt_of_steps(with("short normal form", steps.shorter), here.coefficient);
   }
   Bars bars(here.list(), law()), of_coefficient({here.coefficient}, law());
   for (const CycleMesh& mesh : meshes()) {
@@ -96,6 +100,23 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
                     "cubic term of the flip's normal form (Kuznetsov 2004, 5.68)");
 }
 
+// A fold right beside the birth of the branch may be the work of a film's kinks alone.
+void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
+  const auto& all = context_.results.summary().bifurcations;
+  if (all.empty() || all.front().type != io::BifurcationType::hopf) return;
+  const double apart = std::abs(b.value - all.front().value);
+  if (decided(apart, b.uncertainty)) return;
+  b.more["distance_from_birth"] = apart;
+  b.criticality = "undetermined";
+  b.criticality_by = fmt::format(
+      "{:.3g} {} from the Hopf point where the branch is born, within the uncertainty: there may be no such fold",
+      apart, b.unit);
+  context_.results.summary().warnings.push_back(
+      fmt::format("the cyclic fold at {:.6g} {} lies within its uncertainty of the Hopf point where the branch is "
+                  "born: there may be none",
+                  b.value, b.unit));
+}
+
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
@@ -127,6 +148,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     pieces_->complete(piece("criticality"), b,
                       [&] { set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity); });
   }
+  if (autonomous() && found.event == solve::Event::cyclic_fold) doubt_at_birth(b);
   ++events_;
   context_.results.summary().bifurcations.push_back(b);
   if (keeps_located_)

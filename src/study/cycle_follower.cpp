@@ -74,9 +74,13 @@ solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) co
   return solve::make_stability(std::move(values), distance_of_multiplier);
 }
 
-double CycleFollower::room(const solve::Cycle& orbit) const {
+double CycleFollower::room(const solve::Cycle& orbit, const system::Plant& system) const {
   if (!options_.max_eccentricity) return std::numeric_limits<double>::infinity();
-  return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), *system_);
+  return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), system);
+}
+
+double CycleFollower::margin(const solve::Cycle& orbit, const system::Plant& system) const {
+  return std::min(films_.margin(least_films(orbit, system)), room(orbit, system));
 }
 
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
@@ -84,6 +88,7 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle orbit = problem_->orbit(u);
   record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
+  if (films_.exists() || options_.max_eccentricity) margins_.add(point.parameter, margin(orbit, *system_));
   report_between(last_ ? *last_ : cycle, cycle);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
@@ -176,12 +181,12 @@ StudyResult CycleFollower::run() {
   if (films_.exists() || options_.max_eccentricity) {
     callbacks.limit = [this](Vec v) {
       const solve::Cycle orbit = problem_->orbit(v);
-      return std::min(films_.margin(least_films(orbit, *system_)), room(orbit));
+      return margin(orbit, *system_);
     };
     callbacks.why = [this, &contact](Vec v) {
       const solve::Cycle orbit = problem_->orbit(v);
       const std::vector<double> films = least_films(orbit, *system_);
-      contact = room(orbit) <= films_.margin(films);
+      contact = room(orbit, *system_) <= films_.margin(films);
       return contact ? fmt::format("the eccentricity reaches {:.6g} (max_eccentricity)", *options_.max_eccentricity)
                      : films_.reason(films);
     };
@@ -222,9 +227,10 @@ StudyResult CycleFollower::run() {
   if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
   if (keeps_located_) write_located(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
-  if (end.limited) results.summary().set("contact", end.parameter, unit_, {{"uncertainty", end.bracket}});
+  if (end.limited && last_)
+    put_contact(results.summary(), end.parameter, unit_, end.bracket, margins_.value(), law(), margins_there(*last_));
   results.summary().stability = record_.verdict();
-  if (options_.parameter.deflation) put_solutions(group, results.summary(), coexisting());
+  if (options_.parameter.deflation) put_solutions(group, results.summary(), [this] { return coexisting(); });
   return results.finish(returned_ || (end.limited && contact) ? "completed" : branch_status(end, unit_),
                         end.points > 0);
 }

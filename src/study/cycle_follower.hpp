@@ -99,6 +99,10 @@ private:
   void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
                        double sensitivity) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
+  /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
+  [[nodiscard]] double margin(const solve::Cycle& orbit, const system::Plant& system) const;
+  [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
+  void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& orbit) const;
   /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
@@ -106,7 +110,7 @@ private:
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
-  [[nodiscard]] double room(const solve::Cycle& orbit) const;
+  [[nodiscard]] double room(const solve::Cycle& orbit, const system::Plant& system) const;
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   /// Name of a piece of work about the event that comes next.
@@ -134,8 +138,8 @@ private:
   /// The same bifurcation on another mesh; nothing if it cannot be had.
   [[nodiscard]] std::optional<CycleNumbers> numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                        const solve::Cycle& cycle, bool with_coefficient) const;
-  [[nodiscard]] double normal_form(solve::CycleProblem& problem, solve::Event event, std::complex<double> critical,
-                                   Vec u, double step) const;
+  [[nodiscard]] double normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
+                                   std::complex<double> critical, Vec u, double step) const;
   void put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
@@ -160,6 +164,7 @@ private:
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   FilmLimit films_;
+  MarginSlope margins_;
   NodeRecord nodes_;
   std::optional<solve::Cycle> last_;
   std::unique_ptr<Pieces> pieces_;  // of the study that runs

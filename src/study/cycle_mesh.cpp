@@ -121,10 +121,11 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     const auto refined =
         solve::refine(*cycles, found, there->u.get(), solve::any_tangent(*cycles, there->u.get()).get(), newton_);
     if (refined) {
-      return CycleNumbers{
-          refined->parameter, std::abs(std::arg(refined->critical)), cycles->gather(refined->u.get()).period,
-          with_coefficient ? normal_form(*cycles, found.event, refined->critical, refined->u.get(), long_step)
-                           : io::no_value};
+      return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
+                          cycles->gather(refined->u.get()).period,
+                          with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
+                                                         refined->critical, refined->u.get(), steps_of(law()).longer)
+                                           : io::no_value};
     }
     solve::PeriodicProblem& problem = *there->problem;
     core::Vector row = core::duplicate(there->u.get());
@@ -152,6 +153,25 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
   return {};
 } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
   return {};
+}
+
+// The cycle at the same parameter on other meshes, and how far it is from contact there.
+std::vector<MarginThere> CycleFollower::margins_there(const solve::Cycle& cycle) const {
+  std::vector<MarginThere> out;
+  for (const CycleMesh& mesh : meshes()) {
+    out.push_back({mesh.axis, mesh.spacing, io::no_value});
+    try {
+      if (const auto there = corrected_on(mesh, cycle))
+        out.back().margin = margin(there->problem->orbit(there->u.get()), there->other ? *there->other : *system_);
+    } catch (const core::NotConverged&) {
+      // stays unknown
+    } catch (const core::DomainError&) {
+      // stays unknown
+    } catch (const core::InputError&) {
+      // stays unknown: grooves leave nothing of a coarser mesh
+    }
+  }
+  return out;
 }
 
 double CycleFollower::time_error(const Located& at) {

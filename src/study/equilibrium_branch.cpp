@@ -44,6 +44,30 @@ double state_weight_of(const EquilibriumBranchOptions& o) {
 
 namespace {
 
+// The margins of equilibria at the same parameter on other film meshes.
+std::vector<MarginThere> margins_there(const Context& context, const EquilibriumBranchOptions& options,
+                                       const system::Plant& system, const std::vector<double>& whole, double parameter,
+                                       const solve::NewtonOptions& newton) {
+  std::vector<MarginThere> out;
+  for (const FilmMesh& mesh : film_meshes(context.machine)) {
+    out.push_back({mesh.axis, mesh.spacing, io::no_value});
+    try {
+      const auto other = plant_of(context, options, mesh.factor);
+      other->set_parameter(parameter);
+      const core::Vector x = resampled(*other, system, whole);
+      if (solve::find_equilibrium(*other, x.get(), newton).converged)
+        out.back().margin = FilmLimit(other->places()).margin(other->film_thickness(other->gather(x.get()).data()));
+    } catch (const core::NotConverged&) {
+      // stays unknown
+    } catch (const core::DomainError&) {
+      // stays unknown
+    } catch (const core::InputError&) {
+      // stays unknown: grooves leave nothing of a coarser mesh
+    }
+  }
+  return out;
+}
+
 // Follows the branch from `first`, or from the equilibrium that is easiest to find.
 StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& options, const solve::Cycle* first) {
   const auto& range = options.parameter.range;
@@ -98,6 +122,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   std::vector<BorderEvent> borders;  // likewise
   BranchVerdict verdict;
   const FilmLimit films(places);
+  MarginSlope margins;
   auto& results = context.results;
   put_groups(results.summary(), system->groups());
   solve::BranchCallbacks callbacks;
@@ -105,7 +130,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   Pieces pieces(results, context.resume);
   int looks = 0;
   callbacks.stability = [&](Vec v) {
-    return pieces.stability(fmt::format("look {}", ++looks), [&] {
+    // The place tells them apart where a step was taken otherwise than before: rounded, as decisions are.
+    const double place = solve::last_entry(problem.comm(), v);
+    return pieces.stability(fmt::format("look {} at {:.10g}", ++looks, place), [&] {
       problem.to_state(v, x.get());
       return equilibrium_stability(*system, x.get());
     });
@@ -119,6 +146,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       py.push_back(j.position[1]);
     }
     const auto& s = point.stability;
+    margins.add(point.parameter, films.margin(system->film_thickness(whole.data())));
     verdict.add(class_of(s));
     std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
     if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
@@ -176,10 +204,12 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
   const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
+  const std::vector<double> at_limit = system->gather(x.get());  // the last point
   if (options.parameter.deflation) {
     system->set_parameter(range.from);
-    const auto others = coexisting_equilibria(*system, *options.parameter.deflation, continuation.newton);
-    put_solutions(results.group(), results.summary(), others);
+    const auto others = put_solutions(results.group(), results.summary(), [&] {
+      return coexisting_equilibria(*system, *options.parameter.deflation, continuation.newton);
+    });
     for (std::size_t k = 0; k < others.size(); ++k) {
       const auto shown = system->shown(others[k].x.data());
       for (std::size_t place = 0; place < shown.size(); ++place)
@@ -206,7 +236,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
       results.summary().set("whirl_frequency", omega->second, "rad/s",
                             {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
   }
-  if (end.limited) results.summary().set("contact", end.parameter, unit, {{"uncertainty", end.bracket}});
+  if (end.limited)
+    put_contact(results.summary(), end.parameter, unit, end.bracket, margins.value(), law_of(context.machine),
+                margins_there(context, options, *system, at_limit, end.parameter * scale, continuation.newton));
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common.hpp"
+#include "hopf_cycles.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 #include "whirl/solve/equilibrium.hpp"
@@ -21,9 +22,11 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 enum Number : std::size_t { place, frequency, coefficient, numbers };
 
+constexpr int few_harmonics = 3, more_harmonics = 5;  // of the cycles that decide on a criticality
+
 double lyapunov(system::Plant& system, Vec x, double omega, double step) {
   try {
-    return solve::hopf_coefficient(system, x, omega, step);
+    return solve::hopf_coefficient(system, x, omega, step * critical_motion(system, x, omega).largest);
   } catch (const core::NotConverged&) {
     return unknown;
   } catch (const core::DomainError&) {
@@ -46,37 +49,97 @@ std::vector<double> by_slope(system::Plant& system, Vec x, const solve::LocatedE
   return {found.parameter - distance / found.sensitivity, omega, unknown};
 }
 
-}  // namespace
+// The same bifurcation with other cells.
+struct Elsewhere {
+  std::unique_ptr<system::Plant> system;
+  core::Vector x;
+  std::optional<solve::Refined> found;  // nothing: x is the equilibrium at the parameter of the event
+};
 
-std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) try {
-  const auto made = at.make(film_cells);
-  system::Plant& system = *made;
+std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
+  Elsewhere out{at.make(film_cells), {}, {}};
+  system::Plant& system = *out.system;
   system.set_parameter(at.found.parameter * at.scale);
-  core::Vector x = resampled(system, at.system, at.system.gather(at.x));
+  out.x = resampled(system, at.system, at.system.gather(at.x));
   const bool hopf = at.found.event == solve::Event::hopf;
   // On the far side of a fold there is no equilibrium at this parameter.
-  if (hopf && !solve::find_equilibrium(system, x.get(), at.newton).converged) return {};
+  if (hopf && !solve::find_equilibrium(system, out.x.get(), at.newton).converged) return {};
   solve::EquilibriumProblem problem(system, at.scale, at.state_weight);
   core::Vector u = problem.make_unknown();
-  problem.from_state(x.get(), at.found.parameter * at.scale, u.get());
+  problem.from_state(out.x.get(), at.found.parameter * at.scale, u.get());
   const core::Vector tangent = solve::any_tangent(problem, u.get());
-  const auto there = solve::refine(system, problem, at.found, u.get(), tangent.get(), at.newton);
-  if (!there) {
-    if (!hopf || at.found.sensitivity == 0) return {};
-    system.set_parameter(at.found.parameter * at.scale);
-    return by_slope(system, x.get(), at.found);
-  }
-  if (!hopf) return {there->parameter, 0, there->quadratic};
-  problem.to_state(there->u.get(), x.get());
-  system.set_parameter(there->parameter * at.scale);
-  const double omega = there->critical.imag();
-  return {there->parameter, omega, lyapunov(system, x.get(), omega, long_step)};
+  out.found = solve::refine(system, problem, at.found, u.get(), tangent.get(), at.newton);
+  if (out.found) problem.to_state(out.found->u.get(), out.x.get());
+  system.set_parameter(out.found ? out.found->parameter * at.scale : at.found.parameter * at.scale);
+  return out;
+}
+
+// What `there` returns, or nothing where the event cannot be had.
+template <class T>
+T unless_lost(const std::function<T()>& there) try {
+  return there();
 } catch (const core::NotConverged&) {
   return {};
 } catch (const core::DomainError&) {
   return {};
 } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
   return {};
+}
+
+// Of the cycles born at the Hopf point with other cells; not a number if they cannot be had.
+double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells, double largest) {
+  const auto born = unless_lost<std::optional<BirthOfCycles>>([&]() -> std::optional<BirthOfCycles> {
+    const auto there = located_on(at, film_cells);
+    if (!there || !there->found) return {};
+    return birth_of_cycles(*there->system, there->x.get(), std::abs(there->found->critical.imag()), at.scale,
+                           few_harmonics, largest);
+  });
+  return born ? born->curvature : unknown;
+}
+
+// Cycles at finite amplitudes reach over the kinks of a force that is smooth by pieces only.
+void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega) {
+  const auto found = unless_lost<std::optional<BirthOfCycles>>(
+      [&] { return birth_of_cycles(at.system, at.x, omega, at.scale, few_harmonics); });
+  if (!found || at.found.sensitivity == 0) return;
+  const double largest = found->amplitudes.back();
+  const auto finer = unless_lost<std::optional<BirthOfCycles>>(
+      [&] { return birth_of_cycles(at.system, at.x, omega, at.scale, more_harmonics, largest); });
+  double doubt = finer ? std::abs(finer->curvature - found->curvature) : unknown;
+  Bars bars({found->curvature}, at.law);
+  for (const FilmMesh& mesh : at.meshes) {
+    const double c = curvature_on(at, mesh.factor, largest);
+    bars.add(mesh.axis, mesh.spacing, {c});
+    // A sign that changes with the mesh is none.
+    if (!(c * found->curvature > 0)) doubt = std::max(doubt, std::abs(c - found->curvature));
+  }
+  const std::string before = b.criticality_by;
+  for (const char* name : {"coefficient", "uncertainty"})
+    b.more[fmt::format("lyapunov_{}", name)] = b.more[fmt::format("criticality_{}", name)];
+  // Cycles that live where the equilibrium is unstable are supercritical.
+  const double sign = at.found.sensitivity > 0 ? -1 : 1;
+  put_criticality(b, sign * found->curvature, found->spread + bars[0].total() + doubt, "supercritical", "subcritical",
+                  fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance, change of the parameter per "
+                              "clearance^2",
+                              found->amplitudes[0], found->amplitudes[1], found->amplitudes[2]));
+  b.criticality_by += "; " + before;
+}
+
+}  // namespace
+
+std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
+  return unless_lost<std::vector<double>>([&]() -> std::vector<double> {
+    const auto there = located_on(at, film_cells);
+    if (!there) return {};
+    const bool hopf = at.found.event == solve::Event::hopf;
+    if (!there->found) {
+      if (!hopf || at.found.sensitivity == 0) return {};
+      return by_slope(*there->system, there->x.get(), at.found);
+    }
+    if (!hopf) return {there->found->parameter, 0, there->found->quadratic};
+    const double omega = there->found->critical.imag();
+    return {there->found->parameter, omega, lyapunov(*there->system, there->x.get(), omega, steps_of(at.law).longer)};
+  });
 }
 
 void put_criticality(io::Bifurcation& b, double value, double uncertainty, const char* negative, const char* positive,
@@ -109,8 +172,9 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   here[place] = at.found.parameter;
   here[frequency] = hopf ? omega : 0;
   at.system.set_parameter(at.found.parameter * at.scale);
-  here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, long_step) : at.found.quadratic;
-  double doubt = hopf ? std::abs(lyapunov(at.system, at.x, omega, short_step) - here[coefficient]) : 0;
+  const DifferenceSteps steps = steps_of(at.law);
+  here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, steps.longer) : at.found.quadratic;
+  double doubt = hopf ? doubt_of_steps(lyapunov(at.system, at.x, omega, steps.shorter), here[coefficient]) : 0;
   Bars bars(here, at.law);
   for (const FilmMesh& mesh : at.meshes) {
     const std::vector<double> there = numbers_on(at, mesh.factor);
@@ -130,7 +194,8 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   if (hopf)
     put_criticality(b, here[coefficient], error, "supercritical", "subcritical",
                     "first Lyapunov coefficient (Kuznetsov 2004, 5.39)");
-  else if (here[coefficient] != 0)
+  if (hopf && at.law.piecewise && b.criticality == "undetermined") decide_by_cycles(b, at, omega);
+  if (!hopf && here[coefficient] != 0)
     put_criticality(b, here[coefficient], error, "below", "above",
                     "second derivative of the parameter along the branch: the side on which the equilibria exist");
 }

@@ -2,6 +2,7 @@
 // What is recorded of a fold or Hopf point of equilibria beside its place: bars, frequency, criticality.
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -15,10 +16,22 @@
 
 namespace whirl::study {
 
-/// Lengths of the differences behind third derivatives, in steps of the usual ones: a hundredth and a fiftieth of a
-/// clearance. Discrete films have third derivatives that belong to their mesh at the usual length of 1e-4 clearances;
-/// over the amplitudes of the motions that are born their forces are smooth.
-inline constexpr double short_step = 80, long_step = 160;
+/// Lengths of the differences behind third derivatives, in steps of 1.2e-4 clearances at the place that moves most.
+///
+/// Films that cavitate on a mesh have third derivatives that belong to it where differences are short. Over a hundredth
+/// and a fiftieth of a clearance, less than the motions that are born, their forces are smooth, and up to ten times
+/// that coefficients hardly move. Forces in closed form take shorter ones.
+struct DifferenceSteps {
+  double shorter, longer;
+};
+[[nodiscard]] inline DifferenceSteps steps_of(const MeshLaw& law) {
+  return law.piecewise ? DifferenceSteps{80, 160} : DifferenceSteps{8, 16};
+}
+/// Of the coefficient by the longer one: truncation makes it 4/3 of what the shorter one says differently, the rest is
+/// for kinks.
+[[nodiscard]] inline double doubt_of_steps(double shorter, double longer) {
+  return 2 * std::abs(shorter - longer);
+}
 
 /// A bifurcation of equilibria that a branch found, and how to meet it on other film meshes.
 struct EquilibriumEvent {
@@ -36,9 +49,9 @@ struct EquilibriumEvent {
 
 /// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with
 /// its coefficient and uncertainty into `b`. On each other film mesh the same bifurcation is located by Newton's method
-/// from the resampled equilibrium. Criticality is that of the first Lyapunov coefficient, or the side on which the
-/// equilibria of a fold exist by its second derivative; "undetermined" where the coefficient's bar contains zero.
-/// Collective.
+/// from the resampled equilibrium. Criticality is that of the first Lyapunov coefficient, or where its bar contains
+/// zero and forces are smooth by pieces only, that of cycles at three amplitudes; of a fold the side on which the
+/// equilibria exist by its second derivative; "undetermined" where the bar of that contains zero, too. Collective.
 void describe(io::Bifurcation& b, const EquilibriumEvent& at);
 
 /// Place, whirl frequency and coefficient of the same bifurcation with these cells over those of the deck; empty if it

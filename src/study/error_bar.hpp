@@ -27,6 +27,8 @@ struct MeshLaw {
   double time_order = 2;
   /// The force of a film has kinks in the journal's place, of its own mesh: errors need not fall regularly.
   bool kinks = false;
+  /// The force of a film is smooth between places where a derivative jumps: normal forms of it are those of its mesh.
+  bool piecewise = false;
 };
 
 /// An error bar by its parts; NaN: unknown.

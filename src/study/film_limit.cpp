@@ -40,6 +40,28 @@ void FilmLimit::warn(const std::vector<double>& thickness, const std::string& wh
                       names_[k], where, thickness[k] * 1e6, limits_[k] * 1e6));
 }
 
+void MarginSlope::add(double parameter, double margin) {
+  if (any_ && parameter != parameter_) slope_ = (margin - margin_) / (parameter - parameter_);
+  parameter_ = parameter;
+  margin_ = margin;
+  any_ = true;
+}
+
+void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, double slope,
+                 const MeshLaw& law, const std::vector<MarginThere>& there) {
+  Bars bars({place}, law);
+  bool with_time = false;
+  for (const MarginThere& m : there) {
+    bars.add(m.axis, m.spacing, {place - m.margin / slope});
+    with_time |= m.axis == Axis::time;
+  }
+  Bar bar = bars[0];
+  bar.location = location;
+  auto more = bar.parts(with_time);
+  more["uncertainty"] = bar.total();
+  summary.set("contact", place, unit, more);
+}
+
 std::vector<double> film_column(std::vector<double> thickness, std::size_t places) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   thickness.resize(places, none);

@@ -39,7 +39,9 @@ MeshLaw law_of(const system::Machine& machine) {
   for (const auto& b : machine.bearings) {
     if (!film::has_mesh(b.film.kind)) continue;
     if (b.film.differences == film::Options::Differences::upwind) law.film_order = 1;
-    law.kinks |= film::smoothness(b.film).derivatives == 0;
+    const film::Smoothness smoothness = film::smoothness(b.film);
+    law.kinks |= smoothness.derivatives == 0;
+    law.piecewise |= !smoothness.smooth();
   }
   return law;
 }

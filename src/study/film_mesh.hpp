@@ -28,7 +28,8 @@ struct FilmMesh {
 [[nodiscard]] system::Train with_film_mesh(system::Train train, const std::array<double, 2>& factor);
 
 /// Order of the films' equations (one with upwind differences, else two: cavitation limits it) and whether their forces
-/// have kinks themselves (film::smoothness: Simpson's rule, whose weights jump where the pressure changes its sign).
+/// have kinks themselves (film::smoothness: Simpson's rule, whose weights jump where the pressure changes its sign), or
+/// derivatives of them.
 [[nodiscard]] MeshLaw law_of(const system::Machine& machine);
 
 /// The whole state of `from` on the film meshes of `to`, distributed. Collective.

@@ -151,7 +151,7 @@ solve::SecondParameter LocusFollower::second(system::RotorSystem& system, bool h
 Row LocusFollower::row_at(Vec whole, double second) const {
   const core::Vector u = problem_->branch_part(whole);
   const Eigen::VectorXd inner = problem_->inner(whole);
-  Row row{solve::last_entry(branch_->comm(), u.get()) * first_scale_, second * second_scale_, 0, 0};
+  Row row{solve::last_entry(branch_->comm(), u.get()) * first_scale_, second * second_scale_, 0, 0, 0};
   if (cycles_) row.period = cycles_->gather(u.get()).period;
   if (seed_.event == solve::Event::hopf) row.period = 2 * std::numbers::pi / std::abs(inner(0));
   if (seed_.event == solve::Event::flip) row.angle = std::numbers::pi;
@@ -248,6 +248,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   seed_ = born;
   start_second_ = start_second;
   rows_.clear();
+  last_swing_.resize(0, 0);
   inner_sign_ = 0;
   std::optional<solve::Restart> restart;
   if (left) {
@@ -284,11 +285,21 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   };
   callbacks.on_suspicion = [&](const solve::Suspicion& s) { suspect(s.from, s.to, s.reason); };
   // The parameters may change what a film bears.
-  callbacks.limit = [&](Vec whole) { return FilmLimit(system_->places()).margin(films(whole)); };
-  callbacks.why = [&](Vec whole) { return FilmLimit(system_->places()).reason(films(whole)); };
+  bool shrunk = false;
+  callbacks.limit = [&](Vec whole) {
+    return std::min(FilmLimit(system_->places()).margin(films(whole)), margin_of_amplitude(whole));
+  };
+  callbacks.why = [&](Vec whole) -> std::string {
+    shrunk = margin_of_amplitude(whole) <= FilmLimit(system_->places()).margin(films(whole));
+    return shrunk ? "ends at a generalised Hopf point" : FilmLimit(system_->places()).reason(films(whole));
+  };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
     last_ = row_at(whole, point.parameter);
     last_.others_unstable = others_unstable(whole);
+    if (cycles_ && cycles_->options().autonomous) {
+      last_swing_ = swing(whole);
+      last_.amplitude = amplitude_of(last_swing_);
+    }
     if (point.index > 0)
       rows_.push_back(last_);
     else
@@ -326,6 +337,11 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     problem_->update();
   }
   end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks, std::move(restart));
+  if (end.limited && shrunk) {
+    ended_ = true;
+    end_at_generalised_hopf(end);
+    context_.results.group().set("end", end.reason);
+  }
   end.completed = end.completed || left_ || ended_;
   return std::move(rows_);
 }
@@ -335,15 +351,16 @@ namespace {
 // The curve into the summary, and a warning where it is no border of stability.
 void put_curve(io::StudySummary& summary, const std::vector<Row>& rows, const std::string& first,
                const std::string& second) {
-  std::vector<io::Column> columns{{"parameter", first, {}},
-                                  {"second", second, {}},
-                                  {"period", "s", {}},
-                                  {"angle", "rad", {}},
-                                  {"others_unstable", "1", {}}};
+  std::vector<io::Column> columns{{"parameter", first, {}}, {"second", second, {}}, {"period", "s", {}},
+                                  {"angle", "rad", {}},     {"amplitude", "1", {}}, {"others_unstable", "1", {}}};
   double low = std::numeric_limits<double>::infinity(), high = -low;
   int marked = 0;
   for (const Row& row : rows) {
-    const double values[] = {deck::from_si(row.first, first), deck::from_si(row.second, second), row.period, row.angle,
+    const double values[] = {deck::from_si(row.first, first),
+                             deck::from_si(row.second, second),
+                             row.period,
+                             row.angle,
+                             row.amplitude,
                              static_cast<double>(row.others_unstable)};
     for (std::size_t k = 0; k < columns.size(); ++k) columns[k].values.push_back(values[k]);
     if (row.others_unstable == 0) continue;
@@ -387,12 +404,14 @@ StudyResult LocusFollower::run() {
                    {"second", range.unit, "second parameter"},
                    {"period", "s", "period of the cycle, or 2 pi/omega at Hopf points"},
                    {"angle", "rad", "angle of the critical multiplier"},
+                   {"amplitude", "1", "of a self-excited cycle, per clearance of the place that moves most; else 0"},
                    {"others_unstable", "1", "unstable eigenvalues or multipliers beside the critical ones"}});
   for (const Row& row : all)
     table.append({{deck::from_si(row.first, first_range_.unit)},
                   {deck::from_si(row.second, range.unit)},
                   {row.period},
                   {row.angle},
+                  {row.amplitude},
                   {static_cast<double>(row.others_unstable)}});
   auto& results = context_.results;
   put_groups(results.summary(), system_->train());

@@ -9,15 +9,16 @@ namespace whirl::study {
 void write_rows(io::Group& group, const std::vector<Row>& rows) {
   std::vector<double> flat;
   for (const Row& r : rows)
-    flat.insert(flat.end(), {r.first, r.second, r.period, r.angle, static_cast<double>(r.others_unstable)});
-  group.put("rows", {rows.size(), 5}, std::move(flat), "SI", "points of the curve");
+    flat.insert(flat.end(),
+                {r.first, r.second, r.period, r.angle, r.amplitude, static_cast<double>(r.others_unstable)});
+  group.put("rows", {rows.size(), 6}, std::move(flat), "SI", "points of the curve");
 }
 
 std::vector<Row> read_rows(const io::Group& group) {
   std::vector<Row> rows;
   const auto& flat = group.reals("rows");
-  for (std::size_t k = 0; k + 4 < flat.size(); k += 5)
-    rows.push_back({flat[k], flat[k + 1], flat[k + 2], flat[k + 3], static_cast<int>(flat[k + 4])});
+  for (std::size_t k = 0; k + 5 < flat.size(); k += 6)
+    rows.push_back({flat[k], flat[k + 1], flat[k + 2], flat[k + 3], flat[k + 4], static_cast<int>(flat[k + 5])});
   return rows;
 }
 
@@ -36,8 +37,8 @@ solve::Restart LocusFollower::restore(const io::Group& state, Vec like) {
   zeros_ = static_cast<int>(state.integer("zeros"));
   const auto& generalised = state.reals("generalised");
   generalised_.clear();
-  for (std::size_t k = 0; k + 1 < generalised.size(); k += 2)
-    generalised_.emplace_back(generalised[k], generalised[k + 1]);
+  for (std::size_t k = 0; k + 2 < generalised.size(); k += 3)
+    generalised_.push_back({generalised[k], generalised[k + 1], generalised[k + 2]});
   read_summary(state.group("summary"), context_.results.summary());
   return read_restart(state.group("restart"), like);
 }
@@ -73,7 +74,7 @@ void LocusFollower::save(const solve::BranchPoint& point, Vec whole, Vec tangent
   state.set("inner_sign", inner_sign_);
   state.set("zeros", zeros_);
   std::vector<double> generalised;
-  for (const auto& [second, reach] : generalised_) generalised.insert(generalised.end(), {second, reach});
+  for (const auto& [first, second, reach] : generalised_) generalised.insert(generalised.end(), {first, second, reach});
   state.put("generalised", generalised, "1", "generalised points that are confirmed, and how far around");
   write_summary(state.child("summary"), context_.results.summary());
   write_restart(state.child("restart"), point, whole, tangent, next_step);

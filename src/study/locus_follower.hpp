@@ -22,9 +22,9 @@ namespace whirl::study {
 /// Name of the monitor behind the tests of Hopf points themselves.
 inline constexpr const char* generalised_hopf = "generalised_hopf";
 
-/// A point of a curve, SI.
+/// A point of a curve, SI; the amplitude of a self-excited cycle in clearances.
 struct Row {
-  double first = 0, second = 0, period = 0, angle = 0;
+  double first = 0, second = 0, period = 0, angle = 0, amplitude = 0;
   int others_unstable = 0;
 };
 
@@ -57,6 +57,7 @@ private:
   [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
   // `error` in scaled second parameter; not a number: unknown.
   void record(const std::string& type, double second, double error, Vec whole);
+  void record_row(const std::string& type, const Row& row, double error);
   // A zero of the coefficient of a normal form, if it is one of the equations.
   void record_generalised(const std::string& type, double second, double bracket, Vec whole);
   [[nodiscard]] Beside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
@@ -74,6 +75,12 @@ private:
   // Unstable eigenvalues or multipliers beside the critical ones.
   [[nodiscard]] int others_unstable(Vec whole);
   [[nodiscard]] std::vector<double> films(Vec whole) const;
+  // The cycle at `whole` as it swings about its mean, and how far a place does.
+  [[nodiscard]] Eigen::MatrixXd swing(Vec whole) const;
+  [[nodiscard]] double amplitude_of(const Eigen::MatrixXd& swing) const;
+  // Positive as long as cycles of a fold are large enough to go on.
+  [[nodiscard]] double margin_of_amplitude(Vec whole) const;
+  void end_at_generalised_hopf(const solve::BranchEnd& end);
   void suspect(double from, double to, const std::string& reason);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
@@ -107,8 +114,12 @@ private:
   double inner_sign_ = 0;  // of the inner unknown at its first point
   int zeros_ = 0;          // generalised points looked at so far
   Row start_, last_;
-  // Generalised points that are confirmed: second parameter, and how far around it was looked at, scaled.
-  std::vector<std::pair<double, double>> generalised_;
+  Eigen::MatrixXd last_swing_;  // of the last point
+  // Generalised points that are confirmed: both parameters, and how far around was looked at, scaled.
+  struct Confirmed {
+    double first, second, looked;
+  };
+  std::vector<Confirmed> generalised_;
   bool left_ = false, ended_ = false;
 };
 

@@ -44,7 +44,10 @@ Beside look_beside(solve::AugmentedProblem& problem, Vec u, const Eigen::VectorX
 }  // namespace
 
 void LocusFollower::record(const std::string& type, double second, double error, Vec whole) {
-  const Row row = row_at(whole, second);
+  record_row(type, row_at(whole, second), error);
+}
+
+void LocusFollower::record_row(const std::string& type, const Row& row, double error) {
   io::CodimensionTwo c;
   c.type = type;
   c.parameter = first_.path;
@@ -156,9 +159,10 @@ void LocusFollower::record_generalised(const std::string& type, double second_he
   });
   if (!std::isnan(verdict.error)) {
     // One straight line has one zero, however often rounding makes the coefficient cross it.
-    for (const auto& [second, looked] : generalised_)
-      if (std::abs(second - second_here) < std::max(looked, reach)) return;
-    generalised_.emplace_back(second_here, reach);
+    const double scaled = first_here / first_scale_;
+    for (const auto& [first, second, looked] : generalised_)
+      if (std::hypot(first - scaled, second - second_here) < std::max(looked, reach)) return;
+    generalised_.push_back({scaled, second_here, reach});
     record(type, second_here, verdict.error + bracket, whole);
   } else if (verdict.unclear) {
     suspect(second_here - reach, second_here + reach,

@@ -27,19 +27,24 @@ MotionRecord::MotionRecord(const MotionOptions& options, system::Places places)
 void MotionRecord::sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled) {
   last_.clear();
   for (const auto& j : shown) {
-    samples_.insert(samples_.end(), j.position.begin(), j.position.end());
+    open_.samples.insert(open_.samples.end(), j.position.begin(), j.position.end());
     last_.insert(last_.end(), j.position.begin(), j.position.end());
     last_.insert(last_.end(), j.velocity.begin(), j.velocity.end());
   }
-  sum_.resize(scaled.size(), 0.0);
+  open_.sum.resize(scaled.size(), 0.0);
   for (std::size_t i = 0; i < scaled.size(); ++i) {
-    sum_[i] += scaled[i];
-    squares_ += scaled[i] * scaled[i];
+    open_.sum[i] += scaled[i];
+    open_.squares += scaled[i] * scaled[i];
   }
   last_state_ = scaled;
 }
 
 void MotionRecord::close(const std::vector<double>& growth, double duration) {
+  samples_.insert(samples_.end(), open_.samples.begin(), open_.samples.end());
+  sum_.resize(open_.sum.size(), 0.0);
+  for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += open_.sum[i];
+  squares_ += open_.squares;
+  open_ = {};
   points_.push_back(last_state_);
   ends_.insert(ends_.end(), last_.begin(), last_.end());
   if (!growth.empty()) exponents_.add(growth, duration);

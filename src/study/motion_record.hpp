@@ -21,7 +21,8 @@ public:
 
   /// A sample at a whole state [size of the system] in SI; `scaled` is the same over its scales.
   void sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled);
-  /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried.
+  /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried. Samples of a
+  /// revolution that is never closed, because it ended in contact, count for nothing.
   void close(const std::vector<double>& growth, double duration);
   [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
 
@@ -43,12 +44,17 @@ private:
 
   const MotionOptions& options_;
   system::Places places_;
-  double period_;                            // of a revolution [s]
-  std::vector<double> samples_;              // [sample][place][x, y]
-  std::vector<double> ends_;                 // [revolution][place][x, y, vx, vy]
-  std::vector<double> last_;                 // the same of the last sample
-  std::vector<double> sum_;                  // of the scaled states of all samples
-  double squares_ = 0;                       // of their norms
+  double period_;                // of a revolution [s]
+  std::vector<double> samples_;  // [sample][place][x, y]
+  std::vector<double> ends_;     // [revolution][place][x, y, vx, vy]
+  std::vector<double> last_;     // the same of the last sample
+  std::vector<double> sum_;      // of the scaled states of all samples
+  double squares_ = 0;           // of their norms
+  struct Open {
+    std::vector<double> samples, sum;
+    double squares = 0;
+  };
+  Open open_;                                // the same of the revolution that is not closed yet
   std::vector<double> last_state_;           // the last scaled state
   std::vector<std::vector<double>> points_;  // scaled states at the ends of revolutions
   transient::Exponents exponents_;

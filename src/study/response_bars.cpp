@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film_mesh.hpp"
-#include "findings.hpp"
 #include "summary_bars.hpp"
 
 namespace whirl::study {
@@ -69,17 +67,19 @@ void put_locations(io::StudySummary& summary, const std::vector<NamedPeak>& peak
 
 }  // namespace
 
-void put_response_bars(const Context& context, const std::vector<NamedPeak>& peaks, const PutPeak& put,
-                       const SolveOnMesh& solve) {
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
-  if (meshes.empty()) return put_locations(context.results.summary(), peaks);
+void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
+                       const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
+  if (meshes.empty()) return put_locations(summary, peaks);
   const Tops tops(peaks);
   const std::vector<double> speeds = tops.speeds();
-  const MeshResponse here = solve({1, 1}, speeds, "bars");
-  SummaryBars bars(context.results.summary(), law_of(context.machine),
-                   [](const std::string& name) { return name.ends_with(".node"); });
+  SummaryBars bars(summary, law, [](const std::string& name) { return name.ends_with(".node"); });
+  // Without the response about the peaks on this mesh all bars are unknown; the response itself stays.
+  MeshResponse here;
+  const bool known = has_answer([&] { here = solve({1, 1}, speeds, "bars"); });
+  if (!known) summary.warnings.emplace_back("the response beside its peaks could not be computed: no error bars");
   for (std::size_t i = 0; i < meshes.size(); ++i)
     bars.add(meshes[i].axis, meshes[i].spacing, [&](io::StudySummary& there) {
+      if (!known) return;
       const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
       there = moved.operating;
       for (const NamedPeak& p : peaks) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "film_mesh.hpp"
 #include "whirl/io/summary.hpp"
-#include "whirl/study/study.hpp"
 
 namespace whirl::study {
 
@@ -35,8 +35,8 @@ using PutPeak = std::function<void(io::StudySummary& to, const std::string& head
 /// Puts bars beside all values of the summary. On each other film mesh a peak is the top of the parabola through three
 /// speeds about it; it moves as that top does against the one of the mesh in use. Peaks that stand together share their
 /// three speeds. The amplification factor changes like the root of the curvature over the height, Q of a resonance.
-/// Collective.
-void put_response_bars(const Context& context, const std::vector<NamedPeak>& peaks, const PutPeak& put,
-                       const SolveOnMesh& solve);
+/// Where `solve` fails on the mesh in use all bars are unknown, which a warning says. Collective.
+void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
+                       const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve);
 
 }  // namespace whirl::study

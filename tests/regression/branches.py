@@ -72,6 +72,18 @@ def self_excited(h):
         at = lambda column: column[k - 1] + w * (column[k] - column[k - 1])
         h.close(f"amplitude {a} c_b: speed above the Hopf point [rpm]", at(speed) - hopf, *h.reference(record)[0])
         h.close(f"amplitude {a} c_b: whirl [rpm]", 60 / at(period), *h.reference(record + 1)[0])
+    # The normal form of this film is that of its mesh; cycles of amplitudes 0.05, 0.1, 0.2 found by harmonic balance
+    # decide. The branch found by collocation shows the same curvature over the larger half-axis of the first harmonic.
+    b = next(b for b in s["bifurcations"] if b["type"] == "hopf")
+    h.true("supercritical", b["criticality"] == "supercritical" and b["criticality_by"].startswith("cycles at"),
+           f"{b['criticality']}, {b['criticality_by']}")
+    with h5py.File(h.work / "whirl" / "results.h5") as f:
+        z = [f["studies/whirl/orbits"][c][()][:, :, 3] for c in "xy"]
+    spectrum = numpy.fft.fft(z[0] + 1j * z[1], axis=1) / z[0].shape[1] / 300e-6
+    axis = numpy.abs(spectrum[:, 1]) + numpy.abs(spectrum[:, -1])
+    born = numpy.interp([0.1, 0.2], axis, speed)
+    h.close("curvature of the branch [rpm per clearance^2]", -b["criticality_coefficient"], (born[1] - born[0]) / 0.03,
+            b["criticality_uncertainty"])
 
 
 def period_doubling(h):

@@ -21,6 +21,11 @@ def curve(h, run, name):
         return table["parameter"][()], table["second"][()]
 
 
+def amplitudes(h, run, name):
+    with h5py.File(h.work / run / "results.h5") as f:
+        return f[f"studies/{name}/locus/amplitude"][()]
+
+
 def at_end(speed, load, wanted):
     return [s for s, w in zip(speed, load) if abs(w - wanted) < 1e-9 * wanted]
 
@@ -51,10 +56,19 @@ def rigid(h):
             h.close(f"{what}, F0* = 1 [rad/s]", s, wanted * 160, 3e-4 * wanted * 160)
     points = [c for c in run["whirl begins"]["codimension_two"] if c["type"] == "generalised_hopf"]
     h.true("one generalised Hopf point", len(points) == 1, points)
-    # Where the cycles shrink to nothing Newton's method fails a little before the end, depending on the steps before.
-    for c in points[:1]:
-        h.close("upper folds end there, speed [rad/s]", jump[0][np.argmin(jump[1])], c["value"], 5e-4 * c["value"])
-        h.close("upper folds end there, load [N]", jump[1].min(), c["second_value"], 1e-3 * c["second_value"])
+    ends = [c for c in run["small whirl jumps"]["codimension_two"] if c["type"] == "generalised_hopf"]
+    h.true("upper folds end there", run["small whirl jumps"]["status"] == "completed" and len(ends) == 1
+           and ends[0]["end_of_curve"] == 1, f"{run['small whirl jumps']['status']}, {ends}")
+    for c, end in zip(points, ends):
+        h.close("upper folds end there, load [N]", end["second_value"], c["second_value"], c["uncertainty"] + end["uncertainty"])
+        # Both places lie on the Hopf curve, whose slope carries the load's bar over to the speed.
+        slope = np.gradient(hopf[0], hopf[1])[np.argmin(np.abs(hopf[1] - c["second_value"]))]
+        h.close("upper folds end there, speed [rad/s]", end["value"], c["value"],
+                end["uncertainty_parameter"] + abs(slope) * c["uncertainty"])
+        h.true("bars of a hundredth of a percent", max(c["uncertainty"], end["uncertainty"]) < 1e-4 * c["second_value"],
+               f"{c['uncertainty']}, {end['uncertainty']}")
+        h.close("last point of the curve, speed [rad/s]", jump[0][np.argmin(jump[1])], c["value"], 1e-3 * c["value"])
+    h.true("amplitudes fall to a fiftieth of a clearance", 0.0199 < amplitudes(h, "chart", "small whirl jumps").min() < 0.0201)
 
 
 def compliant(h):

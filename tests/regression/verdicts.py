@@ -5,6 +5,9 @@ verdicts.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 
 beyond: a range that begins beyond the threshold says so. clearance: the curve of the threshold over the clearance of
 bearing 4 is no border of stability where a branch at that clearance finds another mode unstable before it.
+criticality: the balanced train begins to whirl supercritically on every film mesh.
+neimark_sacker: so does the train with G6.3 at 2580 rpm, which differences as short as the mesh had called super- or
+subcritical by chance.
 """
 import sys
 
@@ -53,9 +56,41 @@ studies:
     h.true("and not at 300 um", curve["others_unstable"][nominal] == 0)
 
 
+def criticality(h):
+    """Cycles of first harmonics of 0.10, 0.20, 0.25 clearances lie 11.0, 37.3, 45.1 rpm above the Hopf point (reference)."""
+    found = []
+    for cells in ([60, 12], [90, 18]):
+        s = h.run("balanced.yaml", f"cells {cells[0]}",
+                  [*GUYAN, *(f"bearings.B{b}.film.cells={cells}" for b in range(1, 6)),
+                   "studies.1.equilibrium_branch.range={from: 4700 rpm, to: 5300 rpm}"])["balanced"]
+        b = s["bifurcations"][0]
+        h.true(f"{cells}: decided by cycles", b["criticality_by"].startswith("cycles at"), b["criticality_by"])
+        h.true(f"{cells}: supercritical", b["criticality"] == "supercritical", str(b))
+        found.append(b)
+    a, b = found
+    h.close("one curvature [rpm per clearance^2]", a["criticality_coefficient"], b["criticality_coefficient"],
+            a["criticality_uncertainty"] + b["criticality_uncertainty"])
+
+
+def neimark_sacker(h):
+    found = []
+    for cells in ([60, 16], [120, 24]):
+        s = h.run("unbalance.yaml", f"cells {cells[0]}",
+                  [*(f"bearings.B{b}.film.cells={cells}" for b in range(1, 6)),
+                   "studies=[{cycle_branch: {name: G6.3, unbalance: [gen_pair_g63], parameter: speed, intervals: 60, "
+                   "range: {from: 2540 rpm, to: 2600 rpm}}}]"])["G6.3"]
+        h.true(f"{cells}: one point, supercritical", len(s["bifurcations"]) == 1
+               and s["bifurcations"][0]["criticality"] == "supercritical", str(s["bifurcations"]))
+        found += s["bifurcations"][:1]
+    a, b = found
+    h.close("one coefficient", a["criticality_coefficient"], b["criticality_coefficient"],
+            a["criticality_uncertainty"] + b["criticality_uncertainty"])
+
+
 def main():
     h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"beyond": beyond, "clearance": clearance}[sys.argv[3]](h)
+    {"beyond": beyond, "clearance": clearance, "criticality": criticality,
+     "neimark_sacker": neimark_sacker}[sys.argv[3]](h)
     h.finish()
 
 

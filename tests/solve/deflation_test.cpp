@@ -42,6 +42,19 @@ struct Duffing {
 
 }  // namespace
 
+// Exactly on a known solution the deflated equations are not defined, on all ranks at once: that is no solution, and no
+// reason to end the program.
+TEST(Deflation, AGuessThatIsKnownAlreadyLeadsNowhere) {
+  test::SmallSystem s(MPI_COMM_WORLD, 3, 1, 1, Nine{});
+  solve::EquilibriumProblem problem(s, 1, 1);
+  std::vector<core::Vector> known;
+  known.push_back(at(problem, s, Eigen::Vector3d::Zero()));
+  solve::DeflationOptions options;
+  options.attempts = 2;
+  const auto guess = [&](int) { return at(problem, s, Eigen::Vector3d::Zero()); };
+  EXPECT_TRUE(solve::deflate(problem, 1, known, guess, options).empty());
+}
+
 TEST(Deflation, FindsAllNineEquilibriaFromOneGuess) {
   test::SmallSystem s(MPI_COMM_WORLD, 3, 1, 1, Nine{});
   solve::EquilibriumProblem problem(s, 1, 1);

@@ -108,6 +108,25 @@ TEST(Detection, OppositeCrossings) {
   EXPECT_TRUE(r.suspected.empty());
 }
 
+// The crossings are found between the two points, and not once more when points on either side show a kink there.
+TEST(Detection, OppositeCrossingsAreReportedOnce) {
+  for (const double last : {0.04, 0.11, 0.17}) {
+    test::SmallSystem s(PETSC_COMM_SELF, 4, -1, 1,
+                        [last]<class T>(double, const Column<T>& x, const Column<T>& xdot, T p) {
+                          Column<T> f(4);
+                          const T in = last - p;
+                          f << xdot(0) - (p * x(0) - 2.0 * x(1)), xdot(1) - (p * x(1) + 2.0 * x(0)),
+                              xdot(2) - (in * x(2) - 3.0 * x(3)), xdot(3) - (in * x(3) + 3.0 * x(2));
+                          return f;
+                        });
+    const auto r = test::follow(s, Eigen::Vector4d::Zero(), test::range(-1, 1, 0.3));
+    const auto hopfs = places(r, Event::hopf);
+    ASSERT_EQ(hopfs.size(), 2U) << last;
+    EXPECT_NEAR(hopfs[0], 0, 1e-8);
+    EXPECT_NEAR(hopfs[1], last, 1e-8);
+  }
+}
+
 // At exactly the same place they cannot be told apart.
 TEST(Detection, CrossingsThatCancelAreSuspected) {
   const auto r = follow(

@@ -1,0 +1,105 @@
+// What a failure beside the point leaves of a result, and where a motion or a branch ends in contact.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "study/coexisting.hpp"
+#include "study/film_limit.hpp"
+#include "study/motion_record.hpp"
+#include "study/response_bars.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+template <class E>
+void expect_kept(const E& error) {
+  io::Group group;
+  io::StudySummary summary;
+  summary.set("threshold", 5021, "rpm");
+  const auto found = put_solutions(group, summary, [&]() -> std::vector<solve::Cycle> { throw error; });
+  EXPECT_TRUE(found.empty());
+  ASSERT_EQ(summary.values.size(), 2U);
+  EXPECT_EQ(summary.values[0].second.value, 5021);
+  EXPECT_EQ(summary.values[1].second.value, 1) << "the first solution stays";
+  ASSERT_EQ(summary.warnings.size(), 1U);
+  EXPECT_NE(summary.warnings[0].find("no start"), std::string::npos) << summary.warnings[0];
+  EXPECT_TRUE(read_solutions(group).empty());
+}
+
+TEST(Kept, ABranchWhoseDeflationFails) {
+  expect_kept(core::NotConverged("no start"));
+  expect_kept(core::DomainError("no start"));
+}
+
+TEST(Kept, AResponseWhoseBarsFail) {
+  io::StudySummary summary;
+  const PutPeak put = [](io::StudySummary& to, const std::string& head, double speed, double height, double) {
+    to.set(head + "speed", speed, "rad/s");
+    to.set(head + "height", height, "m");
+  };
+  put(summary, "peak.", 280, 8e-5, 10);
+  put_response_bars(summary, {{Axis::around, {0.5, 1}, 2}, {Axis::around, {2, 1}, 0.5}}, {},
+                    {{"peak.", 0, 280, 8e-5, 10}}, put, [](const auto&, const auto&, const auto&) -> MeshResponse {
+                      throw core::NotConverged("the matrix at this frequency is singular");
+                    });
+  ASSERT_EQ(summary.values.size(), 2U);
+  EXPECT_EQ(summary.values[0].second.value, 280);
+  EXPECT_TRUE(std::isnan(summary.values[0].second.more.at("uncertainty"))) << "unknown, and not zero";
+  EXPECT_EQ(summary.warnings.size(), 1U);
+}
+
+// Two revolutions of a circle, and half of one that runs away: neither its size nor its spectrum knows the last one.
+TEST(Kept, AMotionKnowsWholeRevolutionsOnly) {
+  MotionOptions options;
+  options.speed.value = 100;
+  options.samples = 16;
+  options.exponents = 0;
+  options.orbit = 5;
+  const auto played = [&](bool runs_away) {
+    MotionRecord record(options, {{"B"}, {1e-4}, "m", "m/s", "place"});
+    for (int turn = 0; turn < (runs_away ? 3 : 2); ++turn) {
+      for (int k = 1; k <= (turn < 2 ? 16 : 8); ++k) {
+        const double angle = 2 * 3.14159265358979 * k / 16, r = turn < 2 ? 1e-5 : 9e-5;
+        record.sample({{{r * std::cos(angle), r * std::sin(angle)}, {}}}, {r * std::cos(angle), r * std::sin(angle)});
+      }
+      if (turn < 2) record.close({}, 2 * 3.14159265358979 / 100);
+    }
+    io::Group group;
+    io::StudySummary summary;
+    record.write(group, summary);
+    EXPECT_EQ(group.group("orbit").reals("revolutions").size(), 32U);
+    std::map<std::string, double> values;
+    for (const auto& [name, q] : summary.values) values[name] = q.value;
+    return values;
+  };
+  const auto whole = played(false);
+  EXPECT_NEAR(whole.at("peak_to_peak.B.x"), 2e-5, 1e-12);
+  EXPECT_EQ(played(true), whole);
+}
+
+// h = 3 - p on this mesh, contact at 3; on meshes with spacing s at 3 + 0.1 (s^2 - 1), with another slope.
+TEST(Kept, TheBarOfAContactHoldsItsMeshes) {
+  MarginSlope slope;
+  EXPECT_TRUE(std::isnan(slope.value()));
+  slope.add(2.5, 0.5);
+  slope.add(3, 0);
+  EXPECT_EQ(slope.value(), -1);
+  std::vector<MarginThere> there;
+  for (const double s : {0.5, 2.0}) there.push_back({Axis::around, s, 0.1 * (s * s - 1)});
+  io::StudySummary summary;
+  put_contact(summary, 3, "rad/s", 1e-6, slope.value(), {}, there);
+  const auto& q = summary.values.at(0).second;
+  EXPECT_EQ(q.value, 3);
+  EXPECT_NEAR(q.more.at("uncertainty_film_mesh"), 0.1 * 1.25, 1e-12);
+  EXPECT_EQ(q.more.at("uncertainty_location"), 1e-6);
+  EXPECT_NEAR(q.more.at("uncertainty"), 0.125001, 1e-12);
+  // No solution on any other mesh: nobody knows.
+  for (MarginThere& m : there) m.margin = io::no_value;
+  put_contact(summary, 3, "rad/s", 1e-6, slope.value(), {}, there);
+  EXPECT_TRUE(std::isnan(summary.values.back().second.more.at("uncertainty")));
+}
+
+}  // namespace
+}  // namespace whirl::study
