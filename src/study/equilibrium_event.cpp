@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "common.hpp"
 #include "whirl/core/error.hpp"
@@ -31,19 +32,55 @@ double lyapunov(system::Plant& system, Vec x, double omega, double step) {
   }
 }
 
-// Where the eigenvalue next to the critical one would cross, by its slope along the branch.
-std::vector<double> by_slope(system::Plant& system, Vec x, const solve::LocatedEvent& found) {
+constexpr int most_looks = 8, most_halvings = 6;
+
+struct Crossing {
+  double distance = unknown, omega = unknown;  // of the eigenvalue next to the critical one, from the axis [1/s, rad/s]
+};
+
+Crossing crossing_at(system::Plant& system, Vec x, double omega) {
   const auto s = equilibrium_stability(system, x);
-  double nearest = std::numeric_limits<double>::infinity(), distance = unknown, omega = unknown;
+  double nearest = std::numeric_limits<double>::infinity();
+  Crossing out;
   for (std::size_t k = 0; k < s.values.size(); ++k) {
-    const double apart =
-        std::abs(std::abs(s.values[k].imag()) - std::abs(found.critical.imag())) + std::abs(s.values[k].real());
+    const double apart = std::abs(std::abs(s.values[k].imag()) - omega) + std::abs(s.values[k].real());
     if (apart >= nearest) continue;
     nearest = apart;
-    distance = s.distance[k];
-    omega = std::abs(s.values[k].imag());
+    out = {s.distance[k], std::abs(s.values[k].imag())};
   }
-  return {found.parameter - distance / found.sensitivity, omega, unknown};
+  return out;
+}
+
+// The Hopf point on the branch through x, where Newton's method for it does not arrive from the parameter of the other
+// mesh: it begins anew from where the secant on the real part of the eigenvalue crosses zero, each time nearer. The
+// equilibrium moves along, so that the frequency is that of the Hopf point and not of the other mesh's parameter.
+std::optional<solve::Refined> approach(system::Plant& system, solve::EquilibriumProblem& problem,
+                                       const EquilibriumEvent& at, Vec x) {
+  solve::LocatedEvent event = at.found;
+  double p = event.parameter, slope = event.sensitivity, last_p = p, last_distance = 0;
+  core::Vector u = problem.make_unknown(), trial = core::duplicate(x);
+  for (int look = 0;; ++look) {
+    problem.from_state(x, p * at.scale, u.get());
+    const core::Vector tangent = solve::any_tangent(problem, u.get());
+    if (auto there = solve::refine(system, problem, event, u.get(), tangent.get(), at.newton)) return there;
+    if (look == most_looks) return {};
+    system.set_parameter(p * at.scale);
+    const Crossing here = crossing_at(system, x, std::abs(event.critical.imag()));
+    if (look > 0) slope = (here.distance - last_distance) / (p - last_p);
+    if (!std::isfinite(here.distance / slope)) return {};
+    last_p = p;
+    last_distance = here.distance;
+    event.critical = {0, here.omega};
+    double step = -here.distance / slope;
+    for (int halvings = 0;; ++halvings, step /= 2) {
+      if (halvings > most_halvings) return {};
+      core::check(VecCopy(x, trial.get()));
+      system.set_parameter((last_p + step) * at.scale);
+      if (solve::find_equilibrium(system, trial.get(), at.newton).converged) break;
+    }
+    core::check(VecCopy(trial.get(), x));
+    p = last_p + step;
+  }
 }
 
 }  // namespace
@@ -59,13 +96,10 @@ std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<doub
   solve::EquilibriumProblem problem(system, at.scale, at.state_weight);
   core::Vector u = problem.make_unknown();
   problem.from_state(x.get(), at.found.parameter * at.scale, u.get());
-  const core::Vector tangent = solve::any_tangent(problem, u.get());
-  const auto there = solve::refine(system, problem, at.found, u.get(), tangent.get(), at.newton);
-  if (!there) {
-    if (!hopf || at.found.sensitivity == 0) return {};
-    system.set_parameter(at.found.parameter * at.scale);
-    return by_slope(system, x.get(), at.found);
-  }
+  const auto there =
+      hopf ? approach(system, problem, at, x.get())
+           : solve::refine(system, problem, at.found, u.get(), solve::any_tangent(problem, u.get()).get(), at.newton);
+  if (!there) return {};
   if (!hopf) return {there->parameter, 0, there->quadratic};
   problem.to_state(there->u.get(), x.get());
   system.set_parameter(there->parameter * at.scale);
