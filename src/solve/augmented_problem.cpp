@@ -232,11 +232,12 @@ void AugmentedProblem::solve(Vec rhs, Vec x) {
   join(u.get(), small.segment(1, inner_size_), small(k), x);
 }
 
+// Borders change g alone: the branch problem stays as it is linearised.
 void AugmentedProblem::prime(Vec whole) {
+  evaluate(whole);
   for (int pass = 0; pass < 4; ++pass) {
-    evaluate(whole);
     condition_.update();
-    at_.reset();
+    g_ = condition_.values(u_.get(), inner_);
   }
 }
 

@@ -33,50 +33,57 @@ CycleProblem::Path CycleProblem::path_of(Vec v) const {
 }
 
 void CycleProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
-                                       const VectorXd& y, Eigen::Ref<VectorXd> to_own, VectorXd& to_start,
-                                       VectorXd& to_border) {
+                                       const MatrixXd& y, MatrixXd& to_own, MatrixXd& to_start, MatrixXd& to_border) {
   const double length = interval_length(i) * period;
   VectorXd value(n_), slope(n_), d_parameter(n_), rate(n_), by_value, by_slope;
   MatrixXd jx, jxdot;
   PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
-    const auto part = y.segment(j * n_, n_);
     const double angle = angle_at(i, scheme_.c(j));
     if (structure_) {
       point_.residual(angle, value, slope, rate, at);
       point_.parameter_derivative(angle, at, d_parameter);
       point_.times_rates(at, slope, rate);
-      point_.times_transposed(at, part, by_value, by_slope);
     } else {
       point_.linearise(angle, value, slope, jx, jxdot, &d_parameter);
       rate.noalias() = jxdot * slope;
-      by_value.noalias() = jx.transpose() * part;
-      by_slope.noalias() = jxdot.transpose() * part;
     }
-    to_border += border_columns(d_parameter, rate, period).transpose() * part;
-    by_slope /= length;
-    to_start += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
-    for (Index l = 1; l <= scheme_.degree; ++l)
-      to_own.segment((l - 1) * n_, n_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
+    to_border += border_columns(d_parameter, rate, period).transpose() * y.middleRows(j * n_, n_);
+    for (Index k = 0; k < y.cols(); ++k) {
+      const auto part = y.col(k).segment(j * n_, n_);
+      if (structure_) {
+        point_.times_transposed(at, part, by_value, by_slope);
+      } else {
+        by_value.noalias() = jx.transpose() * part;
+        by_slope.noalias() = jxdot.transpose() * part;
+      }
+      by_slope /= length;
+      to_start.col(k) += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
+      for (Index l = 1; l <= scheme_.degree; ++l)
+        to_own.col(k).segment((l - 1) * n_, n_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
+    }
   }
 }
 
-VectorXd CycleProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
-                                        const double* d_own, const VectorXd& d_start) {
-  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), out(scheme_.degree * n_), unused(n_);
-  MatrixXd jx, jxdot;
+MatrixXd CycleProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
+                                        const MatrixXd& d_own, const MatrixXd& d_start) {
+  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), unused(n_);
+  MatrixXd jx, jxdot, out(scheme_.degree * n_, d_own.cols());
   PointState at;
   for (Index j = 0; j < scheme_.degree; ++j) {
     interpolate(i, j, own, start, period, value, slope);
-    interpolate(i, j, d_own, d_start, period, d_value, d_slope);
     const double angle = angle_at(i, scheme_.c(j));
-    if (structure_) {
+    if (structure_)
       point_.residual(angle, value, slope, unused, at);
-      point_.times(at, d_value, d_slope, out.segment(j * n_, n_));
-    } else {
+    else
       point_.linearise(angle, value, slope, jx, jxdot, nullptr);
-      out.segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
+    for (Index k = 0; k < out.cols(); ++k) {
+      interpolate(i, j, d_own.col(k).data(), d_start.col(k), period, d_value, d_slope);
+      if (structure_)
+        point_.times(at, d_value, d_slope, out.col(k).segment(j * n_, n_));
+      else
+        out.col(k).segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
     }
   }
   return out;
@@ -103,41 +110,38 @@ void CycleProblem::displaced(Vec u, double step, const Path& along,
 }
 
 std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const std::vector<MatrixXd>& weights) {
-  const Index m = scheme_.degree, block = m * n_;
+  const Index m = scheme_.degree, block = m * n_, many = static_cast<Index>(weights.size());
   const double h = difference_step(largest(v, comm_));
-  struct Sum {
-    VectorXd own, before, border;
-  };
-  std::vector<Sum> sums(weights.size(), {VectorXd::Zero(count_ * block), VectorXd::Zero(n_), VectorXd::Zero(borders_)});
+  MatrixXd own_sum = MatrixXd::Zero(count_ * block, many), before_sum = MatrixXd::Zero(n_, many),
+           border_sum = MatrixXd::Zero(borders_, many), y(block, many);
   for (const double sign : {1.0, -1.0})
     displaced(u, sign * h, v, [&](Index i, const double* own, const VectorXd& start, double period) {
-      for (std::size_t k = 0; k < weights.size(); ++k) {
-        Sum& sum = sums[k];
-        VectorXd to_own = VectorXd::Zero(block), to_start = VectorXd::Zero(n_), to_border = VectorXd::Zero(borders_);
-        interval_transposed(i, own, start, period, weights[k].col(i), to_own, to_start, to_border);
-        const double factor = sign / (2 * h);
-        sum.own.segment(i * block, block) += factor * to_own;
-        if (i == 0)
-          sum.before += factor * to_start;
-        else
-          sum.own.segment(i * block - n_, n_) += factor * to_start;
-        sum.border += factor * to_border;
-      }
+      MatrixXd to_own = MatrixXd::Zero(block, many), to_start = MatrixXd::Zero(n_, many),
+               to_border = MatrixXd::Zero(borders_, many);
+      for (Index k = 0; k < many; ++k) y.col(k) = weights[static_cast<std::size_t>(k)].col(i);
+      interval_transposed(i, own, start, period, y, to_own, to_start, to_border);
+      const double factor = sign / (2 * h);
+      own_sum.middleRows(i * block, block) += factor * to_own;
+      if (i == 0)
+        before_sum += factor * to_start;
+      else
+        own_sum.middleRows(i * block - n_, n_) += factor * to_start;
+      border_sum += factor * to_border;
     });
   set_parameter(border_of(u));
   point_.refresh();
   const int next = (rank_ + 1) % size_, previous = (rank_ + size_ - 1) % size_;
   std::vector<core::Vector> out;
-  for (Sum& sum : sums) {
+  for (Index k = 0; k < many; ++k) {
     VectorXd received(n_);
-    MPI_Sendrecv(sum.before.data(), static_cast<int>(n_), MPI_DOUBLE, previous, 0, received.data(),
+    MPI_Sendrecv(before_sum.col(k).data(), static_cast<int>(n_), MPI_DOUBLE, previous, 0, received.data(),
                  static_cast<int>(n_), MPI_DOUBLE, next, 0, comm_, MPI_STATUS_IGNORE);
-    sum.own.tail(n_) += received;
-    MPI_Allreduce(MPI_IN_PLACE, sum.border.data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
+    own_sum.col(k).tail(n_) += received;
+    MPI_Allreduce(MPI_IN_PLACE, border_sum.col(k).data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
     core::Vector g = make_unknown();
     const core::WriteArray a(g.get());
-    Map<VectorXd>(a.data(), sum.own.size()) = sum.own;
-    if (rank_ == size_ - 1) Map<VectorXd>(a.data() + sum.own.size(), borders_) = sum.border;
+    Map<VectorXd>(a.data(), own_sum.rows()) = own_sum.col(k);
+    if (rank_ == size_ - 1) Map<VectorXd>(a.data() + own_sum.rows(), borders_) = border_sum.col(k);
     out.push_back(std::move(g));
   }
   return out;
@@ -150,13 +154,19 @@ void CycleProblem::curvature(Vec u, Vec v, Vec w, Vec out) {
   core::check(VecCopy(gradients(u, path_of(v), weights).front().get(), out));
 }
 
-MatrixXd CycleProblem::tangent(Vec u, double step, const Path& a, const Path& b) {
-  const Index m = scheme_.degree;
-  MatrixXd y(m * n_, count_);
+std::vector<MatrixXd> CycleProblem::tangents(Vec u, double step, const Path& a, const std::vector<const Path*>& b) {
+  const Index block = scheme_.degree * n_, many = static_cast<Index>(b.size());
+  std::vector<MatrixXd> y(b.size(), MatrixXd(block, count_));
+  MatrixXd d_own(block, many), d_start(n_, many);
   displaced(u, step, a, [&](Index i, const double* own, const VectorXd& start, double period) {
-    const double* d_own = b.nodes.data() + i * m * n_;
-    y.col(i) = interval_tangent(i, own, start, period, d_own,
-                                i == 0 ? b.start : VectorXd(Map<const VectorXd>(d_own - n_, n_)));
+    for (Index k = 0; k < many; ++k) {
+      const Path& path = *b[static_cast<std::size_t>(k)];
+      const double* nodes = path.nodes.data() + i * block;
+      d_own.col(k) = Map<const VectorXd>(nodes, block);
+      d_start.col(k) = i == 0 ? path.start : VectorXd(Map<const VectorXd>(nodes - n_, n_));
+    }
+    const MatrixXd out = interval_tangent(i, own, start, period, d_own, d_start);
+    for (Index k = 0; k < many; ++k) y[static_cast<std::size_t>(k)].col(i) = out.col(k);
   });
   set_parameter(border_of(u));
   point_.refresh();

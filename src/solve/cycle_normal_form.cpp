@@ -1,6 +1,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "bordered_monodromy.hpp"
 #include "whirl/solve/normal_form.hpp"
@@ -14,39 +17,50 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-// The map P over one period: DP = M, and its higher derivatives along solutions of the variational equations.
+using Path = CycleProblem::Path;
+
+// A sum of motions over the same intervals.
+Path sum(std::initializer_list<std::pair<double, const Path*>> parts) {
+  Path out = *parts.begin()->second;
+  out.start.setZero();
+  out.nodes.setZero();
+  for (const auto& [factor, path] : parts) {
+    out.start += factor * path->start;
+    out.nodes += factor * path->nodes;
+  }
+  return out;
+}
+
+// The map P over one period: DP = M, and its higher derivatives along solutions of the variational equations. Films are
+// evaluated at cycles moved along a, for all b at once: they cost more than all the rest.
 class PeriodMap {
 public:
-  using Path = CycleProblem::Path;
   PeriodMap(CycleProblem& problem, Vec u, double step, const MotionSize& size)
       : problem_(problem), u_(u), step_(step), size_(size) {}
 
-  // D^2 R[a, b] at the collocation points.
-  MatrixXd second(const Path& a, const Path& b) {
+  // D^2 R[a, b] at the collocation points, for each b.
+  std::vector<MatrixXd> second(const Path& a, const std::vector<const Path*>& b) {
     // Differences that are to look over kinks do so in second derivatives as well.
     const double h = step_ > 1 ? reach(a) : difference_step(size(a));
-    return (problem_.tangent(u_, h, a, b) - problem_.tangent(u_, -h, a, b)) / (2 * h);
+    std::vector<MatrixXd> out = problem_.tangents(u_, h, a, b);
+    const std::vector<MatrixXd> behind = problem_.tangents(u_, -h, a, b);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = (out[k] - behind[k]) / (2 * h);
+    return out;
   }
-  // D^3 R[a, a, b].
-  MatrixXd third(const Path& a, const Path& b) {
+  // D^3 R[a, a, b] for each b; `here` are tangents() of these b without a step.
+  std::vector<MatrixXd> third(const Path& a, const std::vector<const Path*>& b, const std::vector<MatrixXd>& here) {
     const double h = reach(a);
-    return (problem_.tangent(u_, h, a, b) - 2 * problem_.tangent(u_, 0, a, b) + problem_.tangent(u_, -h, a, b)) /
-           (h * h);
+    std::vector<MatrixXd> out = problem_.tangents(u_, h, a, b);
+    const std::vector<MatrixXd> behind = problem_.tangents(u_, -h, a, b);
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = (out[k] - 2 * here[k] + behind[k]) / (h * h);
+    return out;
   }
-  // D^2 P[a, b] and the motion that leads there.
-  VectorXd bilinear(const Path& a, const Path& b, Path* motion = nullptr) {
+  std::vector<MatrixXd> tangents(const std::vector<const Path*>& b) { return problem_.tangents(u_, 0, *b.front(), b); }
+  // The end of the motion from rest under -y: D^2 P[a, b] for y = D^2 R[a, b].
+  VectorXd end(const MatrixXd& y, Path* motion = nullptr) {
     VectorXd end;
-    Path path = problem_.forced(second(a, b), end);
+    Path path = problem_.forced(y, end);
     if (motion) *motion = std::move(path);
-    return end;
-  }
-  // D^3 P[a, a, b].
-  VectorXd trilinear(const Path& a, const Path& b) {
-    Path aa, ab;
-    (void)bilinear(a, a, &aa);
-    (void)bilinear(a, b, &ab);
-    VectorXd end;
-    (void)problem_.forced(third(a, b) + second(a, ab) * 2 + second(b, aa), end);
     return end;
   }
   Path path(const VectorXd& v) const { return problem_.forward(v); }
@@ -95,8 +109,11 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   p /= std::conj(p.dot(q));
   PeriodMap map(problem, u, step, size);
   const Complex i(0, 1);
-  const auto r = map.path(q.real()), s = map.path(q.imag());
-  const VectorXd rr = map.bilinear(r, r), ss = map.bilinear(s, s), rs = map.bilinear(r, s);
+  const Path r = map.path(q.real()), s = map.path(q.imag());
+  Path along_rr, along_rs, along_ss;
+  const auto at_r = map.second(r, {&r, &s});
+  const VectorXd rr = map.end(at_r[0], &along_rr), rs = map.end(at_r[1], &along_rs),
+                 ss = map.end(map.second(s, {&s})[0], &along_ss);
   const VectorXd h11 = solve_polynomial(problem, {1, -1}, rr + ss);
   // (nu - M)^-1 = (conj nu - M)(|nu|^2 - 2 Re nu M + M^2)^-1, nu = mu^2
   const Complex nu = multiplier * multiplier;
@@ -105,30 +122,32 @@ double neimark_sacker_coefficient(CycleProblem& problem, Vec u, Complex multipli
   parts = solve_polynomial(problem, {std::norm(nu), -2 * nu.real(), 1}, parts);
   const MatrixXd moved = joined.times(parts);
   const VectorXcd h20 = std::conj(nu) * (parts.col(0) + i * parts.col(1)) - (moved.col(0) + i * moved.col(1));
-  const auto mean = map.path(h11), x = map.path(h20.real()), y = map.path(h20.imag());
-  // C(q, q, conj q), B(q, h11), B(conj q, h20) of q = r + i s, h20 = x + i y
-  const VectorXcd cubic = (map.trilinear(r, r) + map.trilinear(s, r)).cast<Complex>() +
-                          i * (map.trilinear(r, s) + map.trilinear(s, s)).cast<Complex>();
-  const VectorXcd with_mean = map.bilinear(r, mean).cast<Complex>() + i * map.bilinear(s, mean).cast<Complex>();
-  const VectorXcd with_double = (map.bilinear(r, x) + map.bilinear(s, y)).cast<Complex>() +
-                                i * (map.bilinear(r, y) - map.bilinear(s, x)).cast<Complex>();
-  const Complex c1 = 0.5 * p.dot(cubic + 2.0 * with_mean + with_double);
+  const Path mean = map.path(h11), x = map.path(h20.real()), y = map.path(h20.imag());
+  // C(q, q, conj q) + 2 B(q, h11) + B(conj q, h20) of q = r + i s, h20 = x + i y. Of
+  //
+  //     D^3 P[a, a, b] = D^3 R[a, a, b] + 2 D^2 R[a, along_ab] + D^2 R[b, along_aa]   (the motions that these force)
+  //
+  // and of the others every second derivative has r or s as one of its directions.
+  const Path with_r = sum({{3, &along_rr}, {1, &along_ss}, {2, &mean}, {1, &x}}), both = sum({{2, &along_rs}, {1, &y}}),
+             with_s = sum({{1, &along_rr}, {3, &along_ss}, {2, &mean}, {-1, &x}});
+  const auto twice_r = map.second(r, {&with_r, &both}), twice_s = map.second(s, {&both, &with_s}),
+             here = map.tangents({&r, &s}), cubic_r = map.third(r, {&r, &s}, here),
+             cubic_s = map.third(s, {&r, &s}, here);
+  const VectorXcd end = map.end(cubic_r[0] + cubic_s[0] + twice_r[0] + twice_s[0]).cast<Complex>() +
+                        i * map.end(cubic_r[1] + cubic_s[1] + twice_r[1] + twice_s[1]).cast<Complex>();
+  const Complex c1 = 0.5 * p.dot(end);
   return (c1 / multiplier * std::abs(multiplier)).real();
 }
 
 double flip_cubic(CycleProblem& problem, Vec u, const VectorXd& v, const VectorXd& w, double step,
                   const MotionSize& size) {
   PeriodMap map(problem, u, step, size);
-  const PeriodMap::Path a = map.path(v);
+  const Path a = map.path(v);
   // D^3 P takes D^2 R along the motion that leads to D^2 P(v, v), as does D^2 P(v, h) along that from h: the same term.
-  PeriodMap::Path b;
-  const VectorXd h = solve_polynomial(problem, {1, -1}, map.bilinear(a, a, &b));
-  const PeriodMap::Path more = map.path(h);
-  b.start += more.start;
-  b.nodes += more.nodes;
-  VectorXd end;
-  (void)problem.forced(map.third(a, a) + 3 * map.second(a, b), end);
-  return w.dot(end) / 6;
+  Path along;
+  const VectorXd h = solve_polynomial(problem, {1, -1}, map.end(map.second(a, {&a})[0], &along));
+  const Path more = map.path(h), b = sum({{1, &along}, {1, &more}});
+  return w.dot(map.end(map.third(a, {&a}, map.tangents({&a}))[0] + 3 * map.second(a, {&b})[0])) / 6;
 }
 
 double flip_coefficient(CycleProblem& problem, Vec u, double step, const MotionSize& size) {

@@ -116,8 +116,8 @@ std::unique_ptr<Interval> ShootingProblem::linearise_interval(Index i, const dou
 }
 
 void ShootingProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
-                                          const VectorXd& y, Eigen::Ref<VectorXd> to_own, VectorXd& to_start,
-                                          VectorXd& to_border) {
+                                          const MatrixXd& y, MatrixXd& to_own, MatrixXd& to_start,
+                                          MatrixXd& to_border) {
   MatrixXd columns;
   const auto map = linearise_interval(i, own, start, period, columns);
   to_own += y;
@@ -125,11 +125,12 @@ void ShootingProblem::interval_transposed(Index i, const double* own, const Vect
   to_border += columns.transpose() * y;
 }
 
-VectorXd ShootingProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
-                                           const double* d_own, const VectorXd& d_start) {
-  MatrixXd columns;
-  return linearise_interval(i, own, start, period, columns)
-      ->multiply(d_start, Map<const VectorXd>(d_own, start.size()));
+MatrixXd ShootingProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
+                                           const MatrixXd& d_own, const MatrixXd& d_start) {
+  MatrixXd columns, out(d_own.rows(), d_own.cols());
+  const auto map = linearise_interval(i, own, start, period, columns);
+  for (Index k = 0; k < out.cols(); ++k) out.col(k) = map->multiply(d_start.col(k), d_own.col(k));
+  return out;
 }
 
 Cycle ShootingProblem::orbit(Vec u) {

@@ -23,7 +23,14 @@ std::optional<Parabola> CycleFollower::parabola(solve::PeriodicProblem& problem,
     bool converged = true;
     for (int k = 0; k < 3 && converged; ++k) {
       const double arclength = smallest * std::pow(2, k) * std::sqrt(state_weight());
-      check(VecWAXPY(at.get(), arclength, tangent, u));
+      // What the last cycle had besides its share in the tangent grows with the square of the amplitude.
+      if (k > 0) {
+        check(VecAXPY(at.get(), -arclength / 2, tangent));
+        check(VecAXPBY(at.get(), -3, 4, u));
+        check(VecAXPY(at.get(), arclength, tangent));
+      } else {
+        check(VecWAXPY(at.get(), arclength, tangent, u));
+      }
       double offset = 0;
       check(VecDot(row.get(), at.get(), &offset));
       converged = solve::newton(problem, at.get(), row.get(), offset, newton_).converged;

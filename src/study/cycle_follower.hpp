@@ -121,18 +121,21 @@ private:
   [[nodiscard]] solve::Stability stability_of(solve::PeriodicProblem& problem) const;
   /// What is known of the errors of films and time steps.
   [[nodiscard]] MeshLaw law() const;
-  [[nodiscard]] double order_in_time() const;
+  [[nodiscard]] double order_of_scheme() const;
   [[nodiscard]] std::vector<CycleMesh> meshes() const;
   /// The solver on another mesh; null where there is no such mesh.
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> problem_on(const CycleMesh& mesh, system::Plant& system,
                                                                    const solve::Cycle& cycle) const;
-  /// A cycle at the same parameter on another mesh, linearised there.
-  struct Corrected {
+  /// A cycle on another mesh.
+  struct Elsewhere {
     std::unique_ptr<system::Plant> other;  // null: the system is the one followed
     std::unique_ptr<solve::PeriodicProblem> problem;
     core::Vector u;
   };
-  [[nodiscard]] std::optional<Corrected> corrected_on(const CycleMesh& mesh, const solve::Cycle& given) const;
+  [[nodiscard]] std::optional<Elsewhere> carried_to(const CycleMesh& mesh, const solve::Cycle& given) const;
+  /// Solves it there at the same parameter, and linearises.
+  [[nodiscard]] bool correct_there(Elsewhere& there, const solve::Cycle& given) const;
+  [[nodiscard]] std::optional<Elsewhere> corrected_on(const CycleMesh& mesh, const solve::Cycle& given) const;
   [[nodiscard]] std::optional<CycleNumbers> fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                     const solve::Cycle& given) const;
   /// The same bifurcation on another mesh; nothing if it cannot be had.

@@ -28,7 +28,7 @@ std::vector<double> merged(const std::vector<double>& mesh) {
 
 MeshLaw CycleFollower::law() const {
   MeshLaw law = law_of(context_.machine);
-  law.time_order = order_in_time();
+  law.time_order = study::order_in_time(context_.machine, order_of_scheme());
   return law;
 }
 
@@ -50,10 +50,10 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMes
   return steps % 2 != 0 ? nullptr : make_problem(system, options_.period, cycle.mesh, 0.5);
 }
 
-// Newton's method at the same parameter.
-std::optional<CycleFollower::Corrected> CycleFollower::corrected_on(const CycleMesh& mesh,
-                                                                    const solve::Cycle& given) const {
-  Corrected out;
+// The given cycle carried over to another mesh.
+std::optional<CycleFollower::Elsewhere> CycleFollower::carried_to(const CycleMesh& mesh,
+                                                                  const solve::Cycle& given) const {
+  Elsewhere out;
   if (mesh.axis != Axis::time) out.other = make_system(mesh.film);
   system::Plant& system = out.other ? *out.other : *system_;
   const solve::Cycle cycle = on_film_of(system, given);
@@ -61,11 +61,24 @@ std::optional<CycleFollower::Corrected> CycleFollower::corrected_on(const CycleM
   if (!out.problem) return {};
   if (autonomous()) out.problem->set_phase_reference(cycle);
   out.u = out.problem->scatter(cycle);
-  core::Vector row = core::duplicate(out.u.get());
-  solve::parameter_row(*out.problem, row.get());
-  if (!solve::newton(*out.problem, out.u.get(), row.get(), given.parameter / scale_, newton_).converged) return {};
-  out.problem->linearise(out.u.get(), row.get());
   return out;
+}
+
+// Newton's method at the same parameter.
+bool CycleFollower::correct_there(Elsewhere& there, const solve::Cycle& given) const {
+  core::Vector row = core::duplicate(there.u.get());
+  solve::parameter_row(*there.problem, row.get());
+  if (!solve::newton(*there.problem, there.u.get(), row.get(), given.parameter / scale_, newton_).converged)
+    return false;
+  there.problem->linearise(there.u.get(), row.get());
+  return true;
+}
+
+std::optional<CycleFollower::Elsewhere> CycleFollower::corrected_on(const CycleMesh& mesh,
+                                                                    const solve::Cycle& given) const {
+  auto there = carried_to(mesh, given);
+  if (there && !correct_there(*there, given)) there.reset();
+  return there;
 }
 
 // Folds have no cycle beyond them, so the parameter cannot be held: the cycle of the same amplitude along the branch is
@@ -113,24 +126,30 @@ std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const 
 std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                       const solve::Cycle& cycle, bool with_coefficient) const try {
   if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
-  auto there = corrected_on(mesh, cycle);
+  auto there = carried_to(mesh, cycle);
   if (!there) return {};
-  // On a coarser film the bifurcation is far and the film cheap: it is located there. Elsewhere the slope tells.
+  // On a coarser film the bifurcation is far and the film cheap: it is located there, from the cycle as it was carried
+  // over or, where that is too rough, as it is at the same parameter. Elsewhere the slope tells.
   auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
-  if (cycles && mesh.axis != Axis::time && mesh.spacing > 1) {
-    const auto refined =
-        solve::refine(*cycles, found, there->u.get(), solve::any_tangent(*cycles, there->u.get()).get(), newton_);
-    if (refined) {
-      return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
-                          cycles->gather(refined->u.get()).period,
-                          with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
-                                                         refined->critical, refined->u.get(), steps_of(law()).longer)
-                                           : io::no_value};
-    }
-    solve::PeriodicProblem& problem = *there->problem;
+  const bool locate = cycles && mesh.axis != Axis::time && mesh.spacing > 1;
+  const auto located = [&]() -> std::optional<CycleNumbers> {
+    if (!locate) return {};
+    const core::Vector tangent = solve::any_tangent(*cycles, there->u.get());
+    const auto refined = solve::refine(*cycles, found, there->u.get(), tangent.get(), newton_);
+    if (!refined) return {};
+    return CycleNumbers{
+        refined->parameter, std::abs(std::arg(refined->critical)), cycles->gather(refined->u.get()).period,
+        with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
+                                       refined->critical, refined->u.get(), steps_of(law()).longer)
+                         : io::no_value};
+  };
+  if (const auto numbers = located()) return numbers;
+  if (!correct_there(*there, cycle)) return {};
+  if (const auto numbers = located()) return numbers;
+  if (locate) {
     core::Vector row = core::duplicate(there->u.get());
-    solve::parameter_row(problem, row.get());
-    problem.linearise(there->u.get(), row.get());
+    solve::parameter_row(*there->problem, row.get());
+    there->problem->linearise(there->u.get(), row.get());
   }
   // The distance from the border there over its slope along the branch.
   double nearest = std::numeric_limits<double>::infinity();

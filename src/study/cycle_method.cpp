@@ -37,7 +37,7 @@ solve::Tableau tableau_of(CycleBranchOptions::Stepping scheme) {
 
 }  // namespace
 
-double CycleFollower::order_in_time() const {
+double CycleFollower::order_of_scheme() const {
   if (options_.method != Method::collocation) return tableau_of(options_.scheme).order;
   return 2 * options_.degree - (options_.points == CycleBranchOptions::Points::radau ? 1 : 0);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "common.hpp"
 #include "hopf_cycles.hpp"
@@ -34,26 +35,62 @@ double lyapunov(system::Plant& system, Vec x, double omega, double step) {
   }
 }
 
-// Where the eigenvalue next to the critical one would cross, by its slope along the branch.
-std::vector<double> by_slope(system::Plant& system, Vec x, const solve::LocatedEvent& found) {
+constexpr int most_looks = 8, most_halvings = 6;
+
+struct Crossing {
+  double distance = unknown, omega = unknown;  // of the eigenvalue next to the critical one, from the axis [1/s, rad/s]
+};
+
+Crossing crossing_at(system::Plant& system, Vec x, double omega) {
   const auto s = equilibrium_stability(system, x);
-  double nearest = std::numeric_limits<double>::infinity(), distance = unknown, omega = unknown;
+  double nearest = std::numeric_limits<double>::infinity();
+  Crossing out;
   for (std::size_t k = 0; k < s.values.size(); ++k) {
-    const double apart =
-        std::abs(std::abs(s.values[k].imag()) - std::abs(found.critical.imag())) + std::abs(s.values[k].real());
+    const double apart = std::abs(std::abs(s.values[k].imag()) - omega) + std::abs(s.values[k].real());
     if (apart >= nearest) continue;
     nearest = apart;
-    distance = s.distance[k];
-    omega = std::abs(s.values[k].imag());
+    out = {s.distance[k], std::abs(s.values[k].imag())};
   }
-  return {found.parameter - distance / found.sensitivity, omega, unknown};
+  return out;
+}
+
+// The Hopf point on the branch through x, where Newton's method for it does not arrive from the parameter of the other
+// mesh: it begins anew from where the secant on the real part of the eigenvalue crosses zero, each time nearer. The
+// equilibrium moves along, so that the frequency is that of the Hopf point and not of the other mesh's parameter.
+std::optional<solve::Refined> approach(system::Plant& system, solve::EquilibriumProblem& problem,
+                                       const EquilibriumEvent& at, Vec x) {
+  solve::LocatedEvent event = at.found;
+  double p = event.parameter, slope = event.sensitivity, last_p = p, last_distance = 0;
+  core::Vector u = problem.make_unknown(), trial = core::duplicate(x);
+  for (int look = 0;; ++look) {
+    problem.from_state(x, p * at.scale, u.get());
+    const core::Vector tangent = solve::any_tangent(problem, u.get());
+    if (auto there = solve::refine(system, problem, event, u.get(), tangent.get(), at.newton)) return there;
+    if (look == most_looks) return {};
+    system.set_parameter(p * at.scale);
+    const Crossing here = crossing_at(system, x, std::abs(event.critical.imag()));
+    if (look > 0) slope = (here.distance - last_distance) / (p - last_p);
+    if (!std::isfinite(here.distance / slope)) return {};
+    last_p = p;
+    last_distance = here.distance;
+    event.critical = {0, here.omega};
+    double step = -here.distance / slope;
+    for (int halvings = 0;; ++halvings, step /= 2) {
+      if (halvings > most_halvings) return {};
+      core::check(VecCopy(x, trial.get()));
+      system.set_parameter((last_p + step) * at.scale);
+      if (solve::find_equilibrium(system, trial.get(), at.newton).converged) break;
+    }
+    core::check(VecCopy(trial.get(), x));
+    p = last_p + step;
+  }
 }
 
 // The same bifurcation with other cells.
 struct Elsewhere {
   std::unique_ptr<system::Plant> system;
   core::Vector x;
-  std::optional<solve::Refined> found;  // nothing: x is the equilibrium at the parameter of the event
+  std::optional<solve::Refined> found;
 };
 
 std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
@@ -67,10 +104,12 @@ std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array
   solve::EquilibriumProblem problem(system, at.scale, at.state_weight);
   core::Vector u = problem.make_unknown();
   problem.from_state(out.x.get(), at.found.parameter * at.scale, u.get());
-  const core::Vector tangent = solve::any_tangent(problem, u.get());
-  out.found = solve::refine(system, problem, at.found, u.get(), tangent.get(), at.newton);
-  if (out.found) problem.to_state(out.found->u.get(), out.x.get());
-  system.set_parameter(out.found ? out.found->parameter * at.scale : at.found.parameter * at.scale);
+  out.found =
+      hopf ? approach(system, problem, at, out.x.get())
+           : solve::refine(system, problem, at.found, u.get(), solve::any_tangent(problem, u.get()).get(), at.newton);
+  if (!out.found) return {};
+  problem.to_state(out.found->u.get(), out.x.get());
+  system.set_parameter(out.found->parameter * at.scale);
   return out;
 }
 
@@ -90,7 +129,7 @@ T unless_lost(const std::function<T()>& there) try {
 double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells, double largest) {
   const auto born = unless_lost<std::optional<BirthOfCycles>>([&]() -> std::optional<BirthOfCycles> {
     const auto there = located_on(at, film_cells);
-    if (!there || !there->found) return {};
+    if (!there) return {};
     return birth_of_cycles(*there->system, there->x.get(), std::abs(there->found->critical.imag()), at.scale,
                            few_harmonics, largest);
   });
@@ -132,10 +171,6 @@ std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<doub
     const auto there = located_on(at, film_cells);
     if (!there) return {};
     const bool hopf = at.found.event == solve::Event::hopf;
-    if (!there->found) {
-      if (!hopf || at.found.sensitivity == 0) return {};
-      return by_slope(*there->system, there->x.get(), at.found);
-    }
     if (!hopf) return {there->found->parameter, 0, there->found->quadratic};
     const double omega = there->found->critical.imag();
     return {there->found->parameter, omega, lyapunov(*there->system, there->x.get(), omega, steps_of(at.law).longer)};

@@ -46,6 +46,11 @@ MeshLaw law_of(const system::Machine& machine) {
   return law;
 }
 
+double order_in_time(const system::Machine& machine, double scheme) {
+  for (const auto& b : machine.bearings) scheme = std::min(scheme, film::smoothness(b.film).derivatives + 2.0);
+  return scheme;
+}
+
 std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
   int states = 0;
   for (const auto& b : machine.bearings)

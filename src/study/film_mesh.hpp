@@ -32,6 +32,11 @@ struct FilmMesh {
 /// derivatives of them.
 [[nodiscard]] MeshLaw law_of(const system::Machine& machine);
 
+/// Order at which errors of time steps fall that a scheme of order `scheme` makes on the machine's films. A step with a
+/// jump of a force's derivative k + 1 in it leaves an error of h^(k+2), in whichever place the jump stands: a film
+/// whose force has k continuous derivatives (film::smoothness) limits the order to k + 2.
+[[nodiscard]] double order_in_time(const system::Machine& machine, double scheme);
+
 /// The whole state of `from` on the film meshes of `to`, distributed. Collective.
 [[nodiscard]] core::Vector resampled(const system::Plant& to, const system::Plant& from,
                                      const std::vector<double>& whole);

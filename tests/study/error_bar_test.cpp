@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "study/film_mesh.hpp"
+
 namespace whirl::study {
 namespace {
 
@@ -115,6 +117,33 @@ TEST(ErrorBar, CoversKinksWhenToldOfThem) {
   EXPECT_GE(c.share, 0.99);
   EXPECT_LE(c.median, 12);
   EXPECT_LT(coverage(family, {}, {0.5, 2}).share, 0.99) << "without the word it would not";
+}
+
+// Errors of time steps with jumps in the force's derivative k + 1: h^(k+2), times where in its step the jump stands.
+double share_in_time(int k, double order) {
+  int covered = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const auto law = [&](double h) {
+      return std::pow(h, k + 2) * std::sin(37 / h + 2 * std::numbers::pi * n * std::numbers::phi);
+    };
+    const std::vector<Sample> samples{{Axis::time, 0.5, law(0.5)}, {Axis::time, 2, law(2)}};
+    covered += error_bar(law(1), samples, {2, order, false}).total() >= std::abs(law(1));
+  }
+  return covered / 2000.0;
+}
+
+TEST(ErrorBar, CoversKinksInTimeWithTheOrderThatTheyLeave) {
+  system::Machine machine;
+  film::Options& film = machine.bearings.emplace_back().film;
+  film.kind = film::Options::Kind::short_bearing;
+  EXPECT_EQ(order_in_time(machine, 7), 7) << "smooth";
+  film.kind = film::Options::Kind::reynolds;
+  EXPECT_GE(share_in_time(1, order_in_time(machine, 7)), 0.99) << "tangents with kinks";
+  EXPECT_LT(share_in_time(1, 7), 0.99) << "with the order of the scheme it does not";
+  film.kind = film::Options::Kind::compliant_short;
+  film.quadrature = film::Options::Quadrature::simpson;
+  EXPECT_GE(share_in_time(0, order_in_time(machine, 7)), 0.99) << "forces with kinks";
+  EXPECT_LT(share_in_time(0, 7), 0.95);
 }
 
 TEST(ErrorBar, DecidesOnlyOutsideTheBar) {

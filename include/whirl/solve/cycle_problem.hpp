@@ -103,8 +103,10 @@ public:
   [[nodiscard]] Eigen::MatrixXd backward(const Eigen::VectorXd& w) const;
   /// Gradients [layout of u] of sum_i weights_i . dR_i/dx(u) V, one for each `weights`: those of -w . monodromy() v.
   [[nodiscard]] std::vector<core::Vector> gradients(Vec u, const Path& v, const std::vector<Eigen::MatrixXd>& weights);
-  /// dR/dx(u + step a) b at the collocation points [mn x local intervals]. Collective.
-  [[nodiscard]] Eigen::MatrixXd tangent(Vec u, double step, const Path& a, const Path& b);
+  /// dR/dx(u + step a) b at the collocation points [mn x local intervals], for each of the `b`; the films are evaluated
+  /// once. Collective.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> tangents(Vec u, double step, const Path& a,
+                                                      const std::vector<const Path*>& b);
 
 protected:
   /// What an interval's equations are; the scheme's collocation unless a derived problem says otherwise. `i` counts
@@ -116,15 +118,15 @@ protected:
   [[nodiscard]] virtual std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* own,
                                                                      const Eigen::VectorXd& start, double period,
                                                                      Eigen::MatrixXd& columns);
-  /// Transposed tangents of interval i at the given states: own [mn] += (dR/dX)^T y, before [n] += (dR/dx_start)^T y,
-  /// border [nb] += (dR/d(period, parameter))^T y.
+  /// Transposed tangents of interval i at the given states for each column of y [mn x k]: own [mn x k] +=
+  /// (dR/dX)^T y, before [n x k] += (dR/dx_start)^T y, border [nb x k] += (dR/d(period, parameter))^T y.
   virtual void interval_transposed(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
-                                   const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> to_own,
-                                   Eigen::VectorXd& to_start, Eigen::VectorXd& to_border);
-  /// dR/dX d_own + dR/dx_start d_start [mn] of interval i at the given states.
-  [[nodiscard]] virtual Eigen::VectorXd interval_tangent(Eigen::Index i, const double* own,
+                                   const Eigen::MatrixXd& y, Eigen::MatrixXd& to_own, Eigen::MatrixXd& to_start,
+                                   Eigen::MatrixXd& to_border);
+  /// dR/dX d_own + dR/dx_start d_start [mn x k] of interval i at the given states; d_own [mn x k], d_start [n x k].
+  [[nodiscard]] virtual Eigen::MatrixXd interval_tangent(Eigen::Index i, const double* own,
                                                          const Eigen::VectorXd& start, double period,
-                                                         const double* d_own, const Eigen::VectorXd& d_start);
+                                                         const Eigen::MatrixXd& d_own, const Eigen::MatrixXd& d_start);
   /// x'(s) in SI at node l = 1..m of interval g of the whole mesh, for the phase condition.
   [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l);
 

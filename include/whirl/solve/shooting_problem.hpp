@@ -42,11 +42,11 @@ protected:
                                                              const Eigen::VectorXd& start, double period,
                                                              Eigen::MatrixXd& columns) override;
   void interval_transposed(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
-                           const Eigen::VectorXd& y, Eigen::Ref<Eigen::VectorXd> to_own, Eigen::VectorXd& to_start,
-                           Eigen::VectorXd& to_border) override;
-  [[nodiscard]] Eigen::VectorXd interval_tangent(Eigen::Index i, const double* own, const Eigen::VectorXd& start,
-                                                 double period, const double* d_own,
-                                                 const Eigen::VectorXd& d_start) override;
+                           const Eigen::MatrixXd& y, Eigen::MatrixXd& to_own, Eigen::MatrixXd& to_start,
+                           Eigen::MatrixXd& to_border) override;
+  [[nodiscard]] Eigen::MatrixXd interval_tangent(Eigen::Index i, const double* own, const Eigen::VectorXd& start,
+                                                 double period, const Eigen::MatrixXd& d_own,
+                                                 const Eigen::MatrixXd& d_start) override;
   /// From the equation itself, because the neighbours of a shooting point can be far.
   [[nodiscard]] Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l) override;
 
