@@ -3,7 +3,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import COLOURS, GREY, INK, grid_of, save
+from .curves import through
+from .style import GREY, INK, grid_of, save
 
 ENTRIES = ("xx", "xy", "yx", "yy")
 LOAD = r"Sommerfeld number $S = (c/R)^2 F/(\mu\Omega LD)$"
@@ -35,7 +36,7 @@ def draw_impedance(study):
     steps = np.outer(10.0 ** np.arange(-2, 5), (1, 2, 5)).ravel()
     steps = steps[(steps > np.nanmin(size)) & (steps < np.nanmax(size))]
     x, y = (np.outer(e, f(phi[upper])) for f in (np.cos, np.sin))
-    lines = axis.contour(x, y, np.ma.masked_invalid(np.log10(size[:, upper])), np.log10(steps), colors=COLOURS[0],
+    lines = axis.contour(x, y, np.ma.masked_invalid(np.log10(size[:, upper])), np.log10(steps), colors=study.colour,
                          linewidths=np.where(np.isclose(np.log10(steps) % 1, 0), 1.4, 0.8))
     axis.clabel(lines, fmt=lambda level: f"{round(10**level, 3):g}", fontsize=7.5)
     places = np.linspace(-0.95, 0.95, 20)
@@ -43,7 +44,7 @@ def draw_impedance(study):
     inside = np.hypot(x, y) < e[-1]
     x, y = x[inside], y[inside]
     u, n = (-between(e, phi, a / size, x, y) for a in (w, v))
-    axis.quiver(x, y, u / np.hypot(u, n), n / np.hypot(u, n), color=COLOURS[1], pivot="mid", scale=34, width=0.0022, headwidth=4)
+    axis.quiver(x, y, u / np.hypot(u, n), n / np.hypot(u, n), color=GREY, pivot="mid", scale=34, width=0.0022, headwidth=4)
     turn = np.linspace(0, np.pi, 181)
     axis.plot(np.cos(turn), np.sin(turn), color=INK, linewidth=1.1)
     axis.plot(e[-1] * np.cos(turn), e[-1] * np.sin(turn), color=GREY, linewidth=0.7, linestyle=":")
@@ -52,8 +53,8 @@ def draw_impedance(study):
     axis.set_ylim(-0.02, 1.04)
     axis.set_xlabel(r"$\varepsilon$ along the squeeze velocity $v_s$, which points to the right")
     axis.set_ylabel(r"$\varepsilon$ across it")
-    handles = [Line2D([], [], color=COLOURS[0], label=r"$|W|$"),
-               Line2D([], [], color=COLOURS[1], marker=r"$\rightarrow$", linestyle="none", label=r"direction of the force $F^* = -v_s^*\,W$")]
+    handles = [Line2D([], [], color=study.colour, label=r"$|W|$"),
+               Line2D([], [], color=GREY, marker=r"$\rightarrow$", linestyle="none", label=r"direction of the force $F^* = -v_s^*\,W$")]
     note = rf"$F^* = (c/R)^2 F/(\mu LD)$; computed up to $\varepsilon$ = {e[-1]:.3g}; the lower half is its mirror image"
     return save(figure, study, "impedance", note, handles)
 
@@ -63,7 +64,7 @@ def maps_of(results):
 
 
 def legend_of(studies):
-    return [Line2D([], [], color=COLOURS[i % len(COLOURS)], label=title_of(s)) for i, s in enumerate(studies)]
+    return [Line2D([], [], color=s.colour, label=title_of(s)) for s in studies]
 
 
 def load_axis(axis, largest):
@@ -74,11 +75,11 @@ def load_axis(axis, largest):
 def draw_locus(whole, studies, largest):
     figure, axes, _ = grid_of(2, width=4.8, height=4.0, columns=2)
     reach = 1.0
-    for s, colour in zip(studies, COLOURS * 4):
+    for s in studies:
         load, e = s.get("locus/sommerfeld"), s.get("locus/eccentricity")
-        axes[0].plot(load, e, color=colour)
+        axes[0].plot(load, e, color=s.colour)
         shown = load <= largest
-        axes[1].plot(s.get("locus/x")[shown], s.get("locus/y")[shown], color=colour)
+        axes[1].plot(s.get("locus/x")[shown], s.get("locus/y")[shown], color=s.colour)
         reach = max(reach, e[shown].max(initial=0))
     load_axis(axes[0], largest)
     axes[0].set_ylim(0, 1.04 * reach)
@@ -99,9 +100,9 @@ def draw_entries(whole, studies, letter, words, what, largest):
     figure, axes, _ = grid_of(4, width=4.6, height=2.7, columns=2)
     for axis, entry in zip(axes, ENTRIES):
         inside = []
-        for s, colour in zip(studies, COLOURS * 4):
+        for s in studies:
             load, value = s.get("locus/sommerfeld"), s.get(f"locus/{letter}_{entry}")
-            axis.plot(load, value, color=colour)
+            axis.plot(load, value, color=s.colour)
             inside.append(value[load <= largest])
         inside = np.concatenate(inside)
         if len(inside):
@@ -115,13 +116,25 @@ def draw_entries(whole, studies, letter, words, what, largest):
     return save(figure, whole, f"map-{words}", note, legend_of(studies))
 
 
+def border(study):
+    """(S, Omega*) and (S, whirl ratio) at the border of stability, smooth over the load. Where the bearing becomes stable at every
+    speed Omega* goes to infinity as (S_0 - S)^(-1/2) and the ratio to zero as (S_0 - S)^(1/2): 1/Omega*^2 and the squared ratio are
+    smooth there, and the curves go through these."""
+    load, limit, ratio = (study.get(f"locus/{k}") for k in ("sommerfeld", "speed_limit", "whirl_ratio"))
+    known = np.isfinite(limit) & np.isfinite(ratio) & (limit > 0)
+    if np.count_nonzero(known) < 3 or np.any(np.diff(load[known]) <= 0) or np.any(np.diff(np.nonzero(known)[0]) > 1):
+        return (load, limit), (load, ratio)
+    s, inverse = through(load[known], limit[known]**-2)
+    square = through(load[known], ratio[known]**2)[1]
+    return (s, inverse**-0.5), (s, np.sqrt(square))
+
+
 def draw_stability(whole, studies, largest):
     """Omega* at the border of stability and the whirl there; nothing where a bearing is stable at every speed."""
     figure, axes, _ = grid_of(2, width=4.8, height=3.2, columns=2)
-    for s, colour in zip(studies, COLOURS * 4):
-        load = s.get("locus/sommerfeld")
-        for axis, key in zip(axes, ("speed_limit", "whirl_ratio")):
-            axis.plot(load, s.get(f"locus/{key}"), color=colour)
+    for s in studies:
+        for axis, (load, values) in zip(axes, border(s)):
+            axis.plot(load, values, color=s.colour)
     for axis in axes:
         load_axis(axis, largest)
     axes[0].set_ylabel(r"$\Omega\sqrt{mc/F}$ at the border of stability")
@@ -140,14 +153,14 @@ def draw_pressure(whole, studies):
     loads = sorted({float(x) for s in shown for x in s.get("profiles/sommerfeld")})
     figure, axes, _ = grid_of(2 * len(loads), width=4.8, height=2.9, columns=2)
     for row, load in enumerate(loads):
-        for s, colour in zip(studies, COLOURS * 4):
+        for s in studies:
             if s not in shown or not np.any(np.isclose(s.get("profiles/sommerfeld"), load)):
                 continue
             k = int(np.argmin(np.abs(s.get("profiles/sommerfeld") - load)))
             theta = np.degrees(s.get("profiles/theta")) % 360
             order = np.argsort(theta)
             for axis, key in zip(axes[2 * row:2 * row + 2], ("pressure", "thickness")):
-                axis.plot(theta[order], s.get(f"profiles/{key}")[k][order], color=colour)
+                axis.plot(theta[order], s.get(f"profiles/{key}")[k][order], color=s.colour)
         for axis, label in zip(axes[2 * row:2 * row + 2], (r"$p^* = (c/R)^2 p/(6\mu\Omega)$", r"thickness $h/c$")):
             axis.set_title(f"S = {load:g}")
             axis.set_ylabel(label)
@@ -168,18 +181,19 @@ def draw_frequencies(study):
     order = np.argsort(ratio)
     load = study.get("locus/sommerfeld")
     picks = sorted({int(np.argmin(np.abs(load - s))) for s in (0.1, 0.5, 1, 2.5, 5) if load[0] <= s <= load[-1]})
+    colours = plt.cm.viridis(np.linspace(0, 0.95, len(picks)))
     figure, grid = plt.subplots(2, 4, figsize=(11.4, 5.6), sharex=True)
     for axes, letter in zip(grid, "kb"):
         for axis, entry in zip(axes, ENTRIES):
             table = study.get(f"frequencies/{letter}_{entry}")
-            for i, colour in zip(picks, COLOURS):
+            for i, colour in zip(picks, colours):
                 axis.plot(ratio[order], table[i][order], color=colour, marker=".", markersize=3.5)
             axis.axhline(0, color=INK, linewidth=0.7)
             axis.set_xscale("log")
             axis.set_title(f"${letter}^*_{{{entry}}}$")
             if letter == "b":
                 axis.set_xlabel(r"frequency $\omega/\Omega$")
-    handles = [Line2D([], [], color=c, marker=".", label=f"S = {load[i]:.3g}") for i, c in zip(picks, COLOURS)]
+    handles = [Line2D([], [], color=c, marker=".", label=f"S = {load[i]:.3g}") for i, c in zip(picks, colours)]
     return save(figure, study, "frequencies", SCALE, handles)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from .curves import Branch
-from .style import BAD, COLOURS, DASHED, INK, X, Y, branch_legend, grid_of, mark, mark_end, parameter_label, save
+from .style import BAD, DASHED, INK, X, Y, branch_legend, grid_of, least_span, mark, mark_end, parameter_label, save
 
 RANGE_ENDS = ("completed", "", "end of the range")
 
@@ -143,12 +143,37 @@ def finish(axis, title, ylabel, xlabel, margin=0.12):
     axis.margins(y=margin)
 
 
+def damped(study):
+    """Real part of the least stable eigenvalue at each point, zero where it is rounding."""
+    growth, undamped, unstable = (study.get(f"branch/{k}") for k in ("leading_real", "undamped_count", "unstable_count"))
+    return growth if growth is None or undamped is None or unstable is None else np.where((undamped > 0) & (unstable == 0), 0.0, growth)
+
+
+def draw_growth(axis, branch, growth):
+    """The real part of the least stable eigenvalue, through zero where that one crosses. Other marks are of eigenvalues behind it,
+    which cross at zero as well."""
+    crossings = [(kind, value, place) for kind, value, place in branch.events if place is not None and kind in ("hopf", "fold")]
+    leading = {}
+    if branch.points > 1:
+        leading = {place[0]: place for _, _, place in crossings if branch.stable[place[0]] != branch.stable[place[0] + 1]}
+    places = [leading[i] for i in sorted(leading)]
+    curve, values, new = branch.bare.with_points(growth, places, [0.0] * len(places))
+    for x, y, solid in curve.stretches(values, np.insert(branch.stable, [i + 1 for i in sorted(leading)], True) if new else branch.stable, []):
+        axis.plot(x, y, color=INK, linestyle="-" if solid else DASHED, linewidth=1.6 if solid else 1.3)
+    if branch.points == 1:
+        axis.plot(curve.parameter, values, ".", color=INK)
+    for kind, value, _ in crossings:
+        mark(axis, kind, value, 0.0)
+    if branch.ends:
+        mark_end(axis, curve.parameter[-1], values[-1])
+
+
 def draw_equilibria(study):
     if not study.has("branch/parameter", "branch/y"):
         return []
     branch = Followed(study)
     x, y = branch.column("x"), branch.column("y")
-    names, growth, shown = study.bearings(x.shape[1]), study.get("branch/leading_real"), distinct(x, y)
+    names, growth, shown = study.bearings(x.shape[1]), damped(study), distinct(x, y)
     figure, axes, _ = grid_of(len(shown) + (growth is not None))
     scale, unit = study.measure(np.concatenate([x, y]))
     for axis, b in zip(axes, shown):
@@ -156,16 +181,17 @@ def draw_equilibria(study):
         branch.draw(axis, x[:, b], X, scale)
         branch.mark(axis, [y[:, b], x[:, b]], scale)
         finish(axis, names[b], f"position [{unit}]", parameter_label(study))
+        least_span(axis, scale * max(np.abs(x).max(), np.abs(y).max()))
     if growth is not None:
         axis = axes[-1]
         axis.axhline(0, color=BAD, linewidth=0.9)
-        branch.draw(axis, growth, INK)
-        branch.mark(axis, [growth])
-        if not np.any(growth):
-            axis.set_ylim(-1, 1)
+        draw_growth(axis, branch, growth)
         finish(axis, "least stable eigenvalue", "real part [1/s]", parameter_label(study))
+        least_span(axis, np.abs(growth).max())
     directions = [Line2D([], [], color=Y, label="y, vertical"), Line2D([], [], color=X, label="x, horizontal")]
-    return save(figure, study, "equilibria", study.shown, legend([branch], directions))
+    behind = growth is not None and sum(kind in ("hopf", "fold") for kind in branch.kinds) > 1
+    return save(figure, study, "equilibria", study.shown + ("; marks at zero: an eigenvalue crosses, perhaps not the least stable one" if behind else ""),
+                legend([branch], directions))
 
 
 def draw_extremes(axis, branch, direction, b, scale, colour, size=6, linewidth=1.6):
@@ -188,7 +214,7 @@ def draw_cycles(study):
         figure, axes, _ = grid_of(len(shown))
         scale, unit = study.measure(np.concatenate([branch.column(f"{direction}_max"), branch.column(f"{direction}_min")]))
         for axis, b in zip(axes, shown):
-            draw_extremes(axis, branch, direction, b, scale, Y if direction == "y" else X)
+            draw_extremes(axis, branch, direction, b, scale, study.colour)
             finish(axis, names[b], f"{direction}, max and min [{unit}]", parameter_label(study))
         note = f"largest and smallest {direction} ({words}) over one cycle: {study.shown}"
         unbalance = study.attribute("unbalance")
@@ -225,7 +251,7 @@ def draw_frequency(study):
     period = branch.column("period")[:, 0]
     ratio = 2 * np.pi / (period * branch.along(period)[0] * to_si)
     figure, (axis,), _ = grid_of(1, width=4.6, height=3.2)
-    branch.draw(axis, ratio, INK)
+    branch.draw(axis, ratio, study.colour)
     branch.mark(axis, [ratio])
     axis.axhline(0.5, color=INK, linewidth=0.8, linestyle=":")
     finish(axis, "whirl frequency", "whirl frequency / running speed", parameter_label(study), 0.22)
@@ -247,10 +273,10 @@ def draw_together(results):
     names, shown = studies[0].bearings(count), distinct(*(t[:, :count] for t in tables))
     scale, unit = studies[0].measure(np.concatenate([t[:, :count].ravel() for t in tables]))
     figure, axes, _ = grid_of(len(shown))
-    handles, next_colour = [], iter(COLOURS * 4)
+    handles = []
     for branch, table in zip(branches, tables):
         equilibria = branch.study.kind == "equilibrium_branch"
-        colour = INK if equilibria else next(next_colour)
+        colour = branch.study.colour
         handles.append(Line2D([], [], color=colour, label=branch.study.name))
         for axis, b in zip(axes, shown):
             if equilibria:

@@ -8,7 +8,6 @@ from .style import BAD, GOOD, GREY, INK, LIGHT, ROTATION, UNDAMPED, WARN, levels
 LINES = {"forward": "-", "backward": (0, (4, 2)), "mixed": (0, (7, 1.6, 1.2, 1.6)), "planar": (0, (1.2, 1.4))}
 LOW_DAMPING = 0.1  # logarithmic decrement that machines are asked to have at least
 OVERDAMPED = 3.0  # log. decrement of modes that lose 95 % of their amplitude in a turn
-BOX = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6}
 
 
 def colour_of(decrement):
@@ -25,16 +24,34 @@ def modes_of(study):
         yield int(mode), rows["speed"][pick], rows["frequency"][pick], rows["log_decrement"][pick], whirl
 
 
-def stretches(speed, every):
-    """(start, stop) of the runs of neighbouring speeds: nothing is drawn over speeds at which a mode was not found."""
+def crowded_out(study):
+    """(speed, highest frequency) where a study kept as many modes as it keeps anywhere: those above were left out there, as an
+    overdamped mode that comes down pushes the highest off the list."""
+    speed, frequency = study.get("spectrum/speed"), study.get("spectrum/frequency")
+    every, count = np.unique(speed, return_counts=True)
+    return {s: frequency[speed == s].max() for s in every[count == count.max()]}
+
+
+def stretches(speed, frequency, every, full):
+    """(start, stop) of the runs of speeds over which a mode is drawn: not over speeds at which it was not found, but for those
+    where a full list ends below it."""
     index = np.searchsorted(every, speed)
-    return runs(list(index - np.arange(len(index))))
+    start = 0
+    for k in range(1, len(index) + 1):
+        if k < len(index):
+            missing = every[index[k - 1] + 1:index[k]]
+            between = np.interp(missing, speed[k - 1:k + 1], frequency[k - 1:k + 1])
+            if all(full.get(s, np.inf) <= f for s, f in zip(missing, between)):
+                continue
+        yield start, k
+        start = k
 
 
 def draw_lines(axis, x, y, decrement, whirl):
     """One polyline per stretch of one whirl and one class of damping, so that dashes run through."""
     if len(x) == 1:
-        axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
+        if not decrement[0] > OVERDAMPED:  # what does not vibrate needs no dot of its own
+            axis.plot(x, y, ".", color=colour_of(decrement[0]), markersize=3)
         return
     worst = np.minimum(decrement[:-1], decrement[1:])
     for start, stop in runs(list(zip(whirl[:-1], map(colour_of, worst), worst > OVERDAMPED))):
@@ -54,15 +71,37 @@ def label_modes(axis, x, ends):
         axis.annotate(str(mode), (x, last), xytext=(5, 0), textcoords="offset points", va="center", fontsize=7.5, color=GREY)
 
 
+def free_place(axis, modes, ends, limit, times):
+    """(speed, frequency) beside the line `times` x speed where its label is farthest from all modes and lines."""
+    inches = axis.figure.get_size_inches() * axis.get_position().size
+    scale = inches / np.array([ends[1] - ends[0], limit])
+
+    def dense(speed, frequency):
+        s = np.linspace(speed[0], speed[-1], 200)
+        return np.column_stack([s - ends[0], np.interp(s, speed, frequency)]) * scale
+
+    curves = np.concatenate([dense(m[1], m[2]) for m in modes] + [dense(ends, other * ends) for other in (1, 2)])
+    along = np.array([1.0, times]) * scale
+    normal = np.array([-along[1], along[0]]) / np.hypot(*along)
+    line = np.linspace(ends[0], min(ends[1], limit / times), 82)[1:-1]
+    places = np.column_stack([line - ends[0], times * line]) * scale + 0.16 * normal
+    inside = np.all((places > 0.15) & (places < inches - 0.1), axis=1)
+    if not inside.any():
+        return line[-1], times * line[-1]
+    clear = np.array([np.hypot(*(curves - place).T).min() for place in places])
+    best = places[int(np.argmax(np.where(inside, clear, -1)))] / scale
+    return best[0] + ends[0], best[1]
+
+
 def draw(study):
     if not study.has("spectrum/speed") or len(np.unique(study.get("spectrum/speed"))) < 2:
         return []
     to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(8.6, 8.2), sharex=True, height_ratios=[2.2, 1])
     modes = list(modes_of(study))
-    every = np.unique(study.get("spectrum/speed"))
+    every, full = np.unique(study.get("spectrum/speed")), crowded_out(study)
     for _, speed, frequency, decrement, whirl in modes:
-        for a, b in stretches(speed, every):
+        for a, b in stretches(speed, frequency, every, full):
             x = speed[a:b] * to_speed
             draw_lines(top, x, frequency[a:b] * to_frequency, decrement[a:b], whirl[a:b])
             draw_lines(bottom, x, decrement[a:b], decrement[a:b], whirl[a:b])
@@ -71,9 +110,8 @@ def draw(study):
     limit = min(all_frequency.max() * 1.06, 3 * ends[1])
     for times in (1, 2):
         top.plot(ends * to_speed, times * ends * to_frequency, color=INK, linewidth=1.0 if times == 1 else 0.7)
-        side = ends[1] if times * ends[1] < 0.93 * limit else 0.9 * limit / times
-        top.annotate(f"{times}\u00d7", (side * to_speed, times * side * to_frequency), xytext=(-8, 3), textcoords="offset points", color=INK,
-                     fontsize=9, ha="right", va="bottom", bbox=BOX)
+        side, height = free_place(top, modes, ends, limit, times)
+        top.annotate(f"{times}\u00d7", (side * to_speed, height * to_frequency), color=INK, fontsize=9, ha="center", va="center")
     crossed = np.atleast_1d(study.get("critical/speed", np.array([])))
     damping = study.get("critical/log_decrement")
     # By API 684 an amplification factor pi/delta below 2.5 is no critical speed.

@@ -36,6 +36,43 @@ def slopes(s, values):
     return np.concatenate([ends[:1], inner, ends[1:]])
 
 
+def hermite(s, values, slope, pieces):
+    """(s, values) of the cubics that have `values` and `slope` at the points s, each in `pieces` parts."""
+    h, t = np.diff(s)[:, None], np.arange(pieces) / pieces
+    cubic = ((1 + 2 * t) * (1 - t)**2 * values[:-1, None] + t * (1 - t)**2 * h * slope[:-1, None]
+             + t**2 * (3 - 2 * t) * values[1:, None] + t**2 * (t - 1) * h * slope[1:, None])
+    return np.append(s[:-1, None] + h * t, s[-1]), np.append(cubic, values[-1])
+
+
+def through(s, values, pieces=8):
+    """(s, values) of the curve through points over an ascending s that overshoots no kink."""
+    s, values = np.asarray(s, float), np.asarray(values, float)
+    return (s, values) if len(s) < 3 else hermite(s, values, slopes(s, values), pieces)
+
+
+def natural(s, values):
+    """d values/ds at the points of the natural cubic spline through them."""
+    h, n = np.diff(s), len(s)
+    if n < 3:
+        return np.full(n, (values[-1] - values[0]) / h[0] if n == 2 else 0, np.asarray(values).dtype)
+    rows, chord = np.diag(np.full(n, 2.0)), np.diff(values) / h
+    rows[0, 1] = rows[-1, -2] = 1
+    right = np.concatenate([[3 * chord[0]], 3 * (h[1:] * chord[:-1] + h[:-1] * chord[1:]) / (h[1:] + h[:-1]), [3 * chord[-1]]])
+    for k in range(1, n - 1):
+        rows[k, k - 1], rows[k, k + 1] = h[k] / (h[k - 1] + h[k]), h[k - 1] / (h[k - 1] + h[k])
+    return np.linalg.solve(rows, right)
+
+
+def along_shaft(z, values, slope=None, shown=240):
+    """(z, values) of a shaft's line, real or complex: in each element the cubic of its displacement and slope at both nodes, which
+    is how a beam bends between loads at its nodes. Results without slopes: the natural spline through the nodes."""
+    z, values = np.asarray(z, float), np.asarray(values)
+    if len(z) < 2:
+        return z, values
+    slope = natural(z, values) if slope is None else np.asarray(slope)
+    return hermite(z, values, slope, max(2, -(-shown // (len(z) - 1))))
+
+
 class Branch:
     """A branch through its points, cubic along the arclength: parameter and any number of curves over it."""
 
@@ -59,6 +96,18 @@ class Branch:
         h = s[i + 1] - s[i]
         return ((1 + 2 * t) * (1 - t)**2 * values[i] + t * (1 - t)**2 * h * slope[i]
                 + t**2 * (3 - 2 * t) * values[i + 1] + t**2 * (t - 1) * h * slope[i + 1])
+
+    def with_points(self, values, places, known):
+        """The branch with further points at places (ascending, one a segment at most) where a curve has the values `known`: that
+        branch, the curve through all, and the index of each new point."""
+        s, parameter, unstable, values, new = self.s, self.parameter, self.unstable, np.asarray(values, float), []
+        for number, ((i, t), value) in enumerate(zip(places, known)):
+            k = i + 1 + number
+            at = self.s[i] + t * (self.s[i + 1] - self.s[i])
+            s, parameter = np.insert(s, k, at), np.insert(parameter, k, self.at(self.parameter, (i, t)))
+            unstable, values = np.insert(unstable, k, min(self.unstable[i], self.unstable[i + 1])), np.insert(values, k, value)
+            new.append(k)
+        return Branch(parameter, np.diff(s, prepend=s[0]), unstable), values, new
 
     def at(self, values, place):
         """A curve at a place (segment, t in [0, 1]) on the branch."""

@@ -3,9 +3,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from .bifurcation import Followed, legend, without_twins
-from .style import COLOURS, INK, grid_of, save
-
-KINDS = {0: ("self-excited", COLOURS[2]), 1: ("period 1", COLOURS[0]), 2: ("period 2", COLOURS[1])}
+from .style import grid_of, save
 
 
 def groups(study):
@@ -14,6 +12,14 @@ def groups(study):
     if "nondimensional.speed_scale" not in values or "nondimensional.unbalance" not in values:
         return None
     return values["nondimensional.speed_scale"].value, values["nondimensional.unbalance"].value
+
+
+def words_of(study):
+    """Name and what kind of motion it is."""
+    if study.kind == "equilibrium_branch":
+        return f"{study.name}: equilibrium"
+    turns = int(study.attribute("period_turns", 1))
+    return f"{study.name}: " + (f"period {turns}" if study.attribute("unbalance", "") else "self-excited")
 
 
 def eccentricity(branch):
@@ -36,22 +42,17 @@ def draw(results):
         balanced = branch.study.kind == "equilibrium_branch" or not branch.study.attribute("unbalance", "")
         panels.setdefault(0.0 if balanced else groups(branch.study)[1], []).append(branch)
     figure, axes, _ = grid_of(len(panels), width=4.6, height=2.7 if len(panels) > 1 else 3.8, columns=2)
-    kinds = {}
     for axis, (unbalance, members) in zip(axes, sorted(panels.items())):
         for branch in members:
             study = branch.study
-            turns = int(study.attribute("period_turns", 1)) if study.attribute("unbalance", "") else 0
-            words, colour = ("equilibrium", INK) if study.kind == "equilibrium_branch" else \
-                KINDS.get(turns, (f"period {turns}", COLOURS[3 + turns % 4]))
-            kinds[words] = colour
             height, across = eccentricity(branch), 1 / groups(study)[0]
-            branch.draw(axis, height, colour, across=across)
+            branch.draw(axis, height, study.colour, across=across)
             branch.mark(axis, [height], size=5, across=across)
         axis.set_title(f"a* = {unbalance:.3g}" if unbalance else "balanced")
         axis.set_xlabel(r"$\Omega^* = \Omega/\Omega_0$")
         axis.set_ylabel(r"max $\varepsilon$")
         # Only a compliant wall lets the journal go further than the clearance.
         axis.set_ylim(0, max(1.02, 1.04 * max(np.nanmax(eccentricity(b)) for b in members)))
-    handles = [Line2D([], [], color=c, label=w) for w, c in kinds.items()]
+    handles = [Line2D([], [], color=b.study.colour, label=words_of(b.study)) for b in branches]
     return save(figure, results.whole("largest eccentricity"), "eccentricity",
                 "largest eccentricity of the journal over one cycle, per clearance", legend(branches, handles))

@@ -4,7 +4,7 @@ import re
 import numpy as np
 from matplotlib import pyplot as plt
 
-from .style import COLOURS, INK, save
+from .style import INK, save
 
 WORDS = {"meeting": "two meet", "meeting_over_second": "curve turns", "resonance_1_1": "1:1 resonance",
          "resonance_1_2": "1:2 resonance", "resonance_1_3": "1:3 resonance", "resonance_1_4": "1:4 resonance",
@@ -68,9 +68,8 @@ def draw_together(results):
     studies = [s for s in studies if (s.attribute("parameter"), last(s.attribute("second", ""))) == pair]
     figure, axis = plt.subplots(figsize=(8, 5.5))
     points = []
-    for k, study in enumerate(studies):
-        axis.plot(study.get("locus/parameter"), study.get("locus/second"), color=COLOURS[k % len(COLOURS)],
-                  label=described(study))
+    for study in studies:
+        axis.plot(study.get("locus/parameter"), study.get("locus/second"), color=study.colour, label=described(study))
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),

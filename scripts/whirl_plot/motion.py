@@ -4,7 +4,11 @@ import numpy as np
 
 from .bore import draw_clearance
 from .orbits import finish, square, turn_arrow
-from .style import COLOURS, GREY, INK, ROTATION, X, Y, save
+from .style import GREY, INK, ROTATION, X, Y, save
+from .units import digits, with_bar
+
+
+SHADES = (INK, GREY, "#a8a8a8", "#c9c9c9")  # of the exponents, the largest first
 
 
 def distinct(study, names):
@@ -46,12 +50,16 @@ def draw_spectrum(axis, order, x, y, unit, top=6.0):
     axis.legend(loc="upper right")
 
 
+def exponent_in_words(value, bar):
+    return with_bar(value, bar) if np.isfinite(bar) else f"{digits(value, 2)}, too short for a bar"
+
+
 def draw_exponents(axis, running, speed, value, uncertainty):
     turns = np.arange(1, len(running) + 1)
     per_turn = 2 * np.pi / speed
     for k in range(running.shape[1]):
-        axis.plot(turns, running[:, k] * per_turn, color=COLOURS[k % len(COLOURS)], linewidth=1.0,
-                  label=f"{value[k] * per_turn:.4g} \u00b1 {uncertainty[k] * per_turn:.1g}")
+        axis.plot(turns, running[:, k] * per_turn, color=SHADES[k % len(SHADES)], linewidth=1.2,
+                  label=exponent_in_words(value[k] * per_turn, uncertainty[k] * per_turn))
     axis.axhline(0, color=GREY, linewidth=0.8)
     axis.set_xlabel("revolutions")
     axis.set_ylabel("Lyapunov exponents per revolution")

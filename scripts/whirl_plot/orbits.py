@@ -7,6 +7,7 @@ from .bifurcation import Followed, legend
 from .bore import distance_in_words, draw_clearance
 from .curves import periodic
 from .style import DASHED, GREY, INK, ROTATION, Y, mark, mark_end, parameter_label, save
+from .units import person
 
 
 def turn_arrow(axis):
@@ -135,7 +136,7 @@ def draw_positions(study):
         lines = f"({x[b] * 1e6:.1f}, {y[b] * 1e6:.1f}) \u00b5m"
         if study.has("bearings/clearance"):
             lines += distance_in_words(study, b, x[b], y[b])
-        finish(axis, name if load is None else f"{name}: {np.atleast_1d(load)[b] / 1e3:.2f} kN")
+        finish(axis, name if load is None else f"{name}: {person(np.atleast_1d(load)[b], 'N', 4)}")
         axis.set_xlabel(f"x [\u00b5m]\n{lines}", fontsize=8)
     return save(figure, study, "journals", "pads thick, no wall where dotted; journal relative to the bearing centre; $c_b$ assembled clearance; "
                 f"load of the journal on the bearing, positive down; {ROTATION}")

@@ -2,7 +2,7 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from .style import COLOURS, GREY, grid_of, length_unit, save
+from .style import GREY, grid_of, length_unit, save
 
 RESPONSE_COLUMN = {"bearings": "bearings/semi_major", "node": "response/semi_major"}
 
@@ -51,17 +51,17 @@ def draw_together(results):
     figure, axes, _ = grid_of(len(panels), width=4.2 if len(panels) < 3 else 3.4, height=2.9)
     scale, length = length_unit(np.concatenate([amplitude for s in studies for _, _, amplitude in places(s)]))
     per_unit = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi}.get(unit, 1)
-    handles = [Line2D([], [], color=COLOURS[k % len(COLOURS)],
-                      label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s" + "\u00b2" * unit.endswith("/s")) for k, s in enumerate(studies)]
+    handles = [Line2D([], [], color=s.colour,
+                      label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s" + "\u00b2" * unit.endswith("/s")) for s in studies]
     linear = False
     for axis, (title, key, _) in zip(axes, panels):
         for speed, major in steady(results, key):
             axis.plot(speed * per_unit, major * scale, color=GREY, linewidth=2.6, alpha=0.45, zorder=1)
             linear = True
-        for k, study in enumerate(studies):
+        for study in studies:
             for _, other, amplitude in places(study):
                 if other == key:
-                    axis.plot(study.get("run_up/speed"), amplitude * scale, color=COLOURS[k % len(COLOURS)], linewidth=1.2)
+                    axis.plot(study.get("run_up/speed"), amplitude * scale, color=study.colour, linewidth=1.2)
         ends = np.concatenate([study.get("run_up/speed") for study in studies])
         axis.set_xlim(ends.min(), ends.max())
         axis.set_ylim(bottom=0)

@@ -4,8 +4,9 @@ import typing
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .campbell import OVERDAMPED
-from .style import BAD, COLOURS, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, length_unit, save, speed_axis
+from .campbell import LINES, OVERDAMPED
+from .curves import along_shaft
+from .style import BAD, GREY, INK, LIGHT, ROTATION, X, Y, grid_of, least_span, length_unit, save, speed_axis
 
 
 def bearing_places(study, z):
@@ -56,20 +57,25 @@ def draw_sag(study):
         return []
     z, x, y = study.get("nodes/z"), study.get("nodes/x", None), study.get("nodes/y")
     bearings, couplings = bearing_places(study, z), coupling_places(study, z)
-    rows = [("y, vertical", y, Y)] + ([("x, horizontal", x, X)] if x is not None else [])
+    rows = [("y, vertical", y, along_shaft(z, y, study.get("nodes/slope_y")), Y)]
+    if x is not None:
+        rows.append(("x, horizontal", x, along_shaft(z, x, study.get("nodes/slope_x")), X))
     moment = study.get("nodes/moment")
     if moment is not None:
-        rows.append(("bending moment [kN m]", moment / 1e3, INK))
+        rows.append(("bending moment [kN m]", moment / 1e3, (z, moment / 1e3), INK))
+    reach = max(np.abs(values).max() for values in (y, x) if values is not None)
     figure, axes = plt.subplots(len(rows), 1, figsize=(9.6, 2.7 * len(rows) + 1.1), sharex=True, squeeze=False)
-    for k, (axis, (words, values, colour)) in enumerate(zip(axes[:, 0], rows)):
+    for k, (axis, (words, values, (along, line), colour)) in enumerate(zip(axes[:, 0], rows)):
         scale, unit = length_unit(values) if "[" not in words else (1, "")
-        axis.plot(z, values * scale, color=colour, linewidth=2.0)
+        axis.plot(along, line * scale, color=colour, linewidth=2.0)
         for place, _ in bearings:
-            axis.plot(place, np.interp(place, z, values) * scale, "o", color=colour, markersize=5, markeredgecolor="white", zorder=4)
+            axis.plot(place, np.interp(place, along, line) * scale, "o", color=colour, markersize=5, markeredgecolor="white", zorder=4)
         mark_bearings(axis, bearings, k == 0)
         mark_couplings(axis, couplings, k == 0)
         axis.set_ylabel(f"{words} [{unit}]" if unit else words)
         axis.margins(x=0.01, y=0.1)
+        if "[" not in words:
+            least_span(axis, reach * scale)
     axes[-1, 0].set_xlabel("position along the shaft z [m]")
     what = study.group["nodes/y"].attrs.get("description", "") if "nodes/y" in study.group else ""
     rigid = "rigid supports" in str(what)
@@ -106,7 +112,7 @@ def normalised(x, y):
 
 
 class Shape(typing.NamedTuple):
-    """A mode at one speed: number, frequency [rad/s], x and y of the nodes (complex), and what is known of it."""
+    """A mode at one speed: number, frequency [rad/s], x and y along the shaft (complex), and what is known of it."""
 
     mode: int
     frequency: float
@@ -117,26 +123,34 @@ class Shape(typing.NamedTuple):
 
 
 def tables_of(study):
-    """(speed, shapes) of each speed that shapes were kept at."""
+    """(speed, z, shapes) of each speed that shapes were kept at, as smooth as a beam bends."""
     if not study.has("shapes/x_real", "shapes/z"):
         return
-    x = study.get("shapes/x_real") + 1j * study.get("shapes/x_imag")
-    y = study.get("shapes/y_real") + 1j * study.get("shapes/y_imag")
+    nodes = study.get("shapes/z")
+
+    def line(direction):
+        both = [[study.get(f"shapes/{head}{direction}_{part}") for part in ("real", "imag")] for head in ("", "slope_")]
+        values, slope = (None if real is None else real + 1j * imag for real, imag in both)
+        return [along_shaft(nodes, row, None if slope is None else slope[k]) for k, row in enumerate(values)]
+
+    lines = {direction: line(direction) for direction in "xy"}
+    x, y = ([values for _, values in lines[direction]] for direction in "xy")
+    z = lines["x"][0][0]
     column = lambda name, default: np.broadcast_to(np.atleast_1d(study.get(f"shapes/{name}", default)), len(x))  # noqa: E731
     speed = column("speed", 0.0)
     shapes = [Shape(*row) for row in zip(column("mode", np.arange(1, len(x) + 1)), column("frequency", 0.0), x, y,
                                          column("log_decrement", np.nan), column("whirl", ""))]
     for value in dict.fromkeys(speed):
-        yield value, [shape for shape, s in zip(shapes, speed) if s == value]
+        yield value, z, [shape for shape, s in zip(shapes, speed) if s == value]
 
 
 def draw_modes(study, shown=12):
     files, found = [], list(tables_of(study))
-    for speed, shapes in found:
+    for speed, z, shapes in found:
         # What dies within a turn is no vibration; unless nothing else is there.
         shapes = [s for s in shapes if not s.decrement > OVERDAMPED] or shapes
         suffix = f"-{speed * speed_axis(study.attribute('speed_unit', 'rad/s'))[0]:.0f}" if len(found) > 1 else ""
-        files += draw_flat(study, speed, shapes[:shown], suffix) + draw_in_space(study, speed, shapes[:shown], suffix)
+        files += draw_flat(study, speed, z, shapes[:shown], suffix) + draw_in_space(study, speed, z, shapes[:shown], suffix)
     return files
 
 
@@ -145,8 +159,8 @@ def at_words(study, speed):
     return f"at {speed_label.split(' [')[0]} {speed * to_speed:.0f} {study.attribute('speed_unit', 'rad/s')}", to_frequency, unit
 
 
-def draw_flat(study, speed, shapes, suffix):
-    z = study.get("shapes/z")
+def draw_flat(study, speed, z, shapes, suffix):
+    bearings = bearing_places(study, study.get("shapes/z"))
     at, to_frequency, unit = at_words(study, speed)
     figure, axes, grid = grid_of(len(shapes), height=1.95, sharex=True, sharey=True)
     for axis, shape in zip(axes, shapes):
@@ -155,7 +169,7 @@ def draw_flat(study, speed, shapes, suffix):
         axis.axhline(0, color=GREY, linewidth=0.6)
         for values, colour, label in ((y.real, Y, "y, vertical"), (x.real, X, "x, horizontal")):
             axis.plot(z, values, color=colour, linewidth=1.5, label=label)
-        mark_bearings(axis, bearing_places(study, z), names=False)
+        mark_bearings(axis, bearings, names=False)
         axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8.5)
         axis.set_ylim(-1.08, 1.08)
         axis.set_yticks([-1, 0, 1])
@@ -168,15 +182,15 @@ def draw_flat(study, speed, shapes, suffix):
                 axes[0].get_legend_handles_labels()[0])
 
 
-def draw_in_space(study, speed, shapes, suffix):
-    """Each node's ellipse, the shaft at one moment through the thick dots, and where that line crosses the undeformed axis."""
-    z = study.get("shapes/z")
+def draw_in_space(study, speed, z, shapes, suffix):
+    """Ellipses along the shaft, the shaft at one moment, and where that line crosses the undeformed axis."""
+    bearings = bearing_places(study, study.get("shapes/z"))
     at, to_frequency, unit = at_words(study, speed)
     columns = min(3, len(shapes))
     rows = -(-len(shapes) // columns)
-    figure = plt.figure(figsize=(3.6 * columns, 2.6 * rows + 1.0))
+    figure = plt.figure(figsize=(3.8 * columns, 2.6 * rows + 1.0))
     angle = np.exp(1j * np.linspace(0, 2 * np.pi, 61))
-    rings = np.unique(np.linspace(0, len(z) - 1, 24).round().astype(int))
+    rings = np.unique(np.linspace(0, len(z) - 1, 17).round().astype(int))
     for k, shape in enumerate(shapes):
         axis = figure.add_subplot(rows, columns, k + 1, projection="3d", computed_zorder=False)
         x, y, _ = normalised(shape.x, shape.y)
@@ -184,17 +198,19 @@ def draw_in_space(study, speed, shapes, suffix):
             ex, ey = (x[ring] * angle).real, (y[ring] * angle).real
             # Forward where the ellipse is run through from x to y.
             forward = (np.conj(x[ring]) * y[ring]).imag <= 0
-            axis.plot(np.full(61, z[ring]), ex, ey, color=COLOURS[1] if forward else COLOURS[3], linewidth=0.7)
-        axis.plot(z, np.zeros_like(z), np.zeros_like(z), color=GREY, linewidth=0.7)
-        axis.plot(z, x.real, y.real, color=INK, linewidth=1.6)
-        for place, _ in bearing_places(study, z):
-            axis.plot([place, place], [0, 0], [-1, 1], color=GREY, linewidth=0.6, linestyle=(0, (2, 2)))
+            axis.plot(np.full(61, z[ring]), ex, ey, color=GREY, linestyle=LINES["forward" if forward else "backward"], linewidth=0.8, clip_on=False)
+        axis.plot(z, np.zeros_like(z), np.zeros_like(z), color=GREY, linewidth=0.7, clip_on=False)
+        axis.plot(z, x.real, y.real, color=INK, linewidth=1.6, clip_on=False)
+        for place, _ in bearings:
+            axis.plot([place, place], [0, 0], [-1, 1], color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), clip_on=False)
         # Node lines: where the shaft crosses the axis in the direction in which it moves most.
         main = y.real if np.ptp(y.real) >= np.ptp(x.real) else x.real
         crossings = nodes_of(z, main)
-        axis.plot(crossings, np.zeros_like(crossings), np.zeros_like(crossings), "o", color=BAD, markersize=3.5)
+        axis.plot(crossings, np.zeros_like(crossings), np.zeros_like(crossings), "o", color=BAD, markersize=3.5, clip_on=False)
+        for line in axis.get_lines():  # they may leave the box of the axes
+            line.set_in_layout(False)
         axis.set_title(f"{shape.mode}: {shape.frequency * to_frequency:.2f} {unit}{describe(shape)}", fontsize=8, y=0.98)
-        axis.set_box_aspect((3.0, 1, 1), zoom=1.35)
+        axis.set_box_aspect((3.0, 1, 1), zoom=1.3)
         axis.view_init(18, -62)
         axis.set(xlim=(z[0], z[-1]), ylim=(-1, 1), zlim=(-1, 1), yticks=[], zticks=[])
         axis.tick_params(axis="x", labelsize=6.5, pad=-3)
@@ -203,8 +219,9 @@ def draw_in_space(study, speed, shapes, suffix):
             pane.pane.set_edgecolor(LIGHT)
             pane.pane.set_facecolor("white")
     from matplotlib.lines import Line2D
-    handles = [Line2D([], [], color=INK, label="shaft at one moment"), Line2D([], [], color=COLOURS[1], label="orbit, forward"),
-               Line2D([], [], color=COLOURS[3], label="orbit, backward"),
+    handles = [Line2D([], [], color=INK, label="shaft at one moment"),
+               Line2D([], [], color=GREY, linestyle=LINES["forward"], linewidth=0.8, label="orbit, forward"),
+               Line2D([], [], color=GREY, linestyle=LINES["backward"], linewidth=0.8, label="orbit, backward"),
                Line2D([], [], color=BAD, marker="o", linestyle="none", markersize=4, label="node: crosses the axis"),
                Line2D([], [], color=GREY, linestyle=(0, (2, 2)), linewidth=0.8, label="bearing")]
     return save(figure, study, f"shapes-3d{suffix}", f"{at}; along z [m], x to the back, y up; each scaled to its largest excursion", handles)

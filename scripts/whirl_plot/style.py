@@ -67,6 +67,15 @@ def speed_axis(unit):
     return 1, "speed [rad/s]", 1, "rad/s"
 
 
+def least_span(axis, reference, share=0.02):
+    """Widens a vertical axis that shows less than `share` of `reference`: rounding is no shape."""
+    low, high = axis.get_ylim()
+    wanted = share * abs(reference) or 1.0
+    if high - low < wanted:
+        axis.set_ylim((low + high - wanted) / 2, (low + high + wanted) / 2)
+        axis.ticklabel_format(axis="y", useOffset=False)
+
+
 def parameter_label(study):
     unit = study.attribute("parameter_unit", "")
     name = study.attribute("parameter", "speed" if unit in ("rpm", "rad/s", "Hz") else "parameter")

@@ -6,7 +6,9 @@ import sys
 
 import whirl
 
-from .style import length_unit
+from .style import COLOURS, INK, length_unit
+
+COLOURED = ("cycle_branch", "locus", "run_up", "bearing_map")
 
 
 class Subject(whirl.Study):
@@ -15,6 +17,12 @@ class Subject(whirl.Study):
     @property
     def run_title(self):
         return self.results.title
+
+    @property
+    def colour(self):
+        """The same in all pictures of a run; equilibria are ink."""
+        names = [s.name for s in self.results.studies if s.kind in COLOURED]
+        return COLOURS[names.index(self.name) % len(COLOURS)] if self.name in names else INK
 
     @property
     def shown(self):

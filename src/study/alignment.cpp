@@ -45,6 +45,7 @@ StudyResult Alignment::run(Context& context) {
   auto& nodes = context.results.group().child("nodes");
   nodes.put("z", rotor::node_positions(shaft), "m", "axial position of the shaft's nodes");
   nodes.put("y", aligned.deflection, "m", "aligned shaft on rigid supports, positive up");
+  nodes.put("slope_y", aligned.slope, "1", "dy/dz of the aligned shaft");
   nodes.put("moment", aligned.moment, "N m", "bending moment of the aligned shaft, sagging positive");
   summary.points = 1;
   return context.results.finish("completed", true);

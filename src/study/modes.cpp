@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -31,15 +32,16 @@ using Complex = std::complex<double>;
 // A mode with its shape along the shaft.
 struct ShaftMode {
   Complex lambda;
-  std::vector<Complex> x, y;  // per node
-  bool undamped = false;      // its real part is rounding
-  int id = -1;                // the same for the same mode at other speeds
+  std::vector<Complex> x, y, slope_x, slope_y;  // per node
+  bool undamped = false;                        // its real part is rounding
+  int id = -1;                                  // the same for the same mode at other speeds
 
   [[nodiscard]] std::vector<Complex> both() const {
     std::vector<Complex> all = x;
     all.insert(all.end(), y.begin(), y.end());
     return all;
   }
+  [[nodiscard]] std::array<std::vector<Complex>*, 4> columns() { return {&x, &y, &slope_x, &slope_y}; }
 };
 
 std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency) {
@@ -62,31 +64,31 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
     Complex largest = 0;
     for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
-      m.x.emplace_back(part[0][i], part[1][i]);
-      m.y.emplace_back(part[0][i + 1], part[1][i + 1]);
+      for (std::size_t k = 0; k < 4; ++k) m.columns()[k]->emplace_back(part[0][i + k], part[1][i + k]);
       for (const Complex& v : {m.x.back(), m.y.back()})
         if (std::abs(v) > std::abs(largest)) largest = v;
     }
     if (largest != 0.0)
-      for (auto* side : {&m.x, &m.y})
-        for (Complex& v : *side) v /= largest;
+      for (auto* column : m.columns())
+        for (Complex& v : *column) v /= largest;
     out.push_back(std::move(m));
   }
   return out;
 }
 
 // Modes of one speed as numbers, to send them between ranks.
-std::vector<double> pack(const std::vector<ShaftMode>& modes) {
+std::vector<double> pack(std::vector<ShaftMode> modes) {
   std::vector<double> flat{static_cast<double>(modes.size()),
                            modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
   const auto put = [&](Complex v) {
     flat.push_back(v.real());
     flat.push_back(v.imag());
   };
-  for (const ShaftMode& m : modes) {
+  for (ShaftMode& m : modes) {
     put(m.lambda);
     put(m.undamped ? 1.0 : 0.0);
-    for (const Complex& v : m.both()) put(v);
+    for (const auto* column : m.columns())
+      for (const Complex& v : *column) put(v);
   }
   return flat;
 }
@@ -102,8 +104,8 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
   for (ShaftMode& m : modes) {
     m.lambda = take();
     m.undamped = take().real() > 0;
-    for (auto* side : {&m.x, &m.y})
-      for (std::size_t k = 0; k < nodes; ++k) side->push_back(take());
+    for (auto* column : m.columns())
+      for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
   }
   return modes;
 }
@@ -380,29 +382,27 @@ StudyResult Modes::run(Context& context) {
   put_bearings(group, context.machine);
   auto& shapes = group.child("shapes");
   const auto z = rotor::node_positions(system.train().rotor);
-  std::vector<double> flat[4], at_frequency, at_speed, at_decrement;
+  std::vector<double> flat[8], at_frequency, at_speed, at_decrement;
   std::vector<std::string> at_sense;
   std::vector<std::int64_t> at_mode;
   for (const double speed : shape_speeds) {
     const auto& modes = station_at(speed).modes;
     for (std::size_t j = 0; j < std::min(count, modes.size()); ++j) {
-      const ShaftMode& m = modes[j];
+      ShaftMode m = modes[j];
       at_speed.push_back(speed);
       at_mode.push_back(m.id);
       at_frequency.push_back(m.lambda.imag());
       at_decrement.push_back(spectral::log_decrement(m.lambda));
       at_sense.emplace_back(spectral::name_of(spectral::sense_of_whirl(m.x, m.y, mass)));
-      for (std::size_t k = 0; k < z.size(); ++k) {
-        flat[0].push_back(m.x[k].real());
-        flat[1].push_back(m.x[k].imag());
-        flat[2].push_back(m.y[k].real());
-        flat[3].push_back(m.y[k].imag());
-      }
+      for (std::size_t k = 0; k < 8; ++k)
+        for (const Complex& v : *m.columns()[k / 2]) flat[k].push_back(k % 2 == 0 ? v.real() : v.imag());
     }
   }
-  const char* const names[] = {"x_real", "x_imag", "y_real", "y_imag"};
-  for (std::size_t k = 0; k < 4; ++k)
-    shapes.put(names[k], {at_speed.size(), z.size()}, flat[k], "1", "shape [mode][node], largest displacement one");
+  const char* const names[] = {"x_real",       "x_imag",       "y_real",       "y_imag",
+                               "slope_x_real", "slope_x_imag", "slope_y_real", "slope_y_imag"};
+  for (std::size_t k = 0; k < 8; ++k)
+    shapes.put(names[k], {at_speed.size(), z.size()}, flat[k], k < 4 ? "1" : "1/m",
+               k < 4 ? "shape [mode][node], largest displacement one" : "its derivative along the shaft");
   shapes.put("speed", at_speed, "rad/s", "speed of the shapes");
   shapes.put("mode", at_mode, "mode followed by its shape");
   shapes.put("z", z, "m", "axial position of the nodes");

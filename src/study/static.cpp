@@ -142,15 +142,19 @@ StudyResult Static::run(Context& context) {
   }
 
   const std::vector<double> shaft = system.shaft(x.data(), 0, true), z = rotor::node_positions(rotor);
-  std::vector<double> sx, sy;
+  std::vector<double> sx, sy, slope_x, slope_y;
   for (std::size_t k = 0; k < z.size(); ++k) {
     sx.push_back(shaft[4 * k]);
     sy.push_back(shaft[4 * k + 1]);
+    slope_x.push_back(shaft[4 * k + 2]);
+    slope_y.push_back(shaft[4 * k + 3]);
   }
   auto& nodes = group.child("nodes");
   nodes.put("z", z, "m", "axial position of the shaft's nodes");
   nodes.put("x", sx, "m", "horizontal position of the shaft");
   nodes.put("y", sy, "m", "vertical position of the shaft, positive up (sag line)");
+  nodes.put("slope_x", slope_x, "1", "dx/dz of the shaft");
+  nodes.put("slope_y", slope_y, "1", "dy/dz of the shaft");
   put_bearings(group, context.machine);
   auto& bearings = group.child("bearings");
   bearings.put("x", px, "m", "journal relative to the bearing centre");

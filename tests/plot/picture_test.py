@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+"""What pictures show: the lines, marks and labels of figures drawn from made-up results whose right picture is known."""
+import pathlib
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+ROOT = pathlib.Path(__file__).parents[2]
+sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
+import synthetic  # noqa: E402
+from whirl_plot import bearing_map, bifurcation, campbell, curves, motion, orbits, shapes, style  # noqa: E402
+from whirl_plot.subject import Drawn  # noqa: E402
+
+
+class Figures(dict):
+    """Figures by name of the picture, of functions that draw a subject."""
+
+    def draw(self, module, function, subject):
+        real, module.save = module.save, lambda figure, study, what, note="", handles=(), columns=6: self.update({what: figure}) or []
+        try:
+            function(subject)
+        finally:
+            module.save = real
+        return self
+
+
+def results_with(folder, fill):
+    """Results of synthetic.py that `fill` has changed."""
+    synthetic.make(folder)
+    with h5py.File(folder / "results.h5", "a") as root:
+        fill(root)
+    return Drawn(folder)
+
+
+def lines_of(axis, colour=None):
+    return [line.get_xydata() for line in axis.get_lines() if len(line.get_xdata()) > 1 and colour in (None, line.get_color())]
+
+
+def beams():
+    """A beam between its nodes is the cubic of displacement and slope there."""
+    z = np.array([0, 0.3, 1.0, 1.2])
+    for factor in (1, 1 - 2j):
+        s, y = curves.along_shaft(z, factor * (z**3 - z), factor * (3 * z**2 - 1))
+        assert len(s) > 200 and np.allclose(y, factor * (s**3 - s), rtol=0, atol=1e-14)
+    # Without slopes the spline through the nodes, which meets a function with straight ends as h^4.
+    z = np.linspace(0, np.pi, 17)
+    s, y = curves.along_shaft(z, np.sin(z))
+    assert np.abs(y - np.sin(s)).max() < 2e-5
+    assert np.array_equal(curves.along_shaft([1.0], [2.0])[1], [2.0])
+
+
+def sag(folder):
+    """A sagging shaft of four elements, with a horizontal line of rounding."""
+    z = np.linspace(0, 0.8, 5)
+
+    def fill(root):
+        del root["studies/at service speed/nodes"], root["studies/at service speed/bearings/node"]
+        synthetic.put(root["studies/at service speed"].create_group("nodes"), z=z, y=7e-5 * (z**2 - 0.8 * z), slope_y=7e-5 * (2 * z - 0.8),
+                      x=1.2e-5 + 1e-20 * np.array([0, 1, 1, -1, -2.0]), slope_x=0 * z)
+
+    with results_with(folder, fill) as results:
+        vertical, horizontal = Figures().draw(shapes, shapes.draw_sag, results["at service speed"])["sag"].axes
+    curve = max(lines_of(vertical, style.Y), key=len)
+    assert len(curve) > 50 and np.allclose(curve[:, 1], 70 * (curve[:, 0]**2 - 0.8 * curve[:, 0]), atol=1e-9), "no polygon"
+    assert np.ptp(horizontal.get_ylim()) > 0.2, "rounding fills the axis"
+
+
+def mode_shapes(folder):
+    """Bending of a shaft of two elements on a bearing at either end."""
+    z = np.array([0, 0.5, 1.0])
+    shape, slope = 1 - 4 * (z - 0.5)**2, -8 * (z - 0.5)
+
+    def fill(root):
+        group = root["studies/modes"]
+        del group["shapes"], group["bearings"]
+        synthetic.put(group.create_group("shapes"), speed=377.0, z=z, frequency=[80.0], **{
+            f"{head}{d}_{part}": [values * size] for head, values in (("", shape), ("slope_", slope))
+            for d, part, size in (("x", "real", 0.0), ("x", "imag", -0.6), ("y", "real", 1.0), ("y", "imag", 0.0))})
+        synthetic.put(group.create_group("bearings"), name=["A", "B"], node=[1, 3])
+
+    with results_with(folder, fill) as results:
+        figures = Figures().draw(shapes, shapes.draw_modes, results["modes"])
+    flat, space = figures["shapes"].axes[0], figures["shapes-3d"].axes[0]
+    curve = max(lines_of(flat, style.Y), key=len)
+    assert len(curve) > 50 and np.allclose(curve[:, 1], 1 - 4 * (curve[:, 0] - 0.5)**2, atol=1e-12), "no polygon"
+    assert not any(line.get_clip_on() for line in space.get_lines()), "ellipses at the ends are cut off"
+    at = {line.get_data_3d()[0][0] for line in space.get_lines() if len(line.get_data_3d()[0]) == 2}
+    assert at == {0.0, 1.0}, "a bearing at either end"
+
+
+def eigenvalue(results):
+    axes = Figures().draw(bifurcation, bifurcation.draw_equilibria, results["balanced"])["equilibria"].axes
+    return next(a for a in axes if a.get_title(loc="left") == "least stable eigenvalue")
+
+
+def growth(folder):
+    """Hopf points lie at zero: the one of the curve on it, others where another eigenvalue crosses."""
+    def fill(root):
+        group = root["studies/balanced"]
+        branch = {k: v[()] for k, v in group["branch"].items()}
+        del group["branch"], group["bifurcations"]
+        pick = np.arange(0, 70, 9)  # far from the Hopf point
+        branch = {k: v[pick] for k, v in branch.items()}
+        branch["unstable_count"] += 2 * (branch["parameter"] > 6300)
+        synthetic.put(group.create_group("branch"), **branch)
+        synthetic.put(group.create_group("bifurcations"), type=["hopf", "hopf"], parameter=[5025.0, 6300.0], uncertainty=[12.0, 9.0])
+
+    with results_with(folder, fill) as results:
+        axis = eigenvalue(results)
+    marks = {(line.get_xdata()[0], line.get_ydata()[0]) for line in axis.get_lines() if line.get_marker() == "o"}
+    assert marks == {(5025.0, 0.0), (6300.0, 0.0)}, marks
+    stable, unstable = (c for c in lines_of(axis, style.INK))
+    assert np.allclose(stable[-1], (5025, 0), atol=1e-9) and np.allclose(unstable[0], (5025, 0), atol=1e-9), "through zero"
+
+    def undamped(root):
+        branch = root["studies/balanced/branch"]
+        branch["leading_real"][...] = 7e-14
+        branch["stable"][...] = 1
+        branch["unstable_count"][...] = 0
+        branch["undamped_count"] = np.full(70, 2)
+        del root["studies/balanced/bifurcations"]
+
+    with results_with(folder, undamped) as results:
+        axis = eigenvalue(results)
+    assert np.all(lines_of(axis, style.INK)[0][:, 1] == 0) and np.ptp(axis.get_ylim()) >= 1
+
+
+def campbell_lines(folder):
+    """A list of modes that is full leaves out the highest where an overdamped one comes down: no gap, and no dot for that one. A mode
+    that was not found has a gap."""
+    speed = np.linspace(100, 600, 6)
+    rows = []
+    for k, w in enumerate(speed):
+        rows += [(w, 1, 150.0, 0.2), (w, 2, 300.0, 0.2)]
+        rows.append((w, 4, 170.0, 30.0) if k == 2 else (w, 3, 420.0 + k, 0.2))
+
+    def fill(root, found=True):
+        group = root["studies/modes"]
+        del group["spectrum"]
+        kept = [r for r in rows if found or r[:2] != (300.0, 2)]
+        synthetic.put(group.create_group("spectrum"), whirl=["forward"] * len(kept),
+                      **dict(zip(("speed", "mode", "frequency", "log_decrement"), zip(*kept))))
+
+    def mode(folder, change, frequency):
+        with results_with(folder, change) as results:
+            figure = Figures().draw(campbell, campbell.draw, results["modes"])["campbell"]
+            figure.canvas.draw()
+            top = figure.axes[0]
+            size = frequency / (2 * np.pi)
+            return top, [line for line in top.get_lines() if np.abs(np.array(line.get_ydata()) - size).max() < 1 and line.get_color() == style.GOOD]
+
+    top, third = mode(folder, fill, 422.0)
+    assert len(third) == 1 and len(third[0].get_xdata()) == 5, "the highest mode is one line"
+    assert not mode(folder, fill, 170.0)[1], "a dot for an overdamped mode"
+    labels = {t.get_text(): top.transData.transform(t.xy) for t in top.texts if t.get_text() in ("1\u00d7", "2\u00d7")}
+    assert len(labels) == 2
+    for words, place in labels.items():
+        for line in top.get_lines():
+            if len(line.get_xdata()) > 1 and line.get_linestyle() != ":":
+                x = np.linspace(*line.get_xdata()[[0, -1]], 400)
+                curve = top.transData.transform(np.column_stack([x, np.interp(x, line.get_xdata(), line.get_ydata())]))
+                assert np.hypot(*(curve - place).T).min() > 7, f"{words} stands on a line"  # pixels
+    second = mode(folder, lambda root: fill(root, False), 300.0)[1]
+    assert sorted(len(line.get_xdata()) for line in second) == [2, 3], "a mode that was not found"
+
+
+def border_of_stability():
+    """Where a bearing becomes stable at every speed the limit goes to infinity as (S_0 - S)^(-1/2)."""
+    class Map:
+        load = np.concatenate([np.linspace(0.1, 6.8, 12), [7.5, 8.5]])
+
+        def get(self, name):
+            limit = np.sqrt(25 / np.maximum(7.0 - self.load, 1e-300))
+            values = {"sommerfeld": self.load, "speed_limit": np.where(self.load < 7, limit, np.nan), "whirl_ratio": np.where(self.load < 7, 0.7 / limit, np.nan)}
+            return values[name.removeprefix("locus/")]
+
+    (s, limit), (_, ratio) = bearing_map.border(Map())
+    assert len(s) > 60 and s[-1] == 6.8
+    assert np.allclose(limit, np.sqrt(25 / (7 - s)), rtol=1e-10) and np.allclose(ratio, 0.7 / limit, rtol=1e-10)
+
+
+def words(folder):
+    """Loads in a unit that a person reads; no bar of infinity."""
+    def fill(root):
+        root["studies/at service speed/bearings/load"][0] = 70
+        root["studies/period two/exponents/uncertainty"][1] = np.inf
+
+    with results_with(folder, fill) as results:
+        titles = [a.get_title(loc="left") for a in Figures().draw(orbits, orbits.draw_positions, results["at service speed"])["journals"].axes]
+        axis = Figures().draw(motion, motion.draw, results["period two"])["motion"].axes[3]
+    assert titles[0] == "B1: 70 N" and titles[2] == "B3: 213.4 kN", titles
+    said = [t.get_text() for t in axis.get_legend().get_texts()]
+    assert "\u00b1" in said[0] and "inf" not in said[1] and "bar" in said[1], said
+
+
+def colours(folder):
+    """A study has one colour in all pictures of a run."""
+    with results_with(folder, lambda root: None) as results:
+        together = Figures().draw(bifurcation, bifurcation.draw_together, results)["bifurcations"].axes[0]
+        for name in ("pair, G2.5", "pair, G6.3"):
+            study = results[name]
+            alone = Figures().draw(bifurcation, bifurcation.draw_cycles, study)
+            assert lines_of(alone["cycles-vertical"].axes[0], study.colour) and lines_of(alone["cycles-horizontal"].axes[0], study.colour)
+            assert lines_of(together, study.colour)
+        assert len({s.colour for s in results.studies if s.kind in ("cycle_branch", "bearing_map")}) == 4
+        assert results["balanced"].colour == style.INK
+
+
+style.use_style()
+beams()
+border_of_stability()
+for check in (sag, mode_shapes, growth, campbell_lines, words, colours):
+    with tempfile.TemporaryDirectory() as name:
+        check(pathlib.Path(name) / "x")
+print("pictures show what there is")
