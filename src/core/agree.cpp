@@ -90,11 +90,12 @@ void agree(MPI_Comm comm, const std::function<void()>& local) {
 
 void lead(MPI_Comm comm, int leader, const std::function<void(const std::function<void()>& together)>& work,
           const std::function<void()>& part) {
-  int rank = 0, more = 1;
+  int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  const auto next = [&](int value) {
-    more = value;
+  // Whether there is more to do: what the leader passes, whatever the others pass.
+  const auto next = [&](int more) {
     MPI_Bcast(&more, 1, MPI_INT, leader, comm);
+    return more != 0;
   };
   std::exception_ptr caught;
   if (rank == leader) {
@@ -108,7 +109,7 @@ void lead(MPI_Comm comm, int leader, const std::function<void(const std::functio
     }
     next(0);
   } else {
-    for (next(1); more; next(1)) try {
+    while (next(0)) try {
         part();
       } catch (...) {
         // What the leader makes of it on its side ends the work.
