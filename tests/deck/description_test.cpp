@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fuzz/tasks.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 
@@ -59,21 +60,6 @@ struct Point {
   double modulus = 0;
 };
 
-struct Task {
-  virtual ~Task() = default;
-  [[nodiscard]] virtual std::string_view kind() const = 0;
-};
-struct WaitOptions {
-  double time = 1;
-};
-void describe(deck::Description<WaitOptions>& d) {
-  d.add("time", &WaitOptions::time, "s", deck::positive, "how long to wait");
-}
-struct Wait : Task {
-  WaitOptions options;
-  [[nodiscard]] std::string_view kind() const override { return "wait"; }
-};
-
 struct Machine {
   std::string title = "nothing";
   std::vector<Geometry> list;
@@ -84,7 +70,7 @@ struct Machine {
   std::vector<Point> modulus;
   std::vector<deck::Quantity> speeds;
   std::vector<std::string> words;
-  std::vector<std::unique_ptr<Task>> tasks;
+  std::vector<std::unique_ptr<fuzz::Task>> tasks;
   bool flag = true;
 };
 void describe(deck::Description<Machine>& d) {
@@ -103,10 +89,7 @@ void describe(deck::Description<Machine>& d) {
       "over temperature");
   d.add("speeds", &Machine::speeds, "rad/s", deck::positive, "single speeds");
   d.add("words", &Machine::words, "any words");
-  static const std::vector<deck::Kind<Task>> kinds{{"wait", "waits", &deck::structure_of<WaitOptions>(),
-                                                    [] { return std::make_unique<Wait>(); },
-                                                    [](Task& t) -> void* { return &static_cast<Wait&>(t).options; }}};
-  d.choices("tasks", &Machine::tasks, kinds, "what to do");
+  d.choices("tasks", &Machine::tasks, fuzz::kinds_of_tasks(), "what to do");
   d.add("flag", &Machine::flag, "yes or no");
 }
 
@@ -164,8 +147,8 @@ TEST(Description, ReadsEveryType) {
   EXPECT_EQ(m.speeds[1].unit, "rev/s");
   EXPECT_EQ(m.words[2], "with: colon");
   ASSERT_EQ(m.tasks.size(), 2U);
-  EXPECT_EQ(dynamic_cast<Wait&>(*m.tasks[0]).options.time, 120);
-  EXPECT_EQ(dynamic_cast<Wait&>(*m.tasks[1]).options.time, 1);
+  EXPECT_EQ(dynamic_cast<fuzz::Wait&>(*m.tasks[0]).options.time, 120);
+  EXPECT_EQ(dynamic_cast<fuzz::Wait&>(*m.tasks[1]).options.time, 1);
   EXPECT_FALSE(m.flag);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "tasks.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/printable.hpp"
 #include "whirl/deck/description.hpp"
@@ -49,20 +50,6 @@ void describe(deck::Description<Row>& d) {
   d.add("length", &Row::length, "m", deck::positive, "length");
   d.add("temperature", &Row::temperature, "K", deck::positive, "temperature");
 }
-struct Task {
-  virtual ~Task() = default;
-  [[nodiscard]] virtual std::string_view kind() const = 0;
-};
-struct WaitOptions {
-  double time = 1;
-};
-void describe(deck::Description<WaitOptions>& d) {
-  d.add("time", &WaitOptions::time, "s", deck::positive, "how long to wait");
-}
-struct Wait : Task {
-  WaitOptions options;
-  [[nodiscard]] std::string_view kind() const override { return "wait"; }
-};
 struct Machine {
   std::string title;
   std::map<std::string, Geometry> bearings;
@@ -87,10 +74,7 @@ void describe(deck::Description<Machine>& d) {
       "modulus", &Machine::modulus, "length", [](deck::Description<Row>& row) { describe(row); }, "table or scalar");
   d.add("speeds", &Machine::speeds, "*", deck::any, "speeds");
   d.add("words", &Machine::words, "any words");
-  static const std::vector<deck::Kind<Task>> kinds{{"wait", "waits", &deck::structure_of<WaitOptions>(),
-                                                    [] { return std::make_unique<Wait>(); },
-                                                    [](Task& t) -> void* { return &static_cast<Wait&>(t).options; }}};
-  d.choices("tasks", &Machine::tasks, kinds, "what to do");
+  d.choices("tasks", &Machine::tasks, kinds_of_tasks(), "what to do");
   d.add("flag", &Machine::flag, "yes or no");
 }
 
