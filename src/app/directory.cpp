@@ -113,7 +113,13 @@ void Directory::prepare(const std::string& resolved, Earlier earlier) {
     manifest.add(deck_name);
     return write_whole(deck, resolved);
   }
-  write(replacing, resolved);
+  try {
+    write(replacing, resolved);
+  } catch (const core::Error&) {  // nothing was removed yet: the next run shall not go on with that
+    std::error_code ignored;
+    fs::remove(replacing, ignored);
+    throw;
+  }
   // The deck stays until it is replaced: it says whose directory this is.
   manifest.remove_files(deck_name);
   for (const char* name : always) fs::remove(path_ / name);

@@ -3,8 +3,10 @@
 #include "app/directory.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -118,6 +120,24 @@ TEST(Directory, ACheckpointLeftAsPreviousIsAResult) {
   EXPECT_TRUE(fs::exists(run / "branch.checkpoint.h5.prev"));
   const Directory held(MPI_COMM_SELF, run.string(), "deck", Earlier::replace);
   EXPECT_FALSE(fs::exists(run / "branch.checkpoint.h5.prev"));
+}
+
+// A disk that is full before anything was removed: the earlier results are as they were, and still need --force.
+TEST(Directory, AFullDiskReplacesNothing) {
+  const test::Temporary folder;
+  const fs::path run = folder / "run";
+  run_once(run);
+  const auto before = left(run);
+  auto* const at_limit = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit none{0, limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  EXPECT_THROW(Directory(MPI_COMM_SELF, run.string(), "new", Earlier::replace), core::Error);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  (void)std::signal(SIGXFSZ, at_limit);
+  EXPECT_EQ(left(run), before);
+  EXPECT_THROW(Directory(MPI_COMM_SELF, run.string(), "new", Earlier::refuse), core::InputError);
 }
 
 TEST(Directory, ReplacesResultsOnlyWhenAsked) {
