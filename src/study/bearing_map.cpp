@@ -244,8 +244,7 @@ void put_bars(const Context& context, const BearingMapOptions& options, std::siz
               const std::optional<system::Groups>& groups) {
   io::StudySummary& summary = context.results.summary();
   Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
-  SummaryBars of_summary(summary, law_of(context.machine),
-                         [](const std::string& name) { return name.starts_with("nondimensional."); });
+  SummaryBars of_summary(summary, law_of(context.machine));
   const std::vector<FilmMesh> meshes = film_meshes(context.machine);
   for (const FilmMesh& mesh : meshes) {
     std::vector<double> numbers;

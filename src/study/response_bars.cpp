@@ -72,7 +72,7 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
   if (meshes.empty()) return put_locations(summary, peaks);
   const Tops tops(peaks);
   const std::vector<double> speeds = tops.speeds();
-  SummaryBars bars(summary, law, [](const std::string& name) { return name.ends_with(".node"); });
+  SummaryBars bars(summary, law);
   // Without the response about the peaks on this mesh all bars are unknown; the response itself stays.
   MeshResponse here;
   const bool known = has_answer([&] { here = solve({1, 1}, speeds, "bars"); });

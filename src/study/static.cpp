@@ -97,8 +97,7 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
 
 // The same on other film meshes, for the error bars.
 void put_bars(const Context& context, const system::RotorSystem& system, double speed, const std::vector<double>& x) {
-  SummaryBars bars(context.results.summary(), law_of(context.machine),
-                   [](const std::string& name) { return name.ends_with(".minimum_film"); });
+  SummaryBars bars(context.results.summary(), law_of(context.machine));
   for (const FilmMesh& mesh : film_meshes(context.machine))
     bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
       system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);

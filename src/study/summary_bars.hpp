@@ -14,9 +14,9 @@ namespace whirl::study {
 /// Collects the values of a summary on other meshes, and puts bars beside those that change with the mesh.
 class SummaryBars {
 public:
-  /// Of the values that `summary` has now; it outlives this. Names for which `exact` is true get no bar: counts,
-  /// numbers of nodes and what the deck gives depend on no mesh, also where another mesh gave nothing.
-  SummaryBars(io::StudySummary& summary, MeshLaw law, const std::function<bool(const std::string&)>& exact = {});
+  /// Of the values that `summary` has now; it outlives this. Exact values get no bar: numbers of nodes, limits that the
+  /// deck gives and nondimensional groups depend on no mesh, also where another mesh gave nothing.
+  SummaryBars(io::StudySummary& summary, MeshLaw law);
   /// Values of the same names on another mesh; those that are missing there are unknown there.
   void add(Axis axis, double spacing, const io::StudySummary& there);
   /// The same with what `compute` puts there; nothing if that mesh has no answer.

@@ -43,7 +43,7 @@ TEST(SummaryBars, AreUnknownWhereAnotherMeshLacksTheValue) {
 TEST(SummaryBars, ExactValuesHaveNoneWhateverOtherMeshesGave) {
   io::StudySummary s = at(1);
   s.set("peak.1.node", 7, "1");
-  SummaryBars bars(s, {}, [](const std::string& name) { return name.ends_with(".node"); });
+  SummaryBars bars(s, {});
   bars.add(Axis::around, 2, [](io::StudySummary& there) {
     there.set("load", 1, "N");
     throw core::NotConverged("no equilibrium");
