@@ -151,13 +151,18 @@ struct Peak {
   double speed = 0, amplitude = 0, amplification = 0;
 };
 
-// Width at 0.707 of the height on the sampled curve, for the amplification factor N/(N2 - N1) (API 684).
+// Width at 0.707 of the height on the sampled curve, for the amplification factor N/(N2 - N1) (API 684). Between
+// samples 1/f^2 is a straight line over (N - N_top)^2, as it is of a single resonance f = f_top/sqrt(1 + (2 Q (N/N_top
+// - 1))^2): a sharp one is narrower than the step of the speed.
 double amplification(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
   const auto value = [&](std::size_t k) { return curve[k].nodes[node].semi_major(); };
-  const double level = value(top) / std::sqrt(2.0);
+  const double level = value(top) / std::sqrt(2.0), middle = curve[top].speed;
   const auto crossing = [&](std::size_t inside, std::size_t outside) {
-    const double w = (value(inside) - level) / (value(inside) - value(outside));
-    return curve[inside].speed + w * (curve[outside].speed - curve[inside].speed);
+    const auto g = [](double f) { return 1 / (f * f); };
+    const auto apart = [&](std::size_t k) { return (curve[k].speed - middle) * (curve[k].speed - middle); };
+    const double w = (g(level) - g(value(inside))) / (g(value(outside)) - g(value(inside)));
+    const double distance = std::sqrt(apart(inside) + w * (apart(outside) - apart(inside)));
+    return middle + (curve[outside].speed > middle ? distance : -distance);
   };
   std::size_t left = top, right = top;
   while (left > 0 && value(left) > level) --left;
