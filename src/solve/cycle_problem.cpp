@@ -225,7 +225,8 @@ void CycleProblem::linearise(Vec u, Vec row) {
   const VectorXd before = previous_end(ua.data());
   const Index m = scheme_.degree, size = m * n_;
   const auto count = static_cast<std::size_t>(count_);
-  kept_valid_ = kept_valid_ && same_as_kept(ua, before, border);
+  const bool known = kept_valid_ && same_as_kept(ua, before, border);
+  kept_valid_ = known;
   run_.intervals.clear();
   run_.intervals.resize(count);
   parts_.clear();
@@ -242,7 +243,13 @@ void CycleProblem::linearise(Vec u, Vec row) {
           linearise_interval(i, own, start, period, run_.columns[static_cast<std::size_t>(i)]);
     }
   });
-  kept_valid_ = false;
+  // The same solution is often linearised again with another row.
+  if (structure_ && !known) {
+    kept_u_ = Map<const VectorXd>(ua.data(), ua.size());
+    kept_before_ = before;
+    kept_border_ = border;
+    kept_valid_ = true;
+  }
 
   run_.rows.resize(count);
   for (Index i = 0; i < count_; ++i) {

@@ -52,6 +52,7 @@ void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, do
   io::Group state;
   record_.write(state.child("record"), true);
   nodes_.write(state);
+  multiplier_bars_.write(state.child("multiplier_bars"));
   write_cycle(state.child("cycle"), cycle);
   write_cycle(state.child("tangent"), direction);
   solve::BranchPoint now = point;
@@ -72,6 +73,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   const io::Group state = pieces_->state();
   record_.read(state.group("record"));
   nodes_.read(state);
+  multiplier_bars_.read(state.group("multiplier_bars"));
   const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);

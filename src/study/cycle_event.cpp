@@ -80,6 +80,8 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
   place.location = found.bracket + newton_.tolerance * std::abs(found.parameter);
   b.uncertainty = place.total();
   for (const auto& [name, value] : place.parts(true)) b.more[name] = value;
+  // The multiplier moves over the unit circle as the place moves.
+  if (!fold) b.more["uncertainty_multiplier_modulus"] = std::abs(found.sensitivity) * b.uncertainty;
   const double angle = bars[1].total(), period = bars[2].total();
   b.more["uncertainty_period_s"] = period;
   if (found.event == solve::Event::neimark_sacker) {

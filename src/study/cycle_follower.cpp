@@ -33,6 +33,7 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
       record_(system_->places(), unit_, options_.multipliers),
       films_(system_->places()),
       nodes_(options_.nodes, unit_),
+      multiplier_bars_(multiplier_table(unit_)),
       keeps_located_(is_followed(context, context.results.summary().name)) {
   const auto& range = options_.parameter.range;
   const double width = std::abs(range.to - range.from) / scale_;
@@ -90,6 +91,7 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
   if (films_.exists() || options_.max_eccentricity) margins_.add(point.parameter, margin(orbit, *system_));
   report_between(last_ ? *last_ : cycle, cycle);
+  if ((point.index + 1) % points_per_bar == 0) judge_multiplier(point, u);
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
   context_.results.progress(
@@ -216,6 +218,7 @@ StudyResult CycleFollower::run() {
   }
   record_.write(group, false);
   nodes_.write(group);
+  multiplier_bars_.write(group.child("multiplier_bars"));
   record_.write_orbits(group.child("orbits"), options_.orbits);
   put_places(group, context_.machine, *system_);
   put_bifurcations(group, results.summary().bifurcations);

@@ -15,6 +15,7 @@
 #include "located.hpp"
 #include "node_record.hpp"
 #include "pieces.hpp"
+#include "whirl/io/table.hpp"
 #include "whirl/solve/cycle_problem.hpp"
 #include "whirl/study/cycle_branch.hpp"
 
@@ -50,6 +51,13 @@ struct CycleNumbers {
   double coefficient = 0;  ///< of its normal form; of a fold the second derivative of the parameter
   [[nodiscard]] std::vector<double> list() const { return {place, angle, period, coefficient}; }
 };
+
+/// Every so many points of a branch the leading multiplier is computed on other meshes, which costs about as much as
+/// seven points.
+inline constexpr int points_per_bar = 25;
+/// Where a branch knows the bar of its leading multiplier: point, parameter, modulus, bar by its parts, and whether it
+/// is on one side of the unit circle for certain.
+[[nodiscard]] io::Table multiplier_table(const std::string& unit);
 
 /// The parameter of a branch of cycles near its birth, p = p_0 + curvature h^2, h the root mean square amplitude in
 /// clearances.
@@ -116,6 +124,8 @@ private:
   /// Name of a piece of work about the event that comes next.
   [[nodiscard]] std::string piece(const std::string& what) const;
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
+  /// The bar of the leading multiplier's modulus at a point of the branch.
+  void judge_multiplier(const solve::BranchPoint& point, Vec u);
   /// Values of a cycle asked for with their bars, under `at.<key>.` in the summary.
   void report(const std::string& key, Vec u);
   [[nodiscard]] solve::Stability stability_of(solve::PeriodicProblem& problem) const;
@@ -169,6 +179,7 @@ private:
   FilmLimit films_;
   MarginSlope margins_;
   NodeRecord nodes_;
+  io::Table multiplier_bars_;
   std::optional<solve::Cycle> last_;
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far

@@ -1,5 +1,7 @@
 // The same cycle, or its bifurcation, on other meshes of the films and of time.
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
 
@@ -79,6 +81,47 @@ std::optional<CycleFollower::Elsewhere> CycleFollower::corrected_on(const CycleM
   auto there = carried_to(mesh, given);
   if (there && !correct_there(*there, given)) there.reset();
   return there;
+}
+
+io::Table multiplier_table(const std::string& unit) {
+  return io::Table({{"point", "1", "row in the table of the branch, from 0"},
+                    {"parameter", unit, "parameter of the branch"},
+                    {"modulus", "1", "of the leading Floquet multiplier"},
+                    {"uncertainty", "1", "estimated error of the modulus from film mesh and time mesh"},
+                    {"uncertainty_film_mesh", "1", "that of the film mesh, with kinks"},
+                    {"uncertainty_time_mesh", "1", "that of the time mesh"},
+                    {"decided", "1", "1 if the modulus is farther from one than its uncertainty"}});
+}
+
+void CycleFollower::judge_multiplier(const solve::BranchPoint& point, Vec u) {
+  if (point.stability.values.empty()) return;
+  const auto leading = [](const solve::Stability& s) {
+    return s.values.empty() ? io::no_value : std::abs(s.values[0]);
+  };
+  const double modulus = leading(point.stability);
+  const solve::Cycle cycle = problem_->gather(u);
+  Bars bars({modulus}, law());
+  for (const CycleMesh& mesh : meshes()) {
+    const auto there = pieces_->numbers(
+        fmt::format("multiplier {} on mesh {} {:.3f}", point.index, static_cast<int>(mesh.axis), mesh.spacing), [&] {
+          std::vector<double> value;
+          try {
+            if (const auto other = corrected_on(mesh, cycle)) value = {leading(stability_of(*other->problem))};
+          } catch (const core::NotConverged&) {
+            value.clear();
+          } catch (const core::DomainError&) {
+            value.clear();
+          } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
+            value.clear();
+          }
+          return value;
+        });
+    bars.add(mesh.axis, mesh.spacing, there);
+  }
+  const Bar bar = bars[0];
+  const double total = bar.total() + newton_.tolerance;
+  multiplier_bars_.append({static_cast<double>(point.index), point.parameter, modulus, total, bar.film_mesh + bar.kinks,
+                           bar.time_mesh, decided(modulus, total, 1) ? 1.0 : 0.0});
 }
 
 // Folds have no cycle beyond them, so the parameter cannot be held: the cycle of the same amplitude along the branch is

@@ -12,15 +12,18 @@ namespace {
 
 constexpr double apart = 5e-3, together = 4e-3;  // of the speed
 
-// A resonance has f''/f = -(2 Q/s)^2 at its top.
+// Of a single resonance g = 1/f^2 is a parabola over the speed, with g''/g = 2 (2 Q/s)^2 at its foot, however far apart
+// the three speeds stand on its flanks.
 struct Top {
   double speed, height, quality;
 };
 
 Top top_of(double centre, const std::array<double, 3>& f) {
-  const double h = apart * centre, slope = (f[2] - f[0]) / (2 * h), curvature = (f[0] - 2 * f[1] + f[2]) / (h * h),
-               top = f[1] - slope * slope / (2 * curvature);
-  return {centre - slope / curvature, top, centre / 2 * std::sqrt(std::max(0.0, -curvature / top))};
+  std::array<double, 3> g{};
+  for (std::size_t i = 0; i < 3; ++i) g[i] = 1 / (f[i] * f[i]);
+  const double h = apart * centre, slope = (g[2] - g[0]) / (2 * h), curvature = (g[0] - 2 * g[1] + g[2]) / (h * h),
+               foot = g[1] - slope * slope / (2 * curvature);
+  return {centre - slope / curvature, 1 / std::sqrt(foot), centre / 2 * std::sqrt(std::max(0.0, curvature / foot / 2))};
 }
 
 class Tops {

@@ -32,10 +32,11 @@ using SolveOnMesh = std::function<MeshResponse(const std::array<double, 2>& film
 using PutPeak = std::function<void(io::StudySummary& to, const std::string& head, double speed, double height,
                                    double amplification)>;
 
-/// Puts bars beside all values of the summary. On each other film mesh a peak is the top of the parabola through three
-/// speeds about it; it moves as that top does against the one of the mesh in use. Peaks that stand together share their
-/// three speeds. The amplification factor changes like the root of the curvature over the height, Q of a resonance.
-/// Where `solve` fails on the mesh in use all bars are unknown, which a warning says. Collective.
+/// Puts bars beside all values of the summary. On each other film mesh a peak is the foot of the parabola of 1/f^2
+/// through three speeds about it; it moves as that top does against the one of the mesh in use. Peaks that stand
+/// together share their three speeds. The amplification factor changes like Q, the root of the curvature over the
+/// height of that parabola. Where `solve` fails on the mesh in use all bars are unknown, which a warning says.
+/// Collective.
 void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
                        const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve);
 

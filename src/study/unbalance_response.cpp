@@ -151,23 +151,26 @@ struct Peak {
   double speed = 0, amplitude = 0, amplification = 0;
 };
 
-// Where the curve falls to 0.707 of a peak's height on either side of it (API 684): between two speeds of the curve,
-// and by the line through them. Nothing where the curve ends first.
+// Where the curve falls to 0.707 of a peak's height on either side of it (API 684): between two speeds of the curve.
+// There 1/f^2 is a straight line over (N - N_top)^2, as it is of a single resonance f = f_top/sqrt(1 + (2 Q (N/N_top -
+// 1))^2). Nothing where the curve ends first.
 struct Side {
   double inner = 0, outer = 0, crossing = 0;
 };
 std::array<std::optional<Side>, 2> sides_of(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
   const auto value = [&](std::size_t k) { return curve[k].nodes[node].semi_major(); };
-  const double level = value(top) / std::sqrt(2.0);
+  const double level = value(top) / std::sqrt(2.0), middle = curve[top].speed;
   std::array<std::optional<Side>, 2> sides;
   for (std::size_t s = 0; s < 2; ++s) {
     std::size_t outer = top;
     while ((s == 0 ? outer > 0 : outer + 1 < curve.size()) && value(outer) > level) s == 0 ? --outer : ++outer;
     if (value(outer) > level) continue;
     const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
-    const double w = (value(inner) - level) / (value(inner) - value(outer));
-    sides[s] = {curve[inner].speed, curve[outer].speed,
-                curve[inner].speed + w * (curve[outer].speed - curve[inner].speed)};
+    const auto g = [](double f) { return 1 / (f * f); };
+    const auto apart = [&](std::size_t k) { return (curve[k].speed - middle) * (curve[k].speed - middle); };
+    const double w = (g(level) - g(value(inner))) / (g(value(outer)) - g(value(inner)));
+    const double distance = std::sqrt(apart(inner) + w * (apart(outer) - apart(inner)));
+    sides[s] = {curve[inner].speed, curve[outer].speed, middle + (s == 0 ? -distance : distance)};
   }
   return sides;
 }
@@ -179,7 +182,7 @@ double amplification(const std::vector<Response>& curve, std::size_t node, std::
   return curve[top].speed / (sides[1]->crossing - sides[0]->crossing);
 }
 
-// Speeds that settle the width of a peak: its crossings, where the line through their neighbours may still be off by
+// Speeds that settle the width of a peak: its crossings, where what lies between their neighbours may still be off by
 // more than `width_tolerance` of the width. Between two speeds a crossing counts as settled if one of them is as near.
 void unsettled_width(const std::vector<Response>& curve, std::size_t node, std::size_t top,
                      std::vector<double>& speeds) {

@@ -7,11 +7,13 @@ coverage.py check DATA.json                              exit 1 if fewer than 99
 coverage.py PROGRAM SOURCE GROUP...                      measures and checks; group `named`: the bars that were found not to cover
 
 Groups: threshold (the train's variants), cycles (its forced cycles), compliant (Hopf points, folds, flips and Neimark-Sacker
-points of rotors with compliant films, with the source's scheme, `third_order` and the default).
+points of rotors with compliant films, with the source's scheme, `third_order` and the default), values (static positions, loads, K, C, films;
+modes; response; map of one bearing: train and pump).
 The truth of a number is Richardson's limit of two fine meshes, second order, and its own error the last step of it.
 """
 import concurrent.futures
 import json
+import math
 import pathlib
 import statistics
 import subprocess
@@ -62,6 +64,10 @@ class Runner:
         self.count = 0
 
     def run(self, deck, overrides):
+        return self.run_in(deck, overrides)[0]
+
+    # The studies of the summary by name, and the folder of the results.
+    def run_in(self, deck, overrides):
         self.count += 1
         out = self.work / str(self.count)
         words = [self.program, "run", str(self.source / "inputs" / deck), "-o", str(out)]
@@ -70,8 +76,8 @@ class Runner:
         done = subprocess.run(["nice", "-n", "3", *words], capture_output=True, text=True, cwd=self.source / "inputs" / "turbine_train")
         if not (out / "summary.json").exists():
             print(f"{deck} {overrides}: {done.stderr}", file=sys.stderr)
-            return {}
-        return {s["name"]: s for s in json.loads((out / "summary.json").read_text())["studies"]}
+            return {}, out
+        return {s["name"]: s for s in json.loads((out / "summary.json").read_text())["studies"]}, out
 
 
 def record(group, case, mesh, point, unit, value, bar, truth, doubt, **more):
@@ -219,10 +225,99 @@ def compliant_cycle(runner, deck, compliance):
     return rows
 
 
+# All numbers with bars of the studies without branches: deck, bearings, where its unbalance is seen, and what is asked.
+MACHINES = {
+    "train": ("turbine_train/train.yaml", TRAIN, [
+        "{static: {name: static, speed: 3600 rpm}}",
+        "{modes: {name: modes, supports: films, range: {from: 3000 rpm, to: 4200 rpm}, points: 3, count: 8}}",
+        "{unbalance_response: {name: response, unbalance: [gen_pair], range: {from: 600 rpm, to: 3000 rpm}, points: 49, nodes: [120, 49], "
+        "operating_speed: 3600 rpm}}",
+        "{bearing_map: {name: map, bearing: B4, speed: 3600 rpm, max_eccentricity: 0.9, points: 9}}"]),
+    "pump": ("pump/pump.yaml", ["dry", "wet"], [
+        "{static: {name: static, speed: 2950 rpm}}",
+        "{modes: {name: modes, supports: films, range: {from: 2000 rpm, to: 4000 rpm}, points: 3, count: 6}}",
+        "{unbalance_response: {name: response, unbalance: [impeller], range: {from: 600 rpm, to: 9000 rpm}, points: 43, nodes: [14, 4], "
+        "operating_speed: 2950 rpm}}",
+        "{bearing_map: {name: map, bearing: dry, speed: 2950 rpm, max_eccentricity: 0.9, points: 9}}"]),
+}
+COARSE = ["30x8", "40x12", "60x16", "84x20", "120x32"]
+
+
+# Kind of a value, for the table.
+def kind_of(name):
+    words = name.split(".")
+    for word, kind in (("K", "K"), ("C", "C"), ("load", "load"), ("force", "load"), ("peak", "peak"), ("critical", "critical speed")):
+        if word in words:
+            return f"{kind} {words[-1]}" if kind == "peak" else kind
+    if words[-1].startswith(("min_thickness", "max_pressure", "side_flow", "power_loss")):
+        return words[-1]
+    return "position" if words[0] in ("bearing", "pedestal") else words[0]
+
+
+# {(study, kind, name): (value, bar)} of one run.
+def all_values(folder, run):
+    import h5py
+    out = {}
+    for study in ("static", "modes", "response"):
+        for name, q in run[study].get("values", {}).items():
+            if "uncertainty" in q and not name.endswith(".node"):
+                out[study, kind_of(name), name] = (q["value"], q["uncertainty"])
+    for m in run["modes"]["modes"]:
+        for key, kind in (("real", "real part"), ("imag", "frequency"), ("log_decrement", "log decrement")):
+            out["modes", kind, f"{m['speed']:.0f} {m['imag']:.6g} {m['real']:.6g}"] = (m[key], m[key + "_uncertainty"])
+    with h5py.File(folder / "results.h5") as file:
+        locus = file["studies/map/locus"]
+        for column in locus:
+            if column + "_uncertainty" in locus:
+                for e, value, bar in zip(locus["eccentricity"][:], locus[column][:], locus[column + "_uncertainty"][:]):
+                    kind = "k" if column.startswith("k_") else "b" if column.startswith("b_") else column
+                    out["map", kind, f"{column} at {e:.3g}"] = (value, bar)
+    return out
+
+
+# The same value on another mesh: by name, modes by the nearest eigenvalue at the same speed; none where it is another one.
+def same(values, key):
+    if key[0] != "modes" or " " not in key[2]:
+        return values.get(key)
+    speed, imag, real = map(float, key[2].split())
+    near = [(abs(complex(float(w[2]) - real, float(w[1]) - imag)), k) for k in values if k[:2] == key[:2]
+            for w in [k[2].split()] if len(w) == 3 and float(w[0]) == speed]
+    distance, found = min(near, default=(math.inf, None))
+    return values[found] if distance < 0.05 * abs(complex(real, imag)) else None
+
+
+def same_peak(values, truth, name):
+    head = name.rsplit(".", 1)[0] + ".speed"
+    speed = [next((v[0] for k, v in some.items() if k[2] == head), None) for some in (values, truth)]
+    return None in speed or abs(speed[0] / speed[1] - 1) < 0.03
+
+
+def values(runner, machine):
+    deck, bearings, studies = MACHINES[machine]
+    on = {}
+    for m in dict.fromkeys(COARSE + FINE):
+        run, folder = runner.run_in(deck, cells(m, bearings) + [f"studies=[{', '.join(studies)}]"])
+        on[m] = all_values(folder, run)
+    rows = []
+    for m in COARSE:
+        for key, (value, bar) in on[m].items():
+            fine = [same(on[f], key) for f in FINE]
+            if not all(fine) or None in (value, fine[0][0], fine[1][0]) or not all(map(math.isfinite, (value, fine[0][0], fine[1][0]))):
+                continue
+            if "peak" in key[2] and not same_peak(on[m], on[FINE[-1]], key[2]):
+                continue
+            truth, doubt = richardson(fine[0][0], fine[1][0])
+            bar = None if bar is None or math.isnan(bar) else bar
+            rows.append({"group": key[0], "case": machine, "mesh": m, "point": key[1], "name": key[2],
+                         **{k: v if v is None else float(f"{v:.8g}") for k, v in (("value", value), ("uncertainty", bar), ("truth", truth), ("truth_error", doubt))}})
+    return rows
+
+
 GROUPS = {
     "threshold": [(thresholds, v) for v in VARIANTS],
     "cycles": [(cycles, g) for g in ("G2.5", "G6.3")],
     "compliant": [(compliant_hopf, (d, b)) for d in ("short", "long") for b in (0.01, 0.1, 1)],
+    "values": [(values, m) for m in MACHINES],
     "compliant_cycles": [(compliant_cycle, d, b) for d, b in sorted({n[:2] for n in NAMED})],
 }
 
@@ -246,6 +341,35 @@ def named(program, source):
         failed += not good
         print(f"{' ' if good else '!'} {case:<18} {mesh:<8} {b[key]:.2f} +- {b[bar]:.2f} {unit}, error {error:.2f}")
     return failed
+
+
+# The leading multiplier at a point of a branch of cycles on a coarse film against that of the same cycle on a fine one.
+def multiplier(program, source):
+    import h5py
+    runner = Runner(program, source)
+    branch = ("{cycle_branch: {name: forced, unbalance: [gen_pair], parameter: speed, range: {from: %s rpm, to: %s rpm}, step: {initial: 20 rpm, "
+              "min: 0.01 rpm, max: 40 rpm}, intervals: 60, degree: 2%s}}")
+    _, folder = runner.run_in("turbine_train/unbalance.yaml", cells("40x12", TRAIN) + [f"studies=[{branch % (1000, 2000, '')}]"])
+    with h5py.File(folder / "results.h5") as file:
+        bars = {k: v[:] for k, v in file["studies/forced/multiplier_bars"].items()}
+        assert bars["point"][0] == 24 and bars["parameter"][0] == file["studies/forced/branch/parameter"][24]
+    speed, modulus, bar = (bars[k][0] for k in ("parameter", "modulus", "uncertainty"))
+    assert bars["decided"][0] == (abs(modulus - 1) > bar)
+    fine = runner.run("turbine_train/unbalance.yaml", cells("120x32", TRAIN) + [f"studies=[{branch % (speed, speed + 20, f', at: [{speed} rpm]')}]"])
+    truth = next(q["value"] for k, q in fine["forced"]["values"].items() if k.endswith("multiplier.modulus"))
+    error = abs(modulus - truth)
+    print(f"  multiplier at {speed:.1f} rpm {modulus:.6f} +- {bar:.6f}, error {error:.6f}")
+    return 0 if error <= bar <= 20 * error else 1
+
+
+# The amplification factor of a peak narrower than the step of the speed (N/(N2 - N1) = 62) does not hang on that step.
+def amplification(program, source):
+    runner, found = Runner(program, source), []
+    for points in (21, 201):
+        study = ("{unbalance_response: {name: response, unbalance: [gen_pair], range: {from: 900 rpm, to: 1900 rpm}, points: %d, nodes: [120]}}") % points
+        found.append(runner.run("turbine_train/train.yaml", cells("30x8", TRAIN) + [f"studies=[{study}]"])["response"]["values"]["peak.1.amplification_factor"]["value"])
+    print(f"  amplification factor {found[0]:.2f} with steps of 50 rpm, {found[1]:.2f} with 5 rpm")
+    return 0 if abs(found[0] / found[1] - 1) < 0.02 else 1
 
 
 def measure(program, source, groups):
@@ -285,10 +409,11 @@ def digest(rows):
 
 def table(rows):
     print("| group | point | bars | judged | covering | median bar/error | smallest | unknown |\n|---|---|---|---|---|---|---|---|")
-    kinds = sorted({(r["group"], r["point"].split()[0] if r["group"] == "cycles" else r["point"] if r["group"] in ("threshold", "compliant") else "all")
-                    for r in rows})
-    for group, point in [*kinds, ("all", "all")]:
-        some = [r for r in rows if group == "all" or (r["group"] == group and (point == "all" or r["point"].startswith(point)))]
+    def kind(r):
+        return r["point"].split()[0] if r["group"] == "cycles" else "all" if r["group"] == "compliant cycles" else r["point"]
+
+    for group, point in [*sorted({(r["group"], kind(r)) for r in rows}), ("all", "all")]:
+        some = [r for r in rows if group == "all" or (r["group"], kind(r)) == (group, point)]
         d = digest(some)
         share = 100 * d["cover"] / d["judged"] if d["judged"] else float("nan")
         print(f"| {group} | {point} | {d['bars']} | {d['judged']} | {d['cover']} ({share:.1f} %) | {d['median']:.2g} | {d['worst']:.2g} | {d['unknown']} |")
@@ -296,7 +421,7 @@ def table(rows):
     if missed:
         print("\n| not covered | mesh | point | value | bar | error |\n|---|---|---|---|---|---|")
         for r in missed:
-            print(f"| {r['group']}: {r['case']} | {r['mesh']} | {r['point']} | {r['value']:.6g} | {r['uncertainty']:.2g} | {error_of(r):.2g} |")
+            print(f"| {r['group']}: {r['case']} | {r['mesh']} | {r.get('name', r['point'])} | {r['value']:.6g} | {r['uncertainty']:.2g} | {error_of(r):.2g} |")
 
 
 def check(rows):
@@ -316,6 +441,6 @@ if __name__ == "__main__":
     elif what == "check":
         sys.exit(check(json.loads(pathlib.Path(words[0]).read_text())))
     elif words[1:] == ["named"]:
-        sys.exit(named(what, words[0]))
+        sys.exit(named(what, words[0]) + multiplier(what, words[0]) + amplification(what, words[0]))
     else:
         sys.exit(check(measure(what, words[0], words[1:])))

@@ -177,7 +177,7 @@ private:
   Eigen::MatrixXd phase_row_;  // [n x local nodes], autonomous only
   double phase_offset_ = 0;
 
-  // What residual() kept of its points, which spares linearise() at the same u their evaluation.
+  // What residual() or linearise() kept of the points, which spares linearise() at the same u their evaluation.
   std::vector<PointState> kept_;
   Eigen::VectorXd kept_u_, kept_before_, kept_border_;
   bool kept_valid_ = false;
