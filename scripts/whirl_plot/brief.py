@@ -3,10 +3,12 @@ import math
 
 import numpy as np
 
+from . import sweep_tables
 from .bifurcation import Followed
+from .locus import WORDS as LOCUS_WORDS
 from .response import peaks
 from .style import speed_axis
-from .units import digits, person, with_bar
+from .units import WORDS, digits, person, with_bar
 
 NAMES = {"hopf": "Hopf point", "fold": "limit point", "cyclic_fold": "limit point of cycles", "flip": "flip", "neimark_sacker": "Neimark-Sacker point",
          "branch_point": "branch point"}
@@ -33,18 +35,34 @@ def static(study):
 
 
 def modes(study):
-    if not study.has("critical/speed", "critical/log_decrement"):
-        return [f"{len(study.modes)} natural frequencies"] if study.modes and not study.has("spectrum/speed") else []
+    if not study.has("spectrum/speed"):
+        return [f"{len(study.modes)} natural frequencies"] if study.modes else []
     factor, unit = speed_axis(study.attribute("speed_unit", "rad/s"))[0], study.attribute("speed_unit", "rad/s")
-    known = [digits(float(s * factor), 4) for s, d in zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/log_decrement")))
-             if 0 < d < math.pi / 2.5 or d <= 0]
-    out = [f"critical speeds with an amplification above 2.5: {', '.join(known) or 'none'}" + (f" {unit}" if known else "")]
-    unstable = study.get("spectrum/speed")[study.get("spectrum/log_decrement") < 0]
-    if np.any(study.get("spectrum/log_decrement") == 0):
-        out.append("undamped" if np.all(study.get("spectrum/log_decrement") == 0) else "some modes are undamped")
-    if len(unstable):
-        out.append(f"unstable from {digits(float(unstable.min() * factor), 4)} {unit}")
-    return out
+    out = []
+    if study.has("critical/speed", "critical/log_decrement"):
+        known = [digits(float(s * factor), 4) for s, d in zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/log_decrement")))
+                 if 0 < d < math.pi / 2.5 or d <= 0]
+        out.append(f"critical speeds with an amplification above 2.5: {', '.join(known) or 'none'}" + (f" {unit}" if known else ""))
+    decrements = study.get("spectrum/log_decrement")
+    if np.any(decrements == 0):
+        out.append("undamped" if np.all(decrements == 0) else "some modes are undamped")
+    return out + unstable_from(study, factor, unit)
+
+
+def unstable_from(study, factor, unit):
+    """Where the modes become unstable: the value of summary.json, else the two computed speeds that it lies between."""
+    if "threshold" in study.values:
+        v = study.values["threshold"]
+        return [f"unstable from {with_bar(v.value, v.uncertainty)} {v.unit}"]
+    speed, every = study.get("spectrum/speed"), np.unique(study.get("spectrum/speed"))
+    unstable = np.unique(speed[study.get("spectrum/log_decrement") < 0])
+    if not len(unstable):
+        return []
+    first = float(unstable[0] * factor)
+    below = every[every < unstable[0]]
+    if len(below):
+        return [f"becomes unstable between {digits(float(below[-1] * factor), 5)} and {digits(first, 5)} {unit}"]
+    return [f"unstable from the lowest speed, {digits(first, 5)} {unit}" if len(every) > 1 else f"unstable at {digits(first, 5)} {unit}"]
 
 
 def unbalance_response(study):
@@ -67,17 +85,15 @@ def branch(study):
     followed, out = Followed(study), []
     unit = study.attribute("parameter_unit", "")
     unit = "" if unit == "1" else unit
-    losing = [b for b in study.bifurcations if b.get("type") in ("hopf", "flip", "neimark_sacker", "cyclic_fold", "fold")]
-    if followed.stable.all():
-        out.append("stable throughout" if followed.solid == "stable" else study.summary.get("stability", followed.solid))
-    elif not followed.stable.any():
-        out.append("unstable throughout")
-    elif not followed.stable[0]:
-        out.append("unstable where the branch starts")
-    elif losing:
+    losing = [b for b in study.bifurcations if b.get("type") in ("hopf", "flip", "neimark_sacker", "cyclic_fold", "fold") and not b.get("others_unstable")]
+    verdict = study.summary.get("stability", "")
+    if verdict.endswith(" throughout") and followed.ends:
+        verdict = verdict.removesuffix("throughout") + "as far as followed"
+    if verdict in ("loses stability", "undamped, then unstable") and losing:
         b = losing[0]
         kind = f", {b['criticality']}" if b.get("criticality") in ("supercritical", "subcritical") else ""
-        out.append(f"stable up to the {NAMES.get(b['type'], b['type'])} at {at(b)}{kind}")
+        verdict += f" at the {NAMES.get(b['type'], b['type'])} at {at(b)}{kind}"
+    out.append(verdict)
     counts = {}
     for b in study.bifurcations:
         counts[b.get("type")] = counts.get(b.get("type"), 0) + 1
@@ -90,7 +106,48 @@ def motion(study):
     return [str(study.attribute("motion", "")).replace("_", " ")]
 
 
-KINDS = {"static": static, "modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch, "cycle_branch": branch, "motion": motion}
+def bearing_map(study):
+    values, out = study.values, []
+    if study.has("locus/sommerfeld", "locus/eccentricity"):
+        load, e = study.get("locus/sommerfeld"), study.get("locus/eccentricity")
+        out.append(f"eccentricities {digits(float(e.min()), 3)} to {digits(float(e.max()), 3)}, loads up to S = {digits(float(load.max()), 3)}")
+    if "threshold.speed" in values:
+        v, e = values["threshold.speed"], values.get("threshold.eccentricity")
+        out.append(f"the deck's rotor, taken as rigid, is stable up to {with_bar(v.value, v.uncertainty)} {v.unit}"
+                   + (f", eccentricity {digits(e.value, 3)}" if e else ""))
+    return out
+
+
+def locus(study):
+    if not study.has("locus/parameter", "locus/second"):
+        return []
+    name = lambda key: study.attribute(key, "").rsplit(".", 1)[-1].replace("_", " ")  # noqa: E731
+    spans = []
+    for column, key in (("parameter", "parameter"), ("second", "second")):
+        values, unit = study.get(f"locus/{column}"), study.attribute(f"{key}_unit", "1")
+        spans.append(f"{name(key)} {digits(float(values.min()), 4)} to {digits(float(values.max()), 4)}" + (f" {WORDS.get(unit, unit)}" if unit != "1" else ""))
+    kind = NAMES.get(study.attribute("bifurcation", ""), "bifurcation")
+    points = [LOCUS_WORDS.get(c.get("type"), str(c.get("type"))) for c in study.summary.get("codimension_two", [])]
+    counted = [p if points.count(p) == 1 else f"{p} ({points.count(p)} times)" for p in dict.fromkeys(points)]
+    return [f"curve of a {kind}: {', '.join(spans)}"] + ([f"on it: {', '.join(counted)}"] if counted else [])
+
+
+def run_up(study):
+    found = [(v.value, k) for k, v in study.values.items() if k.endswith(".peak.amplitude") and v.value is not None]
+    if not found:
+        return []
+    top, key = max(found)
+    at = study.values.get(key.removesuffix("amplitude") + "speed")
+    place = key.removesuffix(".peak.amplitude").replace("bearing.", "").replace("node.", "node ")
+    return [f"largest vibration {person(top, 'm', 3)} at {place}" + (f", {digits(at.value, 4)} {at.unit}" if at else "")]
+
+
+def sweep(study):
+    return sweep_tables.brief(study)
+
+
+KINDS = {"static": static, "modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch, "cycle_branch": branch, "motion": motion,
+         "bearing_map": bearing_map, "locus": locus, "run_up": run_up, "sweep": sweep}
 
 
 def of(study):

@@ -6,7 +6,7 @@ import sys
 
 
 from . import __main__ as plot
-from . import brief, style, tables
+from . import brief, style, sweep_tables, tables
 from .manifest import register
 from .subject import Drawn, results_directory, said_in_a_sentence
 from .units import digits, person, with_bar
@@ -35,6 +35,10 @@ CAPTIONS = {
     "orbits": "Orbits of the journals.", "multipliers": "Floquet multipliers: a cycle is stable while all lie inside the unit circle.",
     "frequency": "Whirl frequency over running speed.", "motion": "The motion in time.", "bifurcations": "All branches together, vertical motion of the journals.",
     "eccentricity": "Largest eccentricity over speed.", "loci": "Where motions lose stability, over two parameters.", "run-up": "Amplitude on the way up and down.",
+    "trends": "Where bifurcations lie over what the sweep changes.", "impedance": "Resistance to a squeeze, over the journal's place.",
+    "map-locus": "Where the journal rests under a load.", "map-stiffness": "Stiffness over the load.", "map-damping": "Damping over the load.",
+    "map-stability": "Where a rigid rotor loses stability.", "map-pressure": "Pressure and thickness around the bearing.",
+    "frequencies": "Stiffness and damping over the frequency of a vibration.", "stiffness": "Stiffness of the films.", "damping": "Damping of the films.",
 }
 CONVENTIONS = [
     ("Axes", "x to the right, y up, z along the shaft; nodes are numbered from 1 along z."),
@@ -94,6 +98,8 @@ def all_values(study):
     modes = [[digits(m.get("speed"), 6), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4), m.get("whirl") or ""]
              for m in study.modes]
     out.append(tables.Table("All modes", ["speed", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "whirl"], modes))
+    if study.kind == "sweep":
+        out += sweep_tables.everything(study, tables.Table)
     return [show(t, folded=True) for t in out if t.rows]
 
 
@@ -122,17 +128,25 @@ def left_over(results):
     return show(tables.Table("Studies without results", ["study", "kind", "how it ended"], rows)) if rows else ""
 
 
+def plainly(value):
+    """A value of the deck without the marks of a programming language."""
+    if isinstance(value, dict):
+        return ", ".join(f"{k} {plainly(v)}" for k, v in value.items())
+    if isinstance(value, list):
+        return ", ".join(f"({plainly(v)})" if isinstance(v, (dict, list)) else plainly(v) for v in value)
+    return ("yes" if value else "no") if isinstance(value, bool) else str(value)
+
+
 def options_in_force(results):
     """Options of the studies and of the run, as the deck was understood."""
     deck, summary, out = results.deck or {}, results.summary, []
-    for key, value in summary.items():
-        if key in ("title", "version", "ranks", "wall_seconds", "studies"):
-            continue
-        rows = [[k, v if isinstance(v, (str, int, float)) else str(v)] for k, v in value.items()] if isinstance(value, dict) else [[key, str(value)]]
-        out.append(show(tables.Table(f"Run: {key.replace('_', ' ')}", ["option", "value"], rows), folded=True))
+    algebra = [[o["name"], o["value"], o.get("source", "")] for o in summary.get("options", []) if isinstance(o, dict) and "name" in o and "value" in o]
+    if algebra:
+        out.append(show(tables.Table("PETSc options in force", ["option", "value", "from"], algebra,
+                                     "options of the algebra, which the deck does not hold: another run needs them as well"), folded=True))
     for entry in deck.get("studies") or []:
         for kind, options in entry.items() if isinstance(entry, dict) else []:
-            rows = [[k, ", ".join(f"{a} {b}" for a, b in v.items()) if isinstance(v, dict) else v] for k, v in (options or {}).items() if v not in ([], "", None)]
+            rows = [[k, plainly(v)] for k, v in (options or {}).items() if v not in ([], "", None)]
             out.append(show(tables.Table(f"{kind.replace('_', ' ')} {(options or {}).get('name', '')}".strip(), ["option", "value"], rows), folded=True))
     return "\n".join(out)
 

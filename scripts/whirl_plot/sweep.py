@@ -3,7 +3,9 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from .bifurcation import Followed
-from .style import COLOURS, INK, MARKS, branch_legend, grid_of, length_unit, save, speed_axis
+from .curves import through
+from .style import COLOURS, DASHED, GREY, INK, MARKS, branch_legend, grid_of, length_unit, save, speed_axis
+from .units import WORDS, scale_of
 
 BAR = dict(capsize=2.5, elinewidth=0.9, linewidth=1.3, markersize=4.5)
 
@@ -25,9 +27,21 @@ def variants(study):
     asked = set().union(*(m for _, m in found)) if found else set()
     given = {s.name: s for s in study.results.studies if s.name in asked}
     if given:
-        found.insert(0, ("as given", given))
+        found.insert(0, (as_given(study), given))
     colours = [INK] + COLOURS if given else COLOURS
     return [(name, colours[i % len(colours)], members) for i, (name, members) in enumerate(found)]
+
+
+def as_given(study):
+    """The deck as it stands, by what the variants change where that is one thing that is no number: `reduction guyan`."""
+    paths = {path for v in study.summary.get("variants", []) for path in v.get("changes", {})}
+    node = study.results.deck or {}
+    for key in paths.pop().split(".") if len(paths) == 1 else [""]:
+        node = node.get(key) if isinstance(node, dict) else None
+        name = key
+    if isinstance(node, dict) and "type" in node:
+        return f"{name.replace('_', ' ')} {node['type']} (as given)"
+    return "as given"
 
 
 def each(study, kind, *needed):
@@ -87,16 +101,19 @@ def draw_response(study):
         scale, unit = length_unit(x)
         places = first.bearings(x.shape[1])
         figure, _, axes = grid_of(2 * len(places), width=3.0, height=2.5, columns=len(places), sharex=True)
-        handles = [Line2D([], [], color=c, label=f"linear, {v}") for v, c, _ in rows]
+        # Wide and pale is linear, thin is nonlinear, dashed is unstable.
+        pale = dict(linewidth=3.2, alpha=0.4, solid_capstyle="butt")
+        handles = [Line2D([], [], color=c, label=f"{v}, linear", **pale) for v, c, _ in rows]
+        own = {v: c for v, c, _ in rows}
+        members = [(v, own.get(v, INK), Followed(s)) for v, s in cycles.get(first.attribute("unbalance", ""), [])]
         for row, direction in enumerate("xy"):
             for b, place in enumerate(places):
                 axis = axes[row, b]
                 for _, colour, s in rows:
                     speed = s.get("response/speed") * factor
-                    axis.plot(speed, s.get(f"bearings/{direction}_amplitude").reshape(len(speed), -1)[:, b] * scale, color=colour, linewidth=1.3)
-                for k, (_, s) in enumerate(cycles.get(first.attribute("unbalance", ""), [])):
-                    half = (s.get(f"branch/{direction}_max") - s.get(f"branch/{direction}_min")) / 2
-                    axis.plot(s.get("branch/parameter"), half.reshape(len(half), -1)[:, b] * scale, color=COLOURS[1 + k], linestyle="--", linewidth=1.2)
+                    axis.plot(speed, s.get(f"bearings/{direction}_amplitude").reshape(len(speed), -1)[:, b] * scale, color=colour, **pale)
+                for _, colour, branch in members:
+                    branch.draw(axis, (branch.column(f"{direction}_max") - branch.column(f"{direction}_min"))[:, b] / 2, colour, scale, linewidth=1.2)
                 if row == 0:
                     axis.set_title(place)
                 else:
@@ -104,8 +121,9 @@ def draw_response(study):
                 if b == 0:
                     axis.set_ylabel(f"{direction}, half of peak to peak [{unit}]")
                 axis.set_ylim(bottom=0)
-        handles += [Line2D([], [], color=COLOURS[1 + k], linestyle="--", label=f"nonlinear, {v}")
-                    for k, (v, _) in enumerate(cycles.get(first.attribute("unbalance", ""), []))]
+        handles += [Line2D([], [], color=c, linewidth=1.2, label=f"{v}, nonlinear") for v, c, _ in members]
+        if any(not branch.stable.all() for *_, branch in members):
+            handles.append(Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.2, label="nonlinear, unstable"))
         files += save(figure, study, plain(name), "journal relative to the bearing centre", handles)
     return files
 
@@ -114,7 +132,7 @@ def nonlinear(study):
     """(unbalance, [(words, Subject)]) of branches of forced cycles over speed beside the sweep, and of its own."""
     found = {}
     own = [(f"{v}", s) for v, _, m in variants(study) for s in m.values()]
-    beside = [("as given", s) for s in study.results.studies if s.name not in {o.name for _, o in own}]
+    beside = [(as_given(study), s) for s in study.results.studies if s.name not in {o.name for _, o in own}]
     for words, s in own + beside:
         if s.kind == "cycle_branch" and s.attribute("parameter") == "speed" and s.attribute("parameter_unit") == "rpm" \
                 and s.attribute("unbalance", "") and s.attribute("period_turns", 1) == 1 and s.has("branch/x_max", "branch/x_min"):
@@ -159,16 +177,23 @@ def draw_coefficients(study):
     for letter, unit, words in (("K", "N/m", "stiffness"), ("C", "N s/m", "damping")):
         figure, axes, _ = grid_of(len(heads), width=3.4, height=2.9, columns=min(3, len(heads)))
         for axis, head in zip(axes, heads):
-            for k, c in enumerate(("xx", "xy", "yx", "yy")):
-                axis.plot(np.array(at)[order], study.get(f"table/{head}.{letter}.{c}")[order], color=COLOURS[k], linewidth=1.4)
+            entries = {c: study.get(f"table/{head}.{letter}.{c}")[order] for c in ("xx", "xy", "yx", "yy")}
+            factor, shown = scale_of(unit, max(np.nanmax(np.abs(v)) for v in entries.values()))
+            for k, values in enumerate(entries.values()):
+                known = np.isfinite(values)
+                axis.plot(*smooth(np.array(at)[order][known], values[known] * factor), color=COLOURS[k], linewidth=1.4)
             axis.set_title(head.split(".bearing.")[-1])
             axis.set_xlabel(label)
-            axis.set_ylabel(f"{words} [{unit}]")
+            axis.set_ylabel(f"{words} [{shown}]")
             axis.axhline(0, color=INK, linewidth=0.6)
-            axis.ticklabel_format(axis="y", scilimits=(-2, 3))
         handles = [Line2D([], [], color=COLOURS[k], label=f"{letter} {c}") for k, c in enumerate(("xx", "xy", "yx", "yy"))]
         files += save(figure, study, words, "minus the derivatives of the film's force on the journal", handles)
     return files
+
+
+def smooth(at, values):
+    """Through the variants, as far as no two stand at one place."""
+    return through(at, values) if np.all(np.diff(at) > 0) else (at, values)
 
 
 def axis_of(study):
@@ -179,7 +204,8 @@ def axis_of(study):
     name, unit = trends[0]["quantity"], trends[0]["unit"]
     at = study.get("table/" + name.replace("/", "_"))
     short = name.split(".")[-1] if name != "at" else study.name
-    return None if at is None else (short + (f" [{unit}]" if unit != "1" else ""), at)
+    short = short.replace("_", " ")
+    return None if at is None else (short + (f" [{WORDS.get(unit, unit)}]" if unit != "1" else ""), at)
 
 
 def draw_trends(study):

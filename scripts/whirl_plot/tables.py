@@ -4,10 +4,13 @@ import typing
 
 import numpy as np
 
+from . import sweep_tables
 from .bifurcation import Followed
+from .locus import WORDS as LOCUS_WORDS
+from .margins import MARGIN_HEAD, MARGIN_NOTE, margins, operating_range, range_in, told, told_margins
 from .response import peaks
 from .style import speed_axis
-from .units import digits, number, person, quantity, scale_of, with_bar
+from .units import WORDS, digits, person, quantity, scale_of, with_bar
 
 
 class Table(typing.NamedTuple):
@@ -36,60 +39,6 @@ def table_of(caption, labels, columns, note="", one_unit=False):
         for row, value in zip(cells, values):
             row.append("\u2013" if value is None else digits(value * factor, 4))
     return Table(caption, head, cells, note) if len(head) > 1 and cells else None
-
-
-def required_margin(factor, below):
-    """API 617 and API 684 (2005), 2.5: none for an amplification factor below 2.5; else 17 (1 - 1/(AF - 1.5)) percent for a peak below
-    the operating speed, ten more for one above it."""
-    if factor is None:
-        return None
-    if factor < 2.5:
-        return 0.0
-    return (0.17 if below else 0.27) - 0.17 / (factor - 1.5)
-
-
-def speed_in(unit, value):
-    """rad/s of a speed in `unit`."""
-    return value * {"rpm": np.pi / 30, "Hz": 2 * np.pi}.get(unit, 1.0)
-
-
-def operating_range(study):
-    """(lowest, highest) operating speed in rad/s: of the study, else the service speed that the deck's unbalances name; None if
-    there is none."""
-    def si(text):
-        return speed_in(str(text).split(" ", 1)[-1].strip(), number(text) or 0.0)
-
-    deck = study.results.deck or {}
-    for entry in deck.get("studies") or []:
-        for options in entry.values() if isinstance(entry, dict) else []:
-            if not isinstance(options, dict) or options.get("name") != study.name:
-                continue
-            if isinstance(options.get("operating"), dict):
-                return si(options["operating"].get("from")), si(options["operating"].get("to"))
-            if "operating_speed" in options:
-                return (si(options["operating_speed"]),) * 2
-    speeds = [si(u["service_speed"]) for u in (deck.get("unbalance") or {}).values() if isinstance(u, dict) and "service_speed" in u]
-    return (min(speeds), max(speeds)) if speeds and min(speeds) > 0 else None
-
-
-def margins(speed, factor, operating):
-    """Cells: actual and required separation margin, as fractions of the nearer border, and whether it suffices."""
-    if operating is None:
-        return []
-    low, high = operating
-    below = speed < low or (speed <= high and high - speed >= speed - low)
-    actual = (low - speed) / low if speed < low else (speed - high) / high if speed > high else 0.0
-    required = required_margin(factor, below)
-    verdict = "\u2013" if required is None else "yes" if actual >= required else "no"
-    return [f"{100 * actual:.1f} %", "\u2013" if required is None else "none" if required == 0 else f"{100 * required:.1f} %", verdict]
-
-
-def range_in(operating, to_unit):
-    return " to ".join(digits(float(v * to_unit), 5) for v in dict.fromkeys(operating))
-
-
-MARGIN_HEAD = ["margin", "required", "enough"]
-MARGIN_NOTE = "margin to the operating speed, required by API 617 and API 684 (2005), 2.5: none below an amplification factor of 2.5"
 
 
 def static(study):
@@ -126,14 +75,17 @@ def modes(study):
     if study.has("critical/speed"):
         decrement = study.get("critical/log_decrement")
         operating = operating_range(study)
-        rows = []
+        rows, known = [], any(k.startswith("critical.") and k.endswith(".separation_margin") for k in study.values)
         for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
             delta = None if decrement is None else float(np.atleast_1d(decrement)[k])
+            head = f"critical.{k + 1}."
+            bar = lambda name, own: told(study, head + name) if head + name in study.values else own  # noqa: E731
             factor = math.pi / delta if delta and delta > 0 else None
-            rows.append([digits(float(speed * to_speed), 5), int(mode), "\u2013" if delta is None else digits(delta, 3),
-                         "\u2013" if factor is None else digits(factor, 3), *margins(speed, factor, operating)])
-        head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating else [])
-        note = f"operating speed {range_in(operating, to_speed)} {unit}; {MARGIN_NOTE}" if operating else ""
+            rows.append([bar("speed", digits(float(speed * to_speed), 5)), int(mode), bar("log_decrement", "\u2013" if delta is None else digits(delta, 3)),
+                         bar("amplification_factor", "\u2013" if factor is None else digits(factor, 3)),
+                         *(told_margins(study, head) if known else margins(speed, factor, operating))])
+        head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating or known else [])
+        note = f"operating speed {range_in(operating, to_speed)} {unit}; {MARGIN_NOTE}" if operating else MARGIN_NOTE if known else ""
         out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
     if study.has("spectrum/speed", "spectrum/log_decrement"):
         rows = {k: study.get(f"spectrum/{k}") for k in ("speed", "mode", "frequency", "log_decrement", "whirl")}
@@ -148,6 +100,19 @@ def modes(study):
     return out
 
 
+def peaks_told(study, name, head):
+    """Rows of the peaks of a node, the four largest, with their bars."""
+    values, rows = study.values, []
+    numbers = [k for k in range(1, 100) if f"{head}{k}.semi_major" in values]
+    for n, k in enumerate(sorted(numbers, key=lambda k: -(values[f"{head}{k}.semi_major"].value or 0))[:4]):
+        at = f"{head}{k}."
+        size = values[at + "semi_major"]
+        rows.append([name if n == 0 else "", told(study, at + "speed"),
+                     with_bar(None if size.value is None else size.value * 1e6, None if size.uncertainty is None else size.uncertainty * 1e6),
+                     told(study, at + "amplification_factor"), *(told_margins(study, at) if operating_range(study) else [])])
+    return rows
+
+
 def unbalance_response(study):
     if not study.has("response/speed"):
         return []
@@ -160,6 +125,10 @@ def unbalance_response(study):
         count = study.get("bearings/semi_major").reshape(len(speed), -1).shape[1]
         places += [("bearings", f"{n}, journal", k) for k, n in enumerate(study.bearings(count))]
     for group, name, k in places:
+        head = f"{name.replace(' ', '.')}.peak."
+        if group == "response" and head + "1.speed" in study.values:
+            rows += peaks_told(study, name, head)
+            continue
         major = study.get(f"{group}/semi_major").reshape(len(speed), -1)[:, k]
         for n, (at, top, factor) in enumerate(sorted(peaks(speed, major), key=lambda p: -p[1])[:4]):
             rows.append([name if n == 0 else "", digits(float(at * factor_of_speed), 5), digits(float(top * 1e6), 4),
@@ -215,12 +184,17 @@ def bifurcations(study):
                  "the bar estimates the error from film mesh, time mesh and location; the frequency is that of the motion born there")
 
 
+# What a branch is where it is not unstable, by the verdict of summary.json.
+SOLID = {"undamped throughout": "undamped", "undamped, then unstable": "undamped", "stable or undamped": "stable or undamped"}
+
+
 def stability(study, branch):
     """Where the branch is stable, in words: stretches of the parameter between its changes."""
     unit = study.attribute("parameter_unit", "")
     places = [place for _, _, place in branch.events]
     pieces = branch.curve.stretches(branch.parameter, branch.stable, places)
-    rows = [[f"{digits(float(x[0]), 6)} to {digits(float(x[-1]), 6)}", "stable" if solid else "unstable"] for x, _, solid in pieces]
+    solid_words = SOLID.get(study.summary.get("stability"), "stable")
+    rows = [[f"{digits(float(x[0]), 6)} to {digits(float(x[-1]), 6)}", solid_words if solid else "unstable"] for x, _, solid in pieces]
     if not 0 < len(rows) <= 12:
         return None
     name = study.attribute("parameter", "parameter").rsplit(".", 1)[-1].replace("_", " ")
@@ -306,15 +280,37 @@ def run_up(study):
 
 
 def locus(study):
-    rows = [[c.get("type", "").replace("_", " "), with_bar(c.get("value"), None), f"{with_bar(c.get('second_value'), c.get('uncertainty'))}"]
+    rows = [[LOCUS_WORDS.get(c.get("type"), str(c.get("type"))), with_bar(c.get("value"), None), f"{with_bar(c.get('second_value'), c.get('uncertainty'))}"]
             for c in study.summary.get("codimension_two", [])]
     first, second = study.attribute("parameter", ""), study.attribute("second", "").rsplit(".", 1)[-1].replace("_", " ")
-    return [Table("Points of codimension two", ["what", f"{first} [{study.attribute('parameter_unit', '')}]", f"{second} [{study.attribute('second_unit', '')}]"],
+    unit = study.attribute("second_unit", "")
+    return [Table("Points of codimension two", ["what", f"{first} [{study.attribute('parameter_unit', '')}]", f"{second} [{WORDS.get(unit, unit)}]"],
                   rows)] if rows else []
 
 
+def bearing_map(study):
+    """The border of stability of the rotor that the deck has, if it has one, and loads that were asked for."""
+    values, heads = study.values, {}
+    for key in values:
+        head, _, what = key.rpartition(".")
+        if what in ("eccentricity", "sommerfeld", "attitude", "speed_limit", "whirl_ratio", "speed", "nondimensional_speed"):
+            heads.setdefault(head, []).append(what)
+    rows = []
+    for head, keys in heads.items():
+        for what in keys:
+            v = values[f"{head}.{what}" if head else what]
+            factor, unit = scale_of(v.unit, v.value or 0.0)
+            rows.append([head.replace(".", " ").replace("_", " "), what.replace("_", " "),
+                         f"{with_bar(None if v.value is None else v.value * factor, None if v.uncertainty is None else v.uncertainty * factor)} {unit}".strip()])
+    return [Table("Bearing by itself", ["at", "", "value"], rows, "threshold: where the rigid rotor of the deck loses stability in this bearing")] if rows else []
+
+
+def sweep(study):
+    return sweep_tables.tables(study, Table)
+
+
 FINDINGS = {"static": static, "alignment": alignment, "modes": modes, "unbalance_response": unbalance_response, "equilibrium_branch": branch,
-            "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus}
+            "cycle_branch": branch, "motion": motion, "run_up": run_up, "locus": locus, "bearing_map": bearing_map, "sweep": sweep}
 
 
 def findings(study):

@@ -171,10 +171,11 @@ def facts():
     assert abs(at * np.sqrt(1 - 2 * zeta**2) - 1) < 1e-4 and abs(top * 2 * zeta * np.sqrt(1 - zeta**2) - 1) < 1e-3
     half = np.sqrt(1 - 2 * zeta**2 + 2 * zeta * np.sqrt(1 - zeta**2) * np.array([-1, 1]))  # where w^2|H| = top/sqrt(2), from 1/w
     assert abs(factor / (at / (1 / half[0] - 1 / half[1])) - 1) < 0.02, factor
-    assert tables.required_margin(2.4, True) == 0 and abs(tables.required_margin(5.0, True) - 0.17 * (1 - 1 / 3.5)) < 1e-12
-    assert abs(tables.required_margin(5.0, False) - (0.10 + 0.17 * (1 - 1 / 3.5))) < 1e-12
-    assert tables.margins(90.0, 5.0, (100.0, 120.0)) == ["10.0 %", "12.1 %", "no"] and tables.margins(144.0, 2.0, (100.0, 120.0)) == ["20.0 %", "none", "yes"]
-    assert tables.margins(110.0, 5.0, (100.0, 120.0))[0] == "0.0 %" and tables.margins(90.0, 5.0, None) == []
+    from whirl_plot.margins import margins, required_margin
+    assert required_margin(2.4, True) == 0 and abs(required_margin(5.0, True) - 0.17 * (1 - 1 / 3.5)) < 1e-12
+    assert abs(required_margin(5.0, False) - (0.10 + 0.17 * (1 - 1 / 3.5))) < 1e-12
+    assert margins(90.0, 5.0, (100.0, 120.0)) == ["10.0 %", "12.1 %", "no"] and margins(144.0, 2.0, (100.0, 120.0)) == ["20.0 %", "none", "yes"]
+    assert margins(110.0, 5.0, (100.0, 120.0))[0] == "0.0 %" and margins(90.0, 5.0, None) == []
     assert units.with_bar(5021.412, 6.93) == "5021.4 \u00b1 6.9" and units.with_bar(2.7353, 1.9e-11) == "2.7353"
     assert units.person(1.8e-4, "m") == "180 \u00b5m" and units.person(2.134e5, "N") == "213.4 kN" and units.quantity("0.0067 Pa s") == "6.7 mPa s"
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"

@@ -10,7 +10,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import bearing_map, bifurcation, campbell, curves, motion, orbits, shapes, style  # noqa: E402
+from whirl_plot import bearing_map, bifurcation, campbell, curves, motion, orbits, shapes, style, sweep  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -208,10 +208,59 @@ def colours(folder):
         assert results["balanced"].colour == style.INK
 
 
+def responses_of_a_sweep(folder):
+    """Linear responses are wide, nonlinear ones thin, and dashed means unstable as everywhere; the deck as it stands has a name."""
+    def fill(root):
+        group = synthetic.study(root, "whole shaft", "sweep")
+        root["studies/generator pair"].attrs["unbalance"] = "gen_pair"
+        variant = group.create_group("variants/whole")
+        variant.attrs.update({"title": "whole", "order": 1})
+        root.copy(root["studies/generator pair"], variant, "generator pair")
+
+    with results_with(folder, fill) as results:
+        (folder / "resolved.yaml").write_text("rotor: {reduction: {type: guyan}}\n")
+        study = results["whole shaft"]
+        study.summary = {"variants": [{"name": "whole", "changes": {"rotor.reduction": "{type: none}"}, "studies": []}]}
+        labels = []
+        real, sweep.save = sweep.save, lambda figure, study, what, note="", handles=(), columns=6: labels.extend((h.get_label(), h) for h in handles) or [figure]
+        try:
+            figure = sweep.draw_response(study)[0]
+        finally:
+            sweep.save = real
+        unstable = results["pair, G2.5"].get("branch/stable") < 0.5
+    labels = dict(labels)
+    assert {"reduction guyan (as given), linear", "whole, linear", "reduction guyan (as given), nonlinear", "nonlinear, unstable"} <= set(labels), list(labels)
+    lines = [line for line in figure.axes[0].get_lines() if len(line.get_xdata()) > 1]
+    wide = [line for line in lines if line.get_linewidth() > 3]
+    assert len(wide) == 2 and all(line.get_linestyle() == "-" for line in wide)
+    dashed = [line for line in lines if line.get_linestyle() == "--"]
+    assert unstable.any() and len(dashed) >= 4 and all(line.get_linewidth() < 1.2 for line in dashed), "two branches, unstable in two stretches or more"
+
+
+def coefficients(folder):
+    """In a unit that a person reads, and a curve through the variants."""
+    speed = np.linspace(600, 6000, 28)
+
+    def fill(root):
+        group = synthetic.study(root, "over speed", "sweep")
+        synthetic.put(group.create_group("table"), **{"studies.1.static.speed": speed}, **{
+            f"films.bearing.B1.{letter}.{c}": 1.6e10 * size * 600 / speed for letter in "KC" for c, size in zip(("xx", "xy", "yx", "yy"), (0.1, -0.1, -0.3, 1))})
+
+    with results_with(folder, fill) as results:
+        study = results["over speed"]
+        study.summary = {"trends": [{"quantity": "studies.1.static.speed", "unit": "rpm"}]}
+        axis = Figures().draw(sweep, sweep.draw_coefficients, study)["stiffness"].axes[0]
+    curve = max(lines_of(axis, style.COLOURS[3]), key=len)
+    assert axis.get_ylabel() == "stiffness [GN/m]" and axis.get_xlabel() == "speed [rpm]" and curve[0, 1] == 16.0
+    # A polygon is 2 % too high in the middle of the first stretch.
+    error = np.interp(700, *curve.T) / (16 * 600 / 700) - 1
+    assert len(curve) > 100 and abs(error) < 0.01, error
+
+
 style.use_style()
 beams()
 border_of_stability()
-for check in (sag, mode_shapes, growth, campbell_lines, words, colours):
+for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, coefficients):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")

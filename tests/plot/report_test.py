@@ -1,0 +1,159 @@
+#!/usr/bin/env python3
+"""What the report says of results that are known: verdicts and margins of summary.json, sweeps with bars and trends, options."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+ROOT = pathlib.Path(__file__).parents[2]
+sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
+import synthetic  # noqa: E402
+from whirl_plot import brief, report, tables  # noqa: E402
+from whirl_plot.subject import Drawn  # noqa: E402
+
+RPM = np.pi / 30
+
+
+def results_with(folder, change, fill=lambda root: None):
+    """Results of synthetic.py; `change` gets the studies of summary.json by name and the summary."""
+    synthetic.make(folder)
+    with h5py.File(folder / "results.h5", "a") as root:
+        fill(root)
+    path = folder / "summary.json"
+    summary = json.loads(path.read_text())
+    change({s["name"]: s for s in summary["studies"]}, summary)
+    path.write_text(json.dumps(summary))
+    return Drawn(folder)
+
+
+def table_of(study, caption):
+    return next(t for t in tables.findings(study) if t.caption == caption)
+
+
+def verdicts(folder):
+    """Stability is what summary.json says; a branch that ended early is so as far as it was followed."""
+    def said(stability, status="completed"):
+        def fill(root):
+            root["studies/balanced"].attrs["status"] = status
+        with results_with(folder, lambda s, _: s["balanced"].update({"stability": stability, "status": status}), fill) as results:
+            return brief.of(results["balanced"]), table_of(results["balanced"], "Along the branch").rows
+
+    words, rows = said("undamped throughout")
+    assert words == "undamped throughout" and rows[0][1] == "undamped", (words, rows)
+    assert said("loses stability")[0] == "loses stability at the Hopf point at 5025 \u00b1 12 rpm"
+    words, _ = said("stable throughout", "ended at 6000 rpm: reached the largest number of points")
+    assert words == "stable as far as followed; ends: reached the largest number of points", words
+
+    def behind(studies, _):
+        studies["balanced"]["stability"] = "loses stability"
+        one = studies["balanced"]["bifurcations"][0]
+        studies["balanced"]["bifurcations"] = [{**one, "value": 4000.0, "others_unstable": 2.0}, {**one, "others_unstable": 0.0}]
+    with results_with(folder, behind) as results:
+        assert "5025" in brief.of(results["balanced"]), "a Hopf point of a branch that is unstable already is no threshold"
+
+
+def modes(folder):
+    """A computed speed is no threshold; margins are those of summary.json."""
+    with results_with(folder, lambda *_: None) as results:
+        words = brief.of(results["modes"])
+        speed, decrement = (results["modes"].get(f"spectrum/{k}") for k in ("speed", "log_decrement"))
+        high = speed[decrement < 0].min() / RPM
+        low = max(s for s in np.unique(speed) / RPM if s < high - 1e-6)
+        assert f"becomes unstable between {low:.5g} and {high:.5g} rpm" in words, words
+        assert len(table_of(results["modes"], "Critical speeds: damped frequency equal to the speed").head) == 4
+
+    def told(studies, _):
+        studies["modes"]["values"] = {
+            "critical.1.speed": {"value": 689.4, "unit": "rpm", "uncertainty": 1.5}, "critical.1.log_decrement": {"value": 0.2, "unit": "1"},
+            "critical.1.separation_margin": {"value": 0.12, "unit": "1"}, "critical.1.required_margin": {"value": 0.16, "unit": "1"},
+            "threshold": {"value": 5022.2, "unit": "rpm", "uncertainty": 3.1}}
+        studies["generator pair"]["values"] = {
+            f"node.120.peak.{k}.{name}": {"value": v, "unit": u, "uncertainty": b} for k, row in
+            ((1, [(2680.1, "rpm", 0.3), (8.54e-5, "m", 1.6e-7), (14.02, "1", 0.03)]), (2, [(1057.6, "rpm", 0.1), (9.1e-5, "m", 2e-7), (52.4, "1", 0.2)]))
+            for name, (v, u, b) in zip(("speed", "semi_major", "amplification_factor"), row)}
+    with results_with(folder, told) as results:
+        critical = table_of(results["modes"], "Critical speeds: damped frequency equal to the speed")
+        assert critical.rows[0][0] == "689.4 \u00b1 1.5" and critical.rows[0][-3:] == ["12.0 %", "16.0 %", "no"], critical.rows[0]
+        assert "unstable from 5022.2 \u00b1 3.1 rpm" in brief.of(results["modes"])
+        peaks = table_of(results["generator pair"], "Peaks of the response, the four largest of each probe").rows
+        assert peaks[0][:4] == ["node 120", "1057.60 \u00b1 0.10", "91.00 \u00b1 0.20", "52.40 \u00b1 0.20"], peaks[0]
+        assert peaks[1][:4] == ["", "2680.10 \u00b1 0.30", "85.40 \u00b1 0.16", "14.020 \u00b1 0.030"], peaks[1]
+
+
+def sweep(folder):
+    """Variants and trends with bars; a variant that failed says why."""
+    def change(studies, _):
+        s = studies["clearances"]
+        s["variants"][1]["studies"] = [{"name": "balanced", "status": "ended at 7000 rpm: contact"}]
+        s["columns"] += [{"name": "balanced.threshold", "unit": "rad/s", "values": [5025.0 * RPM, 4000.0 * RPM, 6500.0 * RPM], "uncertainties": [12 * RPM, None, 9 * RPM]},
+                         {"name": "balanced.hopf.2", "unit": "rpm", "values": [None, 7000.0, None], "uncertainties": [None, 3.0, None]},
+                         {"name": "balanced.nondimensional.load", "unit": "1", "values": [1.0, 1.0, 1.0], "uncertainties": [None] * 3}]
+        s["trends"][0].update({"quantity": "bearings.*.geometry.clearance", "unit": "um", "at": [160.0, 200.0, 240.0]})
+        s["trends"].append({**s["trends"][0], "column": "balanced.threshold"})
+
+    with results_with(folder, change) as results:
+        study = results["clearances"]
+        table, trends = table_of(study, "Variants"), table_of(study, "Trends")
+        everything = "".join(report.all_values(study))
+        words = brief.of(study)
+    assert table.head == ["variant", "clearance [\u00b5m]", "balanced: threshold [rpm]", "balanced: hopf 2 [rpm]", "not completed"], table.head
+    assert table.rows == [["as given", "200", "5025 \u00b1 12", "\u2013", ""], ["narrow", "160", "4000", "7000.0 \u00b1 3.0", ""],
+                          ["wide", "240", "6500.0 \u00b1 9.0", "\u2013", "balanced: ended at 7000 rpm: contact"]], table.rows
+    assert trends.rows == [["balanced: threshold", "clearance", "160 to 240 \u00b5m", "rises", "2500 rpm"]], trends.rows
+    assert "All values of the variants (5)" in everything and "balanced: nondimensional load" in everything
+    assert words == "2 variants over clearance; balanced: threshold rises from 4000 to 6500.0 \u00b1 9.0 rpm; 1 with a study that did not complete", words
+
+
+def others_in_brief(folder):
+    def change(studies, summary):
+        summary["studies"] += [
+            {"name": "up", "kind": "run_up", "status": "completed", "values": {"bearing.left.peak.amplitude": {"value": 2.3178e-5, "unit": "m"},
+                                                                              "bearing.left.peak.speed": {"value": 639.35, "unit": "rad/s"}}},
+            {"name": "flips", "kind": "locus", "status": "completed", "values": {}, "codimension_two": [{"type": "resonance_1_2"}]},
+            {"name": "hard", "kind": "bearing_map", "status": "completed", "values": {"threshold.speed": {"value": 437.642, "unit": "rad/s"}}}]
+
+    def fill(root):
+        synthetic.study(root, "up", "run_up", speed_unit="rad/s")
+        group = synthetic.study(root, "flips", "locus", bifurcation="flip", parameter="speed", parameter_unit="rad/s",
+                                second="unbalance.a.planes.1.eccentricity", second_unit="um").create_group("locus")
+        synthetic.put(group, parameter=[389.2, 1648.0], second=[0.884, 7.25])
+    with results_with(folder, change, fill) as results:
+        assert brief.of(results["up"]) == "largest vibration 23.2 \u00b5m at left, 639.4 rad/s"
+        assert brief.of(results["flips"]) == "curve of a flip: speed 389.2 to 1648 rad/s, eccentricity 0.884 to 7.25 \u00b5m; on it: 1:2 resonance"
+        assert "S = " in brief.of(results["hard"]) and "stable up to 437.64 rad/s" in brief.of(results["hard"])
+        assert [r[-1] for r in table_of(results["hard"], "Bearing by itself").rows] == ["437.64 rad/s"]
+
+
+def options(folder):
+    """Options of PETSc as a table, lists of the deck without brackets: nothing of the language that the report is written in."""
+    def change(_, summary):
+        summary["options"] = [{"name": "-newton_snes_rtol", "value": "1e-3", "source": "PETSC_OPTIONS"}]
+
+    with results_with(folder, change) as results:
+        (folder / "resolved.yaml").write_text("studies:\n  - cycle_branch: {name: c, detect: [flip, hopf], range: {from: 1 rpm, to: 2 rpm}, nodes: [], x: true}\n")
+        page = report.options_in_force(results)
+    for words in ("-newton_snes_rtol", "1e-3", "PETSC_OPTIONS", "flip, hopf", "from 1 rpm, to 2 rpm", ">yes<"):
+        assert words in page, words
+    assert "{" not in page and "[" not in page and "&#x27;" not in page, page
+
+
+def page(folder):
+    """The whole page holds the sweep's table and one line of each of its kinds."""
+    with results_with(folder, lambda s, _: s["balanced"].update({"stability": "loses stability"})):
+        pass
+    done = subprocess.run([str(ROOT / "scripts" / "report"), str(folder)], capture_output=True, text=True)
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    for words in ("<caption>Variants</caption>", "<caption>Trends</caption>", "5025 \u00b1 12", "2 variants over clearance", "loads up to S =",
+                  "loses stability at the Hopf point"):
+        assert words in text, words
+
+
+for check in (verdicts, modes, sweep, others_in_brief, options, page):
+    with tempfile.TemporaryDirectory() as name:
+        check(pathlib.Path(name) / "x")
+print("the report says what the results say")
