@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/printable.hpp"
 #include "whirl/deck/load.hpp"
 
 namespace whirl::deck {
@@ -17,6 +18,19 @@ namespace {
 using core::InputError;
 
 constexpr std::size_t most_nodes = 300000;  // aliases of aliases could ask for more than there is memory
+
+// The parser writes its escapes `\N` and `\_` (next line, space that does not break) as the single bytes 0x85 and 0xA0,
+// which are no text. Here they become the characters U+0085 and U+00A0.
+std::string with_whole_characters(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = core::utf8_length(text);
+    if (length == 0) out += '\xC2';
+    out += text.substr(0, std::max<std::size_t>(length, 1));
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return out;
+}
 
 // Builds our tree from the parser's events. The parser's own tree keeps duplicate keys and cyclic aliases and loses the
 // place of aliases; its events do not.
@@ -45,7 +59,7 @@ public:
     const bool quoted = tag == "!";
     // The parser reports an empty or `~` value as a plain scalar in some places.
     if (!quoted && (value.empty() || value == "~" || value == "null")) return OnNull(mark, anchor);
-    add(leaf(mark, Node::scalar(value, quoted)), anchor);
+    add(leaf(mark, Node::scalar(quoted ? with_whole_characters(value) : value, quoted)), anchor);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value) override {

@@ -4,10 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 #include "target.hpp"
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  // Open MPI would catch the abort of a finding, and the input would not be kept.
+  setenv("OMPI_MCA_opal_signal", "", 1);
   return MPI_Init(argc, argv);
 }
 
