@@ -27,7 +27,7 @@ public:
   using Location = std::function<double(const std::string& name, double value)>;
   void write(const Location& location);
   /// The same part of every value.
-  void write(double relative_location) {
+  void write(double relative_location = 0) {
     write([=](const std::string&, double value) { return relative_location * std::abs(value); });
   }
 
