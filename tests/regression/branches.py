@@ -82,6 +82,9 @@ def self_excited(h):
     spectrum = numpy.fft.fft(z[0] + 1j * z[1], axis=1) / z[0].shape[1] / 300e-6
     axis = numpy.abs(spectrum[:, 1]) + numpy.abs(spectrum[:, -1])
     born = numpy.interp([0.1, 0.2], axis, speed)
+    beside = [f for f in s["bifurcations"] if f["type"] == "cyclic_fold" and abs(f["value"] - hopf) < f["uncertainty"]]
+    h.true("a fold that cannot be told from the birth says so", len(beside) == 1 and beside[0]["criticality"] == "undetermined"
+           and beside[0]["distance_from_birth"] < 1 and len(s["warnings"]) == 1, f"{beside}, {s.get('warnings')}")
     h.close("curvature of the branch [rpm per clearance^2]", -b["criticality_coefficient"], (born[1] - born[0]) / 0.03,
             b["criticality_uncertainty"])
 
