@@ -1,9 +1,10 @@
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
 #include "bordered_monodromy.hpp"
 #include "whirl/solve/normal_form.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -70,10 +71,8 @@ void find_null_vectors(BorderedMonodromy& bordered, const std::vector<double>& p
 
 // Of the invariant plane of `basis`, product = M basis, the complex eigenvector for the eigenvalue nearest to mu.
 VectorXcd eigenvector_in(const MatrixXd& basis, const MatrixXd& product, Complex mu) {
-  const Eigen::EigenSolver<MatrixXd> plane((basis.transpose() * basis).ldlt().solve(basis.transpose() * product));
-  Index nearest = 0;
-  (plane.eigenvalues().array() - mu).abs().minCoeff(&nearest);
-  return basis * plane.eigenvectors().col(nearest);
+  const MatrixXd plane = (basis.transpose() * basis).ldlt().solve(basis.transpose() * product);
+  return basis * spectral::eigenpairs(plane).nearest(mu);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // The subspace of a Newton-Picard problem and the multipliers in it.
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +8,7 @@
 #include "solve/local_part.hpp"
 #include "solve/sparse_step.hpp"
 #include "whirl/solve/newton_picard.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
 
@@ -105,14 +106,14 @@ std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
     MatrixXd projected = x.transpose() * y;
     sum(projected);
     if (!projected.allFinite()) return {};
-    const Eigen::EigenSolver<MatrixXd> modes(projected);
-    const Eigen::MatrixXcd defects = (y - x * projected) * modes.eigenvectors();
+    const auto modes = spectral::eigenpairs(projected);
+    const Eigen::MatrixXcd defects = (y - x * projected) * modes.vectors;
     MatrixXd sizes = defects.colwise().squaredNorm().transpose();
     sum(sizes);
     bool settled = true;
     std::vector<std::complex<double>> values;
     for (Index c = 0; c < x.cols(); ++c) {
-      values.push_back(modes.eigenvalues()(c));
+      values.push_back(modes.values(c));
       const double size = std::abs(values.back());
       settled = settled &&
                 std::sqrt(sizes(c)) <= (size > options_.radius ? options_.multiplier_tolerance * size : below_radius);
@@ -149,10 +150,7 @@ std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
 MatrixXd NewtonPicardProblem::critical_motion(double mu) {
   MatrixXd projected = basis_.transpose() * image_;
   sum(projected);
-  const Eigen::EigenSolver<MatrixXd> modes(projected);
-  Index nearest = 0;
-  (modes.eigenvalues().array() - mu).abs().minCoeff(&nearest);
-  MatrixXd state = basis_ * modes.eigenvectors().col(nearest).real().normalized();
+  MatrixXd state = basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized();
   MatrixXd motion(local_, intervals());
   for (Index i = 0; i < intervals(); ++i) {
     apply(i, state);

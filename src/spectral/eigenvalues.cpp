@@ -136,6 +136,14 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<doub
   return out;
 }
 
+// Of a dense matrix, by Eigen.
+Eigen::EigenSolver<Eigen::MatrixXd> solve_small(const Eigen::MatrixXd& matrix, bool vectors) {
+  if (!matrix.allFinite()) throw core::NotConverged("eigenvalues of a matrix that is not finite");
+  Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, vectors);
+  if (solver.info() != Eigen::Success) throw core::NotConverged("the eigenvalues did not converge");
+  return solver;
+}
+
 }  // namespace
 
 std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options) {
@@ -221,13 +229,22 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   return out;
 }
 
+Eigen::VectorXcd Eigenpairs::nearest(Complex value) const {
+  Eigen::Index column = 0;
+  (values.array() - value).abs().minCoeff(&column);
+  return vectors.col(column);
+}
+
+Eigenpairs eigenpairs(const Eigen::MatrixXd& matrix) {
+  const auto solver = solve_small(matrix, true);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
 std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
   const auto by_modulus = [](Complex a, Complex b) { return std::abs(a) > std::abs(b); };
   // A few states: setting up an EPS costs more than all the rest of a cycle.
   if (matrix.rows() <= 16) {
-    if (!matrix.allFinite()) throw core::NotConverged("eigenvalues of a matrix that is not finite");
-    const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix, false);
-    if (solver.info() != Eigen::Success) throw core::NotConverged("the eigenvalues did not converge");
+    const auto solver = solve_small(matrix, false);
     std::vector<Complex> out(solver.eigenvalues().begin(), solver.eigenvalues().end());
     std::stable_sort(out.begin(), out.end(), by_modulus);
     return out;

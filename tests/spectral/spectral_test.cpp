@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/small_system.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -138,6 +139,23 @@ TEST(Eigenvalues, OfANonnormalMatrix) {
 }
 
 // Ranks whose matrices differ in the last digits, so that a multiplier lies on this side of the circle or on that.
+TEST(Eigenvalues, NearestVectorOfAPlaneRotation) {
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(3, 3);
+  m.topLeftCorner(2, 2) << c, -s, s, c;
+  m(2, 2) = 5;
+  const auto pairs = spectral::eigenpairs(m);
+  for (const double angle : {0.3, -0.3}) {
+    const std::complex<double> value = std::polar(1.0, angle);
+    const Eigen::VectorXcd v = pairs.nearest(value);
+    EXPECT_NEAR(v.norm(), 1, 1e-14);
+    EXPECT_LT((m.cast<std::complex<double>>() * v - value * v).norm(), 1e-14);
+  }
+  EXPECT_NEAR(std::abs(pairs.nearest(4)(2)), 1, 1e-14);
+  m(0, 0) = NAN;
+  EXPECT_THROW((void)spectral::eigenpairs(m), core::NotConverged);
+}
+
 TEST(Eigenvalues, AreThoseOfRankZero) {
   const int rank = core::rank_of(MPI_COMM_WORLD);
   for (const int n : {3, 20}) {

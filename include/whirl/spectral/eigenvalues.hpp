@@ -46,4 +46,16 @@ struct EigenOptions {
 /// they decide must not depend on the last digit of a rank's arithmetic. Collective.
 [[nodiscard]] std::vector<Complex> eigenvalues(MPI_Comm comm, const Eigen::MatrixXd& matrix);
 
+/// Eigenvalues and right eigenvectors (columns of length one) of a small dense matrix, in no order, on this rank alone.
+struct Eigenpairs {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+
+  /// The eigenvector whose eigenvalue is nearest to `value`.
+  [[nodiscard]] Eigen::VectorXcd nearest(Complex value) const;
+};
+
+/// Throws core::NotConverged, also where the matrix is not finite.
+[[nodiscard]] Eigenpairs eigenpairs(const Eigen::MatrixXd& matrix);
+
 }  // namespace whirl::spectral
