@@ -34,7 +34,8 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
   for (PetscInt i = begin; i < end; ++i) {
     PetscInt k = 0;
     check(MatGetRow(jx_.get(), i, &k, nullptr, nullptr));
-    for (PetscInt part = 0; part < 2; ++part) count[static_cast<std::size_t>(2 * (i - begin) + part)] = 2 * k + 2;
+    for (PetscInt part = 0; part < 2; ++part)
+      count[static_cast<std::size_t>(2 * (i - begin) + part)] = 2 * k + (bordered_ ? 2 : 0);
     check(MatRestoreRow(jx_.get(), i, &k, nullptr, nullptr));
   }
   std::vector<PetscInt> local = count;
