@@ -1,12 +1,59 @@
-# whirl_unity(TARGET [FILES]): with WHIRL_UNITY, FILES files of the target (8) are compiled as one, so that their headers
+# whirl_unity(TARGET [FILES]): with WHIRL_UNITY, FILES files of the target (12) are compiled as one, so that their headers
 # are read and their templates made once. Files with compile options of their own stay alone.
 if(WHIRL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC warns of unnamed namespaces in every file but the one it was called with, as if that were a header. It collects
-  # garbage from a few MB on by default, which costs a fifth of the time; without that a compiler takes up to 1.6 GB.
+  # garbage from a few MB on by default, which costs a fifth of the time; without that a compiler takes up to 2 GB.
   add_compile_options(-Wno-subobject-linkage --param=ggc-min-heapsize=1000000)
 endif()
 function(whirl_unity target)
-  set(files ${ARGN} 8)
+  set(files ${ARGN} 12)
   list(GET files 0 files)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${WHIRL_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
 endfunction()
+
+# whirl_unity_tests(VARIABLE NAME): with WHIRL_UNITY, puts files in place of the test files listed in VARIABLE, each of which
+# compiles eight of them. Tests of different files use the same names for their machines and helpers. Therefore each file is
+# read inside a namespace of its own, after the headers of all. A file which opens the namespace whirl itself stays alone.
+function(whirl_unity_tests variable name)
+  if(NOT WHIRL_UNITY)
+    return()
+  endif()
+  set(result)
+  set(n_files 0)
+  foreach(file IN LISTS ${variable})
+    file(STRINGS ${file} own REGEX "^namespace whirl")
+    if(own)
+      list(APPEND result ${file})
+      continue()
+    endif()
+    # The headers in the new file must be those in the old ones.
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    get_filename_component(folder ${file} DIRECTORY)
+    get_filename_component(stem ${file} NAME_WE)
+    file(STRINGS ${file} lines REGEX "^#include ")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "#include \"(.*)\"" "${folder}/\\1" beside "${line}")
+      if(EXISTS ${beside})
+        set(line "#include \"${beside}\"")
+      endif()
+      string(APPEND headers "${line}\n")
+    endforeach()
+    string(APPEND bodies "namespace unity_${stem} {\n#include \"${file}\"\n}\n")
+    math(EXPR n_files "${n_files} + 1")
+    math(EXPR full "${n_files} % 8")
+    if(full EQUAL 0)
+      whirl_write_batch()
+    endif()
+  endforeach()
+  if(bodies)
+    whirl_write_batch()
+  endif()
+  set(${variable} ${result} PARENT_SCOPE)
+endfunction()
+macro(whirl_write_batch)
+  set(batch ${CMAKE_CURRENT_BINARY_DIR}/${name}_${n_files}.cpp)
+  file(CONFIGURE OUTPUT ${batch} CONTENT "${headers}\n${bodies}" @ONLY)
+  list(APPEND result ${batch})
+  set(headers)
+  set(bodies)
+endmacro()

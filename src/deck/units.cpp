@@ -57,13 +57,13 @@ struct Unit {
   double offset = 0;
 };
 
-struct Structure {
+struct UnitParts {
   std::map<std::string, int> powers;
   UnitPtr coherent;
 };
 
 ut_status visit_basic(const ut_unit* unit, void* arg) {
-  auto& s = *static_cast<Structure*>(arg);
+  auto& s = *static_cast<UnitParts*>(arg);
   const char* symbol = ut_get_symbol(unit, UT_ASCII);
   s.powers[symbol ? symbol : ut_get_name(unit, UT_ASCII)] = 1;
   s.coherent.reset(ut_clone(unit));
@@ -71,7 +71,7 @@ ut_status visit_basic(const ut_unit* unit, void* arg) {
 }
 
 ut_status visit_product(const ut_unit*, int count, const ut_unit* const* basic, const int* powers, void* arg) {
-  auto& s = *static_cast<Structure*>(arg);
+  auto& s = *static_cast<UnitParts*>(arg);
   s.coherent.reset(ut_get_dimensionless_unit_one(unit_system()));
   for (int i = 0; i < count; ++i) {
     const char* symbol = ut_get_symbol(basic[i], UT_ASCII);
@@ -145,7 +145,7 @@ Unit parse_unit(std::string_view text) {
   }
   const UnitPtr unit(ut_parse(unit_system(), std::string(text).c_str(), UT_UTF8));
   if (!unit) throw InputError(fmt::format("unknown unit '{}'{}", text, did_you_mean(text, common_units())));
-  Structure s;
+  UnitParts s;
   if (ut_accept_visitor(unit.get(), &visitor, &s) != UT_SUCCESS || !s.coherent)
     throw InputError(fmt::format("unit '{}' cannot be used here", text));
   const std::unique_ptr<cv_converter, decltype(&cv_free)> convert(ut_get_converter(unit.get(), s.coherent.get()),

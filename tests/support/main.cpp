@@ -4,13 +4,6 @@
 #include "whirl/core/petsc.hpp"
 #include "whirl/core/session.hpp"
 
-#ifdef WHIRL_SANITIZE
-// Open MPI unloads its plugins at the end; the leak report then cannot name them, and no suppression fits.
-extern "C" int dlclose(void*) {
-  return 0;
-}
-#endif
-
 // Only rank 0 prints; a failure on any rank fails the program.
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
