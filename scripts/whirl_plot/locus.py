@@ -1,10 +1,10 @@
 """Curves of bifurcations in two parameters, with their points of codimension two."""
-import re
-
 import numpy as np
 from matplotlib import pyplot as plt
 
-from .style import INK, save
+from .curves import hermite
+from .style import GREY, INK, save
+from .units import WORDS as WORDS_OF_UNITS
 
 WORDS = {"meeting": "two meet", "meeting_over_second": "curve turns", "resonance_1_1": "1:1 resonance",
          "resonance_1_2": "1:2 resonance", "resonance_1_3": "1:3 resonance", "resonance_1_4": "1:4 resonance",
@@ -25,14 +25,29 @@ def described(study):
     return study.name if kind.lower() in study.name.lower() else f"{study.name}: {kind}"
 
 
-def covered(axis, place, sides, words):
-    """How much of the curves lies under words beside a place, estimated from their length; words outside count a great deal."""
+STEP = np.array([8.0, 5.0])  # points from a mark to its label
+
+
+def box_of(axis, place, sides, steps, words):
+    """Corners of words beside a place, in fractions of the axes."""
     low, span = (np.array([limits[0] for limits in (axis.get_xlim(), axis.get_ylim())]),
                  np.array([np.ptp(limits) for limits in (axis.get_xlim(), axis.get_ylim())]))
-    size = np.array([0.012 * max(map(len, words)) + 0.01, 0.035 * len(words) + 0.01])
-    near = (np.array(place) - low) / span + sides * np.array([0.01, 0.005])
-    corners = np.sort([near, near + sides * size], axis=0)
-    hits = 1e3 * float(np.any(corners[0] < 0) or np.any(corners[1] > 1))
+    points = 72 * axis.figure.get_size_inches() * (0.9, 0.72)
+    size = np.array([4.0 * max(map(len, words)), 10.5 * len(words)]) / points
+    near = (np.array(place) - low) / span + np.array(sides) * steps * STEP / points
+    corners = np.sort([near, near + np.array(sides) * size], axis=0)
+    if sides[1] == 0:
+        corners[:, 1] += np.array([-0.5, 0.5]) * size[1]
+    return corners
+
+
+def covered(axis, corners, steps, taken):
+    """How much lies under a box: curves by their length, other labels and the world outside the axes a great deal, the way there
+    a little."""
+    low, span = (np.array([limits[0] for limits in (axis.get_xlim(), axis.get_ylim())]),
+                 np.array([np.ptp(limits) for limits in (axis.get_xlim(), axis.get_ylim())]))
+    hits = 1e6 * float(np.any(corners[0] < 0) or np.any(corners[1] > 1)) + 1e-3 * steps
+    hits += 1e3 * sum(bool(np.all(corners[0] < other[1]) and np.all(other[0] < corners[1])) for other in taken)
     for line in axis.get_lines():
         curve = (line.get_xydata() - low) / span
         dense = np.concatenate([np.linspace(a, b, 20) for a, b in zip(curve[:-1], curve[1:])] or [curve])
@@ -51,12 +66,26 @@ def label(axis, points):
             groups.append((x, y, [word]))
         elif word not in near[0][2]:
             near[0][2].append(word)
+    taken = []
     for x, y, words in groups:
-        sides = min(([1, -1], [1, 1], [-1, 1], [-1, -1]), key=lambda s: covered(axis, (x, y), np.array(s), words))
-        axis.annotate(",\n".join(words), (x, y), textcoords="offset points", xytext=(8 * sides[0], 5 * sides[1]), fontsize=8,
-                      color=INK, ha="left" if sides[0] > 0 else "right", va="bottom" if sides[1] > 0 else "top")
+        ways = [((sx, sy), n) for n in (1, 4, 8) for sx, sy in ((1, -1), (1, 1), (-1, 1), (-1, -1), (1, 0), (-1, 0))]
+        sides, steps = min(ways, key=lambda w: covered(axis, box_of(axis, (x, y), *w, words), w[1], taken))
+        taken.append(box_of(axis, (x, y), sides, steps, words))
+        axis.annotate(",\n".join(words), (x, y), textcoords="offset points", xytext=STEP * sides * steps, fontsize=8,
+                      color=INK, ha="left" if sides[0] > 0 else "right", va=("top", "center", "bottom")[sides[1] + 1],
+                      arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkA": 1, "shrinkB": 3} if steps > 1 else None)
     for _, x, y in points:
         axis.plot([x], [y], "o", color=INK, markersize=5, zorder=5)
+
+
+def smooth(x, y):
+    """The curve through the points in their order, cubic over the length of the polygon on axes of equal spans."""
+    x, y = (np.asarray(v, float) for v in (x, y))
+    length = np.hypot(np.diff(x) / (np.ptp(x) or 1), np.diff(y) / (np.ptp(y) or 1))
+    if len(x) < 3 or not np.all(length > 0):
+        return x, y
+    s = np.concatenate([[0], np.cumsum(length)])
+    return tuple(hermite(s, v, np.gradient(v, s, edge_order=2), 8)[1] for v in (x, y))
 
 
 def draw_together(results):
@@ -69,15 +98,16 @@ def draw_together(results):
     figure, axis = plt.subplots(figsize=(8, 5.5))
     points = []
     for study in studies:
-        axis.plot(study.get("locus/parameter"), study.get("locus/second"), color=study.colour, label=described(study))
+        axis.plot(*smooth(study.get("locus/parameter"), study.get("locus/second")), color=study.colour, label=described(study))
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),
                           np.atleast_1d(study.get("codimension_two/second")))
     axis.margins(x=0.04, y=0.08)
     label(axis, points)
-    axis.set_xlabel(f"{last(studies[0].attribute('parameter'))} [{studies[0].attribute('parameter_unit')}]")
-    unit = re.sub("^u(?=m$)", "\u00b5", studies[0].attribute("second_unit"))
-    axis.set_ylabel(f"{last(studies[0].attribute('second'))} [{unit}]")
+    for put, key in ((axis.set_xlabel, "parameter"), (axis.set_ylabel, "second")):
+        unit = studies[0].attribute(f"{key}_unit")
+        unit = WORDS_OF_UNITS.get(unit, unit)
+        put(last(studies[0].attribute(key)) + (f" [{unit}]" if unit else ""))
     return save(figure, results.whole("curves of bifurcations"), "loci", "where motions lose stability, over two parameters",
                 [line for line in axis.get_lines() if not line.get_label().startswith("_")])

@@ -52,7 +52,7 @@ def draw_together(results):
     scale, length = length_unit(np.concatenate([amplitude for s in studies for _, _, amplitude in places(s)]))
     per_unit = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi}.get(unit, 1)
     handles = [Line2D([], [], color=s.colour,
-                      label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s" + "\u00b2" * unit.endswith("/s")) for s in studies]
+                      label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s".replace("-", "\u2212") + "\u00b2" * unit.endswith("/s")) for s in studies]
     linear = False
     for axis, (title, key, _) in zip(axes, panels):
         for speed, major in steady(results, key):

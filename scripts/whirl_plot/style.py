@@ -82,18 +82,25 @@ def parameter_label(study):
     return f"{name} [{unit}]" if unit and unit != "1" else name
 
 
+def columns_of(labels, width, most):
+    """As many columns of a legend as fit into `width` inches; it is filled column by column, each as wide as its longest label."""
+    for columns in range(min(most, len(labels)), 1, -1):
+        if sum(0.6 + 0.068 * max(map(len, column)) for column in np.array_split(np.array(labels, object), columns)) <= width:
+            return columns
+    return 1
+
+
 def save(figure, study, what, note="", handles=(), columns=6):
     """Adds whose picture it is, the legend below and the conventions, and writes it."""
     height = figure.get_figheight()
-    longest = max((len(h.get_label()) for h in handles), default=0)
-    entry = max(1.7, 0.5 + 0.07 * longest)  # inches
-    columns = min(columns, max(2, int(figure.get_figwidth() / entry)))
+    columns = columns_of([h.get_label() for h in handles], figure.get_figwidth(), columns)
+    rows = -(-len(handles) // columns)
     lines = textwrap.wrap(note, max(40, int(17.5 * figure.get_figwidth())))
-    # A figure grows by what its note needs beyond one line.
-    height += 0.15 * max(0, len(lines) - 1)
+    # A figure grows by what its note needs beyond one line and its legend beyond two.
+    height += 0.15 * max(0, len(lines) - 1) + 0.215 * max(0, rows - 2)
     figure.set_figheight(height)
     below = 0.19 * bool(lines) + 0.15 * max(0, len(lines) - 1)
-    head, foot = 0.58, 0.10 + below + 0.215 * -(-len(handles) // columns)  # inches
+    head, foot = 0.58, 0.10 + below + 0.215 * rows  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
     figure.text(0.01, 1 - 0.2 / height, study.run_title, va="center", fontsize=11.5, fontweight="bold", color=INK)
     subtitle = study.name if study.status in ("", "completed") else f"{study.name} \u2014 {study.status}"

@@ -10,7 +10,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import bearing_map, bifurcation, campbell, curves, motion, orbits, shapes, style, sweep  # noqa: E402
+from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -257,10 +257,40 @@ def coefficients(folder):
     assert len(curve) > 100 and abs(error) < 0.01, error
 
 
+def loci(folder):
+    """Curves of bifurcations are curves, and labels stand on none of them."""
+    turn = np.linspace(-0.5, 0.5, 12)
+
+    def fill(root):
+        group = synthetic.study(root, "flips", "locus", bifurcation="flip", parameter="speed", parameter_unit="rad/s",
+                                second="bearings.half.film.compliance", second_unit="1")
+        synthetic.put(group.create_group("locus"), parameter=690 - 900 * turn**2, second=1 + 2 * turn)
+        synthetic.put(group.create_group("codimension_two"), type=["meeting_over_second"], parameter=[690.0], second=[1.0])
+
+    with results_with(folder, fill) as results:
+        figure = Figures().draw(locus, locus.draw_together, results)["loci"]
+        colour = results["flips"].colour
+    figure.canvas.draw()
+    axis = figure.axes[0]
+    assert axis.get_ylabel() == "compliance"
+    curve, = lines_of(axis, colour)
+    assert len(curve) > 80 and np.abs(690 - 225 * (curve[:, 1] - 1)**2 - curve[:, 0]).max() < 1, "a parabola"
+    box = axis.texts[0].get_window_extent()
+    assert not any(box.contains(*place) for place in axis.transData.transform(curve)), "the label covers the curve"
+    assert axis.get_window_extent().fully_contains(box.x0, box.y0) and axis.get_window_extent().fully_contains(box.x1, box.y1)
+
+
+def legends():
+    """As many columns as fit: a long label takes only its own."""
+    assert style.columns_of(["a", "b", "c"], 8, 6) == 3 and style.columns_of([], 8, 6) == 1
+    assert style.columns_of(["stable", "unstable", "x" * 60, "y"], 7.2, 6) == 3 and style.columns_of(["x" * 60] * 2, 7.2, 6) == 1
+
+
 style.use_style()
 beams()
+legends()
 border_of_stability()
-for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, coefficients):
+for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, coefficients, loci):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")
