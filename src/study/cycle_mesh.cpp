@@ -180,11 +180,11 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     const core::Vector tangent = solve::any_tangent(*cycles, there->u.get());
     const auto refined = solve::refine(*cycles, found, there->u.get(), tangent.get(), newton_);
     if (!refined) return {};
-    return CycleNumbers{
-        refined->parameter, std::abs(std::arg(refined->critical)), cycles->gather(refined->u.get()).period,
-        with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
-                                       refined->critical, refined->u.get(), steps_of(law()).longer)
-                         : io::no_value};
+    return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
+                        cycles->gather(refined->u.get()).period,
+                        with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
+                                                       refined->critical, refined->u.get(), steps_of(law()).longer)
+                                         : io::no_value};
   };
   if (const auto numbers = located()) return numbers;
   if (!correct_there(*there, cycle)) return {};
