@@ -66,6 +66,11 @@ def modes(folder):
         assert f"becomes unstable between {low:.5g} and {high:.5g} rpm" in words, words
         assert len(table_of(results["modes"], "Critical speeds: damped frequency equal to the speed").head) == 4
 
+    def undamped(root):
+        root["studies/modes/spectrum/log_decrement"][...] = 0
+    with results_with(folder, lambda *_: None, undamped) as results:
+        assert brief.of(results["modes"]) == "undamped"
+
     def told(studies, _):
         studies["modes"]["values"] = {
             "critical.1.speed": {"value": 689.4, "unit": "rpm", "uncertainty": 1.5}, "critical.1.log_decrement": {"value": 0.2, "unit": "1"},
