@@ -43,9 +43,9 @@ def modes(study):
         known = [digits(float(s * factor), 4) for s, d in zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/log_decrement")))
                  if 0 < d < math.pi / 2.5 or d <= 0]
         out.append(f"critical speeds with an amplification above 2.5: {', '.join(known) or 'none'}" + (f" {unit}" if known else ""))
-    decrements = study.get("spectrum/log_decrement")
-    if np.any(decrements == 0):
-        out.append("undamped" if np.all(decrements == 0) else "some modes are undamped")
+    undamped = study.get("spectrum/log_decrement") == 0
+    if np.any(undamped):
+        out.append("undamped" if np.all(undamped) else "some modes are undamped")
     return out + unstable_from(study, factor, unit)
 
 

@@ -36,6 +36,7 @@ def draw_points(axis, px, py, unit):
         axis.set_ylim(py.mean() - 1, py.mean() + 1)
     else:
         square(axis, px, py)
+    axis.ticklabel_format(useOffset=False)
     finish(axis, unit=unit)
 
 
