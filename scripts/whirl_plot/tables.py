@@ -109,8 +109,20 @@ def peaks_told(study, name, head):
         size = values[at + "semi_major"]
         rows.append([name if n == 0 else "", told(study, at + "speed"),
                      with_bar(None if size.value is None else size.value * 1e6, None if size.uncertainty is None else size.uncertainty * 1e6),
-                     told(study, at + "amplification_factor"), *(told_margins(study, at) if operating_range(study) else [])])
+                     told(study, at + "amplification_factor"), *told_or_computed(study, at)])
     return rows
+
+
+def told_or_computed(study, at):
+    """Margins of summary.json; where the study had no operating speed those from the service speed of the deck's unbalance."""
+    operating = operating_range(study)
+    if operating is None or at + "separation_margin" in study.values:
+        return told_margins(study, at) if operating else []
+    factor, speed = study.values.get(at + "amplification_factor"), study.values[at + "speed"]
+    if speed.value is None:
+        return ["\u2013"] * 3
+    to_unit = speed_axis(study.attribute("speed_unit", "rad/s"))[0]
+    return margins(speed.value / to_unit, None if factor is None else factor.value, operating)
 
 
 def unbalance_response(study):

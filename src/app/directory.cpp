@@ -27,6 +27,7 @@ using core::InputError;
 constexpr const char* deck_name = "resolved.yaml";
 // The deck of a run that replaces an earlier one: it stands from before the first file is removed until the last is.
 constexpr const char* replacing_name = "resolved.yaml.next";
+constexpr const char* removing_name = "resolved.yaml.removing";
 // Those of every run; a folder of a version without manifest has them, too.
 constexpr const char* always[] = {"results.h5", "summary.json"};
 
@@ -90,16 +91,22 @@ void Directory::prepare(const std::string& resolved, Earlier earlier) {
   made_ = fs::create_directories(path_);
   lock();
   io::Manifest manifest(path_);
-  const fs::path deck = path_ / deck_name, unfinished = unfinished_name(deck), replacing = path_ / replacing_name;
+  const fs::path deck = path_ / deck_name, unfinished = unfinished_name(deck), replacing = path_ / replacing_name,
+                 removing = path_ / removing_name;
   const bool ours = fs::exists(deck) || manifest.exists();
   // A run killed while it wrote its deck leaves only that.
   const bool empty =
-      std::all_of(fs::directory_iterator(path_), fs::directory_iterator(),
-                  [&](const fs::directory_entry& e) { return e.path() == unfinished || e.path() == replacing; });
+      std::all_of(fs::directory_iterator(path_), fs::directory_iterator(), [&](const fs::directory_entry& e) {
+        return e.path() == unfinished || e.path() == replacing || e.path() == removing;
+      });
   fresh_ = empty;
   if (!empty && !ours) throw InputError(fmt::format("'{}' holds files that are not results of whirl", path_.string()));
-  // What a killed --force has left of the results that it was to replace goes the same way.
-  if (fs::exists(replacing)) earlier = Earlier::replace;
+  // What a killed --force has left of the results that it had begun to remove goes the same way. Before that nothing is
+  // lost.
+  if (fs::exists(removing))
+    earlier = Earlier::replace;
+  else
+    fs::remove(replacing);
   // A deck by itself that a manifest names is what a run left that came to nothing.
   const bool used = holds_results(path_, manifest) || (fs::exists(deck) && !manifest.has(deck_name));
   if (used && earlier == Earlier::refuse)
@@ -120,11 +127,12 @@ void Directory::prepare(const std::string& resolved, Earlier earlier) {
     fs::remove(replacing, ignored);
     throw;
   }
+  fs::rename(replacing, removing);
   // The deck stays until it is replaced: it says whose directory this is.
   manifest.remove_files(deck_name);
   for (const char* name : always) fs::remove(path_ / name);
   manifest.add(deck_name);
-  fs::rename(replacing, deck);
+  fs::rename(removing, deck);
 }
 
 Directory::Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier)

@@ -159,10 +159,18 @@ std::string of_response(const io::StudySummary& s, const Values& v) {
       const std::string head = "node." + node + ".peak." + k + ".";
       const auto margin = v.get(head + "separation_margin"), required = v.get(head + "required_margin"),
                  factor = v.get(head + "amplification_factor");
-      const bool damped = factor && *factor < 2.5;
-      const std::string verdict = damped                                      ? "damped, not critical"
-                                  : margin && required && *margin < *required ? "TOO NEAR"
-                                                                              : "";
+      // A bar that contains the limit decides nothing.
+      const auto bar_of = [&](const char* which) {
+        return std::isfinite(v.bar(head + which)) ? v.bar(head + which) : 0.0;
+      };
+      const double af_bar = bar_of("amplification_factor"),
+                   bars = bar_of("separation_margin") + bar_of("required_margin");
+      const bool damped = factor && *factor + af_bar < 2.5, may_be = factor && !damped && *factor - af_bar < 2.5;
+      const double missing = margin && required ? *required - *margin : io::no_value;
+      const std::string verdict = damped                                                  ? "damped, not critical"
+                                  : may_be || (missing != 0 && std::abs(missing) <= bars) ? "undetermined"
+                                  : missing > 0                                           ? "TOO NEAR"
+                                                                                          : "";
       grid.add({k, v.cell(head + "speed"), v.cell(head + "semi_major", 1e6), v.cell(head + "amplification_factor"),
                 v.cell(head + "separation_margin", 100), damped ? "-" : v.cell(head + "required_margin", 100),
                 verdict});

@@ -85,7 +85,9 @@ std::optional<solve::Restart> CycleFollower::restore() {
   located_ = read_located(state.group("located"));
   last_ = cycle;
   largest_difference_ = state.real("largest_difference");
-  if (seed_) (void)returned(problem_->orbit(restart.u.get()));
+  const solve::Cycle orbit = problem_->orbit(restart.u.get());
+  if (seed_) (void)returned(orbit);
+  add_margin(restart.point.parameter, orbit);
   return restart;
 }
 

@@ -84,12 +84,16 @@ double CycleFollower::margin(const solve::Cycle& orbit, const system::Plant& sys
   return std::min(films_.margin(least_films(orbit, system)), room(orbit, system));
 }
 
+void CycleFollower::add_margin(double parameter, const solve::Cycle& orbit) {
+  if (films_.exists() || options_.max_eccentricity) margins_.add(parameter, margin(orbit, *system_));
+}
+
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
   const solve::Cycle orbit = problem_->orbit(u);
   record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
-  if (films_.exists() || options_.max_eccentricity) margins_.add(point.parameter, margin(orbit, *system_));
+  add_margin(point.parameter, orbit);
   report_between(last_ ? *last_ : cycle, cycle);
   if ((point.index + 1) % points_per_bar == 0) judge_multiplier(point, u);
   last_ = cycle;

@@ -109,6 +109,8 @@ private:
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
   [[nodiscard]] double margin(const solve::Cycle& orbit, const system::Plant& system) const;
+  /// Of a point of the branch, for the slope at which it meets its limit.
+  void add_margin(double parameter, const solve::Cycle& orbit);
   [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -198,14 +199,25 @@ void put_margins(io::StudySummary& summary, const std::string& head, double spee
   const auto bar = [](double x) {
     return std::isfinite(x) ? std::map<std::string, double>{{"uncertainty", x}} : std::map<std::string, double>{};
   };
-  const double factor = std::numbers::pi / decrement, error = factor * decrement_error / decrement;
-  summary.set(head + "amplification_factor", factor, "1", bar(error));
+  // Both ends of the decrement's bar; where that contains zero nothing bounds the factor.
+  const double unknown = std::numeric_limits<double>::quiet_NaN(), factor = std::numbers::pi / decrement,
+               most = decrement > decrement_error ? std::numbers::pi / (decrement - decrement_error) : unknown,
+               least = std::numbers::pi / (decrement + decrement_error);
+  const bool exact = !std::isfinite(decrement_error);  // no mesh
+  summary.set(head + "amplification_factor", factor, "1",
+              bar(exact ? unknown : std::max(most - factor, factor - least)));
   if (!operating) return;
-  const Separation margin = separation(speed, factor, operating->from, operating->to),
-                   other = separation(speed, factor + error, operating->from, operating->to);
-  summary.set(head + "separation_margin", margin.actual, "1",
-              bar(margin.actual == 0 ? 0 : speed_error / (speed < operating->from ? operating->from : operating->to)));
-  summary.set(head + "required_margin", margin.required, "1", bar(std::abs(other.required - margin.required)));
+  const auto margin = [&](double s, double af) { return separation(s, af, operating->from, operating->to); };
+  const Separation here = margin(speed, factor);
+  const auto doubt = [&](double Separation::*which, double s, double af) {
+    return std::abs(margin(s, af).*which - here.*which);
+  };
+  const double moved = std::max(doubt(&Separation::actual, speed - speed_error, factor),
+                                doubt(&Separation::actual, speed + speed_error, factor));
+  summary.set(head + "separation_margin", here.actual, "1", bar(std::isfinite(speed_error) ? moved : unknown));
+  const double required =
+      std::max(doubt(&Separation::required, speed, most), doubt(&Separation::required, speed, least));
+  summary.set(head + "required_margin", here.required, "1", bar(exact || !std::isfinite(most) ? unknown : required));
 }
 
 }  // namespace

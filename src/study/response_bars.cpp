@@ -53,11 +53,19 @@ private:
   std::vector<double> centres_;
 };
 
-// What refining leaves: a margin is a difference of speeds over one of them.
-double location_of(const std::string& name, double value) {
-  if (name.ends_with("separation_margin")) return value == 0 ? 0 : peak_tolerance * (1 + value);
-  const bool width = name.ends_with("amplification_factor") || name.ends_with("required_margin");
-  return (width ? width_tolerance : peak_tolerance) * std::abs(value);
+// What refining leaves of a value of one of the peaks; nothing of values at the operating speed. A margin is a
+// difference of speeds over one of them; the required one moves with 1/(AF - 1.5).
+double location_of(const std::vector<NamedPeak>& peaks, const std::string& name, double value) {
+  const auto p = std::find_if(peaks.begin(), peaks.end(), [&](const NamedPeak& q) { return name.starts_with(q.head); });
+  if (p == peaks.end()) return 0;
+  if (name.ends_with("separation_margin")) return value == 0 ? 0 : p->errors.speed * (1 + value);
+  if (name.ends_with("required_margin")) {
+    const double af = p->amplification;
+    return af < 2.5 ? 0 : 0.17 * p->errors.factor * af / ((af - 1.5) * (af - 1.5));
+  }
+  return std::abs(value) * (name.ends_with("speed")                  ? p->errors.speed
+                            : name.ends_with("amplification_factor") ? p->errors.factor
+                                                                     : p->errors.height);
 }
 
 // Films in closed form have no mesh: what the refinement of the peaks leaves is all.
@@ -65,7 +73,7 @@ void put_locations(io::StudySummary& summary, const std::vector<NamedPeak>& peak
   for (auto& [name, q] : summary.values)
     for (const NamedPeak& p : peaks)
       if (name.starts_with(p.head) && !name.ends_with(".node"))
-        q.more["uncertainty"] = q.more["uncertainty_location"] = location_of(name, q.value);
+        q.more["uncertainty"] = q.more["uncertainty_location"] = location_of(peaks, name, q.value);
 }
 
 }  // namespace
@@ -91,7 +99,7 @@ void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& m
             p.amplification * b.quality / a.quality);
       }
     });
-  bars.write(location_of);
+  bars.write([&](const std::string& name, double value) { return location_of(peaks, name, value); });
 }
 
 }  // namespace whirl::study

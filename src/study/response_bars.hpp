@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,18 @@ namespace whirl::study {
 inline constexpr double peak_tolerance = 1e-5;   ///< of the speed of a peak
 inline constexpr double width_tolerance = 1e-3;  ///< of the width of a peak, for its amplification factor
 
+/// What the refinement of a peak leaves of its values, relative to them; not a number where it did not settle.
+struct PeakErrors {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double speed = unknown, height = unknown, factor = unknown;
+};
+
 /// The peak of the node with this number among those of the study; its values in the summary start with `head`.
 struct NamedPeak {
   std::string head;
   std::size_t node = 0;
   double speed = 0, height = 0, amplification = 0;  ///< [rad/s, m, 1]
+  PeakErrors errors = {};
 };
 
 /// The response on one film mesh: semi-major axes [speed][node], and the values at operating speed.

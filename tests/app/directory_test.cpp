@@ -93,7 +93,7 @@ TEST(Directory, AKilledReplacementIsFinishedByTheNextRun) {
       const fs::path run = folder / "run";
       run_once(run);
       make(run / "mine.png");
-      make(run / "resolved.yaml.next", "new");
+      make(run / "resolved.yaml.removing", "new");
       const char* order[] = {"results.h5", "summary.json", "csv/s/t.csv", "manifest.txt"};
       for (int k = 0; k < removed; ++k) fs::remove(run / order[k]);
       const Directory held(MPI_COMM_SELF, run.string(), "third", next);
@@ -101,9 +101,20 @@ TEST(Directory, AKilledReplacementIsFinishedByTheNextRun) {
       const auto files = left(run);
       EXPECT_EQ(std::count(files.begin(), files.end(), "results.h5"), 0);
       EXPECT_EQ(std::count(files.begin(), files.end(), "summary.json"), 0);
-      EXPECT_EQ(std::count(files.begin(), files.end(), "resolved.yaml.next"), 0);
+      EXPECT_EQ(std::count(files.begin(), files.end(), "resolved.yaml.removing"), 0);
       EXPECT_EQ(std::count(files.begin(), files.end(), "mine.png"), 1);
     }
+}
+
+// Killed before anything was removed, --force has cost nothing: the next run asks again.
+TEST(Directory, AReplacementKilledBeforeItBeganIsForgotten) {
+  const test::Temporary folder;
+  const fs::path run = folder / "run";
+  run_once(run);
+  const auto before = left(run);
+  make(run / "resolved.yaml.next", "new");
+  EXPECT_THROW(Directory(MPI_COMM_SELF, run.string(), "third", Earlier::refuse), core::InputError);
+  EXPECT_EQ(left(run), before);
 }
 
 // Between two renames a kill leaves of a checkpoint only the one before: work that a plain run must not throw away.
