@@ -164,7 +164,7 @@ def draw_stability_factors(study):
                 axis.plot(s.get("spectrum/frequency")[here] * factor, s.get("spectrum/stability_factor")[here], mark, color=colour,
                           markersize=size, markerfacecolor="none")
             axis.axhline(1, color=INK, linewidth=0.8)
-            axis.set_ylim(bottom=0)
+            axis.set_ylim(0, max(1.05, axis.get_ylim()[1]))
             axis.set_title(f"{speed * factor:.6g} {unit}")
             axis.set_xlabel(f"damped frequency [{unit}]")
             axis.set_ylabel("stability factor $10^{-\\delta}$")
