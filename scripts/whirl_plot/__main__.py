@@ -19,7 +19,7 @@ PICTURES = {
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
     "motion": [motion.draw],
-    "sweep": [sweep.draw_trends, sweep.draw_branches, sweep.draw_response, sweep.draw_films, sweep.draw_coefficients],
+    "sweep": [sweep.draw_trends, sweep.draw_branches, sweep.draw_response, sweep.draw_stability_factors, sweep.draw_films, sweep.draw_coefficients],
 }
 TOGETHER = [machine.draw, bifurcation.draw_together, eccentricity.draw, bearing_map.draw_together, locus.draw_together, run_up.draw_together]
 

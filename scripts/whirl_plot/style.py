@@ -90,8 +90,8 @@ def columns_of(labels, width, most):
     return 1
 
 
-def save(figure, study, what, note="", handles=(), columns=6):
-    """Adds whose picture it is, the legend below and the conventions, and writes it."""
+def save(figure, study, what, note="", handles=(), columns=6, of=""):
+    """Adds whose picture it is, the legend below and the conventions, and writes it; `of` is what is repeated in a sweep."""
     height = figure.get_figheight()
     columns = columns_of([h.get_label() for h in handles], figure.get_figwidth(), columns)
     rows = -(-len(handles) // columns)
@@ -103,7 +103,8 @@ def save(figure, study, what, note="", handles=(), columns=6):
     head, foot = 0.58, 0.10 + below + 0.215 * rows  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
     figure.text(0.01, 1 - 0.2 / height, study.run_title, va="center", fontsize=11.5, fontweight="bold", color=INK)
-    subtitle = study.name if study.status in ("", "completed") else f"{study.name} \u2014 {study.status}"
+    subject = f"{study.name}: {of}" if of else study.name
+    subtitle = subject if study.status in ("", "completed") else f"{subject} \u2014 {study.status}"
     figure.text(0.01, 1 - 0.42 / height, textwrap.shorten(subtitle, max(40, int(14 * figure.get_figwidth())), placeholder=" ..."), va="center", fontsize=9.5, color=GREY)
     if handles:
         figure.legend(handles=list(handles), loc="lower left", ncol=columns, borderpad=0.2, borderaxespad=0, columnspacing=1.4,

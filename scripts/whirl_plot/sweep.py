@@ -54,6 +54,12 @@ def each(study, kind, *needed):
             yield name, having
 
 
+def words_of(subject):
+    """A study by its name and what drives it: the grade of its unbalance is in one or the other."""
+    unbalance = subject.attribute("unbalance", "")
+    return subject.name + (f", unbalance {unbalance}" if unbalance else "")
+
+
 def legend(rows):
     return [Line2D([], [], color=c, label=v) for v, c, _ in rows]
 
@@ -86,7 +92,8 @@ def draw_branches(study):
                 axis.set_ylabel("y / c" if clearance is not None else "y [m]")
             note = "journal relative to the bearing centre, in clearances of each variant; all points of a cycle lie between its two curves"
             files += save(figure, study, plain(name), note if len(columns) > 1 else "",
-                          branch_legend([k for _, f in followed for k in f.kinds], legend(rows), [e for _, f in followed for e in f.ends]))
+                          branch_legend([k for _, f in followed for k in f.kinds], legend(rows), [e for _, f in followed for e in f.ends]),
+                          of=words_of(first))
     return files
 
 
@@ -124,7 +131,7 @@ def draw_response(study):
         handles += [Line2D([], [], color=c, linewidth=1.2, label=f"{v}, nonlinear") for v, c, _ in members]
         if any(not branch.stable.all() for *_, branch in members):
             handles.append(Line2D([], [], color=GREY, linestyle=DASHED, linewidth=1.2, label="nonlinear, unstable"))
-        files += save(figure, study, plain(name), "journal relative to the bearing centre", handles)
+        files += save(figure, study, plain(name), "journal relative to the bearing centre", handles, of=words_of(first))
     return files
 
 
@@ -138,6 +145,33 @@ def nonlinear(study):
                 and s.attribute("unbalance", "") and s.attribute("period_turns", 1) == 1 and s.has("branch/x_max", "branch/x_min"):
             found.setdefault(s.attribute("unbalance"), []).append((words, s))
     return found.items()
+
+
+def draw_stability_factors(study):
+    """Stability factors of all variants over the damped frequency, a panel for each speed; where there are few speeds."""
+    files = []
+    for name, rows in each(study, "modes", "spectrum/speed", "spectrum/frequency", "spectrum/stability_factor"):
+        factor, label, _, _ = speed_axis(rows[0][2].attribute("speed_unit", "rad/s"))
+        speeds = np.unique(rows[0][2].get("spectrum/speed"))
+        if len(speeds) > 6:
+            continue
+        unit = label.partition("[")[2].rstrip("]")
+        figure, axes, _ = grid_of(len(speeds), width=4.6, height=3.6, columns=2)
+        marks = [("os^Dv"[k % 5], 9 - 2 * min(k, 3)) for k in range(len(rows))]
+        for axis, speed in zip(axes, speeds):
+            for (_, colour, s), (mark, size) in zip(rows, marks):
+                here = np.isclose(s.get("spectrum/speed"), speed) & (s.get("spectrum/frequency") > 0)
+                axis.plot(s.get("spectrum/frequency")[here] * factor, s.get("spectrum/stability_factor")[here], mark, color=colour,
+                          markersize=size, markerfacecolor="none")
+            axis.axhline(1, color=INK, linewidth=0.8)
+            axis.set_ylim(0, max(1.05, axis.get_ylim()[1]))
+            axis.set_title(f"{speed * factor:.6g} {unit}")
+            axis.set_xlabel(f"damped frequency [{unit}]")
+            axis.set_ylabel("stability factor $10^{-\\delta}$")
+        handles = [Line2D([], [], color=c, marker=mark, markersize=size, markerfacecolor="none", linestyle="", label=v)
+                   for (v, c, _), (mark, size) in zip(rows, marks)]
+        files += save(figure, study, plain(name), "unstable above 1; delta: logarithmic decrement", handles, of=name)
+    return files
 
 
 def draw_films(study):
@@ -158,7 +192,7 @@ def draw_films(study):
             axes[0].set_ylabel("pressure [MPa]")
             axes[0].set_title("around, at the middle")
             axes[1].set_title("along, at the highest pressure")
-            files += save(figure, study, f"{plain(name)}.{plain(bearing)}", f"{bearing}, first pad", legend(rows))
+            files += save(figure, study, f"{plain(name)}.{plain(bearing)}", f"{bearing}, first pad", legend(rows), of=name)
     return files
 
 

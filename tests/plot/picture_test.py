@@ -18,7 +18,7 @@ class Figures(dict):
     """Figures by name of the picture, of functions that draw a subject."""
 
     def draw(self, module, function, subject):
-        real, module.save = module.save, lambda figure, study, what, note="", handles=(), columns=6: self.update({what: figure}) or []
+        real, module.save = module.save, lambda figure, study, what, note="", handles=(), columns=6, of="": self.update({what: figure}) or []
         try:
             function(subject)
         finally:
@@ -222,7 +222,7 @@ def responses_of_a_sweep(folder):
         study = results["whole shaft"]
         study.summary = {"variants": [{"name": "whole", "changes": {"rotor.reduction": "{type: none}"}, "studies": []}]}
         labels = []
-        real, sweep.save = sweep.save, lambda figure, study, what, note="", handles=(), columns=6: labels.extend((h.get_label(), h) for h in handles) or [figure]
+        real, sweep.save = sweep.save, lambda figure, study, what, note="", handles=(), columns=6, of="": labels.extend((h.get_label(), h) for h in handles) or [figure]
         try:
             figure = sweep.draw_response(study)[0]
         finally:
@@ -235,6 +235,54 @@ def responses_of_a_sweep(folder):
     assert len(wide) == 2 and all(line.get_linestyle() == "-" for line in wide)
     dashed = [line for line in lines if line.get_linestyle() == "--"]
     assert unstable.any() and len(dashed) >= 4 and all(line.get_linewidth() < 1.2 for line in dashed), "two branches, unstable in two stretches or more"
+
+
+def branches_of_a_sweep(folder):
+    """The title says whose branches they are, and with which unbalance."""
+    def fill(root):
+        group = synthetic.study(root, "pedestals", "sweep")
+        for k, title in enumerate(("weak", "strong")):
+            variant = group.create_group(f"variants/{title}")
+            variant.attrs.update({"title": title, "order": k + 1})
+            for name in ("balanced", "pair, G2.5"):
+                root.copy(root[f"studies/{name}"], variant, name)
+            variant["pair, G2.5"].attrs["unbalance"] = "gen_pair_g63"
+        root["studies/pair, G2.5"].attrs["unbalance"] = "gen_pair_g63"
+
+    with results_with(folder, fill) as results:
+        results["pedestals"].summary = {"variants": [{"name": n, "changes": {}, "studies": []} for n in ("weak", "strong")]}
+        titles = {}
+        real, style.write = style.write, lambda figure, stem: titles.update({stem.name: figure.texts[1].get_text()}) or []
+        try:
+            sweep.draw_branches(results["pedestals"])
+        finally:
+            style.write = real
+    assert titles == {"pedestals.balanced": "pedestals: balanced",
+                      "pedestals.pair__G2.5": "pedestals: pair, G2.5, unbalance gen_pair_g63"}, titles
+
+
+def stability_factors(folder):
+    """A panel for each speed; a circle for every mode of one variant, another mark for those of the next."""
+    def fill(root):
+        group = synthetic.study(root, "whole shaft", "sweep")
+        for k, (title, shift) in enumerate((("reduced", 0), ("whole", 0.01))):
+            variant = group.create_group(f"variants/{title}")
+            variant.attrs.update({"title": title, "order": k + 1})
+            factors = variant.create_group("factors")
+            factors.attrs.update({"kind": "modes", "title": "factors", "status": "completed", "speed_unit": "rpm"})
+            synthetic.put(factors.create_group("spectrum"), speed=np.repeat([376.991118, 471.238898], 3), mode=[1, 2, 3] * 2,
+                          frequency=[80.0, 100, 0, 84, 104, 150], stability_factor=[0.9 + shift, 0.7, 0.0, 0.97, 0.72, 0.5])
+
+    with results_with(folder, fill) as results:
+        study = results["whole shaft"]
+        study.summary = {"variants": [{"name": n, "changes": {}, "studies": []} for n in ("reduced", "whole")]}
+        figure = Figures().draw(sweep, sweep.draw_stability_factors, study)["factors"]
+    assert [a.get_title(loc="left") for a in figure.axes[:2]] == ["3600 rpm", "4500 rpm"]
+    points = [[line for line in axis.get_lines() if line.get_linestyle() == "None"] for axis in figure.axes[:2]]
+    assert [len(line.get_xdata()) for axis in points for line in axis] == [2, 2, 3, 3], "what does not vibrate is no mode of this picture"
+    first, second = points[0]
+    assert np.allclose(first.get_xdata(), np.array([80, 100]) * 30 / np.pi) and first.get_marker() != second.get_marker()
+    assert np.allclose(second.get_ydata() - first.get_ydata(), [0.01, 0])
 
 
 def coefficients(folder):
@@ -290,7 +338,8 @@ style.use_style()
 beams()
 legends()
 border_of_stability()
-for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, coefficients, loci):
+for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
+              coefficients, loci):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")

@@ -228,8 +228,20 @@ def design(h, whole=False):
                     h.true(f"{variant['name']}, {study['name']}: {'loses' if expected else 'keeps'} stability below service speed", lost == expected)
 
 
+def whirl(h):
+    """Self-excited branches of all three pedestals begin at the thresholds of those machines, with the whirl of the Hopf point."""
+    found = h.run("pedestals_whirl.yaml", "whirl", ["bearings.*.film.cells=[40, 12]"] + [
+        f"studies.1.cycle_branch.{o}" for o in ("max_points=24", "step.max=200 rpm", "intervals=30", "detect=[]")])
+    sweep = found["pedestals"]
+    births = column(sweep, "whirl.hopf")["values"]
+    for name, born in zip(["as given"] + [v["name"] for v in sweep["variants"]], births):
+        fine = THRESHOLDS["pedestals"][1][name][0]
+        h.close(f"{name}: the branch is born at [rpm]", born, fine, 0.016 * fine)
+    h.true("weak above, strong below the deck as it stands", births[1] > births[0] > births[2], f"{births}")
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
     {"variants": variants, "ranks": ranks, "resume": resume, "failed": failed, "films": films, "reduction": reduction,
-     "unbalance_cases": unbalance_cases, "design": design, "clearances": clearances, "design_whole": lambda h: design(h, whole=True)}[sys.argv[3]](harness)
+     "unbalance_cases": unbalance_cases, "design": design, "clearances": clearances, "whirl": whirl, "design_whole": lambda h: design(h, whole=True)}[sys.argv[3]](harness)
     harness.finish()
