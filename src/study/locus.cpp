@@ -192,6 +192,8 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   if (left) {
     restart = restore(*left, start.get());
     core::check(VecCopy(restart->u.get(), start.get()));
+    // Whether the first step passes amplitude zero is seen by comparison with the last point.
+    if (cycles_ && cycles_->options().autonomous) last_swing_ = swing(start.get());
   }
   problem_->prime(start.get());
 
@@ -276,8 +278,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   }
   end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks, std::move(restart));
   if (end.limited && shrunk) {
-    ended_ = true;
-    end_at_generalised_hopf(end);
+    ended_ = end_at_generalised_hopf();
     context_.results.group().set("end", end.reason);
   }
   end.completed = end.completed || left_ || ended_;

@@ -1,10 +1,10 @@
 // Curves of cyclic folds that end where their cycles shrink to an equilibrium: at a generalised Hopf point.
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "amplitude_fit.hpp"
 #include "hopf_cycles.hpp"
 #include "locus_follower.hpp"
 #include "whirl/core/agree.hpp"
@@ -14,7 +14,8 @@ namespace whirl::study {
 namespace {
 
 constexpr double least_amplitude = 0.02;  // of a clearance: Newton's method fails not far below
-constexpr double apart = 1.5;             // ratio of the amplitudes behind the extrapolation, at least
+constexpr double small = 0.07;            // of a clearance: up to here a point says where the curve ends
+constexpr std::size_t few = 5;            // points that say so, at least
 constexpr int samples = 24;
 
 }  // namespace
@@ -50,45 +51,46 @@ double LocusFollower::margin_of_amplitude(Vec whole) const {
   return (beyond ? -1 : 1) * ratio * ratio - 1;
 }
 
-// Folds of cycles of amplitude A lie at p_0 + p_1 A^2 + p_2 A^4 near the generalised Hopf point p_0: from three points
-// of the curve; two of them show how much the third one matters.
-void LocusFollower::end_at_generalised_hopf(const solve::BranchEnd& end) {
-  std::vector<Row> last;
-  for (auto row = rows_.rbegin(); row != rows_.rend() && last.size() < 3; ++row)
-    if (last.empty() || row->amplitude >= apart * last.back().amplitude) last.push_back(*row);
-  const auto at_zero = [&](auto value, std::size_t count) {
-    double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      double weight = 1;
-      for (std::size_t j = 0; j < count; ++j) {
-        const double a = last[i].amplitude * last[i].amplitude, b = last[j].amplitude * last[j].amplitude;
-        if (j != i) weight *= b / (b - a);
-      }
-      sum += weight * value(last[i]);
-    }
-    return sum;
-  };
-  const auto first = [](const Row& r) { return r.first; };
-  const auto second = [](const Row& r) { return r.second; };
-  const std::size_t count = last.size();
-  Row row = last.front();
-  row.first = at_zero(first, count);
-  row.second = at_zero(second, count);
+// Cycles up to `small` clearances, or the smallest few: back from the end of the curve, and beyond its start on the
+// other way, as long as they grow.
+std::vector<Row> LocusFollower::smallest_cycles() const {
+  std::vector<Row> back(rows_.rbegin(), rows_.rend()), out;
+  back.push_back(start_);
+  back.insert(back.end(), done_.begin(), done_.end());
+  for (const Row& row : back) {
+    if (!out.empty() && row.amplitude <= out.back().amplitude) break;
+    if (row.amplitude > small && out.size() >= few) break;
+    out.push_back(row);
+  }
+  return out;
+}
+
+// Folds of cycles of amplitude A lie at p_0 + p_1 A^2 + p_2 A^4 near the generalised Hopf point p_0. False if too few
+// of them are known to say where.
+bool LocusFollower::end_at_generalised_hopf() {
+  const std::vector<Row> rows = smallest_cycles();
+  if (rows.size() < 2) return false;
+  std::vector<double> amplitudes, firsts, seconds;
+  for (const Row& r : rows) {
+    amplitudes.push_back(r.amplitude);
+    firsts.push_back(r.first);
+    seconds.push_back(r.second);
+  }
+  const AtZeroAmplitude first = at_zero_amplitude(amplitudes, firsts), second = at_zero_amplitude(amplitudes, seconds);
+  Row row = rows.front();
+  row.first = first.value;
+  row.second = second.value;
   row.amplitude = 0;
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  // What the last step of the extrapolation changed, and what the location left.
-  const auto error = [&](auto value, double whole) {
-    return count < 2 ? unknown : std::abs(whole - at_zero(value, count - 1)) + end.bracket * second_scale_;
-  };
   core::agree(context_.comm, [&] {
     second_value_ = row.second;
     system_->set_parameter(row.first);
     system_->set_train(train_at(row.first));
   });
-  record_row(generalised_hopf, row, error(second, row.second) / second_scale_);
+  record_row(generalised_hopf, row, second.bar / second_scale_);
   auto& c = context_.results.summary().codimension_two.back();
-  c.more["uncertainty_parameter"] = error(first, row.first) / deck::number_to_si(1, first_range_.unit);
+  c.more["uncertainty_parameter"] = first.bar / deck::number_to_si(1, first_range_.unit);
   c.more["end_of_curve"] = 1;
+  return true;
 }
 
 }  // namespace whirl::study

@@ -80,7 +80,8 @@ private:
   [[nodiscard]] double amplitude_of(const Eigen::MatrixXd& swing) const;
   // Positive as long as cycles of a fold are large enough to go on.
   [[nodiscard]] double margin_of_amplitude(Vec whole) const;
-  void end_at_generalised_hopf(const solve::BranchEnd& end);
+  [[nodiscard]] std::vector<Row> smallest_cycles() const;
+  [[nodiscard]] bool end_at_generalised_hopf();
   void suspect(double from, double to, const std::string& reason);
   // Points in one direction from the start, without it.
   std::vector<Row> follow(double to, double back, solve::BranchEnd& end);

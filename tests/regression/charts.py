@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Runs a stability chart and compares where its curves begin, pass and end with values found one by one.
 
-charts.py PROGRAM SOURCE rigid|compliant [LAUNCHER WORDS...]
+charts.py PROGRAM SOURCE rigid|compliant|folds [LAUNCHER WORDS...]
 
 rigid: independent reference values at F0* = 0.5, 1 and 2 (0.16, 0.64 and 2.56 N; Omega_0 = 80, 160 and 320 rad/s); the
 curve of upper folds must end at the generalised Hopf point, which is found from the Lyapunov coefficient alone.
+folds: the curve of upper folds, begun at several loads with several steps, ends at one place: bars overlap.
 compliant: Hopf point and flip at B = 1 as branches of short.yaml with that compliance find them, on the same mesh.
 """
 import sys
@@ -85,9 +86,57 @@ def compliant(h):
             h.close(f"{kind} at B = 1 [rad/s]", s, w, 3e-4 * w)
 
 
+FOLDS = """
+title: Where the curve of upper folds ends
+base: {base}
+rotor: {{load: {load} N}}
+studies:
+  - equilibrium_branch: {{name: balanced, parameter: speed, range: {{from: 500 rad/s, to: 600 rad/s}}}}
+  - cycle_branch:
+      name: whirl
+      origin: hopf
+      parameter: speed
+      range: {{from: {speed} rad/s, to: 583 rad/s}}
+      step: {{initial: {initial} rad/s, min: 0.000001 rad/s, max: {longest} rad/s}}
+      max_points: {points}
+      intervals: 40
+      degree: 4
+      points: gauss
+      mesh_tolerance: 1.0e-7
+      adapt_every: 2
+  - locus:
+      name: curve
+      of: whirl
+      bifurcation: 2
+      parameter: rotor.load
+      range: {{from: {load} N, to: 0.16 N}}
+      step: {{initial: {step} N, min: 0.00001 N, max: 0.05 N}}
+      first_range: {{from: 80 rad/s, to: 2400 rad/s}}
+"""
+
+
+def folds(h):
+    found = []
+    for load, step, speed, initial, longest, points in ((1.04, 0.05, 554.6, 0.01, 0.05, 40), (1.15, 0.005, 550, 0.05, 8, 400),
+                                                        (1.06, 0.0045, 559, 0.01, 0.1, 60)):
+        deck, name = h.work / "folds.yaml", f"folds_{load}"
+        deck.write_text(FOLDS.format(base=(h.source / "inputs/rigid_rotor/short_f1.yaml").resolve(), load=load, step=step,
+                                     speed=speed, initial=initial, longest=longest, points=points))
+        run = h.run(deck, name, code=None)["curve"]
+        ends = run.get("codimension_two") or []
+        h.true(f"from {load} N: ends at a generalised Hopf point", run["status"] == "completed" and len(ends) == 1, run["status"])
+        found += [(load, c["value"], c["uncertainty_parameter"], c["second_value"], c["uncertainty"]) for c in ends]
+    h.true("three ends", len(found) == 3)
+    for k, a in enumerate(found):
+        h.true(f"from {a[0]} N: bar of two thousandths of a percent", 0 < a[4] < 2e-5 * a[3], a[4])
+        for b in found[:k]:
+            h.close(f"from {a[0]} N as from {b[0]} N, load [N]", a[3], b[3], a[4] + b[4])
+            h.close(f"from {a[0]} N as from {b[0]} N, speed [rad/s]", a[1], b[1], a[2] + b[2])
+
+
 def main():
     h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"rigid": rigid, "compliant": compliant}[sys.argv[3]](h)
+    {"rigid": rigid, "compliant": compliant, "folds": folds}[sys.argv[3]](h)
     h.finish()
 
 
