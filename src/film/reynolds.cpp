@@ -26,6 +26,9 @@ void check(const Geometry& g, const Options& o, const Lubricant& l) {
   demand(closed || o.grooves.empty(), "only a cylindrical bore has grooves");
   demand(o.inlet.type == Inlet::Type::free || (closed && o.grooves.empty()),
          "only a cylindrical bore without grooves has an inlet");
+  demand(o.cavitation != Options::Cavitation::mass_conserving || !closed || !o.grooves.empty() ||
+             o.inlet.type != Inlet::Type::free,
+         "a film that conserves its mass must be fed: a cylindrical bore needs 'grooves' or an 'inlet'");
   demand(g.preload < 1.0, "the preload must be below 1");
   demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
   demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");
@@ -38,7 +41,8 @@ class ReynoldsFilm final : public Model {
 public:
   ReynoldsFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
       : options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
-    const bool modal = !options.tilt && options.cavitation != Options::Cavitation::reynolds;
+    const bool modal = !options.tilt && (options.cavitation == Options::Cavitation::half_sommerfeld ||
+                                         options.cavitation == Options::Cavitation::none);
     for (const Pad& pad : pads_) {
       solvers_.push_back(modal && !pad.closed ? make_modal_pad(pad, options, lubricant)
                                               : make_banded_pad(pad, options, lubricant));
@@ -135,6 +139,11 @@ Summary ReynoldsFilm::summary(const Motion& given) {
       }
     }
     result.power_loss += shear * U;
+    if (const std::optional<Flows> flows = solvers_[n]->flows(motion)) {
+      add(result.outlet_flow, flows->leaves);
+      add(result.imbalance, flows->enters - flows->leaves - flows->sides - flows->squeezed);
+      if (options_.cavitation == Options::Cavitation::mass_conserving) exact = *flows;
+    }
     if (pad.closed) result.inlet_flow = std::numeric_limits<double>::quiet_NaN();
   }
   return result;
