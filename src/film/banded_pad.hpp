@@ -65,7 +65,11 @@ private:
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(place(i) * rows_ + j); }
   std::size_t around(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * rows_ + j : i); }
   std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
-  double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)]; }
+  // A groove reaches from side to side, where the pressure is zero as everywhere.
+  double pressure_at(int i, int j) const {
+    if (j < 0 || j >= rows_ || (!pad_.closed && wall(i))) return 0.0;
+    return wall(i) ? groove_pressure_[static_cast<std::size_t>(wrap(i))] : x_[at(wrap(i), j)];
+  }
   double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
   // Mobility around the pad at a node, for the curvature of the pressure at the rupture.
   double mobility_at(int i, int j) const {

@@ -141,8 +141,9 @@ void BandedPad::integrate_conserving(Need need, Response& response) {
   for (int f = 0; f < 4; ++f) response.force[static_cast<std::size_t>(f)] += force[f];
 }
 
-// Film that is ruptured within a cell or cut off counts as it is written in the equations. Volume flows through the faces next to the edges of the pad, in m^3/s; with the squeezed volume of the cells between
-// them they sum to zero to rounding.
+// Film that is ruptured within a cell or cut off counts as it is written in the equations. Volume flows through the
+// faces next to the edges of the pad, in m^3/s; with the squeezed volume of the cells between them they sum to zero to
+// rounding.
 std::optional<Flows> BandedPad::flows(const Motion& motion) {
   if (cavitation_ == Options::Cavitation::half_sommerfeld) return {};
   Response ignored;
