@@ -56,8 +56,8 @@ std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
       {Options::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
       {Options::Cavitation::mass_conserving, "mass_conserving",
        "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
-       "the "
-       "edges of pads, grooves and inlets"},
+       "edges of pads, grooves and inlets. Loads, stiffness and flows are exact, damping is that of a cavity that "
+       "neither fills nor empties"},
       {Options::Cavitation::none, "none", "negative pressure stays"}};
   return table;
 }
