@@ -31,16 +31,22 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
   const auto size = (n - static_cast<std::size_t>(first_)) * static_cast<std::size_t>(rows_);
   source_.assign(size, 0.0);
   cavitated_.assign(size, 0);
-  if (pad.closed) grooves_ = grooved(grid_.n_theta, options.grooves);
+  if (pad.closed) {
+    grooves_ = grooved(grid_.n_theta, options.grooves);
+    groove_pressure_ = pressures_in_grooves(grid_.n_theta, options.grooves);
+  }
   for (int i = first_; i < grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = wall(i);
   if (cavitation_ == Options::Cavitation::reynolds) enter_ruptured();
   x_.assign(size, 0.0);
   load_.assign(size, Quad::zero());
+  if (cavitation_ == Options::Cavitation::mass_conserving) enter_conserving(options.edge_fill);
 }
 
 void BandedPad::coefficients(const Motion& motion) {
   const int n = grid_.n_theta;
+  speed_ = motion.speed;
+  ahead_ = speed_ < 0.0 ? -1 : 1;
   X_ = motion.position[0] - pad_.centre_x;
   Y_ = motion.position[1] - pad_.centre_y;
   tx_ = tilt_ ? motion.position[2] : 0.0;
@@ -111,6 +117,7 @@ void BandedPad::assemble() {
 
 void BandedPad::solve() {
   if (cavitation_ == Options::Cavitation::reynolds) return solve_ruptured();
+  if (cavitation_ == Options::Cavitation::mass_conserving) return solve_conserving();
   assemble();
   band_.factor();
   for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = cavitated_[k] ? 0.0 : -source_[k];
@@ -120,6 +127,7 @@ void BandedPad::solve() {
 // Force, and its derivatives in the nodal pressures into load_.
 void BandedPad::integrate(Need need, Response& response) {
   if (cavitation_ == Options::Cavitation::reynolds) return integrate_ruptured(need, response);
+  if (cavitation_ == Options::Cavitation::mass_conserving) return integrate_conserving(need, response);
   const bool truncated = cavitation_ == Options::Cavitation::half_sommerfeld;
   const double area = pad_.radius * grid_.dtheta * grid_.dz * grid_.mean;
   std::fill(load_.begin(), load_.end(), Quad::zero());
@@ -159,8 +167,9 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
   for (std::size_t k = 0; k < load_.size(); ++k) {
     if (cavitated_[k]) load_[k] = Quad::zero();
   }
-  band_.solve(load_);
   const bool ruptured = cavitation_ == Options::Cavitation::reynolds;
+  const bool conserving = cavitation_ == Options::Cavitation::mass_conserving;
+  conserving ? general_->solve_transposed(load_) : band_.solve(load_);
   if (ruptured) weigh_ruptured();
   const auto lambda = [&](int i, int j) {
     return wall(i) || j < 0 || j >= rows_ ? Quad::zero() : load_[at(wrap(i), j)];
@@ -184,7 +193,15 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
         for (const int node : {i, i + 1})
           if (!wall(node)) e += 0.5 * stiffen_ * by_mobility_[at(wrap(node), j)];
       }
-      const Quad slope = a_.d_h[around(i, j)] * e;
+      Quad slope = a_.d_h[around(i, j)] * e;
+      if (conserving) {
+        const int up = ahead_ > 0 ? i : i + 1;
+        const double s = 0.5 * share(j) * deficit_at(up, j) / grid_.dtheta;
+        slope += s * (lambda(up + ahead_, j) - lambda(up, j));
+        // The deficit given at an edge grows with the speed.
+        if (wall(up) && !pad_.closed && void_at_edge_ != 0.0)
+          speed += (ahead_ * carried(i, j) * void_at_edge_) * lambda(up + ahead_, j);
+      }
       level += slope;
       moment += row_z(j) * slope;
       speed += a_.d_speed[around(i, j)] * e;
@@ -242,13 +259,29 @@ std::vector<double> BandedPad::pressure(const Motion& motion) {
   solved_.reset();
   coefficients(motion);
   solve();
-  const bool truncated = cavitation_ != Options::Cavitation::none;
+  const bool truncated =
+      cavitation_ == Options::Cavitation::half_sommerfeld || cavitation_ == Options::Cavitation::reynolds;
   std::vector<double> values;
   for (int i = 0; i <= grid_.n_theta; ++i) {
     for (int j = 0; j <= grid_.n_z; ++j) {
       const int row = (tilt_ ? j : std::min(j, grid_.n_z - j)) - 1;
       const double p = pressure_at(i, row);
       values.push_back(truncated ? std::max(p, 0.0) : p);
+    }
+  }
+  return values;
+}
+
+std::vector<double> BandedPad::fill(const Motion& motion) {
+  if (cavitation_ != Options::Cavitation::mass_conserving) return {};
+  Response ignored;
+  add(motion, Need::force, ignored);
+  std::vector<double> values;
+  for (int i = 0; i <= grid_.n_theta; ++i) {
+    for (int j = 0; j <= grid_.n_z; ++j) {
+      // The sides have what stands beside them.
+      const int row = std::clamp((tilt_ ? j : std::min(j, grid_.n_z - j)) - 1, 0, rows_ - 1);
+      values.push_back(speed_ == 0.0 ? 1.0 : 1.0 - deficit_at(i, row) / std::abs(speed_));
     }
   }
   return values;

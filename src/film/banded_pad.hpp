@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "film/band.hpp"
+#include "film/general_band.hpp"
 #include "film/mobility.hpp"
 #include "film/pad.hpp"
 
@@ -23,6 +24,8 @@ public:
   BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
   void add(const Motion& motion, Need need, Response& response) override;
   std::vector<double> pressure(const Motion& motion) override;
+  std::vector<double> fill(const Motion& motion) override;
+  std::optional<Flows> flows(const Motion& motion) override;
 
 private:
   struct Faces {  // coefficients on faces, with derivatives in h and Omega
@@ -43,6 +46,12 @@ private:
   double residual(int i, int j) const;
   void integrate_ruptured(Need need, Response& response);
   void weigh_ruptured();
+  void enter_conserving(double edge_fill);
+  void solve_conserving();
+  void assemble_conserving();
+  void integrate_conserving(Need need, Response& response);
+  double deficit_at(int i, int j) const;
+  double carried(int face, int j) const;
 
   int wrap(int i) const { return pad_.closed ? (i + grid_.n_theta) % grid_.n_theta : i; }
   // Pressure zero on the whole column: beyond an edge of the pad, or in a groove.
@@ -56,7 +65,11 @@ private:
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(place(i) * rows_ + j); }
   std::size_t around(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * rows_ + j : i); }
   std::size_t along(int i, int j) const { return static_cast<std::size_t>(tilt_ ? i * z_faces_ + j : i); }
-  double pressure_at(int i, int j) const { return wall(i) || j < 0 || j >= rows_ ? 0.0 : x_[at(wrap(i), j)]; }
+  // A groove reaches from side to side, where the pressure is zero as everywhere.
+  double pressure_at(int i, int j) const {
+    if (j < 0 || j >= rows_ || (!pad_.closed && wall(i))) return 0.0;
+    return wall(i) ? groove_pressure_[static_cast<std::size_t>(wrap(i))] : x_[at(wrap(i), j)];
+  }
   double share(int j) const { return j == rows_ - 1 ? last_share_ : 1.0; }
   // Mobility around the pad at a node, for the curvature of the pressure at the rupture.
   double mobility_at(int i, int j) const {
@@ -76,9 +89,11 @@ private:
   // The parabola in front of the rupture is seen by cells that are short against the length of the pad; where they are
   // not, 1 + (dx/(L/4))^4 flattens it and whole cells remain.
   double stiffen_;
-  int first_;                  // first column of unknowns
-  std::vector<bool> grooves_;  // columns of a closed pad
+  int first_;                            // first column of unknowns
+  std::vector<bool> grooves_;            // columns of a closed pad,
+  std::vector<double> groove_pressure_;  // and what is held there
 
+  double speed_ = 0.0;
   double X_ = 0.0, Y_ = 0.0, tx_ = 0.0, ty_ = 0.0, h_min_ = 0.0;
   Faces a_, b_;                  // [n_theta][rows], [n_theta][z_faces]; one column if aligned
   std::vector<double> source_;   // v_j src_ij
@@ -90,8 +105,15 @@ private:
   // cells cut or in the cavity add to the diagonal; dF = -(by_source_ d src + by_mobility_ da) beside the adjoint of A.
   std::vector<double> u_, more_;
   std::vector<Quad> by_source_, by_mobility_;
-  int mark_ = 0;        // rows from here on change while the rupture moves (Band::factor)
-  bool stale_ = false;  // the rupture has moved since band_ was factorised
+  // Mass-conserving cavitation only.
+  std::optional<GeneralBand> general_;
+  std::vector<char> full_;        // nodes with pressure; kept as the start of the next evaluation
+  std::vector<double> deficit_;   // s of the others, rad/s
+  std::vector<double> diagonal_;  // of A
+  double void_at_edge_ = 0.0;     // 1 - edge_fill
+  int ahead_ = 1;                 // +1: oil is carried towards larger theta
+  int mark_ = 0;                  // rows from here on change while the rupture moves (Band::factor)
+  bool stale_ = false;            // the rupture has moved since band_ was factorised
   // What x_ and band_ belong to: solvers ask for the force first, then for the tangents at the same place.
   std::optional<Motion> solved_;
 };

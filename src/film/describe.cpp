@@ -54,6 +54,10 @@ std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
   static constexpr deck::Name<Options::Cavitation> table[] = {
       {Options::Cavitation::half_sommerfeld, "half_sommerfeld", "negative pressure is cut off after the solution"},
       {Options::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
+      {Options::Cavitation::mass_conserving, "mass_conserving",
+       "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
+       "edges of pads, grooves and inlets. Loads, stiffness and flows are exact, damping is that of a cavity that "
+       "neither fills nor empties"},
       {Options::Cavitation::none, "none", "negative pressure stays"}};
   return table;
 }
@@ -135,6 +139,9 @@ void describe(deck::Description<Groove>& d) {
   d.add("angle", &Groove::angle, "rad", deck::any, "middle of the groove, from +x counter-clockwise").required();
   d.add("width", &Groove::width, "rad", deck::Check{.min = 0, .max = 2 * pi, .max_open = true},
         "angle that it covers; its edges are moved to the nearest nodes");
+  d.add("pressure", &Groove::pressure, "Pa", deck::non_negative,
+        "of the lubricant in it; other than zero where cavitation is mass_conserving")
+      .continuable();
 }
 
 void describe(deck::Description<Contact>& d) {
@@ -157,6 +164,10 @@ void describe(deck::Description<Options>& d) {
   d.add("type", &Options::kind, "model of the film");
   d.add("cavitation", &Options::cavitation,
         "what happens where the pressure would be negative; half_sommerfeld, the cheapest, unless given")
+      .only(&Options::kind, {reynolds});
+  d.add("edge_fill", &Options::edge_fill, "1", deck::Check{.min = 0, .max = 1, .min_open = true},
+        "part of the gap that is full of oil where it enters a pad, of mass_conserving films")
+      .continuable()
       .only(&Options::kind, {reynolds});
   d.add("turbulence", &Options::turbulence,
         "flow coefficients of the film; laminar unless given, however large the Reynolds number", "004 errata 15")
@@ -206,6 +217,12 @@ void describe(deck::Description<Options>& d) {
   d.check([](const Options& o, const deck::Report& r) {
     if (o.kind == reynolds && o.inlet.type != Inlet::Type::free && !o.grooves.empty())
       r.fail("inlet", "a film starts at its 'grooves' or at an 'inlet', not at both");
+    const bool conserves = o.kind == reynolds && o.cavitation == Options::Cavitation::mass_conserving;
+    if (!conserves && o.edge_fill != 1)
+      r.fail("edge_fill", "only a film with cavitation mass_conserving knows how full the gap is");
+    for (const Groove& g : o.grooves)
+      if (!conserves && g.pressure != 0)
+        r.fail("grooves", "only grooves of films with cavitation mass_conserving have a pressure");
   });
   d.check([](const Options& o, const deck::Report& r) {
     if (o.kind != compliant_short && o.kind != compliant_long && o.kind != compliant_finite) return;

@@ -11,4 +11,7 @@ namespace whirl::film {
 /// nodes. Throws core::InputError if they leave nothing.
 [[nodiscard]] std::vector<bool> grooved(int n, const std::vector<Groove>& grooves);
 
+/// Pressure [Pa] held at these nodes, zero outside the grooves; of grooves that share a node the last one counts.
+[[nodiscard]] std::vector<double> pressures_in_grooves(int n, const std::vector<Groove>& grooves);
+
 }  // namespace whirl::film

@@ -1,6 +1,7 @@
 #pragma once
 // One pad: its arc, its grid, and the motion of the journal relative to it.
 
+#include <optional>
 #include <vector>
 
 #include "whirl/film/model.hpp"
@@ -46,6 +47,13 @@ private:
   double half_;                                  // cosine of half the arc
 };
 
+/// Volume flows of a pad in m^3/s: through its first edge in the sense of theta, out of its last one, out of both
+/// sides, and the volume that the moving journal presses out of the gap less what it draws in. In and out balance if
+/// the film conserves its mass: enters - leaves - sides = squeezed.
+struct Flows {
+  double enters = 0.0, leaves = 0.0, sides = 0.0, squeezed = 0.0;
+};
+
 /// Part of a film that answers for one pad.
 class PadSolver {
 public:
@@ -57,6 +65,10 @@ public:
   virtual void add(const Motion& motion, Need need, Response& response) = 0;
   /// Truncated nodal pressure [n_theta + 1][n_z + 1], Pa.
   virtual std::vector<double> pressure(const Motion& motion) = 0;
+  /// Part of the gap that is full of oil at the nodes [n_theta + 1][n_z + 1]; empty of a film that does not know it.
+  virtual std::vector<double> fill(const Motion& /*motion*/) { return {}; }
+  /// Flows of the discrete equations; empty if the pressure is cut off after the solution.
+  virtual std::optional<Flows> flows(const Motion& /*motion*/) { return {}; }
 };
 
 /// Aligned pad without complementarity: sine modes along z, tridiagonal systems along theta.

@@ -26,6 +26,9 @@ void check(const Geometry& g, const Options& o, const Lubricant& l) {
   demand(closed || o.grooves.empty(), "only a cylindrical bore has grooves");
   demand(o.inlet.type == Inlet::Type::free || (closed && o.grooves.empty()),
          "only a cylindrical bore without grooves has an inlet");
+  demand(o.cavitation != Options::Cavitation::mass_conserving || !closed || !o.grooves.empty() ||
+             o.inlet.type != Inlet::Type::free,
+         "a film that conserves its mass must be fed: a cylindrical bore needs 'grooves' or an 'inlet'");
   demand(g.preload < 1.0, "the preload must be below 1");
   demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
   demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");
@@ -38,7 +41,8 @@ class ReynoldsFilm final : public Model {
 public:
   ReynoldsFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
       : options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
-    const bool modal = !options.tilt && options.cavitation != Options::Cavitation::reynolds;
+    const bool modal = !options.tilt && (options.cavitation == Options::Cavitation::half_sommerfeld ||
+                                         options.cavitation == Options::Cavitation::none);
     for (const Pad& pad : pads_) {
       solvers_.push_back(modal && !pad.closed ? make_modal_pad(pad, options, lubricant)
                                               : make_banded_pad(pad, options, lubricant));
@@ -80,11 +84,14 @@ private:
 // Side flow through both ends, h^3/(mu k_z) p_z with one-sided slopes of second order; friction torque of the journal
 // from the shear mu U/h tau_c + (h/2) p_theta/R with tau_c = 1 + 0.0012 Re^0.94 in turbulence (Constantinescu's Couette
 // factor).
+// A film that conserves its mass counts the flows of its own equations.
 // What enters is Couette flow U h/2 less the pressure's own around the pad, at its first edge in the direction of
 // rotation.
 Summary ReynoldsFilm::summary(const Motion& given) {
   const Motion motion = seen(given);
   Summary result;
+  Flows total;
+  bool known = true;
   result.inlet_flow = 0.0;
   result.min_thickness = std::numeric_limits<double>::infinity();
   const Resistance along = resistance_along(options_.turbulence), around = resistance_around(options_.turbulence);
@@ -97,7 +104,7 @@ Summary ReynoldsFilm::summary(const Motion& given) {
     result.min_thickness = std::min(result.min_thickness, LeastThickness(pad)(X, Y, tx, ty));
     const Grid grid(pad, options_.cells);
     const auto columns = static_cast<std::size_t>(grid.n_z + 1);
-    const std::vector<double> p = solvers_[n]->pressure(motion);
+    const std::vector<double> p = solvers_[n]->pressure(motion), fill = solvers_[n]->fill(motion);
     const double U = motion.speed * pad.radius;
     double shear = 0.0;
     for (int i = 0; i <= grid.n_theta; ++i) {
@@ -130,12 +137,31 @@ Summary ReynoldsFilm::summary(const Motion& given) {
           };
           slope = (at(i == grid.n_theta ? 1 : i + 1) - at(i == 0 ? grid.n_theta - 1 : i - 1)) / (2.0 * grid.dtheta);
         }
-        shear += area * (mu * U / h * couette + 0.5 * h * slope / pad.radius);
+        // Where the gap is not full, streamers of that share cross it.
+        const double covered =
+            fill.empty() ? 1.0 : fill[static_cast<std::size_t>(i) * columns + static_cast<std::size_t>(j)];
+        shear += area * (covered * mu * U / h * couette + 0.5 * h * slope / pad.radius);
         result.max_pressure = std::max(result.max_pressure, row[j]);
       }
     }
     result.power_loss += shear * U;
+    if (const std::optional<Flows> flows = solvers_[n]->flows(motion)) {
+      total.enters += flows->enters;
+      total.leaves += flows->leaves;
+      total.sides += flows->sides;
+      total.squeezed += flows->squeezed;
+    } else {
+      known = false;
+    }
     if (pad.closed) result.inlet_flow = std::numeric_limits<double>::quiet_NaN();
+  }
+  if (known) {
+    result.outlet_flow = total.leaves;
+    result.imbalance = total.enters - total.leaves - total.sides - total.squeezed;
+  }
+  if (options_.cavitation == Options::Cavitation::mass_conserving) {
+    result.inlet_flow = total.enters;
+    result.side_flow = total.sides;
   }
   return result;
 }
@@ -159,6 +185,8 @@ std::vector<Field> ReynoldsFilm::fields(const Motion& given) {
     }
     for (double& t : theta.values) t += turn;
     for (Field* f : {&theta, &z, &pressure, &h}) all.push_back(std::move(*f));
+    if (std::vector<double> fill = solvers_[n]->fill(motion); !fill.empty())
+      all.push_back({index, "fill", "1", {rows, columns}, std::move(fill)});
   }
   return all;
 }

@@ -13,6 +13,8 @@ Smoothness smoothness(const Options& o) {
       return {};
     case reynolds:
       if (o.cavitation == Options::Cavitation::none) return {};
+      if (o.cavitation == Options::Cavitation::mass_conserving)
+        return {0, "the force has kinks where the edge of the full film passes a node"};
       return {1, "the tangents have kinks where the edge of the positive pressure passes a node"};
     case compliant_short:
     case compliant_long:

@@ -38,15 +38,20 @@ struct Summary {
   double min_thickness = 0.0;  // m
   double max_pressure = 0.0;   // Pa
   double side_flow = 0.0;      // m^3/s, out of both sides of all pads
-  double power_loss = 0.0;     // W, friction torque on the journal times Omega; full (not striated) film everywhere
-  double inlet_flow = std::numeric_limits<double>::quiet_NaN();  // m^3/s, around into all pads where their films start
+  double power_loss =
+      0.0;  // W, friction torque on the journal times Omega; full film everywhere unless it knows its fill
+  double inlet_flow = std::numeric_limits<double>::quiet_NaN();   // m^3/s, around into all pads where their films start
+  double outlet_flow = std::numeric_limits<double>::quiet_NaN();  // m^3/s, around out of all pads where they end
+  // m^3/s, what enters less what leaves through edges and sides and what the moving journal presses out: the volume
+  // that cavitation makes or loses, zero if it conserves its mass. Films that cut off their pressure do not know it.
+  double imbalance = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// One array on the grid of one pad, row-major.
 struct Field {
   int pad;                         // 0 = lower, 1 = upper
-  std::string name;                // theta, z, pressure, thickness
-  std::string unit;                // rad, m, Pa, m
+  std::string name;                // theta, z, pressure, thickness, fill
+  std::string unit;                // rad, m, Pa, m, 1
   std::vector<std::size_t> shape;  // {n_theta}, {n_z} or {n_theta, n_z}
   std::vector<double> values;
 };

@@ -29,10 +29,11 @@ struct Liner {
   double poisson = 0.0;    // -, nu
 };
 
-/// An axial groove of a bore at lubricant pressure zero, over the whole length.
+/// An axial groove of a bore, full of lubricant at a given pressure over the whole length.
 struct Groove {
-  double angle = 0.0;  // rad, of its middle
-  double width = 0.0;  // rad, 0: a single line of nodes
+  double angle = 0.0;     // rad, of its middle
+  double width = 0.0;     // rad, 0: a single line of nodes
+  double pressure = 0.0;  // Pa, of the lubricant in it
 };
 
 /// Where the film of a full circle without grooves starts, at pressure zero over the whole length.
@@ -67,12 +68,13 @@ struct Options {
   };
   enum class Quadrature { sub_cell, simpson };
   enum class Differences { central, upwind, third_order };
-  enum class Cavitation { half_sommerfeld, reynolds, none };
+  enum class Cavitation { half_sommerfeld, reynolds, mass_conserving, none };
   enum class Turbulence { laminar, constantinescu };
   Kind kind = Kind::reynolds;
   Cavitation cavitation = Cavitation::half_sommerfeld;
   Turbulence turbulence = Turbulence::laminar;
-  Inlet inlet;                                             // of a cylindrical bore
+  Inlet inlet;             // of a cylindrical bore
+  double edge_fill = 1.0;  // -, part of the gap that is full of oil where it enters a pad (mass_conserving)
   std::array<int, 2> cells = {60, 16};                     // -, intervals around x along each pad
   bool tilt = false;                                       // -, false: tilt is ignored and moments are zero
   std::array<double, 4> stiffness = {0.0, 0.0, 0.0, 0.0};  // N/m, xx xy yx yy; linear film: force = -K d - C d'

@@ -1,0 +1,64 @@
+#include "film/general_band.hpp"
+
+#include <algorithm>
+
+namespace whirl::film {
+
+GeneralBand::GeneralBand(int size, int width)
+    : size_(size),
+      width_(width),
+      stride_(static_cast<std::size_t>(2 * width + 1)),
+      data_(static_cast<std::size_t>(size) * stride_, 0.0) {}
+
+void GeneralBand::clear() {
+  std::fill(data_.begin(), data_.end(), 0.0);
+}
+
+void GeneralBand::factor() {
+  const int w = width_;
+  for (int i = 0; i < size_; ++i) {
+    double* const pivot = row(i) + w;
+    const double inverse = 1.0 / pivot[0];
+    const int reach = std::min(w, size_ - 1 - i);
+    for (int r = 1; r <= reach; ++r) {
+      double* const target = row(i + r) + w - r;  // A(i + r, i)
+      if (target[0] == 0.0) continue;
+      const double l = target[0] *= inverse;
+      for (int c = 1; c <= reach; ++c) target[c] -= l * pivot[c];
+    }
+    pivot[0] = inverse;
+  }
+}
+
+void GeneralBand::solve(std::span<double> x) const {
+  const int w = width_;
+  for (int i = 1; i < size_; ++i) {
+    const double* const own = row(i) + w;
+    double sum = x[static_cast<std::size_t>(i)];
+    for (int r = std::min(w, i); r > 0; --r) sum -= own[-r] * x[static_cast<std::size_t>(i - r)];
+    x[static_cast<std::size_t>(i)] = sum;
+  }
+  for (int i = size_ - 1; i >= 0; --i) {
+    const double* const own = row(i) + w;
+    double sum = x[static_cast<std::size_t>(i)];
+    for (int r = std::min(w, size_ - 1 - i); r > 0; --r) sum -= own[r] * x[static_cast<std::size_t>(i + r)];
+    x[static_cast<std::size_t>(i)] = sum * own[0];
+  }
+}
+
+void GeneralBand::solve_transposed(std::span<Quad> x) const {
+  const int w = width_;
+  Quad* const at = x.data();
+  for (int i = 0; i < size_; ++i) {
+    const double* const own = row(i) + w;
+    const Quad known = at[i] = own[0] * at[i];
+    for (int r = std::min(w, size_ - 1 - i); r > 0; --r) at[i + r] -= own[r] * known;
+  }
+  for (int i = size_ - 1; i > 0; --i) {
+    const double* const own = row(i) + w;
+    const Quad known = at[i];
+    for (int r = std::min(w, i); r > 0; --r) at[i - r] -= own[-r] * known;
+  }
+}
+
+}  // namespace whirl::film
