@@ -275,8 +275,10 @@ std::string of_sweep(const io::StudySummary& s) {
     heads.push_back(columns[c]->name + (bare ? "" : " [" + columns[c]->unit + "]"));
   }
   Grid grid(heads);
-  for (std::size_t i = 0; i < s.variants.size(); ++i) {
-    std::vector<std::string> row{s.variants[i].name};
+  // The columns begin with the deck as given if the sweep counts it.
+  const std::size_t rows = columns.empty() ? 0 : columns.front()->values.size(), given = rows - s.variants.size();
+  for (std::size_t i = 0; i < rows; ++i) {
+    std::vector<std::string> row{i < given ? "as given" : s.variants[i - given].name};
     for (std::size_t c = 0; c < shown; ++c) {
       const double value = columns[c]->values[i];
       row.push_back(std::isfinite(value) ? with_uncertainty(value, columns[c]->uncertainties[i], "") : "-");
