@@ -120,7 +120,9 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   c.base_intervals = o.intervals;
   c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
   continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
-  continuation_.newton.tolerance = o.tolerance;
+  // Folds of small cycles are flat: what Newton's method leaves there shifts all of them to the same side.
+  const bool flat = c.autonomous && seed_.event == solve::Event::cyclic_fold;
+  continuation_.newton.tolerance = flat ? o.tolerance / 100 : o.tolerance;
   cycles_ = std::make_unique<solve::CycleProblem>(sharing_time(context_.comm, seed_.cycle.mesh.size() - 1), *system_, c,
                                                   seed_.cycle.mesh);
   if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
