@@ -88,6 +88,21 @@ def smooth(x, y):
     return tuple(hermite(s, v, np.gradient(v, s, edge_order=2), 8)[1] for v in (x, y))
 
 
+def draw_bars(axis, study):
+    """Bars at the points where they were computed, in the parameter in which they are shorter: a curve has none along itself."""
+    names = ("parameter", "second", "parameter_uncertainty", "second_uncertainty", "uncertainty_computed")
+    columns = [study.get(f"locus/{name}") for name in names]
+    if any(c is None for c in columns):
+        return
+    x, y, across, upward, computed = columns
+    spans = np.ptp(x) or 1, np.ptp(y) or 1
+    for k in np.flatnonzero(computed):
+        lengths = np.nan_to_num([across[k] / spans[0], upward[k] / spans[1]], nan=np.inf)
+        if np.isfinite(lengths.min()):
+            bar = {"xerr": across[k]} if lengths[0] <= lengths[1] else {"yerr": upward[k]}
+            axis.errorbar(x[k], y[k], fmt="none", ecolor=study.colour, elinewidth=1.2, **bar)
+
+
 def draw_together(results):
     """All curves over the same pair of parameters in one picture."""
     studies = [s for s in results.studies if s.kind == "locus" and s.has("locus/parameter")]
@@ -99,6 +114,7 @@ def draw_together(results):
     points = []
     for study in studies:
         axis.plot(*smooth(study.get("locus/parameter"), study.get("locus/second")), color=study.colour, label=described(study))
+        draw_bars(axis, study)
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),

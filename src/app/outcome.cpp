@@ -20,10 +20,13 @@ std::string text_of(const io::StudySummary& s) {
                         b.criticality, beyond ? fmt::format(", {:.0f} others unstable", others->second) : "",
                         meaning(b).empty() ? "" : ": " + meaning(b));
   }
-  for (const io::CodimensionTwo& c : s.codimension_two)
-    text += fmt::format("  {}{} at {} {}, {} {}\n", c.more.contains("end_of_curve") ? "ends at " : "", c.type,
-                        c.parameter, with_uncertainty(c.value.value, io::no_value, c.value.unit), c.second_parameter,
-                        with_uncertainty(c.second_value.value, c.uncertainty, c.second_value.unit));
+  for (const io::CodimensionTwo& c : s.codimension_two) {
+    const auto bar = c.more.find("uncertainty_parameter");
+    text +=
+        fmt::format("  {}{} at {} {}, {} {}\n", c.more.contains("end_of_curve") ? "ends at " : "", c.type, c.parameter,
+                    with_uncertainty(c.value.value, bar == c.more.end() ? io::no_value : bar->second, c.value.unit),
+                    c.second_parameter, with_uncertainty(c.second_value.value, c.uncertainty, c.second_value.unit));
+  }
   for (const io::Suspicion& x : s.suspected)
     text += fmt::format("  not resolved from {:.7g} to {:.7g} {}: {}\n", x.from, x.to, x.unit, x.reason);
   return text + highlights(s);

@@ -43,6 +43,9 @@ struct CycleMesh {
   std::array<double, 2> film{1, 1};  ///< cells of the films over those in use
 };
 
+/// Every other point of a mesh of time; empty if fewer than eight intervals would be left.
+[[nodiscard]] std::vector<double> merged(const std::vector<double>& mesh);
+
 /// What a bifurcation of cycles is told by.
 struct CycleNumbers {
   double place = 0;        ///< scaled parameter

@@ -18,15 +18,15 @@ namespace {
 
 constexpr std::size_t fewest_intervals = 8;  // of a halved time mesh
 
-// Every other point of the mesh.
+}  // namespace
+
 std::vector<double> merged(const std::vector<double>& mesh) {
   std::vector<double> out;
+  if (mesh.size() / 2 < fewest_intervals) return out;
   for (std::size_t k = 0; k + 1 < mesh.size(); k += 2) out.push_back(mesh[k]);
   out.push_back(mesh.back());
   return out;
 }
-
-}  // namespace
 
 MeshLaw CycleFollower::law() const {
   MeshLaw law = law_of(context_.machine);
@@ -46,9 +46,10 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMes
   if (mesh.axis != Axis::time) return make_problem(system, options_.period, cycle.mesh, 1);
   if (mesh.spacing < 1) return make_problem(system, options_.period, cycle.mesh, 2);
   const int steps = steps_of(options_);
-  if (options_.method == CycleBranchOptions::Method::collocation || steps == 1)
-    return cycle.mesh.size() / 2 < fewest_intervals ? nullptr
-                                                    : make_problem(system, options_.period, merged(cycle.mesh), 1);
+  if (options_.method == CycleBranchOptions::Method::collocation || steps == 1) {
+    const std::vector<double> times = merged(cycle.mesh);
+    return times.empty() ? nullptr : make_problem(system, options_.period, times, 1);
+  }
   return steps % 2 != 0 ? nullptr : make_problem(system, options_.period, cycle.mesh, 0.5);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "cycle_follower.hpp"
 #include "whirl/core/error.hpp"
@@ -26,15 +27,7 @@ constexpr int few_iterations = 6;  // of Newton: a step that needs more was too 
 }  // namespace
 
 solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) const {
-  if (to.size() == system_->size()) return c;
-  const Eigen::MatrixXd x = c.x;
-  c.x.resize(to.size(), x.cols());
-  for (Eigen::Index k = 0; k < x.cols(); ++k) {
-    const Eigen::VectorXd column = x.col(k);
-    const std::vector<double> there = to.resampled(*system_, column.data());
-    c.x.col(k) = Eigen::Map<const Eigen::VectorXd>(there.data(), to.size());
-  }
-  return c;
+  return resampled(to, *system_, std::move(c));
 }
 
 Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other) {

@@ -88,4 +88,16 @@ core::Vector resampled(const system::Plant& to, const system::Plant& from, const
   return x;
 }
 
+solve::Cycle resampled(const system::Plant& to, const system::Plant& from, solve::Cycle c) {
+  if (to.size() == from.size()) return c;
+  const Eigen::MatrixXd x = c.x;
+  c.x.resize(to.size(), x.cols());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    const Eigen::VectorXd column = x.col(k);
+    const std::vector<double> there = to.resampled(from, column.data());
+    c.x.col(k) = Eigen::Map<const Eigen::VectorXd>(there.data(), to.size());
+  }
+  return c;
+}
+
 }  // namespace whirl::study

@@ -6,6 +6,7 @@
 
 #include "error_bar.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/solve/cycle.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/plant.hpp"
 #include "whirl/system/train.hpp"
@@ -40,5 +41,7 @@ struct FilmMesh {
 /// The whole state of `from` on the film meshes of `to`, distributed. Collective.
 [[nodiscard]] core::Vector resampled(const system::Plant& to, const system::Plant& from,
                                      const std::vector<double>& whole);
+/// The same of a cycle, point by point.
+[[nodiscard]] solve::Cycle resampled(const system::Plant& to, const system::Plant& from, solve::Cycle cycle);
 
 }  // namespace whirl::study

@@ -28,9 +28,6 @@
 namespace whirl::study {
 namespace {
 
-// Name of a monitor behind the condition's own tests.
-constexpr const char* meeting = "meeting";
-
 double width(const deck::Range& range) {
   return std::abs(range.to - range.from);
 }
@@ -88,18 +85,17 @@ void LocusFollower::begin() {
         fmt::format("bifurcation {} of '{}' is none that can be followed", options_.bifurcation, options_.of));
 }
 
-system::Train LocusFollower::train_at(double first, bool half_film) const {
+system::Train LocusFollower::train_at(double first, const FilmFactor& film) const {
   system::Machine machine = with_parameter(context_.machine, options_.second.path, second_value_);
   if (first_.path != "speed") machine = with_parameter(machine, first_.path, first);
-  system::Train train = system::train_of(machine, unbalance_);
-  return half_film ? with_film_mesh(std::move(train), {0.5, 0.5}) : train;
+  return with_film_mesh(system::train_of(machine, unbalance_), film);
 }
 
-std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, bool half_film) const {
+std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, const FilmFactor& film) const {
   if (first_.path == "speed")
-    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(first, half_film), first);
+    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(first, film), first);
   system::Varying varying;
-  varying.train = [this, half_film](double p) { return train_at(p, half_film); };
+  varying.train = [this, film](double p) { return train_at(p, film); };
   varying.value = first;
   varying.magnitude = std::max(std::abs(first_range_.from), std::abs(first_range_.to));
   const auto& speed = of_cycles_ ? of_cycles_->speed : of_rest_->speed;
@@ -108,7 +104,7 @@ std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, bo
 
 void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   unbalance_ = o.unbalance;
-  system_ = make_system(seed_.cycle.parameter, false);
+  system_ = make_system(seed_.cycle.parameter);
   solve::CycleOptions c;
   c.degree = o.degree;
   c.points = o.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
@@ -132,7 +128,7 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
 }
 
 void LocusFollower::make_equilibria() {
-  system_ = make_system(seed_.cycle.parameter, false);
+  system_ = make_system(seed_.cycle.parameter);
   continuation_.adapt_every = 0;
   continuation_.newton.max_iterations = 20;
   rest_ =
@@ -141,10 +137,10 @@ void LocusFollower::make_equilibria() {
   condition_ = solve::condition_of(*system_, *rest_, seed_.event, seed_.critical);
 }
 
-solve::SecondParameter LocusFollower::second(system::RotorSystem& system, bool half_film) {
-  return {[this, &system, half_film](double value) {
+solve::SecondParameter LocusFollower::second(system::RotorSystem& system, const FilmFactor& film) {
+  return {[this, &system, film](double value) {
             second_value_ = value;
-            system.set_train(train_at(system.parameter(), half_film));
+            system.set_train(train_at(system.parameter(), film));
           },
           second_scale_};
 }
@@ -190,6 +186,8 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   rows_.clear();
   last_swing_.resize(0, 0);
   inner_sign_ = 0;
+  length_ = 0;
+  spread_.clear();
   std::optional<solve::Restart> restart;
   if (left) {
     restart = restore(*left, start.get());
@@ -236,6 +234,7 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
     return shrunk ? "ends at a generalised Hopf point" : FilmLimit(system_->places()).reason(films(whole));
   };
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
+    const Row before = last_;
     last_ = row_at(whole, point.parameter);
     last_.others_unstable = others_unstable(whole);
     if (cycles_ && cycles_->options().autonomous) {
@@ -246,6 +245,15 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
       rows_.push_back(last_);
     else
       start_ = last_;
+    if (point.index > 0)
+      length_ +=
+          std::hypot((last_.first - before.first) / first_scale_, (last_.second - before.second) / second_scale_);
+    if (point.index > 0 || !second_way_) {
+      CurvePoint kept = point_at(whole);
+      kept.arclength = length_;
+      kept.row = rows_.size();
+      spread_.add(std::move(kept));
+    }
     // Beyond a Bogdanov-Takens point a Hopf curve runs back on itself; beyond the strong resonances 1:1 and 1:2 a
     // Neimark-Sacker curve is one of two real multipliers with product one.
     const Eigen::VectorXd inner = problem_->inner(whole);
@@ -287,38 +295,6 @@ std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd&
   return std::move(rows_);
 }
 
-namespace {
-
-// The curve into the summary, and a warning where it is no border of stability.
-void put_curve(io::StudySummary& summary, const std::vector<Row>& rows, const std::string& first,
-               const std::string& second) {
-  std::vector<io::Column> columns{{"parameter", first, {}}, {"second", second, {}}, {"period", "s", {}},
-                                  {"angle", "rad", {}},     {"amplitude", "1", {}}, {"others_unstable", "1", {}}};
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  int marked = 0;
-  for (const Row& row : rows) {
-    const double values[] = {deck::from_si(row.first, first),
-                             deck::from_si(row.second, second),
-                             row.period,
-                             row.angle,
-                             row.amplitude,
-                             static_cast<double>(row.others_unstable)};
-    for (std::size_t k = 0; k < columns.size(); ++k) columns[k].values.push_back(values[k]);
-    if (row.others_unstable == 0) continue;
-    ++marked;
-    low = std::min(low, values[1]);
-    high = std::max(high, values[1]);
-  }
-  if (marked > 0)
-    summary.warnings.push_back(fmt::format(
-        "no border of stability at {} of {} points, second parameter from {:.6g} to {:.6g} {}: others are unstable "
-        "there already (others_unstable)",
-        marked, rows.size(), low, high, second));
-  summary.curve = std::move(columns);
-}
-
-}  // namespace
-
 StudyResult LocusFollower::run() {
   const deck::Range& range = options_.second.range;
   const double from = range.from / second_scale_, to = range.to / second_scale_;
@@ -328,11 +304,13 @@ StudyResult LocusFollower::run() {
   second_way_ = kept.has_group("done");
   if (second_way_) {
     done_ = read_rows(kept.group("done"));
+    done_spread_.read(kept.group("done_spread"));
     done_end_ = {kept.text("done_reason"), kept.integer("done_completed") != 0,
                  static_cast<int>(kept.integer("done_points")), kept.real("done_parameter")};
   } else {
     done_ = follow(to, from, done_end_);
     if (done_end_.points == 0) throw core::NotConverged(done_end_.reason);
+    std::swap(done_spread_, spread_);
   }
   second_way_ = true;
   const std::vector<Row>& rows = done_;
@@ -341,24 +319,10 @@ StudyResult LocusFollower::run() {
   std::vector<Row> all(back.rbegin(), back.rend());
   all.push_back(start_);
   all.insert(all.end(), rows.begin(), rows.end());
-  io::Table table({{"parameter", first_range_.unit, "first parameter, that of the branch"},
-                   {"second", range.unit, "second parameter"},
-                   {"period", "s", "period of the cycle, or 2 pi/omega at Hopf points"},
-                   {"angle", "rad", "angle of the critical multiplier"},
-                   {"amplitude", "1", "of a self-excited cycle, per clearance of the place that moves most; else 0"},
-                   {"others_unstable", "1", "unstable eigenvalues or multipliers beside the critical ones"}});
-  for (const Row& row : all)
-    table.append({{deck::from_si(row.first, first_range_.unit)},
-                  {deck::from_si(row.second, range.unit)},
-                  {row.period},
-                  {row.angle},
-                  {row.amplitude},
-                  {static_cast<double>(row.others_unstable)}});
   auto& results = context_.results;
   put_groups(results.summary(), system_->train());
   auto& group = results.group();
-  table.write(group.child("locus"));
-  put_curve(results.summary(), all, first_range_.unit, range.unit);
+  put_curve(all, bars_of(all, back.size()));
   std::vector<std::string> types;
   std::vector<double> first, second;
   for (const auto& c : results.summary().codimension_two) {

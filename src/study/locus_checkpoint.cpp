@@ -34,6 +34,8 @@ solve::Restart LocusFollower::restore(const io::Group& state, Vec like) {
   start_ = read_rows(state.group("start")).front();
   last_ = rows_.empty() ? start_ : rows_.back();
   inner_sign_ = state.real("inner_sign");
+  length_ = state.real("length");
+  spread_.read(state.group("spread"));
   zeros_ = static_cast<int>(state.integer("zeros"));
   const auto& generalised = state.reals("generalised");
   generalised_.clear();
@@ -46,24 +48,12 @@ solve::Restart LocusFollower::restore(const io::Group& state, Vec like) {
 void LocusFollower::save(const solve::BranchPoint& point, Vec whole, Vec tangent, double next_step) {
   if (!pieces_->due()) return;
   io::Group state;
-  const core::Vector u = problem_->branch_part(whole);
-  solve::Cycle here;
-  if (cycles_) {
-    here = cycles_->gather(u.get());
-  } else {
-    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
-    rest_->to_state(u.get(), x.get());
-    const std::vector<double> all = system_->gather(x.get());
-    here = {{0, 1},
-            Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size())),
-            0,
-            problem_->first_parameter(whole) * first_scale_};
-  }
-  write_cycle(state.child("cycle"), here);
+  write_cycle(state.child("cycle"), point_at(whole).cycle);
   state.set("second", point.parameter * second_scale_);
   state.set("second_way", second_way_ ? 1 : 0);
   if (second_way_) {
     write_rows(state.child("done"), done_);
+    done_spread_.write(state.child("done_spread"));
     state.set("done_reason", done_end_.reason);
     state.set("done_completed", done_end_.completed ? 1 : 0);
     state.set("done_points", done_end_.points);
@@ -72,6 +62,8 @@ void LocusFollower::save(const solve::BranchPoint& point, Vec whole, Vec tangent
   write_rows(state.child("rows"), rows_);
   write_rows(state.child("start"), {start_});
   state.set("inner_sign", inner_sign_);
+  state.set("length", length_);
+  spread_.write(state.child("spread"));
   state.set("zeros", zeros_);
   std::vector<double> generalised;
   for (const auto& [first, second, reach] : generalised_) generalised.insert(generalised.end(), {first, second, reach});

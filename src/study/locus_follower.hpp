@@ -2,6 +2,7 @@
 // A curve of bifurcations in two parameters: what it is followed with.
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -10,6 +11,10 @@
 #include <vector>
 
 #include "common.hpp"
+#include "curve_points.hpp"
+#include "cycle_follower.hpp"
+#include "error_bar.hpp"
+#include "film_mesh.hpp"
 #include "located.hpp"
 #include "pieces.hpp"
 #include "whirl/solve/augmented_problem.hpp"
@@ -19,14 +24,31 @@
 
 namespace whirl::study {
 
-/// Name of the monitor behind the tests of Hopf points themselves.
+/// Names of monitors behind the tests of the condition: for Hopf points, and where the curve turns in the second and in
+/// the first parameter.
 inline constexpr const char* generalised_hopf = "generalised_hopf";
+inline constexpr const char* meeting = "meeting";
+inline constexpr const char* meeting_over_second = "meeting_over_second";
+
+/// Cells of the films over those of the deck.
+using FilmFactor = std::array<double, 2>;
 
 /// A point of a curve, SI; the amplitude of a self-excited cycle in clearances.
 struct Row {
   double first = 0, second = 0, period = 0, angle = 0, amplitude = 0;
   int others_unstable = 0;
 };
+
+/// The bar of a point of a curve, not a number where it is unknown.
+struct RowBar {
+  double normal = std::numeric_limits<double>::quiet_NaN();  ///< of the distance normal to the curve, scaled
+  double first = std::numeric_limits<double>::quiet_NaN();   ///< of the first parameter at a fixed second one [SI]
+  double second = std::numeric_limits<double>::quiet_NaN();  ///< of the second parameter at a fixed first one [SI]
+  bool computed = false;                                     ///< else between its neighbours'
+};
+/// Share of a parameter in the normal of a curve, both scaled, below which that parameter has no bar of its own: the
+/// curve runs along it.
+inline constexpr double least_share = 0.1;
 
 void write_rows(io::Group& group, const std::vector<Row>& rows);
 [[nodiscard]] std::vector<Row> read_rows(const io::Group& group);
@@ -45,14 +67,15 @@ public:
   StudyResult run();
 
 private:
+  static constexpr std::size_t points_each_way = 8;  // that are kept with their solutions
   // System, branch problem and condition at the start of the curve.
   void begin();
   void make_cycles(const CycleBranchOptions& o);
   void make_equilibria();
   // At a first parameter and the present second one.
-  [[nodiscard]] system::Train train_at(double first, bool half_film = false) const;
-  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(double first, bool half_film) const;
-  [[nodiscard]] solve::SecondParameter second(system::RotorSystem& system, bool half_film = false);
+  [[nodiscard]] system::Train train_at(double first, const FilmFactor& film = {1, 1}) const;
+  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(double first, const FilmFactor& film = {1, 1}) const;
+  [[nodiscard]] solve::SecondParameter second(system::RotorSystem& system, const FilmFactor& film = {1, 1});
   [[nodiscard]] Row row_at(Vec whole, double second) const;
   [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
   // `error` in scaled second parameter; not a number: unknown.
@@ -72,6 +95,23 @@ private:
     bool unclear = false;
   };
   [[nodiscard]] Verdict judge(Vec whole, double reach);
+  // The curve and its points of codimension two on other meshes.
+  struct Elsewhere;
+  [[nodiscard]] MeshLaw law() const;
+  [[nodiscard]] std::vector<CycleMesh> meshes() const;
+  [[nodiscard]] CurvePoint point_at(Vec whole) const;
+  [[nodiscard]] std::unique_ptr<Elsewhere> carried_to(const CycleMesh& mesh, const CurvePoint& given);
+  [[nodiscard]] std::vector<double> beside_curve(const CycleMesh& mesh, const CurvePoint& point,
+                                                 const Eigen::Vector2d& along);
+  [[nodiscard]] std::vector<double> zero_on(const CycleMesh& mesh, const CurvePoint& near, const std::string& type);
+  [[nodiscard]] std::vector<double> direction_at(const CurvePoint& point);
+  [[nodiscard]] Bar bar_beside(const std::string& name, const CurvePoint& point, const Eigen::Vector2d& along);
+  [[nodiscard]] double tolerance_at(const Eigen::Vector2d& place) const;
+  // Bars of both parameters; `location` as of record().
+  void put_bars(io::CodimensionTwo& c, Vec whole, double location);
+  // Of the whole curve, the start of which is row `start`: a few are computed, and those between them interpolated.
+  [[nodiscard]] std::vector<RowBar> bars_of(const std::vector<Row>& rows, std::size_t start);
+  void put_curve(const std::vector<Row>& rows, const std::vector<RowBar>& bars);
   // Unstable eigenvalues or multipliers beside the critical ones.
   [[nodiscard]] int others_unstable(Vec whole);
   [[nodiscard]] std::vector<double> films(Vec whole) const;
@@ -115,7 +155,9 @@ private:
   double inner_sign_ = 0;  // of the inner unknown at its first point
   int zeros_ = 0;          // generalised points looked at so far
   Row start_, last_;
-  Eigen::MatrixXd last_swing_;  // of the last point
+  double length_ = 0;                                                    // from the start, scaled
+  SpreadPoints spread_{points_each_way}, done_spread_{points_each_way};  // of the present direction, and the other one
+  Eigen::MatrixXd last_swing_;                                           // of the last point
   // Generalised points that are confirmed: both parameters, and how far around was looked at, scaled.
   struct Confirmed {
     double first, second, looked;

@@ -45,6 +45,7 @@ Beside look_beside(solve::AugmentedProblem& problem, Vec u, const Eigen::VectorX
 
 void LocusFollower::record(const std::string& type, double second, double error, Vec whole) {
   record_row(type, row_at(whole, second), error);
+  put_bars(context_.results.summary().codimension_two.back(), whole, error);
 }
 
 void LocusFollower::record_row(const std::string& type, const Row& row, double error) {
@@ -76,12 +77,13 @@ Beside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, d
 }
 
 Beside LocusFollower::hopfs_beside(Vec whole, bool half_film, double step, double reach) {
+  const FilmFactor film = half_film ? FilmFactor{0.5, 0.5} : FilmFactor{1, 1};
   core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
   rest_->to_state(problem_->branch_part(whole).get(), x.get());
   const double first = problem_->first_parameter(whole) * first_scale_, omega = problem_->inner(whole)(0);
   std::unique_ptr<system::RotorSystem> coarse;
   if (half_film) {
-    coarse = make_system(first, true);
+    coarse = make_system(first, film);
     const std::vector<double> there = coarse->resampled(*system_, system_->gather(x.get()).data());
     x = core::make_vector(coarse->comm(), coarse->local_size(), PETSC_DETERMINE);
     const core::WriteArray to(x.get());
@@ -93,7 +95,7 @@ Beside LocusFollower::hopfs_beside(Vec whole, bool half_film, double step, doubl
   rest.from_state(x.get(), first, u.get());
   const core::Vector along = solve::any_tangent(rest, u.get());
   const auto condition = solve::condition_of(system, rest, solve::Event::hopf, {0, omega});
-  solve::AugmentedProblem problem(rest, *condition, along.get(), second(system, half_film));
+  solve::AugmentedProblem problem(rest, *condition, along.get(), second(system, film));
   return look_beside(problem, u.get(), condition->start(), solve::last_entry(problem_->comm(), whole), reach,
                      continuation_.newton, [&](Vec here) {
                        rest.to_state(problem.branch_part(here).get(), x.get());

@@ -10,12 +10,6 @@
 #include "whirl/solve/normal_form.hpp"
 
 namespace whirl::study {
-namespace {
-
-constexpr const char* meeting_over_second = "meeting_over_second";
-
-}  // namespace
-
 std::vector<solve::CodimensionTest> LocusFollower::tests(Vec whole, Vec tangent) {
   std::vector<solve::CodimensionTest> all = problem_->tests();
   // Where the curve has an extremum in one parameter, two bifurcations of the other meet.

@@ -306,13 +306,19 @@ def coefficients(folder):
 
 
 def loci(folder):
-    """Curves of bifurcations are curves, and labels stand on none of them."""
+    """Curves of bifurcations are curves, labels stand on none of them, and bars where they were computed: in the parameter that the
+    curve does not run along."""
     turn = np.linspace(-0.5, 0.5, 12)
+    computed, across, upward = np.zeros(12), np.full(12, 9.0), np.full(12, 0.3)
+    computed[[0, 5, 11]] = 1
+    upward[5] = np.nan
+    across[11] = np.nan
 
     def fill(root):
         group = synthetic.study(root, "flips", "locus", bifurcation="flip", parameter="speed", parameter_unit="rad/s",
                                 second="bearings.half.film.compliance", second_unit="1")
-        synthetic.put(group.create_group("locus"), parameter=690 - 900 * turn**2, second=1 + 2 * turn)
+        synthetic.put(group.create_group("locus"), parameter=690 - 900 * turn**2, second=1 + 2 * turn,
+                      parameter_uncertainty=across, second_uncertainty=upward, uncertainty_computed=computed)
         synthetic.put(group.create_group("codimension_two"), type=["meeting_over_second"], parameter=[690.0], second=[1.0])
 
     with results_with(folder, fill) as results:
@@ -322,6 +328,8 @@ def loci(folder):
     axis = figure.axes[0]
     assert axis.get_ylabel() == "compliance"
     curve, = lines_of(axis, colour)
+    extents = [np.ptp(piece, axis=0) for bars in axis.collections for piece in bars.get_segments()]
+    assert np.allclose(sorted(map(tuple, extents)), [(0, 0.6), (18, 0), (18, 0)]), extents
     assert len(curve) > 80 and np.abs(690 - 225 * (curve[:, 1] - 1)**2 - curve[:, 0]).max() < 1, "a parabola"
     box = axis.texts[0].get_window_extent()
     assert not any(box.contains(*place) for place in axis.transData.transform(curve)), "the label covers the curve"

@@ -117,7 +117,8 @@ def others_in_brief(folder):
         summary["studies"] += [
             {"name": "up", "kind": "run_up", "status": "completed", "values": {"bearing.left.peak.amplitude": {"value": 2.3178e-5, "unit": "m"},
                                                                               "bearing.left.peak.speed": {"value": 639.35, "unit": "rad/s"}}},
-            {"name": "flips", "kind": "locus", "status": "completed", "values": {}, "codimension_two": [{"type": "resonance_1_2"}]},
+            {"name": "flips", "kind": "locus", "status": "completed", "values": {}, "codimension_two": [
+                {"type": "resonance_1_2", "value": 1384.59138, "uncertainty_parameter": 0.42, "second_value": 6.8193, "uncertainty": 0.015}]},
             {"name": "hard", "kind": "bearing_map", "status": "completed", "values": {"threshold.speed": {"value": 437.642, "unit": "rad/s"}}}]
 
     def fill(root):
@@ -128,6 +129,7 @@ def others_in_brief(folder):
     with results_with(folder, change, fill) as results:
         assert brief.of(results["up"]) == "largest vibration 23.2 \u00b5m at left, 639.4 rad/s"
         assert brief.of(results["flips"]) == "curve of a flip: speed 389.2 to 1648 rad/s, eccentricity 0.884 to 7.25 \u00b5m; on it: 1:2 resonance"
+        assert [r[1:] for r in table_of(results["flips"], "Points of codimension two").rows] == [["1384.59 \u00b1 0.42", "6.819 \u00b1 0.015"]]
         assert "S = " in brief.of(results["hard"]) and "stable up to 437.64 rad/s" in brief.of(results["hard"])
         assert [r[-1] for r in table_of(results["hard"], "Bearing by itself").rows] == ["437.64 rad/s"]
 

@@ -40,8 +40,8 @@ struct CodimensionTwo {
   std::string type = {};  ///< resonance_1_2, meeting, cusp, ...
   std::string parameter = {}, second_parameter = {};
   Quantity value = {}, second_value = {};
-  double uncertainty = no_value;            ///< what the location left in the second parameter, in its unit
-  std::map<std::string, double> more = {};  ///< as of bifurcations
+  double uncertainty = no_value;            ///< estimated absolute error of `second_value`
+  std::map<std::string, double> more = {};  ///< as of bifurcations; "uncertainty_parameter" is that of `value`
 };
 
 /// A stretch of a branch on which events may lie that could not be resolved.
