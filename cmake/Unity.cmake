@@ -3,7 +3,7 @@
 if(WHIRL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC warns of unnamed namespaces in every file but the one it was called with, as if that were a header. It collects
   # garbage from a few MB on by default, which costs a fifth of the time; without that a compiler takes up to 2 GB.
-  add_compile_options(-Wno-subobject-linkage -Wno-shadow --param=ggc-min-heapsize=1000000)
+  add_compile_options(-Wno-subobject-linkage --param=ggc-min-heapsize=1000000)
 endif()
 function(whirl_unity target)
   set(files ${ARGN} 12)

@@ -107,8 +107,8 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
   const auto& all = context_.results.summary().bifurcations;
   if (all.empty() || all.front().type != io::BifurcationType::hopf) return;
   const double apart = std::abs(b.value - all.front().value);
-  const double birth = std::isfinite(all.front().uncertainty) ? all.front().uncertainty : 0;
-  if (decided(apart, b.uncertainty + birth)) return;
+  // What a mesh does to the Hopf point it does to the fold: their bars do not add.
+  if (decided(apart, b.uncertainty)) return;
   b.more["distance_from_birth"] = apart;
   b.criticality = "undetermined";
   b.criticality_by = fmt::format(
