@@ -170,9 +170,11 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
                                        context.machine, {}, *system);
     problem.to_state(v, x.get());
-    pieces.complete(fmt::format("event {}", results.summary().bifurcations.size() + 1), b, [&] {
+    const std::string event = fmt::format("event {}", results.summary().bifurcations.size() + 1);
+    pieces.complete(event, b, [&] {
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
-                   law_of(context.machine), [&](const auto& cells) { return plant_of(context, options, cells); }});
+                   law_of(context.machine), [&](const auto& cells) { return plant_of(context, options, cells); },
+                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); }});
     });
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});

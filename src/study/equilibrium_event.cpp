@@ -136,31 +136,50 @@ double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& fil
   return born ? born->curvature : unknown;
 }
 
+std::vector<double> kept(const EquilibriumEvent& at, const std::string& name,
+                         const std::function<std::vector<double>()>& work) {
+  return at.keep ? at.keep(name, work) : work();
+}
+
+// Curvature, spread and amplitudes; empty if there are no such cycles.
+std::vector<double> birth_here(const EquilibriumEvent& at, double omega, int harmonics, double largest) {
+  const auto found = unless_lost<std::optional<BirthOfCycles>>([&]() -> std::optional<BirthOfCycles> {
+    return largest > 0 ? birth_of_cycles(at.system, at.x, omega, at.scale, harmonics, largest)
+                       : birth_of_cycles(at.system, at.x, omega, at.scale, harmonics);
+  });
+  if (!found) return {};
+  std::vector<double> out{found->curvature, found->spread};
+  out.insert(out.end(), found->amplitudes.begin(), found->amplitudes.end());
+  return out;
+}
+
 // Cycles at finite amplitudes reach over the kinks of a force that is smooth by pieces only.
 void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega) {
-  const auto found = unless_lost<std::optional<BirthOfCycles>>(
-      [&] { return birth_of_cycles(at.system, at.x, omega, at.scale, few_harmonics); });
-  if (!found || at.found.sensitivity == 0) return;
-  const double largest = found->amplitudes.back();
-  const auto finer = unless_lost<std::optional<BirthOfCycles>>(
-      [&] { return birth_of_cycles(at.system, at.x, omega, at.scale, more_harmonics, largest); });
-  double doubt = finer ? std::abs(finer->curvature - found->curvature) : unknown;
-  Bars bars({found->curvature}, at.law);
-  for (const FilmMesh& mesh : at.meshes) {
-    const double c = curvature_on(at, mesh.factor, largest);
+  const std::vector<double> found = kept(at, "cycles", [&] { return birth_here(at, omega, few_harmonics, 0); });
+  if (found.empty() || at.found.sensitivity == 0) return;
+  const double curvature = found[0], spread = found[1], largest = found.back();
+  const std::vector<double> finer =
+      kept(at, "cycles with more harmonics", [&] { return birth_here(at, omega, more_harmonics, largest); });
+  double doubt = finer.empty() ? unknown : std::abs(finer[0] - curvature);
+  Bars bars({curvature}, at.law);
+  for (std::size_t k = 0; k < at.meshes.size(); ++k) {
+    const FilmMesh& mesh = at.meshes[k];
+    const double c = kept(at, fmt::format("cycles on mesh {}", k), [&] {
+                       return std::vector<double>{curvature_on(at, mesh.factor, largest)};
+                     }).front();
     bars.add(mesh.axis, mesh.spacing, {c});
     // A sign that changes with the mesh is none.
-    if (!(c * found->curvature > 0)) doubt = std::max(doubt, std::abs(c - found->curvature));
+    if (!(c * curvature > 0)) doubt = std::max(doubt, std::abs(c - curvature));
   }
   const std::string before = b.criticality_by;
   for (const char* name : {"coefficient", "uncertainty"})
     b.more[fmt::format("lyapunov_{}", name)] = b.more[fmt::format("criticality_{}", name)];
   // Cycles that live where the equilibrium is unstable are supercritical.
   const double sign = at.found.sensitivity > 0 ? -1 : 1;
-  put_criticality(b, sign * found->curvature, found->spread + bars[0].total() + doubt, "supercritical", "subcritical",
+  put_criticality(b, sign * curvature, spread + bars[0].total() + doubt, "supercritical", "subcritical",
                   fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance, change of the parameter per "
                               "clearance^2",
-                              found->amplitudes[0], found->amplitudes[1], found->amplitudes[2]));
+                              found[2], found[3], found[4]));
   b.criticality_by += "; " + before;
 }
 
@@ -211,8 +230,10 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, steps.longer) : at.found.quadratic;
   double doubt = hopf ? doubt_of_steps(lyapunov(at.system, at.x, omega, steps.shorter), here[coefficient]) : 0;
   Bars bars(here, at.law);
-  for (const FilmMesh& mesh : at.meshes) {
-    const std::vector<double> there = numbers_on(at, mesh.factor);
+  for (std::size_t k = 0; k < at.meshes.size(); ++k) {
+    const FilmMesh& mesh = at.meshes[k];
+    const std::vector<double> there =
+        kept(at, fmt::format("on mesh {}", k), [&] { return numbers_on(at, mesh.factor); });
     bars.add(mesh.axis, mesh.spacing, there);
     // A sign that changes with the mesh is none.
     const double c = there.empty() ? unknown : there[coefficient];

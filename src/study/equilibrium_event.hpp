@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "film_mesh.hpp"
@@ -45,6 +46,9 @@ struct EquilibriumEvent {
   MeshLaw law = {};
   /// The system with these cells over those of the deck.
   std::function<std::unique_ptr<system::Plant>(const std::array<double, 2>&)> make = {};
+  /// Gives the numbers of that name if they are known already, else those that `work` makes; nothing: always `work`.
+  std::function<std::vector<double>(const std::string& name, const std::function<std::vector<double>()>& work)> keep =
+      {};
 };
 
 /// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with

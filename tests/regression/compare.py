@@ -59,9 +59,11 @@ def same_results(one, other, within=1e-8):
             # A difference of two parameters has the accuracy of the parameters.
             found = key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value") if "/" in key else key
             # So has the bar of a number that of the number.
-            for found in (found, key.removesuffix("_uncertainty")):
+            for found in (found, key.removesuffix("_uncertainty"), key.replace("_uncertainty/values/", "/values/")):
                 if "uncertainty" in key and found != key and a.get(found) is not None and numpy.asarray(a[found]).dtype.kind in "fiu":
                     scale = numpy.max(numpy.abs(a[found]), initial=0) or None
+            if "normal_uncertainty" in key:
+                scale = 1.0  # the widths of both ranges
             if key.endswith("_imag") and key[:-4] + "real" in a:
                 # A complex number has one accuracy: where all of them are real, imaginary parts are rounding.
                 scale = max(numpy.max(numpy.abs(x), initial=0) for x in (a[key], a[key[:-4] + "real"]))
