@@ -3,6 +3,8 @@ set -euo pipefail
 whirl_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # Ranks are our parallelism; BLAS threads beside them only get in the way.
+# nproc counts no more than OMP_NUM_THREADS.
+cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 # A rank that waits gives its core away: on a busy machine this is the difference between seconds and minutes.
 export OMPI_MCA_mpi_yield_when_idle=1
