@@ -29,6 +29,8 @@ void check(const Geometry& g, const Options& o, const Lubricant& l) {
   demand(o.cavitation != Options::Cavitation::mass_conserving || !closed || !o.grooves.empty() ||
              o.inlet.type != Inlet::Type::free,
          "a film that conserves its mass must be fed: a cylindrical bore needs 'grooves' or an 'inlet'");
+  demand(o.edge_fill == 1.0 || !closed || o.inlet.type != Inlet::Type::free,
+         "'edge_fill' is of the edges of pads and inlets: a groove is full");
   demand(g.preload < 1.0, "the preload must be below 1");
   demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
   demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");

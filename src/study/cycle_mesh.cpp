@@ -7,6 +7,7 @@
 
 #include "cycle_follower.hpp"
 #include "equilibrium_event.hpp"
+#include "summary_bars.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 
@@ -105,17 +106,10 @@ void CycleFollower::judge_multiplier(const solve::BranchPoint& point, Vec u) {
   for (const CycleMesh& mesh : meshes()) {
     const auto there = pieces_->numbers(
         fmt::format("multiplier {} on mesh {} {:.3f}", point.index, static_cast<int>(mesh.axis), mesh.spacing), [&] {
-          std::vector<double> value;
-          try {
-            if (const auto other = corrected_on(mesh, cycle)) value = {leading(stability_of(*other->problem))};
-          } catch (const core::NotConverged&) {
-            value.clear();
-          } catch (const core::DomainError&) {
-            value.clear();
-          } catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-            value.clear();
-          }
-          return value;
+          return answer_of([&] {
+            const auto other = corrected_on(mesh, cycle);
+            return other ? std::vector<double>{leading(stability_of(*other->problem))} : std::vector<double>{};
+          });
         });
     bars.add(mesh.axis, mesh.spacing, there);
   }
@@ -168,54 +162,50 @@ std::optional<CycleNumbers> CycleFollower::fold_on(const CycleMesh& mesh, const 
 }
 
 std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
-                                                      const solve::Cycle& cycle, bool with_coefficient) const try {
-  if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
-  auto there = carried_to(mesh, cycle);
-  if (!there) return {};
-  // On a coarser film the bifurcation is far and the film cheap: it is located there, from the cycle as it was carried
-  // over or, where that is too rough, as it is at the same parameter. Elsewhere the slope tells.
-  auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
-  const bool locate = cycles && mesh.axis != Axis::time && mesh.spacing > 1;
-  const auto located = [&]() -> std::optional<CycleNumbers> {
-    if (!locate) return {};
-    const core::Vector tangent = solve::any_tangent(*cycles, there->u.get());
-    const auto refined = solve::refine(*cycles, found, there->u.get(), tangent.get(), newton_);
-    if (!refined) return {};
-    return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
-                        cycles->gather(refined->u.get()).period,
-                        with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
-                                                       refined->critical, refined->u.get(), steps_of(law()).longer)
-                                         : io::no_value};
-  };
-  if (const auto numbers = located()) return numbers;
-  if (!correct_there(*there, cycle)) return {};
-  if (const auto numbers = located()) return numbers;
-  if (locate) {
-    core::Vector row = core::duplicate(there->u.get());
-    solve::parameter_row(*there->problem, row.get());
-    there->problem->linearise(there->u.get(), row.get());
-  }
-  // The distance from the border there over its slope along the branch.
-  double nearest = std::numeric_limits<double>::infinity();
-  CycleNumbers out{io::no_value, io::no_value, io::no_value, io::no_value};
-  for (const auto& mu : there->problem->multipliers()) {
-    const double apart = std::min(std::abs(mu - found.critical), std::abs(mu - std::conj(found.critical)));
-    if (apart >= nearest) continue;
-    nearest = apart;
-    // In time the bifurcation hardly moves; by a film it does, and angle and period with it.
-    if (mesh.axis == Axis::time || !cycles) {
-      out.angle = std::abs(std::arg(mu));
-      out.period = there->problem->gather(there->u.get()).period;
+                                                      const solve::Cycle& cycle, bool with_coefficient) const {
+  return answer_of([&]() -> std::optional<CycleNumbers> {
+    if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
+    auto there = carried_to(mesh, cycle);
+    if (!there) return {};
+    // On a coarser film the bifurcation is far and the film cheap: it is located there, from the cycle as it was
+    // carried over or, where that is too rough, as it is at the same parameter. Elsewhere the slope tells.
+    auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
+    const bool locate = cycles && mesh.axis != Axis::time && mesh.spacing > 1;
+    const auto located = [&]() -> std::optional<CycleNumbers> {
+      if (!locate) return {};
+      const core::Vector tangent = solve::any_tangent(*cycles, there->u.get());
+      const auto refined = solve::refine(*cycles, found, there->u.get(), tangent.get(), newton_);
+      if (!refined) return {};
+      return CycleNumbers{refined->parameter, std::abs(std::arg(refined->critical)),
+                          cycles->gather(refined->u.get()).period,
+                          with_coefficient ? normal_form(*cycles, there->other ? *there->other : *system_, found.event,
+                                                         refined->critical, refined->u.get(), steps_of(law()).longer)
+                                           : io::no_value};
+    };
+    if (const auto numbers = located()) return numbers;
+    if (!correct_there(*there, cycle)) return {};
+    if (const auto numbers = located()) return numbers;
+    if (locate) {
+      core::Vector row = core::duplicate(there->u.get());
+      solve::parameter_row(*there->problem, row.get());
+      there->problem->linearise(there->u.get(), row.get());
     }
-    if (found.sensitivity != 0) out.place = found.parameter - distance_of_multiplier(mu) / found.sensitivity;
-  }
-  return out;
-} catch (const core::DomainError&) {
-  return {};
-} catch (const core::NotConverged&) {
-  return {};
-} catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-  return {};
+    // The distance from the border there over its slope along the branch.
+    double nearest = std::numeric_limits<double>::infinity();
+    CycleNumbers out{io::no_value, io::no_value, io::no_value, io::no_value};
+    for (const auto& mu : there->problem->multipliers()) {
+      const double apart = std::min(std::abs(mu - found.critical), std::abs(mu - std::conj(found.critical)));
+      if (apart >= nearest) continue;
+      nearest = apart;
+      // In time the bifurcation hardly moves; by a film it does, and angle and period with it.
+      if (mesh.axis == Axis::time || !cycles) {
+        out.angle = std::abs(std::arg(mu));
+        out.period = there->problem->gather(there->u.get()).period;
+      }
+      if (found.sensitivity != 0) out.place = found.parameter - distance_of_multiplier(mu) / found.sensitivity;
+    }
+    return out;
+  });
 }
 
 // The cycle at the same parameter on other meshes, and how far it is from contact there.
@@ -223,16 +213,11 @@ std::vector<MarginThere> CycleFollower::margins_there(const solve::Cycle& cycle)
   std::vector<MarginThere> out;
   for (const CycleMesh& mesh : meshes()) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
-    try {
+    // Stays unknown where there is none.
+    (void)has_answer([&] {
       if (const auto there = corrected_on(mesh, cycle))
         out.back().margin = margin(there->problem->orbit(there->u.get()), there->other ? *there->other : *system_);
-    } catch (const core::NotConverged&) {
-      // stays unknown
-    } catch (const core::DomainError&) {
-      // stays unknown
-    } catch (const core::InputError&) {
-      // stays unknown: grooves leave nothing of a coarser mesh
-    }
+    });
   }
   return out;
 }

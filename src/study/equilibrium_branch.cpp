@@ -15,6 +15,7 @@
 #include "located.hpp"
 #include "make_plant.hpp"
 #include "pieces.hpp"
+#include "summary_bars.hpp"
 #include "verdict.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -51,19 +52,14 @@ std::vector<MarginThere> margins_there(const Context& context, const Equilibrium
   std::vector<MarginThere> out;
   for (const FilmMesh& mesh : film_meshes(context.machine)) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
-    try {
+    // Stays unknown where there is none.
+    (void)has_answer([&] {
       const auto other = plant_of(context, options, mesh.factor);
       other->set_parameter(parameter);
       const core::Vector x = resampled(*other, system, whole);
       if (solve::find_equilibrium(*other, x.get(), newton).converged)
         out.back().margin = FilmLimit(other->places()).margin(other->film_thickness(other->gather(x.get()).data()));
-    } catch (const core::NotConverged&) {
-      // stays unknown
-    } catch (const core::DomainError&) {
-      // stays unknown
-    } catch (const core::InputError&) {
-      // stays unknown: grooves leave nothing of a coarser mesh
-    }
+    });
   }
   return out;
 }

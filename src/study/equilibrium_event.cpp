@@ -9,6 +9,7 @@
 
 #include "common.hpp"
 #include "hopf_cycles.hpp"
+#include "summary_bars.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/augmented_problem.hpp"
 #include "whirl/solve/equilibrium.hpp"
@@ -113,21 +114,9 @@ std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array
   return out;
 }
 
-// What `there` returns, or nothing where the event cannot be had.
-template <class T>
-T unless_lost(const std::function<T()>& there) try {
-  return there();
-} catch (const core::NotConverged&) {
-  return {};
-} catch (const core::DomainError&) {
-  return {};
-} catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-  return {};
-}
-
 // Of the cycles born at the Hopf point with other cells; not a number if they cannot be had.
 double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells, double largest) {
-  const auto born = unless_lost<std::optional<BirthOfCycles>>([&]() -> std::optional<BirthOfCycles> {
+  const auto born = answer_of([&]() -> std::optional<BirthOfCycles> {
     const auto there = located_on(at, film_cells);
     if (!there) return {};
     return birth_of_cycles(*there->system, there->x.get(), std::abs(there->found->critical.imag()), at.scale,
@@ -143,7 +132,7 @@ std::vector<double> kept(const EquilibriumEvent& at, const std::string& name,
 
 // Curvature, spread and amplitudes; empty if there are no such cycles.
 std::vector<double> birth_here(const EquilibriumEvent& at, double omega, int harmonics, double largest) {
-  const auto found = unless_lost<std::optional<BirthOfCycles>>([&]() -> std::optional<BirthOfCycles> {
+  const auto found = answer_of([&]() -> std::optional<BirthOfCycles> {
     return largest > 0 ? birth_of_cycles(at.system, at.x, omega, at.scale, harmonics, largest)
                        : birth_of_cycles(at.system, at.x, omega, at.scale, harmonics);
   });
@@ -186,7 +175,7 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
 }  // namespace
 
 std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
-  return unless_lost<std::vector<double>>([&]() -> std::vector<double> {
+  return answer_of([&]() -> std::vector<double> {
     const auto there = located_on(at, film_cells);
     if (!there) return {};
     const bool hopf = at.found.event == solve::Event::hopf;

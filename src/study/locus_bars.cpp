@@ -12,6 +12,7 @@
 #include <complex>
 
 #include "locus_follower.hpp"
+#include "summary_bars.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/equilibrium.hpp"
@@ -26,18 +27,6 @@ constexpr std::size_t fewest_bars = 3, most_bars = 10;  // of a curve
 constexpr double approach = 2;  // from another mesh a point costs about twice as many iterations as the next one does
 constexpr int most_secants = 10;
 constexpr double farthest = 0.3;  // of the widths of the ranges, along the curve: what lies beyond is another point
-
-// What `work` returns, or nothing where the other mesh has no such point.
-template <class F>
-std::vector<double> unless_lost(const F& work) try {
-  return work();
-} catch (const core::NotConverged&) {
-  return {};
-} catch (const core::DomainError&) {
-  return {};
-} catch (const core::InputError&) {  // grooves that leave nothing of a coarser mesh
-  return {};
-}
 
 // A member for the time of a scope.
 class Borrowed {
@@ -166,7 +155,7 @@ std::unique_ptr<LocusFollower::Elsewhere> LocusFollower::carried_to(const CycleM
 std::vector<double> LocusFollower::beside_curve(const CycleMesh& mesh, const CurvePoint& point,
                                                 const Eigen::Vector2d& along) {
   const Borrowed second(second_value_);
-  return unless_lost([&]() -> std::vector<double> {
+  return answer_of([&]() -> std::vector<double> {
     const auto there = carried_to(mesh, point);
     if (!there) return {};
     const Eigen::Vector2d here(point.cycle.parameter / first_scale_, point.second);
@@ -185,7 +174,7 @@ std::vector<double> LocusFollower::beside_curve(const CycleMesh& mesh, const Cur
 // The place of a point of codimension two on a mesh, by the secant method on its test along the curve there.
 std::vector<double> LocusFollower::zero_on(const CycleMesh& mesh, const CurvePoint& near, const std::string& type) {
   const Borrowed second(second_value_);
-  return unless_lost([&]() -> std::vector<double> {
+  return answer_of([&]() -> std::vector<double> {
     const auto there = carried_to(mesh, near);
     if (!there) return {};
     solve::AugmentedProblem& problem = *there->problem;
@@ -222,7 +211,7 @@ std::vector<double> LocusFollower::zero_on(const CycleMesh& mesh, const CurvePoi
 // Direction of the curve at a point of it, unit length, scaled.
 std::vector<double> LocusFollower::direction_at(const CurvePoint& point) {
   const Borrowed second(second_value_);
-  return unless_lost([&]() -> std::vector<double> {
+  return answer_of([&]() -> std::vector<double> {
     const auto here = carried_to({}, point);
     const core::Vector t = solve::any_tangent(*here->problem, here->whole.get());
     const Eigen::Vector2d along =

@@ -4,23 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "film_mesh.hpp"
+#include "response_peaks.hpp"
 #include "whirl/io/summary.hpp"
 
 namespace whirl::study {
-
-inline constexpr double peak_tolerance = 1e-5;   ///< of the speed of a peak
-inline constexpr double width_tolerance = 1e-3;  ///< of the width of a peak, for its amplification factor
-
-/// What the refinement of a peak leaves of its values, relative to them; not a number where it did not settle.
-struct PeakErrors {
-  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  double speed = unknown, height = unknown, factor = unknown;
-};
 
 /// The peak of the node with this number among those of the study; its values in the summary start with `head`.
 struct NamedPeak {

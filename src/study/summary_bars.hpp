@@ -43,6 +43,13 @@ private:
 /// Runs `compute`; false if a mesh that serves an estimate only has no answer: no convergence, a film that leaves its
 /// validity, grooves that leave nothing of a coarser mesh.
 [[nodiscard]] bool has_answer(const std::function<void()>& compute);
+/// What `compute` returns, or an empty one of its kind where there is no answer.
+template <class F>
+[[nodiscard]] auto answer_of(const F& compute) {
+  decltype(compute()) out{};
+  if (!has_answer([&] { out = compute(); })) out = {};
+  return out;
+}
 
 /// "bearing.B1.K." for "bearing.B1.K.xy": what components of one vector or matrix share.
 [[nodiscard]] std::string stem_of(const std::string& name);

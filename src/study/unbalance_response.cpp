@@ -17,6 +17,7 @@
 #include "groups.hpp"
 #include "pieces.hpp"
 #include "response_bars.hpp"
+#include "response_peaks.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -146,101 +147,6 @@ private:
   std::vector<int> nodes_;
 };
 
-struct Peak {
-  int node = 0;
-  double speed = 0, amplitude = 0, amplification = 0;
-  PeakErrors errors;
-};
-
-// Where the parabola of 1/f^2 through the speeds about a top has its foot: exactly the top of a single resonance. Not a
-// number if that lies beyond its neighbours. Speeds closer to the top than a few tolerances, which other nodes may have
-// asked for, say nothing of its curvature.
-double foot_of(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
-  const double s1 = curve[top].speed, apart = 4 * peak_tolerance * s1;
-  std::size_t low = top - 1, high = top + 1;
-  while (low > 0 && s1 - curve[low].speed < apart) --low;
-  while (high + 1 < curve.size() && curve[high].speed - s1 < apart) ++high;
-  const auto g = [&](std::size_t k) { return 1 / std::pow(curve[k].nodes[node].semi_major(), 2); };
-  const double s0 = curve[low].speed, s2 = curve[high].speed, g0 = g(low), g1 = g(top), g2 = g(high);
-  const double u = (s1 - s0) * (s1 - s0) * (g1 - g2), v = (s1 - s2) * (s1 - s2) * (g1 - g0),
-               w = (s1 - s0) * (g1 - g2) - (s1 - s2) * (g1 - g0);
-  const double foot = w != 0 ? s1 - 0.5 * (u - v) / w : s1;
-  return foot > s0 && foot < s2 ? foot : std::numeric_limits<double>::quiet_NaN();
-}
-
-// Where the curve falls to 0.707 of a peak's height on either side of it (API 684): between two speeds of the curve.
-// There 1/f^2 is a straight line over (N - N_top)^2, as it is of a single resonance f = f_top/sqrt(1 + (2 Q (N/N_top -
-// 1))^2). Nothing where the curve ends first.
-struct Side {
-  double inner = 0, outer = 0, crossing = 0;
-};
-std::array<std::optional<Side>, 2> sides_of(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
-  const auto value = [&](std::size_t k) { return curve[k].nodes[node].semi_major(); };
-  const double level = value(top) / std::sqrt(2.0), middle = curve[top].speed;
-  std::array<std::optional<Side>, 2> sides;
-  for (std::size_t s = 0; s < 2; ++s) {
-    std::size_t outer = top;
-    while ((s == 0 ? outer > 0 : outer + 1 < curve.size()) && value(outer) > level) s == 0 ? --outer : ++outer;
-    if (value(outer) > level) continue;
-    const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
-    const auto g = [](double f) { return 1 / (f * f); };
-    const auto apart = [&](std::size_t k) { return (curve[k].speed - middle) * (curve[k].speed - middle); };
-    const double w = (g(level) - g(value(inner))) / (g(value(outer)) - g(value(inner)));
-    const double distance = std::sqrt(apart(inner) + w * (apart(outer) - apart(inner)));
-    sides[s] = {curve[inner].speed, curve[outer].speed, middle + (s == 0 ? -distance : distance)};
-  }
-  return sides;
-}
-
-// N/(N2 - N1)
-double amplification(const std::vector<Response>& curve, std::size_t node, std::size_t top) {
-  const auto sides = sides_of(curve, node, top);
-  if (!sides[0] || !sides[1]) return std::numeric_limits<double>::quiet_NaN();
-  return curve[top].speed / (sides[1]->crossing - sides[0]->crossing);
-}
-
-// What is left of a width: its crossings may be off by their distance from the nearer one of their neighbours, relative
-// to the width; nothing if one of them is missing.
-std::array<double, 2> left_of_width(const std::array<std::optional<Side>, 2>& sides) {
-  const double width = sides[1]->crossing - sides[0]->crossing;
-  std::array<double, 2> left{};
-  for (std::size_t k = 0; k < 2; ++k)
-    left[k] = std::min(std::abs(sides[k]->crossing - sides[k]->inner), std::abs(sides[k]->crossing - sides[k]->outer)) /
-              width;
-  return left;
-}
-
-// Speeds that settle the width of a peak.
-void unsettled_width(const std::vector<Response>& curve, std::size_t node, std::size_t top,
-                     std::vector<double>& speeds) {
-  const auto sides = sides_of(curve, node, top);
-  if (!sides[0] || !sides[1]) return;
-  const auto left = left_of_width(sides);
-  for (std::size_t k = 0; k < 2; ++k)
-    if (left[k] > width_tolerance) speeds.push_back(sides[k]->crossing);
-}
-
-// A top that is off by a part d of its speed is too low by (2 Q d)^2/2 of its height. Where a resonance is narrower
-// than that it has no height that could be told: an undamped one.
-constexpr double narrow = 0.5;
-
-Peak peak_at(const std::vector<Response>& curve, std::size_t node, std::size_t top, int name) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  Peak p{name, curve[top].speed, curve[top].nodes[node].semi_major(), amplification(curve, node, top), {}};
-  const double off = std::abs(foot_of(curve, node, top) - p.speed) / p.speed;
-  p.errors.speed = off <= peak_tolerance ? peak_tolerance : unknown;
-  const double share = 2 * p.amplification * peak_tolerance;
-  if (share > narrow) {
-    p.amplitude = p.amplification = unknown;
-    return p;
-  }
-  p.errors.height = p.errors.speed + (std::isfinite(share) ? share * share / 2 : 0);
-  if (!std::isfinite(p.amplification)) return p;
-  const auto left = left_of_width(sides_of(curve, node, top));
-  p.errors.factor = std::max(left[0], left[1]) <= width_tolerance ? width_tolerance + p.errors.height : unknown;
-  return p;
-}
-
 void put_operating(const Context& context, const std::vector<int>& nodes, const Response& r,
                    io::StudySummary& summary) {
   const auto names = names_of_bearings(context.machine);
@@ -347,20 +253,13 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // Speeds added around the peaks of each node until the parabola of 1/f^2 settles the speed to 1e-5.
   const auto by_speed = [](const Response& a, const Response& b) { return a.speed < b.speed; };
   std::sort(curve.begin(), curve.end(), by_speed);
-  const auto tops = [&](std::size_t node) {
-    std::vector<std::size_t> found;
-    for (std::size_t k = 1; k + 1 < curve.size(); ++k) {
-      const double a = curve[k - 1].nodes[node].semi_major(), b = curve[k].nodes[node].semi_major(),
-                   c = curve[k + 1].nodes[node].semi_major();
-      if (!(b > a && b >= c)) continue;
-      // Nearer than the tolerance two tops are one.
-      if (!found.empty() && curve[k].speed - curve[found.back()].speed < 2 * peak_tolerance * curve[k].speed) {
-        if (b > curve[found.back()].nodes[node].semi_major()) found.back() = k;
-        continue;
-      }
-      found.push_back(k);
+  const auto curve_of = [&](std::size_t node) {
+    ResponseCurve of;
+    for (const Response& r : curve) {
+      of.speed.push_back(r.speed);
+      of.height.push_back(r.nodes[node].semi_major());
     }
-    return found;
+    return of;
   };
   const auto add = [&](const std::vector<double>& speeds) {
     for (Response& r : at_speeds(speeds)) curve.push_back(std::move(r));
@@ -370,31 +269,19 @@ StudyResult UnbalanceResponse::run(Context& context) {
   const auto settle = [&](int passes, const auto& ask) {
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<double> speeds;
-      for (std::size_t node = 0; node < nodes.size(); ++node)
-        for (const std::size_t k : tops(node)) ask(pass, node, k, speeds);
+      for (std::size_t node = 0; node < nodes.size(); ++node) {
+        const ResponseCurve of = curve_of(node);
+        for (const std::size_t k : of.tops()) ask(of, k, pass, speeds);
+      }
       if (speeds.empty()) return;
       add(speeds);
     }
   };
-  const auto ask_for_top = [&](int pass, std::size_t node, std::size_t k, std::vector<double>& speeds) {
-    const double foot = foot_of(curve, node, k), off = std::abs(foot - curve[k].speed);
-    if (off <= peak_tolerance * curve[k].speed) return;
-    if (std::isnan(foot)) {  // no parabola with a foot between them: halves
-      speeds.push_back((curve[k - 1].speed + curve[k].speed) / 2);
-      speeds.push_back((curve[k].speed + curve[k + 1].speed) / 2);
-      return;
-    }
-    speeds.push_back(foot);
-    // A neighbour that stays far away spoils the parabola: nearer ones on either side, which shrink with the move.
-    if (pass < 2) return;
-    for (const double beside : {foot - 5 * off, foot + 5 * off})
-      if (beside > curve[k - 1].speed && beside < curve[k + 1].speed) speeds.push_back(beside);
-  };
   // Then speeds around the two places where each peak has fallen to 0.707 of its height; these may show a higher top.
   for (int round = 0; round < 3 && options.refine; ++round) {
     settle(10, ask_for_top);
-    settle(10, [&](int, std::size_t node, std::size_t k, std::vector<double>& speeds) {
-      unsettled_width(curve, node, k, speeds);
+    settle(10, [](const ResponseCurve& of, std::size_t k, int, std::vector<double>& speeds) {
+      ask_for_width(of, k, speeds);
     });
   }
 
@@ -413,21 +300,22 @@ StudyResult UnbalanceResponse::run(Context& context) {
   std::vector<NamedPeak> named;
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     std::vector<Peak> own;
-    for (const std::size_t k : tops(node)) own.push_back(peak_at(curve, node, k, nodes[node]));
+    const ResponseCurve of = curve_of(node);
+    for (const std::size_t k : of.tops()) own.push_back(peak_at(of, k));
     // Those without a height are the highest.
     const auto height = [](const Peak& p) {
-      return std::isfinite(p.amplitude) ? p.amplitude : std::numeric_limits<double>::infinity();
+      return std::isfinite(p.height) ? p.height : std::numeric_limits<double>::infinity();
     };
     std::stable_sort(own.begin(), own.end(), [&](const Peak& a, const Peak& b) { return height(a) > height(b); });
     for (std::size_t k = 0; k < own.size(); ++k) {
       const std::string head = fmt::format("node.{}.peak.{}.", nodes[node], k + 1);
-      put_peak(summary, head, own[k].speed, own[k].amplitude, own[k].amplification);
-      if (!std::isfinite(own[k].amplitude))
+      put_peak(summary, head, own[k].speed, own[k].height, own[k].amplification);
+      if (!std::isfinite(own[k].height))
         summary.warnings.push_back(
             fmt::format("node {}: the peak near {:.6g} {} has no height: it grows as the speed comes nearer, as an "
                         "undamped resonance does",
                         nodes[node], deck::from_si(own[k].speed, unit), unit));
-      named.push_back({head, node, own[k].speed, own[k].amplitude, own[k].amplification, own[k].errors});
+      named.push_back({head, node, own[k].speed, own[k].height, own[k].amplification, own[k].errors});
       if (node == 0) {
         named.push_back(named.back());
         named.back().head = fmt::format("peak.{}.", k + 1);
@@ -438,8 +326,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
   // The first node named in the deck is the one the report speaks of; its highest peak comes first.
   for (std::size_t k = 0; k < peaks.size(); ++k) {
     const std::string head = fmt::format("peak.{}.", k + 1);
-    summary.set(head + "node", peaks[k].node, "1");
-    put_peak(summary, head, peaks[k].speed, peaks[k].amplitude, peaks[k].amplification);
+    summary.set(head + "node", nodes.front(), "1");
+    put_peak(summary, head, peaks[k].speed, peaks[k].height, peaks[k].amplification);
   }
   if (options.operating_speed) {
     put_operating(context, nodes, at_speeds({options.operating_speed->value}).front(), summary);

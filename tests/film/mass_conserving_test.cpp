@@ -178,6 +178,11 @@ TEST(MassConserving, TheAnswerDoesNotDependOnTheStart) {
 // Closed to the outside a bore would run dry.
 TEST(MassConserving, MustBeFed) {
   EXPECT_THROW((void)make_model(cylinder(), conserving({40, 10}), oil()), core::InputError);
+  Options grooved = conserving({40, 10});
+  grooved.grooves = {{90.0 * kDegree, 0.0}};
+  EXPECT_NO_THROW((void)make_model(cylinder(), grooved, oil()));
+  grooved.edge_fill = 0.5;  // which nothing would read
+  EXPECT_THROW((void)make_model(cylinder(), grooved, oil()), core::InputError);
 }
 
 }  // namespace
