@@ -164,9 +164,9 @@ private:
   void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
-  void renew_phase(Vec u, Vec tangent);
+  void renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent);
   void close_at_flip(double landed);
-  void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
+  void save(const solve::Settled& at, Vec u, Vec tangent);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
   Context& context_;
