@@ -328,8 +328,7 @@ BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const Continua
     } else if (const auto* suspicion = std::get_if<Suspicion>(&item->what)) {
       if (callbacks.on_suspicion) callbacks.on_suspicion(*suspicion);
     } else if (const auto* settled = std::get_if<Settled>(&item->what); callbacks.checkpoint) {
-      if (!callbacks.checkpoint(*settled, item->u, item->tangent))
-        branch.stop("stopped on request");
+      if (!callbacks.checkpoint(*settled, item->u, item->tangent)) branch.stop("stopped on request");
     }
   }
   return branch.end();

@@ -179,7 +179,7 @@ void Follower::folds(const State& a, const State& b, int depth) {
     found.sensitivity = 0;
     if (found.located)
       memory_.folds.emplace_back(found.parameter, std::max(std::abs(a.point.parameter - found.parameter),
-                                                    std::abs(b.point.parameter - found.parameter)));
+                                                           std::abs(b.point.parameter - found.parameter)));
     meet(found, std::move(at.u));
     return;
   }

@@ -14,9 +14,12 @@ namespace {
 // A point, what a look at it found and what that left: counts, values, monitors and warm start, then the tangent.
 Journal::Answer pack(const State& s, const std::vector<double>& warm) {
   const Stability& all = s.point.stability;
-  std::vector<double> out{static_cast<double>(all.values.size()), static_cast<double>(all.distance.size()),
-                          static_cast<double>(s.point.monitors.size()), static_cast<double>(warm.size()),
-                          static_cast<double>(all.neutral), s.point.step,
+  std::vector<double> out{static_cast<double>(all.values.size()),
+                          static_cast<double>(all.distance.size()),
+                          static_cast<double>(s.point.monitors.size()),
+                          static_cast<double>(warm.size()),
+                          static_cast<double>(all.neutral),
+                          s.point.step,
                           static_cast<double>(s.point.newton_iterations)};
   for (const auto& v : all.values) out.insert(out.end(), {v.real(), v.imag()});
   for (const auto& list : {all.distance, s.point.monitors, warm, core::gather(s.tangent.get())})

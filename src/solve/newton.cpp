@@ -153,7 +153,8 @@ int effort_of(std::span<const double> residuals, double tolerance, bool below_to
 }  // namespace
 
 struct Newton::Objects {
-  Objects(ExtendedProblem& problem, Vec like) : context{problem, nullptr, 0, core::Gate(problem.comm()), nullptr, {}, {}} {
+  Objects(ExtendedProblem& problem, Vec like)
+      : context{problem, nullptr, 0, core::Gate(problem.comm()), nullptr, {}, {}} {
     check(VecGetLocalSize(like, &local));
     check(VecGetSize(like, &global));
     shell = make_shell(context, like);
@@ -231,8 +232,8 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
     return Journal::Answer{with_unknowns(std::move(facts), u), r.reason};
   });
   const std::vector<double> facts = take_unknowns(found.numbers, u);
-  return {facts[0] != 0, static_cast<int>(facts[1]), static_cast<int>(facts[2]), static_cast<int>(facts[3]),
-          facts[4],      found.text};
+  return {facts[0] != 0, static_cast<int>(facts[1]), static_cast<int>(facts[2]), static_cast<int>(facts[3]), facts[4],
+          found.text};
 }
 
 NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<double> earlier) {
@@ -268,7 +269,8 @@ NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<doubl
   std::vector<double> norms = std::move(o.context.earlier);
   norms.insert(norms.end(), o.context.residuals.begin(), o.context.residuals.begin() + known);
   const int effort = effort_of(norms, options_.tolerance * root_n, reason == SNES_CONVERGED_FNORM_ABS);
-  NewtonResult result{reason > 0, static_cast<int>(before + iterations), effort, static_cast<int>(linear),
+  NewtonResult result{reason > 0,    static_cast<int>(before + iterations),
+                      effort,        static_cast<int>(linear),
                       norm / root_n, text_of(reason)};
   // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls
   // there has arrived.

@@ -69,7 +69,7 @@ private:
   static constexpr double first_radius = 0.2;
   double radius_ = first_radius;              // multipliers above it are found
   std::optional<std::vector<double>> taken_;  // a warm start that waits for the next run: radius, then V
-  bool found_ = false;   // the last search for multipliers left its basis
+  bool found_ = false;                        // the last search for multipliers left its basis
   core::Matrix shell_;
   core::Vector right_, answer_;
   core::LinearSolver solver_;

@@ -13,10 +13,9 @@ constexpr std::size_t numbers_of_event = 11;
 void put_events(io::Group& group, const std::string& name, const std::vector<solve::LocatedEvent>& events) {
   std::vector<double> flat;
   for (const auto& e : events)
-    flat.insert(flat.end(),
-                {static_cast<double>(e.event), e.parameter, e.bracket, e.sensitivity, e.critical.real(),
-                 e.critical.imag(), e.located ? 1.0 : 0.0, e.refined ? 1.0 : 0.0, e.quadratic,
-                 static_cast<double>(e.others_unstable), e.loses ? 1.0 : 0.0});
+    flat.insert(flat.end(), {static_cast<double>(e.event), e.parameter, e.bracket, e.sensitivity, e.critical.real(),
+                             e.critical.imag(), e.located ? 1.0 : 0.0, e.refined ? 1.0 : 0.0, e.quadratic,
+                             static_cast<double>(e.others_unstable), e.loses ? 1.0 : 0.0});
   group.put(name, std::move(flat), "1", "events of the last step");
 }
 
@@ -25,8 +24,16 @@ std::vector<solve::LocatedEvent> events_of(const io::Group& group, const std::st
   const auto& flat = group.reals(name);
   for (std::size_t k = 0; k + numbers_of_event <= flat.size(); k += numbers_of_event) {
     const double* v = &flat[k];
-    events.push_back({static_cast<solve::Event>(static_cast<int>(v[0])), v[1], v[2], v[3], {v[4], v[5]}, v[6] != 0,
-                      v[7] != 0, v[8], static_cast<int>(v[9]), v[10] != 0});
+    events.push_back({static_cast<solve::Event>(static_cast<int>(v[0])),
+                      v[1],
+                      v[2],
+                      v[3],
+                      {v[4], v[5]},
+                      v[6] != 0,
+                      v[7] != 0,
+                      v[8],
+                      static_cast<int>(v[9]),
+                      v[10] != 0});
   }
   return events;
 }

@@ -7,7 +7,8 @@
 
 namespace whirl::study {
 
-/// Point, unknowns, tangent, next step and memory; unknowns are in global order, so that the number of ranks may change.
+/// Point, unknowns, tangent, next step and memory; unknowns are in global order, so that the number of ranks may
+/// change.
 void write_restart(io::Group& group, const solve::Settled& at, Vec u, Vec tangent);
 /// `like` has the layout of the unknowns.
 [[nodiscard]] solve::Restart read_restart(const io::Group& group, Vec like);

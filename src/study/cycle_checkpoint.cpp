@@ -95,8 +95,7 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
 }
 
 std::optional<solve::Restart> CycleFollower::restore() {
-  pieces_ =
-      std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(space()));
+  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(space()));
   newton_.journal = continuation_.newton.journal = pieces_->journal();
   if (!pieces_->state().has_group("cycle")) return std::nullopt;
   const io::Group state = pieces_->state();
@@ -113,8 +112,11 @@ std::optional<solve::Restart> CycleFollower::restore() {
   }
   read_summary(state.group("summary"), context_.results.summary());
   events_ = static_cast<int>(state.integer("events"));
-  solve::Restart restart{problem_->scatter(cycle), problem_->scatter(direction), state.real("next_step"),
-                         read_point(state.group("point")), {}};
+  solve::Restart restart{problem_->scatter(cycle),
+                         problem_->scatter(direction),
+                         state.real("next_step"),
+                         read_point(state.group("point")),
+                         {}};
   if (pieces_->same_layout()) restart.memory = read_memory(state.group("memory"), restart.u.get());
   seeds_ = read_seeds(state.group("flips"));
   located_ = read_located(state.group("located"));

@@ -103,14 +103,16 @@ void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::fu
   b = one.bifurcations.front();
 }
 
-// Saving takes no more than a twentieth of the time. States come first, or work between them would leave them no time.
+// Saving takes no more than a twentieth of the time. States come first, or work between them would leave them no time;
+// but not before all is repeated that is known of the work behind them.
 bool Pieces::due() const {
   return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= std::max(least_seconds, 25 * cost()));
 }
 
 bool Pieces::state_due() const {
   const double now = findings_.seconds();
-  return saves_ && findings_.agreed(now - last_state_ >= least_seconds && now - last_saved_ >= 20 * cost());
+  return saves_ && !journal_.repeats() &&
+         findings_.agreed(now - last_state_ >= least_seconds && now - last_saved_ >= 20 * cost());
 }
 
 void Pieces::save_if_due() {

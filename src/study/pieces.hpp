@@ -50,7 +50,7 @@ public:
   void keep(const std::string& name, const std::vector<double>& values);
 
   /// True if it is time to save: rank 0's clock decides for all. A state may be saved earlier, which takes the place of
-  /// what was saved since the last one.
+  /// what was saved since the last one, but none while an interrupted run is repeated.
   [[nodiscard]] bool due() const;
   [[nodiscard]] bool state_due() const;
   /// Saves the pieces with the last state, if it is time.

@@ -33,8 +33,8 @@ solve::BranchMemory copy(const solve::BranchMemory& m) {
   return c;
 }
 
-// A branch with a multiplier outside for 0 < p < 0.1 and a film that is near a kink: what a branch sees of them hangs on
-// several points.
+// A branch with a multiplier outside for 0 < p < 0.1 and a film that is near a kink: what a branch sees of them hangs
+// on several points.
 struct Branch {
   static constexpr double speed = 2;
   struct Saved {
@@ -82,7 +82,9 @@ struct Branch {
     callbacks.on_suspicion = [&](const solve::Suspicion& x) { found.suspected.push_back(x); };
     callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec t) {
       journal.begin();
-      saved = {solve::Restart{copy(u), copy(t), at.next_step, at.point, copy(*at.memory)}, {}, found.points.size(),
+      saved = {solve::Restart{copy(u), copy(t), at.next_step, at.point, copy(*at.memory)},
+               {},
+               found.points.size(),
                found.events.size()};
       return true;
     };
@@ -163,13 +165,14 @@ TEST(Journal, AnErrorIsAnAnswer) {
   EXPECT_EQ(works, 1);
 }
 
-// Newton's iterates, looks, refinements: killed after each of them, the branch is the same, and hardly more is computed.
+// Newton's iterates, looks, refinements: killed after each of them, the branch is the same, and hardly more is
+// computed.
 TEST(Journal, ABranchGoesOnWhereItWasKilled) {
   Branch whole;
   whole.run(-1);
   ASSERT_EQ(whole.found.events.size(), 2U);
   // A Newton step with what has to be looked at again before it.
-  const int step = 12 * 4 * 12;
+  const int step = 12 * 4 * 16;
   for (int k = 1; k <= whole.changes; k += 3) {
     Branch first, second;
     EXPECT_THROW(first.run(k), Kill);

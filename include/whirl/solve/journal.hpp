@@ -10,9 +10,9 @@ namespace whirl::solve {
 /// Answers to costly questions, in the order in which a computation asks them.
 ///
 /// The repetition of an interrupted computation asks the same questions again, up to rounding, and is given the answers
-/// that were found. The first question that is another one ends that: the rest of what was found is forgotten. A question
-/// may ask others on its way, whose answers are of no use any more once it is answered itself. NotConverged and
-/// DomainError are answers too. Nothing here communicates: every rank asks alike and holds the same.
+/// that were found. The first question that is another one ends that: the rest of what was found is forgotten. A
+/// question may ask others on its way, whose answers are of no use any more once it is answered itself. NotConverged
+/// and DomainError are answers too. Nothing here communicates: every rank asks alike and holds the same.
 class Journal {
 public:
   struct Answer {
@@ -35,6 +35,8 @@ public:
 
   /// Where the next question stands, and forgetting what was asked from there on.
   [[nodiscard]] std::size_t place() const { return next_; }
+  /// Whether answers of an interrupted computation wait for their questions.
+  [[nodiscard]] bool repeats() const { return next_ < entries_.size(); }
   void forget_from(std::size_t place);
 
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
