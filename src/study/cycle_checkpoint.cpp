@@ -44,16 +44,13 @@ void CycleFollower::renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent) {
     core::check(VecScale(tangent, 1 / std::sqrt(solve::inner(*problem_, tangent, tangent))));
   };
   try {
-    if (!newton_.journal) return renew();
     double norm = 0;
     core::check(VecNorm(u, NORM_2, &norm));
-    core::fill(tangent, newton_.journal
-                            ->ask("phase", {norm},
-                                  [&](const auto&) {
-                                    renew();
-                                    return solve::Journal::Answer{core::gather(tangent), {}};
-                                  })
-                            .numbers);
+    const auto renewed = solve::Journal::ask(newton_.journal, "phase", {norm}, [&](const auto&) {
+      renew();
+      return solve::Journal::Answer{core::gather(tangent), {}};
+    });
+    core::fill(tangent, renewed.numbers);
   } catch (const core::NotConverged&) {  // singular, at a branch point for one: the old one serves
   }
 }

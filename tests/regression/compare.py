@@ -5,6 +5,7 @@ import h5py
 import numpy
 
 CLOCKS = ("wall_seconds", "seconds", "ranks")
+DIFFERENCES = ("bracket", "branch_curvature")  # of parameters
 
 
 def datasets(path):
@@ -60,7 +61,7 @@ def same_results(one, other, within=1e-8):
             found = key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value") if "/" in key else key
             # So has the bar of a number that of the number.
             for found in (found, key.removesuffix("_uncertainty"), key.replace("_uncertainty/values/", "/values/")):
-                if "uncertainty" in key and found != key and a.get(found) is not None and numpy.asarray(a[found]).dtype.kind in "fiu":
+                if ("uncertainty" in key or key.endswith(DIFFERENCES)) and found != key and a.get(found) is not None and numpy.asarray(a[found]).dtype.kind in "fiu":
                     scale = numpy.max(numpy.abs(a[found]), initial=0) or None
             if "normal_uncertainty" in key:
                 scale = 1.0  # the widths of both ranges

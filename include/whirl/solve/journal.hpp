@@ -30,6 +30,11 @@ public:
   /// The answer known, or what `work` finds; `so_far` is what an interrupted `work` had noted last, else empty.
   Answer ask(const std::string& kind, const std::vector<double>& question,
              const std::function<Answer(const Answer& so_far)>& work);
+  /// The same where there may be no journal: then `work` finds it.
+  static Answer ask(Journal* journal, const std::string& kind, const std::vector<double>& question,
+                    const std::function<Answer(const Answer& so_far)>& work) {
+    return journal ? journal->ask(kind, question, work) : work({});
+  }
   /// What the question under way has come to, if anybody wants to know now (see `due`).
   void note(const std::function<Answer()>& so_far);
 
