@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
+#include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
 
 namespace whirl::core {
@@ -31,13 +34,27 @@ Vector make_vector(MPI_Comm comm, PetscInt local, PetscInt global) {
 }
 
 std::vector<double> gather(Vec v) {
-  Scatter scatter;
-  Vector whole;
-  check(VecScatterCreateToAll(v, scatter.put(), whole.put()));
-  check(VecScatterBegin(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(scatter.get(), v, whole.get(), INSERT_VALUES, SCATTER_FORWARD));
-  const ReadArray a(whole.get());
-  return {a.data(), a.data() + a.size()};
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(v));
+  const int size = size_of(comm);
+  const PetscInt* ranges = nullptr;
+  check(VecGetOwnershipRanges(v, &ranges));
+  std::vector<int> counts, offsets(ranges, ranges + size);
+  for (int r = 0; r < size; ++r) counts.push_back(static_cast<int>(ranges[r + 1] - ranges[r]));
+  std::vector<double> all(static_cast<std::size_t>(ranges[size]));
+  const ReadArray a(v);
+  MPI_Allgatherv(a.data(), static_cast<int>(a.size()), MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
+                 MPI_DOUBLE, comm);
+  return all;
+}
+
+void fill(Vec v, const std::vector<double>& all) {
+  PetscInt begin = 0, size = 0;
+  check(VecGetOwnershipRange(v, &begin, nullptr));
+  check(VecGetSize(v, &size));
+  if (static_cast<std::size_t>(size) != all.size())
+    throw Error("the checkpoint is of a problem of another size: compute the study again");
+  const WriteArray a(v);
+  std::copy_n(all.begin() + begin, a.size(), a.data());
 }
 
 int rank_of(MPI_Comm comm) {

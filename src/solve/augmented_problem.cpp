@@ -329,8 +329,10 @@ std::unique_ptr<Condition> condition_of(problem::System& system, EquilibriumProb
   }
 }
 
-std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
-                              const NewtonOptions& options) try {
+namespace {
+
+std::optional<Refined> refine_here(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
+                                   const NewtonOptions& options) try {
   core::Vector row = core::duplicate(u);
   weighted_row(problem, tangent, row.get());
   problem.linearise(u, row.get());
@@ -349,6 +351,29 @@ std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, 
   return std::nullopt;
 } catch (const core::NotConverged&) {
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
+                              const NewtonOptions& options) {
+  if (!options.journal) return refine_here(problem, event, u, tangent, options);
+  double norm = 0;
+  check(VecNorm(u, NORM_2, &norm));
+  const std::vector<double> question{norm, static_cast<double>(event.event), event.critical.real(),
+                                     event.critical.imag()};
+  const auto answer = options.journal->ask("refine", question, [&](const Journal::Answer&) {
+    const auto r = refine_here(problem, event, u, tangent, options);
+    if (!r) return Journal::Answer{};
+    std::vector<double> numbers = core::gather(r->u.get());
+    numbers.insert(numbers.end(), {r->parameter, r->error, r->quadratic, r->critical.real(), r->critical.imag()});
+    return Journal::Answer{std::move(numbers), {}};
+  });
+  if (answer.numbers.empty()) return std::nullopt;
+  const auto end = answer.numbers.end() - 5;
+  Refined r{core::duplicate(u), end[0], end[1], end[2], {end[3], end[4]}};
+  core::fill(r.u.get(), {answer.numbers.begin(), end});
+  return r;
 }
 
 std::optional<Refined> refine(problem::System& system, EquilibriumProblem& problem, const LocatedEvent& event, Vec u,

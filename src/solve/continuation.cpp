@@ -39,24 +39,6 @@ NewtonResult Follower::correct_at(core::Vector& u, double parameter) {
   return correct(u.get(), row.get(), parameter);
 }
 
-void Follower::inspect(State& s, Vec along) {
-  core::Vector row = core::duplicate(s.u.get()), rhs = core::duplicate(s.u.get());
-  if (along)
-    weighted_row(problem_, along, row.get());
-  else
-    parameter_row(problem_, row.get());
-  problem_.linearise(s.u.get(), row.get());
-  check(VecSet(rhs.get(), 0.0));
-  set_last_entry(problem_.comm(), rhs.get(), along ? 1.0 : static_cast<double>(direction_));
-  s.tangent = core::duplicate(s.u.get());
-  newton_.solve_linear(rhs.get(), s.tangent.get());
-  check(VecScale(s.tangent.get(), 1 / std::sqrt(inner(problem_, s.tangent.get(), s.tangent.get()))));
-  s.point.parameter = last_entry(problem_.comm(), s.u.get());
-  s.point.slope = last_entry(problem_.comm(), s.tangent.get());
-  s.point.stability = questions_.stability ? questions_.stability(s.u.get()) : Stability{};
-  if (questions_.monitors) s.point.monitors = questions_.monitors(s.u.get(), s.tangent.get());
-}
-
 // The angles between the predictor and the chord, in all unknowns and in those without the parameter. Steps below the
 // minimum occur when an event is located; there rounding decides the direction of the chord.
 bool Follower::on_course(const State& from, const State& to) const {
@@ -156,6 +138,7 @@ Follower::Follower(ExtendedProblem& problem, core::Vector u, const ContinuationO
   here_.tangent = std::move(restart->tangent);
   here_.point = std::move(restart->point);
   ds_ = restart->step;
+  memory_ = std::move(restart->memory);
   stage_ = Stage::advance;
 }
 
@@ -172,6 +155,7 @@ std::optional<BranchItem> Follower::next() {
   taken_ = std::move(found_.front());
   found_.pop_front();
   if (taken_.u) taken_.item.u = taken_.u.get();
+  warm_up();
   return taken_.item;
 }
 
@@ -189,7 +173,7 @@ void Follower::begin() {
   here_.point.newton_iterations = first.iterations;
   inspect(here_, nullptr);
   accept_point();
-  found_.push_back({{Settled{here_.point, ds_}, here_.u.get(), here_.tangent.get()}, {}});
+  found_.push_back({{Settled{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
   stage_ = Stage::renew;
   at_start_ = true;
 }
@@ -251,10 +235,11 @@ void Follower::step() {
   // compare with.
   const bool comparable = !questions_.stability || !here_.point.stability.values.empty();
   if (questions_.events && comparable)
-    events(earlier_.u ? &earlier_ : nullptr, before_.u ? &before_ : nullptr, here_, next);
-  earlier_ = std::move(before_);
-  before_ = std::move(here_);
-  if (!comparable) earlier_ = {}, before_ = {};
+    events(memory_.earlier ? &*memory_.earlier : nullptr, memory_.before.u ? &memory_.before : nullptr, here_, next);
+  memory_.earlier.reset();
+  if (memory_.before.u) memory_.earlier = std::move(memory_.before.point);
+  memory_.before = std::move(here_);
+  if (!comparable) forget_points();
   here_ = std::move(next);
   const int k = result.effort;
   ds_ = rounded(std::min(options_.max_step, ds_ * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
@@ -269,13 +254,14 @@ void Follower::step() {
 }
 
 void Follower::settle_here() {
-  if (options_.adapt_every > 0 && here_.point.index % options_.adapt_every == 0 &&
+  // What is held back lies on this mesh.
+  if (options_.adapt_every > 0 && here_.point.index % options_.adapt_every == 0 && !memory_.held &&
       problem_.adapt(here_.u, here_.tangent)) {
-    earlier_ = {}, before_ = {};
+    forget_points();
     NewtonResult again;
     if (!settle(here_, again)) return finish(fmt::format("no solution on the adapted mesh: {}", again.reason), false);
   }
-  found_.push_back({{Settled{here_.point, ds_}, here_.u.get(), here_.tangent.get()}, {}});
+  found_.push_back({{Settled{here_.point, ds_, &memory_}, here_.u.get(), here_.tangent.get()}, {}});
   stage_ = Stage::renew;
 }
 
@@ -342,8 +328,7 @@ BranchEnd follow_branch(ExtendedProblem& problem, core::Vector u, const Continua
     } else if (const auto* suspicion = std::get_if<Suspicion>(&item->what)) {
       if (callbacks.on_suspicion) callbacks.on_suspicion(*suspicion);
     } else if (const auto* settled = std::get_if<Settled>(&item->what); callbacks.checkpoint) {
-      if (!callbacks.checkpoint(settled->point, item->u, item->tangent, settled->next_step))
-        branch.stop("stopped on request");
+      if (!callbacks.checkpoint(*settled, item->u, item->tangent)) branch.stop("stopped on request");
     }
   }
   return branch.end();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "bordered_monodromy.hpp"
 #include "condition_fold.hpp"
@@ -67,22 +68,23 @@ private:
 
 class CyclicFoldCondition : public FoldCondition {
 public:
-  explicit CyclicFoldCondition(CycleProblem& problem)
-      : FoldCondition(problem, problem), cycles_(problem), one_(problem, 1), flip_(problem, 1) {}
+  explicit CyclicFoldCondition(CycleProblem& problem) : FoldCondition(problem, problem), cycles_(problem) {}
   std::vector<CodimensionTest> tests(Vec u, const VectorXd& inner, Vec along) override {
     std::vector<CodimensionTest> all = FoldCondition::tests(u, inner, along);
-    all.push_back({"fold_flip", corner(-1, flip_)});
+    if (!flip_) flip_.emplace(cycles_, 1);
+    all.push_back({"fold_flip", corner(-1, *flip_)});
     // The trivial multiplier of a self-excited cycle makes +1 double at every fold.
     if (!cycles_.options().autonomous) {
-      (void)corner(1, one_);
-      all.push_back({"resonance_1_1", one_.left().col(0).dot(one_.v.col(0))});
+      if (!one_) one_.emplace(cycles_, 1);
+      (void)corner(1, *one_);
+      all.push_back({"resonance_1_1", one_->left().col(0).dot(one_->v.col(0))});
     }
     return all;
   }
 
 private:
   CycleProblem& cycles_;
-  BorderedMonodromy one_, flip_;
+  std::optional<BorderedMonodromy> one_, flip_;  // made when asked for: a location does without
 };
 
 // With k = (w^T v, w^T M v) made orthonormal as the two combinations n_k of the corner: near the bifurcation the corner

@@ -73,7 +73,7 @@ void Follower::suspect(const State& a, const State& b, std::string why) {
 }
 
 // A closer look at a stretch may lead to what was found there before.
-void Follower::meet(LocatedEvent found, State at) {
+void Follower::meet(LocatedEvent found, core::Vector u) {
   const auto same = [&](const LocatedEvent& other) {
     const double apart = std::max({found.bracket, other.bracket, options_.location_tolerance});
     return found.located && other.located && other.event == found.event && found.critical != 0.0 &&
@@ -82,14 +82,14 @@ void Follower::meet(LocatedEvent found, State at) {
            std::abs(std::abs(other.critical.imag()) - std::abs(found.critical.imag())) <=
                1e-4 * std::abs(found.critical);
   };
-  for (const auto* all : {&met_, &last_met_})
+  for (const auto* all : {&memory_.met, &last_met_})
     if (std::any_of(all->begin(), all->end(), same)) return;
-  met_.push_back(found);
-  found_.push_back({{std::move(found)}, std::move(at.u)});
+  memory_.met.push_back(found);
+  found_.push_back({{std::move(found)}, std::move(u)});
 }
 
 // False position (Illinois variant) of a test function along the arclength from the point a.
-bool Follower::locate(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
+bool Follower::search(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
                       State& at) {
   double s0 = 0, s1 = b.point.step, f0 = test(a), f1 = test(b);
   const double dp = b.point.parameter - a.point.parameter;
@@ -138,6 +138,7 @@ void Follower::pin_down(const State& a, const State& b, const Test& test, const 
     found.located = locate(a, b, test, std::max(options_.location_tolerance, rough), found, at);
     name(at);
     if (found.located) {
+      warm_up();
       std::optional<Refined> refined = questions_.refine(found, at.u.get(), at.tangent.get());
       const double h = b.point.step, s = refined ? distance(a, refined->u.get()) : 0;
       if (refined && s > std::min(0.0, h) - 0.1 * std::abs(h) && s < std::max(0.0, h) + 0.1 * std::abs(h)) {
@@ -177,9 +178,9 @@ void Follower::folds(const State& a, const State& b, int depth) {
         a, b, [](const State& s) { return s.point.slope; }, [](const State&) {}, found, at);
     found.sensitivity = 0;
     if (found.located)
-      folds_.emplace_back(found.parameter, std::max(std::abs(a.point.parameter - found.parameter),
-                                                    std::abs(b.point.parameter - found.parameter)));
-    meet(found, std::move(at));
+      memory_.folds.emplace_back(found.parameter, std::max(std::abs(a.point.parameter - found.parameter),
+                                                           std::abs(b.point.parameter - found.parameter)));
+    meet(found, std::move(at.u));
     return;
   }
   const double h = b.point.step, cosine = inner(problem_, a.tangent.get(), b.tangent.get());
@@ -254,15 +255,16 @@ void Follower::crossings(const State& a, const State& b, int depth) {
   // two may lie on different sides of the middle.
   const auto is_it = [&](const auto& fold) { return std::abs(found.parameter - fold.first) <= 0.01 * fold.second; };
   if (found.event == Event::branch_point) {
-    if (a.point.slope * b.point.slope < 0 || std::any_of(folds_.begin(), folds_.end(), is_it) ||
+    if (a.point.slope * b.point.slope < 0 || std::any_of(memory_.folds.begin(), memory_.folds.end(), is_it) ||
         std::any_of(last_folds_.begin(), last_folds_.end(), is_it))
       return;
     if (turns_beside(a, at)) {
-      held_.emplace(found, std::move(at));
+      memory_.held = found;
+      memory_.held_u = std::move(at.u);
       return;
     }
   }
-  meet(found, std::move(at));
+  meet(found, std::move(at.u));
 }
 
 // Whether the branch is about to turn right behind `at`: a multiplier passes +1 at the fold itself only as exactly as
@@ -311,7 +313,7 @@ void Follower::visits(const State& before, const State& a, const State& b, bool 
       }
       const double f = distance(here);
       if (f > 0) {
-        visited_ = peak.s > 0;
+        memory_.visited = peak.s > 0;
         around(peak.s < 0 ? before : a, here, peak.s < 0 ? a : b);
         break;
       }
@@ -327,21 +329,21 @@ void Follower::visits(const State& before, const State& a, const State& b, bool 
 
 // Two values that pass each other make a kink instead: there the lines through the points on either side meet.
 // Logarithms of moduli are nearly straight where values grow by the same factor from point to point.
-bool Follower::kinks(const State& first, const State& a, const State& b, const State& last) {
+bool Follower::kinks(const BranchPoint& first, const State& a, const State& b, const State& last) {
   const int count = a.point.stability.unstable();
-  for (const State* s : {&first, &b, &last})
-    if (s->point.stability.unstable() != count) return false;
+  for (const BranchPoint* p : {&first, &b.point, &last.point})
+    if (p->stability.unstable() != count) return false;
   for (const int k : {count - 1, count}) {
     const auto order = static_cast<std::size_t>(k);
-    const auto known = [&](const State& s) { return s.point.stability.distance.size() > order; };
-    if (k < 0 || !known(first) || !known(a) || !known(b) || !known(last)) continue;
+    const auto known = [&](const BranchPoint& p) { return p.stability.distance.size() > order; };
+    if (k < 0 || !known(first) || !known(a.point) || !known(b.point) || !known(last.point)) continue;
     const double sign = k < count ? -1 : 1;
-    const auto height = [&](const State& s) {
-      const double d = s.point.stability.distance[order];
+    const auto height = [&](const BranchPoint& p) {
+      const double d = p.stability.distance[order];
       return sign * (questions_.cycles ? std::log(std::max(1 + d, 1e-300)) : d);
     };
-    const double h = b.point.step, f0 = height(a), f1 = height(b);
-    const double rise = (f0 - height(first)) / a.point.step, fall = (height(last) - f1) / last.point.step;
+    const double h = b.point.step, f0 = height(a.point), f1 = height(b.point);
+    const double rise = (f0 - height(first)) / a.point.step, fall = (height(last.point) - f1) / last.point.step;
     if (!(rise > 0 && fall < 0)) continue;
     const double s = (f1 - fall * h - f0) / (rise - fall), peak = f0 + rise * s;
     if (!(s > 0 && s < h) || !(rounded(peak) > rounded(std::max(f0, f1) / 2))) continue;
@@ -356,7 +358,7 @@ bool Follower::kinks(const State& first, const State& a, const State& b, const S
       return true;
     }
     // The lines overshoot a rounded peak; what remains on the border where they meet cannot be told.
-    if (std::abs(height(here)) < 0.02 * std::abs(std::max(f0, f1)))
+    if (std::abs(height(here.point)) < 0.02 * std::abs(std::max(f0, f1)))
       suspect(a, b, "values pass each other at the border of stability and may cross it");
   }
   return false;
@@ -376,19 +378,19 @@ void Follower::around(const State& a, State& middle, const State& b) {
 
 // The branch did not turn after all.
 void Follower::release_held() {
-  if (held_) meet(held_->first, std::move(held_->second));
-  held_.reset();
+  if (memory_.held) meet(*memory_.held, std::move(memory_.held_u));
+  memory_.held.reset();
 }
 
-void Follower::events(const State* first, const State* before, const State& a, const State& b) {
-  last_folds_ = std::exchange(folds_, {});
-  last_met_ = std::exchange(met_, {});
+void Follower::events(const BranchPoint* first, const State* before, const State& a, const State& b) {
+  last_folds_ = std::exchange(memory_.folds, {});
+  last_met_ = std::exchange(memory_.met, {});
   folds(a, b, 0);
-  if (folds_.empty()) release_held();
-  held_.reset();
+  if (memory_.folds.empty()) release_held();
+  memory_.held.reset();
   crossings(a, b, 0);
   if (questions_.zeros) zeros(a, b);
-  bool seen = std::exchange(visited_, false);  // between `before` and a
+  bool seen = std::exchange(memory_.visited, false);  // between `before` and a
   if (first && before && !seen) seen = kinks(*first, *before, a, b);
   if (before) visits(*before, a, b, seen);
 }

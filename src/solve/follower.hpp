@@ -9,11 +9,7 @@
 
 namespace whirl::solve {
 
-/// A point with its unit tangent.
-struct State {
-  core::Vector u, tangent;
-  BranchPoint point;
-};
+using State = BranchState;
 
 /// Ten significant digits: the last ones may differ between rank counts and must not decide anything.
 [[nodiscard]] double rounded(double x);
@@ -36,11 +32,19 @@ private:
   void begin();
   void step();
   void settle_here();
-  void meet(LocatedEvent found, State at);
+  void meet(LocatedEvent found, core::Vector u);
+  // Their mesh is gone, or they have nothing to compare with.
+  void forget_points() { memory_.before = {}, memory_.earlier.reset(); }
   void accept_point() { found_.push_back({{here_.point, here_.u.get()}, {}}); }
   // Tangent and stability at a corrected u; `along` gives the orientation (null: towards the end of the range).
   void inspect(State& s, Vec along);
-  NewtonResult correct(Vec u, Vec row, double offset) { return newton_.solve(u, row, offset); }
+  void look_at(State& s, Vec along);
+  // Whatever others did with the problem meanwhile, or did not as they knew its outcome.
+  void warm_up() { problem_.take_warm_start(memory_.warm); }
+  NewtonResult correct(Vec u, Vec row, double offset) {
+    warm_up();
+    return newton_.solve(u, row, offset);
+  }
   NewtonResult correct_at(core::Vector& u, double parameter);
   [[nodiscard]] bool on_course(const State& from, const State& to) const;
   // The point at arclength ds from `from`; of natural continuation, at the parameter ds further on.
@@ -60,11 +64,12 @@ private:
 
   // All that lies between two points. With the points before a (null: none on this mesh), also what the count of
   // unstable values at a and b does not show.
-  void events(const State* first, const State* before, const State& a, const State& b);
+  void events(const BranchPoint* first, const State* before, const State& a, const State& b);
   using Test = std::function<double(const State&)>;
   // The zero of a test function between two points, up to `tolerance` in the parameter; false if the location did not
   // converge, then `at` is the nearest point found.
   bool locate(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found, State& at);
+  bool search(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found, State& at);
   // The same, refined by the callback where that can; `name` tells the event at a point near it.
   void pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
                 LocatedEvent& found, State& at);
@@ -74,7 +79,7 @@ private:
   void crossings(const State& a, const State& b, int depth);
   void zeros(const State& a, const State& b);
   void visits(const State& before, const State& a, const State& b, bool seen);
-  [[nodiscard]] bool kinks(const State& first, const State& a, const State& b, const State& last);
+  [[nodiscard]] bool kinks(const BranchPoint& first, const State& a, const State& b, const State& last);
   void around(const State& a, State& middle, const State& b);
   bool split(const State& a, const State& b, State& middle, State& rest);
   void suspect(const State& a, const State& b, std::string why);
@@ -91,15 +96,12 @@ private:
   Newton newton_;
   Continuation kind_;
   int direction_;
-  bool visited_ = false;  // the last step's crossings came from a closer look
-  // Folds of the step whose events are sought, and of the one before: parameter, and how far the step reaches from
-  // there.
-  std::vector<std::pair<double, double>> folds_, last_folds_;
-  std::vector<LocatedEvent> met_, last_met_;            // likewise, what was found
-  std::optional<std::pair<LocatedEvent, State>> held_;  // a crossing that is none if a fold follows
+  BranchMemory memory_;  // while events of a step are sought, folds and events are those of this step
+  std::vector<std::pair<double, double>> last_folds_;
+  std::vector<LocatedEvent> last_met_;
   Stage stage_ = Stage::start;
-  State here_, before_, earlier_;  // the last two without u: none on this mesh
-  bool at_start_ = false;          // of the branch, whose first point was just taken
+  State here_;
+  bool at_start_ = false;  // of the branch, whose first point was just taken
   double ds_;
   std::deque<Found> found_;
   Found taken_;

@@ -22,7 +22,26 @@ struct SolveContext {
   Vec row = nullptr;
   double offset = 0;
   core::Gate gate;
+  Journal* journal = nullptr;
+  std::vector<double> earlier;    // norms of the residuals before those of this solve
+  std::vector<double> residuals;  // of the last nonlinear solve, which writes them
 };
+
+// Numbers, then u.
+std::vector<double> with_unknowns(std::vector<double> head, Vec u) {
+  const std::vector<double> all = core::gather(u);
+  head.insert(head.end(), all.begin(), all.end());
+  return head;
+}
+
+// The unknowns into u; returns the numbers before them.
+std::vector<double> take_unknowns(const std::vector<double>& both, Vec u) {
+  PetscInt size = 0;
+  check(VecGetSize(u, &size));
+  core::require(both.size() >= static_cast<std::size_t>(size), "an answer of Newton's method holds its unknowns");
+  core::fill(u, {both.end() - size, both.end()});
+  return {both.begin(), both.end() - size};
+}
 
 PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
   auto& c = *static_cast<SolveContext*>(raw);
@@ -37,7 +56,18 @@ PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
 
 PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   auto& c = *static_cast<SolveContext*>(raw);
-  const PetscErrorCode code = c.gate.run([&] { c.problem.linearise(u, c.row); });
+  PetscInt iteration = 0;
+  PetscCall(SNESGetIterationNumber(snes, &iteration));
+  const PetscErrorCode code = c.gate.run([&] {
+    // An iterate from which the solver goes on: it was found not to have arrived.
+    if (c.journal && iteration > 0)
+      c.journal->note([&] {
+        std::vector<double> norms = c.earlier;
+        norms.insert(norms.end(), c.residuals.begin(), c.residuals.begin() + iteration);
+        return Journal::Answer{with_unknowns(std::move(norms), u), {}};
+      });
+    c.problem.linearise(u, c.row);
+  });
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
@@ -123,7 +153,8 @@ int effort_of(std::span<const double> residuals, double tolerance, bool below_to
 }  // namespace
 
 struct Newton::Objects {
-  Objects(ExtendedProblem& problem, Vec like) : context{problem, nullptr, 0, core::Gate(problem.comm())} {
+  Objects(ExtendedProblem& problem, Vec like)
+      : context{problem, nullptr, 0, core::Gate(problem.comm()), nullptr, {}, {}} {
     check(VecGetLocalSize(like, &local));
     check(VecGetSize(like, &global));
     shell = make_shell(context, like);
@@ -137,7 +168,6 @@ struct Newton::Objects {
   core::Vector residual;
   core::NonlinearSolver snes;
   core::LinearSolver ksp;
-  std::vector<double> residuals;  // of the last nonlinear solve, which writes them
 };
 
 void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
@@ -151,9 +181,9 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
                           1000));
   check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
   check(SNESSetCheckJacobianDomainError(snes.get(), PETSC_TRUE));  // PETSc looks in debug builds only
-  residuals.resize(static_cast<std::size_t>(options.max_iterations) + 2);
-  check(SNESSetConvergenceHistory(snes.get(), residuals.data(), nullptr, static_cast<PetscInt>(residuals.size()),
-                                  PETSC_TRUE));
+  auto& norms = context.residuals;
+  norms.resize(static_cast<std::size_t>(options.max_iterations) + 2);
+  check(SNESSetConvergenceHistory(snes.get(), norms.data(), nullptr, static_cast<PetscInt>(norms.size()), PETSC_TRUE));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
@@ -190,13 +220,41 @@ Newton::Objects& Newton::objects(Vec like) {
 }
 
 NewtonResult Newton::solve(Vec u, Vec row, double offset) {
+  if (!options_.journal) return solve_from(u, row, offset, {});
+  double norm = 0;
+  check(VecNorm(u, NORM_2, &norm));
+  const Journal::Answer found = options_.journal->ask("newton", {norm, offset}, [&](const Journal::Answer& so_far) {
+    std::vector<double> earlier;
+    if (!so_far.numbers.empty()) earlier = take_unknowns(so_far.numbers, u);
+    const NewtonResult r = solve_from(u, row, offset, std::move(earlier));
+    std::vector<double> facts{r.converged ? 1.0 : 0.0, static_cast<double>(r.iterations), static_cast<double>(r.effort),
+                              static_cast<double>(r.linear_iterations), r.residual};
+    return Journal::Answer{with_unknowns(std::move(facts), u), r.reason};
+  });
+  const std::vector<double> facts = take_unknowns(found.numbers, u);
+  return {facts[0] != 0, static_cast<int>(facts[1]), static_cast<int>(facts[2]), static_cast<int>(facts[3]), facts[4],
+          found.text};
+}
+
+NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<double> earlier) {
   Objects& o = objects(u);
   if (!o.snes) o.make_nonlinear(options_, u);
   o.context.row = row;
   o.context.offset = offset;
   o.context.gate = core::Gate(problem_.comm());
+  o.context.journal = options_.journal;
+  o.context.earlier = std::move(earlier);
   SNES snes = o.snes.get();
-  o.context.gate.rethrow(SNESSolve(snes, nullptr, u));
+  const auto before = static_cast<PetscInt>(o.context.earlier.size());
+  PetscInt most = 0;
+  check(SNESGetTolerances(snes, nullptr, nullptr, nullptr, &most, nullptr));
+  const auto allow = [&](PetscInt n) {
+    if (before > 0) check(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, n, PETSC_DEFAULT));
+  };
+  allow(most - before);
+  const PetscErrorCode code = SNESSolve(snes, nullptr, u);
+  allow(most);
+  o.context.gate.rethrow(code);
 
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0, linear = 0;
@@ -208,10 +266,12 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
   PetscInt known = 0;
   check(SNESGetConvergenceHistory(snes, nullptr, nullptr, &known));
   const double root_n = std::sqrt(static_cast<double>(o.global));
-  const int effort = effort_of({o.residuals.data(), static_cast<std::size_t>(known)}, options_.tolerance * root_n,
-                               reason == SNES_CONVERGED_FNORM_ABS);
-  NewtonResult result{reason > 0,     static_cast<int>(iterations), effort, static_cast<int>(linear), norm / root_n,
-                      text_of(reason)};
+  std::vector<double> norms = std::move(o.context.earlier);
+  norms.insert(norms.end(), o.context.residuals.begin(), o.context.residuals.begin() + known);
+  const int effort = effort_of(norms, options_.tolerance * root_n, reason == SNES_CONVERGED_FNORM_ABS);
+  NewtonResult result{reason > 0,    static_cast<int>(before + iterations),
+                      effort,        static_cast<int>(linear),
+                      norm / root_n, text_of(reason)};
   // The last digits of a residual of large cancelling terms can stay above the tolerance: a line search that stalls
   // there has arrived.
   if (!result.converged && reason == SNES_DIVERGED_LINE_SEARCH && result.residual < 100 * options_.tolerance)

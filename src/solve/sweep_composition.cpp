@@ -59,6 +59,13 @@ void SweepComposition::turn(MatrixXd& state, MatrixXd& added, bool loaded) const
 void SweepComposition::compose(const Run& run) {
   run_ = &run;
   if (!solver_) set_up(run);
+  if (taken_) {
+    const Index columns = taken_->empty() ? 0 : static_cast<Index>(taken_->size() - 1) / run.n;
+    radius_ = taken_->empty() ? first_radius : taken_->front();
+    basis_.resize(local(), columns);
+    if (columns > 0 && last()) basis_ = Map<const MatrixXd>(taken_->data() + 1, run.n, columns);
+    taken_.reset();
+  }
   loads_.resize(run.intervals.size());
   for (std::size_t i = 0; i < run.intervals.size(); ++i) {
     loads_[i] = run.columns[i];
@@ -229,6 +236,16 @@ MatrixXd SweepComposition::times_transposed(const MatrixXd& w) {
   }
   MPI_Bcast(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, size_ - 1, run_->comm);
   return out;
+}
+
+std::vector<double> SweepComposition::warm_start() {
+  if (taken_) return *taken_;
+  if (!run_) return {};
+  std::vector<double> warm(static_cast<std::size_t>(1 + run_->n * basis_.cols()));
+  warm[0] = radius_;
+  if (last()) std::copy_n(basis_.data(), basis_.size(), warm.data() + 1);
+  if (size_ > 1) MPI_Bcast(warm.data(), static_cast<int>(warm.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  return warm;
 }
 
 void SweepComposition::dominant(MatrixXd& v, MatrixXd& image) {

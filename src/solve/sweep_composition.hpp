@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "whirl/core/gate.hpp"
@@ -34,6 +35,8 @@ public:
   Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) override;
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override;
   Eigen::VectorXd entering(const Eigen::VectorXd& v) override;
+  std::vector<double> warm_start() override;
+  void take_warm_start(const std::vector<double>& warm) override { taken_ = warm; }
 
 private:
   [[nodiscard]] bool last() const { return rank_ == size_ - 1; }
@@ -63,8 +66,10 @@ private:
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V [n x p], K V [nb x p]
   Eigen::MatrixXd ends_, ends_added_;            // Theta [n x nb], D + corner [nb x nb]
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;
-  double radius_ = 0.2;  // multipliers above it are found
-  bool found_ = false;   // the last search for multipliers left its basis
+  static constexpr double first_radius = 0.2;
+  double radius_ = first_radius;              // multipliers above it are found
+  std::optional<std::vector<double>> taken_;  // a warm start that waits for the next run: radius, then V
+  bool found_ = false;                        // the last search for multipliers left its basis
   core::Matrix shell_;
   core::Vector right_, answer_;
   core::LinearSolver solver_;

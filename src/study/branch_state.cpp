@@ -5,31 +5,98 @@
 
 namespace whirl::study {
 
-using core::check;
+namespace {
 
-void fill(Vec v, const std::vector<double>& all) {
-  PetscInt begin = 0, size = 0;
-  check(VecGetOwnershipRange(v, &begin, nullptr));
-  check(VecGetSize(v, &size));
-  if (static_cast<std::size_t>(size) != all.size())
-    throw core::Error("the checkpoint is of a problem of another size: compute the study again");
-  const core::WriteArray a(v);
-  for (PetscInt i = 0; i < a.size(); ++i) a[i] = all[static_cast<std::size_t>(begin + i)];
+// Events as rows of numbers.
+constexpr std::size_t numbers_of_event = 11;
+
+void put_events(io::Group& group, const std::string& name, const std::vector<solve::LocatedEvent>& events) {
+  std::vector<double> flat;
+  for (const auto& e : events)
+    flat.insert(flat.end(), {static_cast<double>(e.event), e.parameter, e.bracket, e.sensitivity, e.critical.real(),
+                             e.critical.imag(), e.located ? 1.0 : 0.0, e.refined ? 1.0 : 0.0, e.quadratic,
+                             static_cast<double>(e.others_unstable), e.loses ? 1.0 : 0.0});
+  group.put(name, std::move(flat), "1", "events of the last step");
 }
 
-void write_restart(io::Group& group, const solve::BranchPoint& point, Vec u, Vec tangent, double next_step) {
-  write_point(group.child("point"), point);
-  group.put("u", core::gather(u), "1", "unknowns, scaled");
-  group.put("tangent", core::gather(tangent), "1", "unit tangent");
-  group.set("next_step", next_step);
+std::vector<solve::LocatedEvent> events_of(const io::Group& group, const std::string& name) {
+  std::vector<solve::LocatedEvent> events;
+  const auto& flat = group.reals(name);
+  for (std::size_t k = 0; k + numbers_of_event <= flat.size(); k += numbers_of_event) {
+    const double* v = &flat[k];
+    events.push_back({static_cast<solve::Event>(static_cast<int>(v[0])),
+                      v[1],
+                      v[2],
+                      v[3],
+                      {v[4], v[5]},
+                      v[6] != 0,
+                      v[7] != 0,
+                      v[8],
+                      static_cast<int>(v[9]),
+                      v[10] != 0});
+  }
+  return events;
+}
+
+void put_unknowns(io::Group& group, const std::string& name, Vec v) {
+  group.put(name, core::gather(v), "1", "scaled, in global order");
+}
+
+core::Vector unknowns_of(const io::Group& group, const std::string& name, Vec like) {
+  core::Vector v = core::duplicate(like);
+  core::fill(v.get(), group.reals(name));
+  return v;
+}
+
+}  // namespace
+
+void write_memory(io::Group& group, const solve::BranchMemory& memory) {
+  if (memory.before.u) {
+    write_point(group.child("before"), memory.before.point);
+    put_unknowns(group, "u", memory.before.u.get());
+    put_unknowns(group, "tangent", memory.before.tangent.get());
+  }
+  if (memory.earlier) write_point(group.child("earlier"), *memory.earlier);
+  group.set("visited", memory.visited ? 1 : 0);
+  std::vector<double> folds;
+  for (const auto& [parameter, reach] : memory.folds) folds.insert(folds.end(), {parameter, reach});
+  group.put("folds", std::move(folds), "1", "folds of the last step, and how far it reaches from there");
+  put_events(group, "met", memory.met);
+  group.put("warm", memory.warm, "1", "what helps with the next solution");
+  if (!memory.held) return;
+  put_events(group, "held", {*memory.held});
+  put_unknowns(group, "held_u", memory.held_u.get());
+}
+
+solve::BranchMemory read_memory(const io::Group& group, Vec like) {
+  solve::BranchMemory memory;
+  if (group.has_group("before"))
+    memory.before = {unknowns_of(group, "u", like), unknowns_of(group, "tangent", like),
+                     read_point(group.group("before"))};
+  if (group.has_group("earlier")) memory.earlier = read_point(group.group("earlier"));
+  memory.visited = group.integer("visited") != 0;
+  const auto& folds = group.reals("folds");
+  for (std::size_t k = 0; k + 1 < folds.size(); k += 2) memory.folds.emplace_back(folds[k], folds[k + 1]);
+  memory.met = events_of(group, "met");
+  memory.warm = group.reals("warm");
+  if (group.has_dataset("held")) {
+    memory.held = events_of(group, "held").front();
+    memory.held_u = unknowns_of(group, "held_u", like);
+  }
+  return memory;
+}
+
+void write_restart(io::Group& group, const solve::Settled& at, Vec u, Vec tangent) {
+  write_point(group.child("point"), at.point);
+  put_unknowns(group, "u", u);
+  put_unknowns(group, "tangent", tangent);
+  group.set("next_step", at.next_step);
+  write_memory(group.child("memory"), *at.memory);
 }
 
 solve::Restart read_restart(const io::Group& group, Vec like) {
-  solve::Restart r{core::duplicate(like), core::duplicate(like), group.real("next_step"),
-                   read_point(group.group("point"))};
-  fill(r.u.get(), group.reals("u"));
-  fill(r.tangent.get(), group.reals("tangent"));
-  return r;
+  return {unknowns_of(group, "u", like), unknowns_of(group, "tangent", like), group.real("next_step"),
+          read_point(group.group("point")), read_memory(group.group("memory"), like)};
 }
 
 }  // namespace whirl::study

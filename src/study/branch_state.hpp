@@ -7,12 +7,13 @@
 
 namespace whirl::study {
 
-/// This rank's part of `all`, in the order of the global numbering, into v: the other way of core::gather.
-void fill(Vec v, const std::vector<double>& all);
-
-/// Point, unknowns, tangent and next step; unknowns are in global order, so that the number of ranks may change.
-void write_restart(io::Group& group, const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
+/// Point, unknowns, tangent, next step and memory; unknowns are in global order, so that the number of ranks may
+/// change.
+void write_restart(io::Group& group, const solve::Settled& at, Vec u, Vec tangent);
 /// `like` has the layout of the unknowns.
 [[nodiscard]] solve::Restart read_restart(const io::Group& group, Vec like);
+/// The memory alone.
+void write_memory(io::Group& group, const solve::BranchMemory& memory);
+[[nodiscard]] solve::BranchMemory read_memory(const io::Group& group, Vec like);
 
 }  // namespace whirl::study

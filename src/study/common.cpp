@@ -40,7 +40,7 @@ Trail Walker::trail() {
   };
   const auto take = [this](const std::vector<double>& state) {
     if (!x_) x_ = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
-    fill(x_.get(), {state.begin(), state.end() - 1});
+    core::fill(x_.get(), {state.begin(), state.end() - 1});
     last_ = state.back();
   };
   return {leave, take};

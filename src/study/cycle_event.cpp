@@ -123,6 +123,7 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
+  system_->set_parameter(cycle.parameter);
   if (found.event == solve::Event::cyclic_fold && at_simple_cycle(problem_->orbit(u))) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
@@ -135,6 +136,10 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.more["whirl_frequency_rad_s"] = std::abs(std::arg(found.critical)) / cycle.period;
   std::optional<FlipSeed> seed;
   if (found.event == solve::Event::flip && found.located) {
+    // The branch may have looked elsewhere since it met this flip.
+    core::Vector row = core::duplicate(u);
+    solve::parameter_row(*problem_, row.get());
+    problem_->linearise(u, row.get());
     seed = seed_at(cycle);
     if (options_.follow_flips) seeds_.push_back(*seed);
   }

@@ -90,6 +90,7 @@ void CycleFollower::add_margin(double parameter, const solve::Cycle& orbit) {
 
 void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   const solve::Cycle cycle = problem_->gather(u);
+  system_->set_parameter(cycle.parameter);  // closer looks may have left it elsewhere
   const solve::Cycle orbit = problem_->orbit(u);
   record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
@@ -185,12 +186,14 @@ StudyResult CycleFollower::run() {
   // The branch has touched, as it was asked to, or its film has become too thin.
   bool contact = false;
   if (films_.exists() || options_.max_eccentricity) {
-    callbacks.limit = [this](Vec v) {
-      const solve::Cycle orbit = problem_->orbit(v);
-      return margin(orbit, *system_);
+    // What was known already has not set the system.
+    const auto orbit_of = [this](Vec v) {
+      system_->set_parameter(problem_->gather(v).parameter);
+      return problem_->orbit(v);
     };
-    callbacks.why = [this, &contact](Vec v) {
-      const solve::Cycle orbit = problem_->orbit(v);
+    callbacks.limit = [this, orbit_of](Vec v) { return margin(orbit_of(v), *system_); };
+    callbacks.why = [this, orbit_of, &contact](Vec v) {
+      const solve::Cycle orbit = orbit_of(v);
       const std::vector<double> films = least_films(orbit, *system_);
       contact = room(orbit, *system_) <= films_.margin(films);
       return contact ? fmt::format("the eccentricity reaches {:.6g} (max_eccentricity)", *options_.max_eccentricity)
@@ -200,8 +203,8 @@ StudyResult CycleFollower::run() {
   callbacks.on_suspicion = [this](const solve::Suspicion& s) {
     context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
   };
-  callbacks.checkpoint = [this](const solve::BranchPoint& p, Vec v, Vec t, double step) {
-    save(p, v, t, step);
+  callbacks.checkpoint = [this](const solve::Settled& at, Vec v, Vec t) {
+    save(at, v, t);
     returned_ = seed_ && returned(problem_->orbit(v));
     return !returned_;
   };

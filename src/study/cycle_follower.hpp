@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,8 +81,9 @@ public:
   /// Solves and records. The study that runs is finished.
   [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
-  /// Finds the bifurcation that `other` found on another film mesh. Throws core::NotConverged or core::DomainError.
-  [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other);
+  /// Finds the bifurcation that `other` found on another film mesh, with what the journal (may be null) knows of the
+  /// way. Throws core::NotConverged or core::DomainError.
+  [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other, solve::Journal* journal);
   /// How far the steps in time leave the bifurcation uncertain, scaled; NaN if that cannot be told.
   [[nodiscard]] double time_error(const Located& at);
 
@@ -162,11 +164,12 @@ private:
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
   void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
+  [[nodiscard]] std::vector<double> read_off(Vec u, Vec row, const std::function<std::vector<double>()>& work);
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
-  void renew_phase(Vec u, Vec tangent);
+  void renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent);
   void close_at_flip(double landed);
-  void save(const solve::BranchPoint& point, Vec u, Vec tangent, double next_step);
+  void save(const solve::Settled& at, Vec u, Vec tangent);
   [[nodiscard]] std::optional<solve::Restart> restore();
 
   Context& context_;

@@ -30,7 +30,8 @@ solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) 
   return resampled(to, *system_, std::move(c));
 }
 
-Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other) {
+Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other, solve::Journal* journal) {
+  newton_.journal = journal;
   const solve::Cycle cycle = other.on_film_of(*system_, from.cycle);
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);
@@ -48,7 +49,25 @@ void CycleFollower::correct(Vec u, Vec row, double offset, const solve::NewtonOp
   const auto result = solve::newton(*problem_, u, row, offset, newton);
   if (!result.converged) not_found(result.reason);
   if (++out.solves > most_solves) not_found("the iteration does not settle");
-  problem_->linearise(u, row);
+}
+
+// What a secant reads off the cycle u, once; with a warm start for the next ones.
+std::vector<double> CycleFollower::read_off(Vec u, Vec row, const std::function<std::vector<double>()>& work) {
+  double norm = 0;
+  check(VecNorm(u, NORM_2, &norm));
+  auto all = solve::Journal::ask(newton_.journal, "secant", {norm}, [&](const auto&) {
+               problem_->linearise(u, row);
+               std::vector<double> found = work();
+               const std::vector<double> warm = problem_->warm_start();
+               found.insert(found.end(), warm.begin(), warm.end());
+               found.push_back(static_cast<double>(warm.size()));
+               return solve::Journal::Answer{std::move(found), {}};
+             }).numbers;
+  const auto warm = static_cast<std::ptrdiff_t>(all.back());
+  all.pop_back();
+  problem_->take_warm_start({all.end() - warm, all.end()});
+  all.resize(all.size() - static_cast<std::size_t>(warm));
+  return all;
 }
 
 // Secant on the distance of the critical multiplier from the unit circle over the parameter.
@@ -60,15 +79,18 @@ void CycleFollower::relocate_crossing(core::Vector& u, Relocated& out) {
   if (slope == 0) not_found("the multiplier does not move with the parameter");
   for (;;) {
     correct(u.get(), row.get(), p, newton_, out);
-    const auto values = problem_->multipliers();
-    double nearest = std::numeric_limits<double>::infinity();
-    std::complex<double> critical;
-    for (const auto& mu : values)
-      for (const auto& z : {mu, std::conj(mu)})
-        if (std::abs(z - out.found.critical) < nearest) {
-          nearest = std::abs(z - out.found.critical);
-          critical = z;
-        }
+    const std::vector<double> read = read_off(u.get(), row.get(), [&] {
+      double nearest = std::numeric_limits<double>::infinity();
+      std::complex<double> closest;
+      for (const auto& mu : problem_->multipliers())
+        for (const auto& z : {mu, std::conj(mu)})
+          if (std::abs(z - out.found.critical) < nearest) {
+            nearest = std::abs(z - out.found.critical);
+            closest = z;
+          }
+      return std::vector<double>{closest.real(), closest.imag()};
+    });
+    const std::complex<double> critical(read[0], read[1]);
     out.found.critical = critical;
     const double f = distance_of_multiplier(critical);
     if (out.solves > 1 && p != last_p) slope = (f - last_f) / (p - last_p);
@@ -112,8 +134,11 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
       longest = std::abs(step);
       check(VecWAXPY(u.get(), step, tangent.get(), last.get()));
     }
-    (void)solve::solve_linear(*problem_, rhs.get(), tangent.get(), "tangent_");
-    check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
+    core::fill(tangent.get(), read_off(u.get(), row.get(), [&] {
+                 (void)solve::solve_linear(*problem_, rhs.get(), tangent.get(), "tangent_");
+                 check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
+                 return core::gather(tangent.get());
+               }));
     const double f = solve::last_entry(problem_->comm(), tangent.get());
     if (out.solves > 1 && f != last_f) curvature = (f - last_f) / step;
     const double next = curvature != 0 ? std::clamp(-f / curvature, -longest, longest) : 0.02 * continuation_.max_step;

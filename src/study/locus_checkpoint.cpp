@@ -45,11 +45,11 @@ solve::Restart LocusFollower::restore(const io::Group& state, Vec like) {
   return read_restart(state.group("restart"), like);
 }
 
-void LocusFollower::save(const solve::BranchPoint& point, Vec whole, Vec tangent, double next_step) {
-  if (!pieces_->due()) return;
+void LocusFollower::save(const solve::Settled& at, Vec whole, Vec tangent) {
+  if (!pieces_->state_due()) return;
   io::Group state;
   write_cycle(state.child("cycle"), point_at(whole).cycle);
-  state.set("second", point.parameter * second_scale_);
+  state.set("second", at.point.parameter * second_scale_);
   state.set("second_way", second_way_ ? 1 : 0);
   if (second_way_) {
     write_rows(state.child("done"), done_);
@@ -69,7 +69,7 @@ void LocusFollower::save(const solve::BranchPoint& point, Vec whole, Vec tangent
   for (const auto& [first, second, reach] : generalised_) generalised.insert(generalised.end(), {first, second, reach});
   state.put("generalised", generalised, "1", "generalised points that are confirmed, and how far around");
   write_summary(state.child("summary"), context_.results.summary());
-  write_restart(state.child("restart"), point, whole, tangent, next_step);
+  write_restart(state.child("restart"), at, whole, tangent);
   pieces_->save(std::move(state));
 }
 

@@ -128,7 +128,7 @@ private:
   // What the checkpoint of an interrupted run holds of the present direction.
   [[nodiscard]] std::optional<io::Group> interrupted() const;
   [[nodiscard]] solve::Restart restore(const io::Group& state, Vec like);
-  void save(const solve::BranchPoint& point, Vec whole, Vec tangent, double next_step);
+  void save(const solve::Settled& at, Vec whole, Vec tangent);
 
   Context& context_;
   const LocusOptions& options_;

@@ -11,6 +11,7 @@
 #include "cycle_follower.hpp"
 #include "located.hpp"
 #include "mesh_convergence.hpp"
+#include "pieces.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -100,14 +101,13 @@ StudyResult MeshConvergence::run(Context& context) {
   std::size_t first = 0;
   std::string trouble;
   const auto note = [&](const std::string& text) { trouble += (trouble.empty() ? "" : "; ") + text; };
-  if (context.resume && results.has_checkpoint()) {
-    const io::Group state = results.load_checkpoint();
+  Pieces pieces(results, context.resume, true, core::size_of(context.comm));
+  if (const io::Group& state = pieces.state(); state.has_group("rows")) {
     rows.read(state.group("rows"));
     first = static_cast<std::size_t>(state.integer("bifurcation"));
     now = {read_located(state.group("located")).front(), state.reals("value"), state.reals("bracket"),
            state.reals("seconds"), state.real("time_error")};
     read_summary(state.group("summary"), results.summary());
-    results.add_earlier_seconds(state.real("total_seconds"));
     trouble = state.text("trouble");
   }
   for (std::size_t i = first; i < chosen.size(); ++i) {
@@ -118,7 +118,9 @@ StudyResult MeshConvergence::run(Context& context) {
     }
     if (now.value.empty()) now = {origin, {origin.cycle.parameter / scale}, {0}, {0}, io::no_value};
     auto coarse = std::make_unique<Level>(context, branch, static_cast<int>(now.value.size()) - 1);
-    if (now.value.size() == 1) now.time_error = coarse->follower->time_error(origin);
+    if (now.value.size() == 1)
+      now.time_error =
+          pieces.number(fmt::format("time error {}", i), [&] { return coarse->follower->time_error(origin); });
     for (int level = static_cast<int>(now.value.size()); level <= options.doublings; ++level) {
       const double begin = results.seconds();
       auto fine = std::make_unique<Level>(context, branch, level);
@@ -127,7 +129,7 @@ StudyResult MeshConvergence::run(Context& context) {
                          e.what()));
       };
       try {
-        const Relocated found = fine->follower->relocate(now.last, *coarse->follower);
+        const Relocated found = fine->follower->relocate(now.last, *coarse->follower, pieces.journal());
         now.last = found.found;
         now.bracket.push_back(found.bracket);
       } catch (const core::NotConverged& e) {
@@ -149,9 +151,8 @@ StudyResult MeshConvergence::run(Context& context) {
       state.put("seconds", now.seconds, "s", "per level");
       state.set("time_error", now.time_error);
       write_summary(state.child("summary"), results.summary());
-      state.set("total_seconds", results.seconds());
       state.set("trouble", trouble);
-      results.save_checkpoint(state);
+      pieces.save(std::move(state));
     }
     const MeshLimit limit = mesh_limit(now.value);
     io::Bifurcation b = bifurcation_at(type_of(now.last.event), limit.limit, branch.parameter.path, unit,

@@ -1,25 +1,75 @@
 #include "pieces.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "cycle_record.hpp"
 
 namespace whirl::study {
 
-Pieces::Pieces(Findings& findings, bool resume, bool save) : findings_(findings), saves_(save) {
+namespace {
+
+constexpr double least_seconds = 0.5;  // between two files
+
+void write_journal(io::Group& group, const solve::Journal& journal) {
+  std::vector<double> numbers;
+  std::vector<std::int64_t> sizes;
+  std::vector<std::string> texts;
+  for (const auto& e : journal.entries()) {
+    for (const auto* part : {&e.question, &e.answer.numbers}) {
+      numbers.insert(numbers.end(), part->begin(), part->end());
+      sizes.push_back(static_cast<std::int64_t>(part->size()));
+    }
+    sizes.push_back(static_cast<std::int64_t>(e.state));
+    texts.insert(texts.end(), {e.kind, e.answer.text});
+  }
+  group.put("numbers", std::move(numbers), "1", "questions and answers");
+  group.put("sizes", std::move(sizes), "numbers of question and answer, and state");
+  group.put("texts", std::move(texts), "kind of question, and what was said");
+}
+
+std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
+  std::vector<solve::Journal::Entry> entries;
+  const auto& sizes = group.integers("sizes");
+  const auto& texts = group.strings("texts");
+  auto at = group.reals("numbers").begin();
+  const auto next = [&at](std::int64_t n) {
+    const auto begin = std::exchange(at, at + n);
+    return std::vector<double>(begin, at);
+  };
+  for (std::size_t k = 0; 3 * k < sizes.size(); ++k) {
+    std::vector<double> question = next(sizes[3 * k]), answer = next(sizes[3 * k + 1]);
+    entries.push_back({texts[2 * k],
+                       std::move(question),
+                       {std::move(answer), texts[2 * k + 1]},
+                       static_cast<solve::Journal::State>(sizes[3 * k + 2])});
+  }
+  return entries;
+}
+
+}  // namespace
+
+Pieces::Pieces(Findings& findings, bool resume, bool save, int layout)
+    : findings_(findings), saves_(save), layout_(layout) {
+  journal_.due = [this] { return due(); };
+  journal_.changed = [this] { save_if_due(); };
   if (resume && findings_.has_checkpoint()) {
     const io::Group all = findings_.load_checkpoint();
     state_ = all.group("state");
     pieces_ = all.group("pieces");
+    same_layout_ = all.has_attribute("layout") && all.integer("layout") == layout_;
+    if (same_layout_) journal_.begin(read_journal(all.group("journal")));
     findings_.add_earlier_seconds(all.real("seconds"));
   }
 }
 
 const io::Group& Pieces::get(const std::string& name, const std::function<void(io::Group&)>& work) {
   if (!known(name)) {
+    const std::size_t place = journal_.place();
     io::Group made;
     work(made);
     pieces_.child(name) = std::move(made);
+    journal_.forget_from(place);
     save_if_due();
   }
   return pieces_.group(name);
@@ -53,9 +103,16 @@ void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::fu
   b = one.bifurcations.front();
 }
 
+// Saving takes no more than a twentieth of the time. States come first, or work between them would leave them no time;
+// but not before all is repeated that is known of the work behind them.
 bool Pieces::due() const {
-  // Saving takes no more than a twentieth of the time.
-  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= std::max(0.5, 20 * cost_));
+  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= std::max(least_seconds, 25 * cost()));
+}
+
+bool Pieces::state_due() const {
+  const double now = findings_.seconds();
+  return saves_ && !journal_.repeats() &&
+         findings_.agreed(now - last_state_ >= least_seconds && now - last_saved_ >= 20 * cost());
 }
 
 void Pieces::save_if_due() {
@@ -65,18 +122,22 @@ void Pieces::save_if_due() {
 void Pieces::save(io::Group state) {
   state_ = std::move(state);
   pieces_ = {};
+  journal_.begin();
   write();
+  last_state_ = last_saved_;
 }
 
 void Pieces::write() {
+  const double begin = findings_.seconds();
   io::Group all;
   all.child("state") = state_;
   all.child("pieces") = pieces_;
+  write_journal(all.child("journal"), journal_);
+  all.set("layout", layout_);
   all.set("seconds", findings_.seconds());
-  const double begin = findings_.seconds();
   findings_.save_checkpoint(all);
   last_saved_ = findings_.seconds();
-  cost_ = last_saved_ - begin;
+  costs_ = {last_saved_ - begin, costs_[0]};
 }
 
 }  // namespace whirl::study

@@ -5,6 +5,7 @@ import h5py
 import numpy
 
 CLOCKS = ("wall_seconds", "seconds", "ranks")
+DIFFERENCES = ("bracket", "branch_curvature")  # of parameters
 
 
 def datasets(path):
@@ -56,11 +57,14 @@ def same_results(one, other, within=1e-8):
         worst, where = 0.0, "nothing"
         for key in a:
             scale = None
+            # Where a flip's coefficient is read off the branch born there, it is that branch's curvature.
+            born = key.replace("criticality_coefficient", "branch_curvature")
+            of_parameters = (born if born in a else key).endswith(DIFFERENCES)
             # A difference of two parameters has the accuracy of the parameters.
             found = key.replace(key[key.rindex("/") + 1:], "parameter" if what[0] == "r" else "value") if "/" in key else key
             # So has the bar of a number that of the number.
             for found in (found, key.removesuffix("_uncertainty"), key.replace("_uncertainty/values/", "/values/")):
-                if "uncertainty" in key and found != key and a.get(found) is not None and numpy.asarray(a[found]).dtype.kind in "fiu":
+                if ("uncertainty" in key or of_parameters) and found != key and a.get(found) is not None and numpy.asarray(a[found]).dtype.kind in "fiu":
                     scale = numpy.max(numpy.abs(a[found]), initial=0) or None
             if "normal_uncertainty" in key:
                 scale = 1.0  # the widths of both ranges

@@ -165,15 +165,15 @@ TEST(Branch, RestartGoesOnWhereItWas) {
     auto callbacks = test::recording(problem, r);
     callbacks.cycles = true;
     callbacks.stability = [&](Vec) { return test::multipliers(problem); };
-    callbacks.checkpoint = [&](const solve::BranchPoint& p, Vec u, Vec t, double step) {
-      if (p.index != stop_at) return true;
-      saved = {problem.gather(u), problem.gather(t), step, p};
+    callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec t) {
+      if (at.point.index != stop_at) return true;
+      saved = {problem.gather(u), problem.gather(t), at.next_step, at.point};
       return false;
     };
     std::optional<solve::Restart> restart;
     core::Vector u;
     if (from)
-      restart = solve::Restart{problem.scatter(from->u), problem.scatter(from->tangent), from->step, from->point};
+      restart = solve::Restart{problem.scatter(from->u), problem.scatter(from->tangent), from->step, from->point, {}};
     else
       u = problem.scatter(test::sampled(problem.scheme(), problem.mesh(), 1, 0.5, rest(2)));
     r.end = solve::follow_branch(problem, std::move(u), options, callbacks, std::move(restart));
@@ -215,7 +215,8 @@ TEST(Branch, FoldOfASelfExcitedCycle) {
         std::min_element(mu.begin(), mu.end(), [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
     return solve::make_stability(std::move(mu), [](auto z) { return std::abs(z) - 1; });
   };
-  callbacks.checkpoint = [&](const solve::BranchPoint& p, Vec u, Vec, double) {
+  callbacks.checkpoint = [&](const solve::Settled& at, Vec u, Vec) {
+    const solve::BranchPoint& p = at.point;
     const solve::Cycle c = problem.gather(u);
     const double q = c.x.col(3).squaredNorm();
     EXPECT_NEAR(c.period, test::two_pi, 1e-7);

@@ -113,6 +113,8 @@ private:
 
 /// All entries of a distributed vector on every rank, in natural order. Collective.
 [[nodiscard]] std::vector<double> gather(Vec v);
+/// The other way: this rank's part of `all` into v. Throws core::Error if v is of another size.
+void fill(Vec v, const std::vector<double>& all);
 
 /// Rank of this process in `comm` / number of processes of `comm`.
 [[nodiscard]] int rank_of(MPI_Comm comm);

@@ -98,7 +98,8 @@ private:
 [[nodiscard]] std::optional<Refined> locate(ExtendedProblem& branch, Condition& condition, Vec u, Vec along,
                                             const NewtonOptions& options, Eigen::VectorXd* inner = nullptr);
 
-/// The same for an event met on a branch, for BranchCallbacks::refine; nothing for events without a condition.
+/// The same for an event met on a branch, for BranchCallbacks::refine; nothing for events without a condition. With a
+/// journal what was found of an event of cycles is kept.
 [[nodiscard]] std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                                             const NewtonOptions& options);
 [[nodiscard]] std::optional<Refined> refine(problem::System& system, EquilibriumProblem& problem,

@@ -67,6 +67,9 @@ public:
   /// V [n x p] and M V on every rank: an orthonormal basis that once belonged to the largest multipliers, so that
   /// M ~ (M V) V^T. Empty if none is known.
   virtual void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) = 0;
+  /// What V is known by, on every rank, for another composition of as many states; to be taken before compose().
+  [[nodiscard]] virtual std::vector<double> warm_start() { return {}; }
+  virtual void take_warm_start(const std::vector<double>& /*warm*/) {}
   /// The state in which a homogeneous motion from x_0 = v enters this rank's run.
   [[nodiscard]] virtual Eigen::VectorXd entering(const Eigen::VectorXd& v) = 0;
 };

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -124,23 +125,46 @@ struct BranchQuestions {
   bool zeros = true;    ///< and for zeros of the monitors
 };
 
-/// Where to go on after an interruption.
+/// A point with its unit tangent.
+struct BranchState {
+  core::Vector u, tangent;
+  BranchPoint point;
+};
+
+/// What a branch knows of the steps behind it, by which it judges the next one. Points are those of the present
+/// discretisation.
+struct BranchMemory {
+  BranchState before;                  ///< the last point but one; without u if there is none
+  std::optional<BranchPoint> earlier;  ///< the one before
+  bool visited = false;                ///< the last step's crossings came from a closer look
+  /// Folds of the last step: parameter, and how far the step reaches from there.
+  std::vector<std::pair<double, double>> folds;
+  std::vector<LocatedEvent> met;  ///< all that was found in it
+  /// A crossing that is none if a fold follows, and its solution.
+  std::optional<LocatedEvent> held;
+  core::Vector held_u;
+  std::vector<double> warm;  ///< of the problem, as the last look left it
+};
+
+/// Where to go on after an interruption. Without the memory, the next steps may miss what only several points show.
 struct Restart {
   core::Vector u, tangent;
   double step = 0;
   BranchPoint point;
+  BranchMemory memory;
 };
 
 /// A point from which the branch can be taken up again: after its discretisation was adapted.
 struct Settled {
   BranchPoint point;
   double next_step = 0;
+  const BranchMemory* memory = nullptr;  ///< the branch's own
 };
 
 /// What is met on the way along a branch.
 struct BranchItem {
   std::variant<BranchPoint, LocatedEvent, LocatedZero, Suspicion, Settled> what;
-  Vec u = nullptr;        ///< the solution there; null for suspicions
+  Vec u = nullptr;        ///< the solution there; null for suspicions; that of a settled point may be rounded
   Vec tangent = nullptr;  ///< of settled points; may be changed
 };
 
@@ -192,7 +216,7 @@ struct BranchCallbacks : BranchQuestions {
   /// Where events may have been missed.
   std::function<void(const Suspicion&)> on_suspicion;
   /// After each accepted point, with all that a restart needs; return false to stop.
-  std::function<bool(const BranchPoint&, Vec u, Vec tangent, double next_step)> checkpoint;
+  std::function<bool(const Settled&, Vec u, Vec tangent)> checkpoint;
 };
 
 /// Calls back for every item of a BranchIterator. Collective.

@@ -58,6 +58,8 @@ public:
   void solve(Vec rhs, Vec x) override;
   bool adapt(core::Vector& u, core::Vector& tangent) override;
   void equations_changed() override { kept_valid_ = false; }
+  [[nodiscard]] std::vector<double> warm_start() override { return composition_->warm_start(); }
+  void take_warm_start(const std::vector<double>& warm) override { composition_->take_warm_start(warm); }
 
   [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
   [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
@@ -66,6 +68,7 @@ public:
   [[nodiscard]] Cycle gather(Vec u) const override;
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
   void set_phase_reference(const Cycle& reference) override;
+  [[nodiscard]] double period_scale() const override { return period_scale_; }
   /// All of them, or where sweeps join the intervals those above 0.2 and one below, at most 24; where a dense band of
   /// them lies above 0.2, those above 0.5.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
@@ -133,7 +136,6 @@ protected:
   /// Shaft angle at t in [0, 1] of this rank's interval i; 0 on an autonomous cycle.
   [[nodiscard]] double angle_at(Eigen::Index i, double t) const;
   [[nodiscard]] double interval_length(Eigen::Index i) const;
-  [[nodiscard]] double period_scale() const { return period_scale_; }
   [[nodiscard]] problem::System& system() { return system_; }
   [[nodiscard]] ScaledPoint& point() { return point_; }
 

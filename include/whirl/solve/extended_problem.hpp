@@ -3,6 +3,8 @@
 
 #include <petscvec.h>
 
+#include <vector>
+
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::solve {
@@ -40,6 +42,11 @@ public:
 
   /// To be called when the equations have changed otherwise than by u: what is kept of them is then stale.
   virtual void equations_changed() {}
+
+  /// What earlier solutions left that helps to find the next ones, such as a basis of the leading multipliers: it moves
+  /// answers within their tolerance. Whole on every rank; empty is none. The next call after taking one is linearise().
+  [[nodiscard]] virtual std::vector<double> warm_start() { return {}; }
+  virtual void take_warm_start(const std::vector<double>& /*warm*/) {}
 
   /// Relative residual to which Newton's linear systems are to be solved.
   [[nodiscard]] virtual double linear_tolerance() const { return 1e-9; }

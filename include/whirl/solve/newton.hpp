@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "whirl/solve/extended_problem.hpp"
+#include "whirl/solve/journal.hpp"
 
 namespace whirl::solve {
 
@@ -13,6 +15,7 @@ struct NewtonOptions {
   double step_tolerance = 1e-11;  ///< relative size of a step below which Newton stops
   int max_iterations = 12;
   std::string prefix = "newton_", linear_prefix = "tangent_";  ///< of the PETSc options
+  Journal* journal = nullptr;  ///< keeps solutions and iterates; the problem may then be linearised anywhere
 };
 
 /// What came of a Newton solve; not converging is a fact, not an error.
@@ -49,6 +52,8 @@ public:
 private:
   struct Objects;
   Objects& objects(Vec like);
+  // From the iterate in u, which others led to: norms of their residuals.
+  NewtonResult solve_from(Vec u, Vec row, double offset, std::vector<double> earlier);
 
   ExtendedProblem& problem_;
   NewtonOptions options_;

@@ -73,6 +73,7 @@ public:
   [[nodiscard]] const Scheme& orbit_scheme() const override { return quintic(); }
   /// sum h_i <x_i - ref_i, ref'_i> = 0 from now on.
   void set_phase_reference(const Cycle& reference) override;
+  [[nodiscard]] double period_scale() const override { return period_scale_; }
 
   /// All multipliers above the radius, and at least one below; renews the subspace.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;

@@ -32,6 +32,8 @@ public:
   [[nodiscard]] virtual const Scheme& orbit_scheme() const { return scheme(); }
   /// Phase reference of an autonomous cycle: integral <x - ref, ref'> ds = 0 from now on.
   virtual void set_phase_reference(const Cycle& reference) = 0;
+  /// Unit of the unknown period [s]: that of the first phase reference; 0 before it.
+  [[nodiscard]] virtual double period_scale() const = 0;
 
   /// Floquet multipliers by falling modulus: all of them, or all above a modulus that is well inside the unit circle.
   /// Throws core::NotConverged.

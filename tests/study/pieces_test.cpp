@@ -1,0 +1,99 @@
+// What a checkpoint keeps of work that is under way.
+
+#include <gtest/gtest.h>
+#include <mpi.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "study/pieces.hpp"
+#include "whirl/core/petsc.hpp"
+
+namespace whirl::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Kill : std::runtime_error {
+  Kill() : std::runtime_error("killed") {}
+};
+
+// One run after another on one checkpoint.
+class Interrupted : public testing::Test {
+protected:
+  Interrupted() {
+    int process = getpid();
+    MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    path_ = fs::temp_directory_path() / ("whirl_pieces_" + std::to_string(process) + ".h5");
+  }
+  ~Interrupted() override { remove(); }
+  Pieces& begin(bool resume, int layout = 1) {
+    pieces_.reset();
+    findings_.emplace(PETSC_COMM_WORLD, "study", "test", path_, Findings::Say{});
+    return pieces_.emplace(*findings_, resume, true, layout);
+  }
+  double ask(Pieces& pieces, const char* kind, double value) {
+    const auto answer = pieces.journal()->ask(kind, {}, [&](const auto&) {
+      ++works_;
+      return solve::Journal::Answer{{value}, {}};
+    });
+    return answer.numbers.front();
+  }
+  int works_ = 0;
+
+private:
+  void remove() const {
+    if (core::rank_of(PETSC_COMM_WORLD) == 0)
+      for (const char* end : {"", ".prev", ".next"}) fs::remove(path_.string() + end);
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+  fs::path path_;
+  std::optional<Findings> findings_;
+  std::optional<Pieces> pieces_;
+};
+
+TEST_F(Interrupted, APieceUnderWayGoesOnFromItsParts) {
+  Pieces& first = begin(false);
+  const auto part_then_kill = [&]() -> double {
+    (void)ask(first, "part", 2);  // saved at once
+    throw Kill();
+  };
+  EXPECT_THROW((void)first.number("whole", part_then_kill), Kill);
+  Pieces& second = begin(true);
+  EXPECT_FALSE(second.known("whole"));
+  EXPECT_EQ(second.number("whole", [&] { return 3 * ask(second, "part", 5); }), 6);
+  EXPECT_EQ(works_, 1);
+  EXPECT_TRUE(second.journal()->entries().empty()) << "parts of what is known are of no use";
+}
+
+TEST_F(Interrupted, AnotherOrderOfUnknownsLeavesTheJournal) {
+  (void)ask(begin(false, 1), "part", 2);
+  Pieces& other = begin(true, 2);
+  EXPECT_FALSE(other.same_layout());
+  EXPECT_EQ(ask(other, "part", 3), 3);
+}
+
+// A state takes the place of what was found since the last one, which was more than has been repeated so far.
+TEST_F(Interrupted, NoStateIsSavedBeforeAllIsRepeated) {
+  Pieces& first = begin(false);
+  io::Group state;
+  state.set("place", 1);
+  first.save(std::move(state));
+  (void)ask(first, "before", 2);
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  (void)ask(first, "behind", 3);  // saved with the one before
+  Pieces& second = begin(true);
+  EXPECT_EQ(second.state().integer("place"), 1);
+  EXPECT_EQ(ask(second, "before", 0), 2);
+  EXPECT_FALSE(second.state_due());
+  EXPECT_EQ(ask(second, "behind", 0), 3);
+  EXPECT_TRUE(second.state_due());
+}
+
+}  // namespace
+}  // namespace whirl::study
