@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "solve/newton/port_elimination.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 
@@ -27,7 +28,12 @@ EquilibriumProblem::EquilibriumProblem(problem::System& system, double parameter
   residual_scale_ = core::duplicate(x_.get());
   check(VecSet(rest_.get(), 0.0));
   system.scales(state_scale_.get(), residual_scale_.get());
+  row_scale_ = core::duplicate(x_.get());
+  check(VecCopy(residual_scale_.get(), row_scale_.get()));
+  check(VecReciprocal(row_scale_.get()));
 }
+
+EquilibriumProblem::~EquilibriumProblem() = default;
 
 core::Vector EquilibriumProblem::make_unknown() const {
   const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
@@ -63,55 +69,70 @@ void EquilibriumProblem::residual(Vec u, Vec r) {
   for (PetscInt i = 0; i < fa.size(); ++i) ra[i] = fa[i] / s[i];
 }
 
+Mat EquilibriumProblem::matrix() {
+  if (bordered_) return bordered_.get();
+  PetscBool filled = PETSC_FALSE;
+  if (jacobian_) check(MatAssembled(jacobian_.get(), &filled));
+  if (!filled) return nullptr;
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
+  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
+  const PetscInt n = system_.size(), rows = end - begin + (last ? 1 : 0);
+  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(rows, 1)), n + 1);
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt k = 0;
+    check(MatGetRow(jacobian_.get(), i, &k, nullptr, nullptr));
+    count[static_cast<std::size_t>(i - begin)] = k + 1;
+    check(MatRestoreRow(jacobian_.get(), i, &k, nullptr, nullptr));
+  }
+  std::vector<PetscInt> local = count;
+  for (auto& k : local) k = std::min(k, rows);
+  check(MatCreate(comm(), bordered_.put()));
+  check(MatSetSizes(bordered_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(bordered_.get(), MATAIJ));
+  check(MatSeqAIJSetPreallocation(bordered_.get(), 0, count.data()));
+  check(MatMPIAIJSetPreallocation(bordered_.get(), 0, local.data(), 0, count.data()));
+  return bordered_.get();
+}
+
 void EquilibriumProblem::linearise(Vec u, Vec row) {
   prepare(u);
   if (!jacobian_) jacobian_ = system_.make_jacobian();
   system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
+  (void)matrix();
   system_.parameter_derivative(0, x_.get(), rest_.get(), f_.get());
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
   const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
   const PetscInt n = system_.size();
-  if (!bordered_) {
-    const PetscInt rows = end - begin + (last ? 1 : 0);
-    std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(rows, 1)), n + 1);
-    for (PetscInt i = begin; i < end; ++i) {
-      PetscInt k = 0;
-      check(MatGetRow(jacobian_.get(), i, &k, nullptr, nullptr));
-      count[static_cast<std::size_t>(i - begin)] = k + 1;
-      check(MatRestoreRow(jacobian_.get(), i, &k, nullptr, nullptr));
-    }
-    std::vector<PetscInt> local = count;
-    for (auto& k : local) k = std::min(k, rows);
-    check(MatCreate(comm(), bordered_.put()));
-    check(MatSetSizes(bordered_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(bordered_.get(), MATAIJ));
-    check(MatSeqAIJSetPreallocation(bordered_.get(), 0, count.data()));
-    check(MatMPIAIJSetPreallocation(bordered_.get(), 0, local.data(), 0, count.data()));
-  }
-  check(MatZeroEntries(bordered_.get()));
-  // Whole column scale on every rank, because a row's entries reach over all columns.
-  const std::vector<double> scale = core::gather(state_scale_.get());
+  check(MatDiagonalScale(jacobian_.get(), row_scale_.get(), state_scale_.get()));
   {
     const core::ReadArray rs(residual_scale_.get()), dp(f_.get()), wa(row);
-    std::vector<PetscScalar> scaled;
     for (PetscInt i = begin; i < end; ++i) {
       PetscInt k = 0;
       const PetscInt* columns = nullptr;
       const PetscScalar* values = nullptr;
       check(MatGetRow(jacobian_.get(), i, &k, &columns, &values));
-      scaled.assign(values, values + k);
-      for (PetscInt e = 0; e < k; ++e)
-        scaled[static_cast<std::size_t>(e)] *= scale[static_cast<std::size_t>(columns[e])] / rs[i - begin];
-      check(MatSetValues(bordered_.get(), 1, &i, k, columns, scaled.data(), ADD_VALUES));
+      check(MatSetValues(bordered_.get(), 1, &i, k, columns, values, INSERT_VALUES));
       check(MatRestoreRow(jacobian_.get(), i, &k, &columns, &values));
-      check(MatSetValue(bordered_.get(), i, n, dp[i - begin] / rs[i - begin] * parameter_scale_, ADD_VALUES));
-      check(MatSetValue(bordered_.get(), n, i, wa[i - begin], ADD_VALUES));
+      check(MatSetValue(bordered_.get(), i, n, dp[i - begin] / rs[i - begin] * parameter_scale_, INSERT_VALUES));
+      check(MatSetValue(bordered_.get(), n, i, wa[i - begin], INSERT_VALUES));
     }
-    if (last) check(MatSetValue(bordered_.get(), n, n, wa[wa.size() - 1], ADD_VALUES));
+    if (last) check(MatSetValue(bordered_.get(), n, n, wa[wa.size() - 1], INSERT_VALUES));
   }
   check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
+  factorised_ = false;
+}
+
+void EquilibriumProblem::factorise() {
+  if (factorised_) return;
+  factorised_ = true;
+  if (std::vector<problem::Field> parts = system_.fields(); parts.size() > 1) {
+    if (!ports_) ports_ = std::make_unique<PortElimination>(comm(), std::move(parts));
+    ports_->factorise(bordered_.get());
+    return;
+  }
   if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
   check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
   check(KSPSetUp(solver_.get()));
@@ -122,7 +143,11 @@ void EquilibriumProblem::multiply(Vec v, Vec y) {
 }
 
 void EquilibriumProblem::solve(Vec rhs, Vec x) {
-  check(KSPSolve(solver_.get(), rhs, x));
+  factorise();
+  if (ports_)
+    ports_->solve(rhs, x);
+  else
+    check(KSPSolve(solver_.get(), rhs, x));
 }
 
 NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options) {

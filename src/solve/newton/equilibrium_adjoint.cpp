@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "solve/newton/port_elimination.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
 namespace whirl::solve {
@@ -11,7 +12,11 @@ namespace whirl::solve {
 using core::check;
 
 void EquilibriumProblem::solve_transposed(Vec rhs, Vec x) {
-  check(KSPSolveTranspose(solver_.get(), rhs, x));
+  factorise();
+  if (ports_)
+    ports_->solve_transposed(rhs, x);
+  else
+    check(KSPSolveTranspose(solver_.get(), rhs, x));
 }
 
 void EquilibriumProblem::curvature(Vec u, Vec v, Vec w, Vec out) {

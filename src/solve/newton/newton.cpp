@@ -65,6 +65,12 @@ core::Matrix make_shell(SolveContext& c, Vec like) {
   return m;
 }
 
+void use_own_solve(PC pc, SolveContext& c) {
+  check(PCSetType(pc, PCSHELL));
+  check(PCShellSetContext(pc, &c));
+  check(PCShellSetApply(pc, solve_with_jacobian));
+}
+
 // The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
 // The flexible method keeps the preconditioned vectors, which saves another solve for the answer.
 void configure(KSP ksp, SolveContext& c, double relative, double absolute) {
@@ -73,9 +79,56 @@ void configure(KSP ksp, SolveContext& c, double relative, double absolute) {
   check(KSPSetTolerances(ksp, relative, absolute, PETSC_DEFAULT, 20));
   PC pc = nullptr;
   check(KSPGetPC(ksp, &pc));
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, &c));
-  check(PCShellSetApply(pc, solve_with_jacobian));
+  use_own_solve(pc, c);
+}
+
+// The parts of the unknowns as index sets by name, for PCFIELDSPLIT.
+void set_fields(PC pc, ExtendedProblem& problem, Vec like) {
+  PetscInt first = 0, last = 0;
+  check(VecGetOwnershipRange(like, &first, &last));
+  std::vector<problem::Field> fields = problem.fields();
+  std::vector<bool> taken(static_cast<std::size_t>(last - first), false);
+  const auto add = [&](const char* name, const std::vector<PetscInt>& rows) {
+    core::IndexSet set;
+    check(
+        ISCreateGeneral(problem.comm(), static_cast<PetscInt>(rows.size()), rows.data(), PETSC_COPY_VALUES, set.put()));
+    check(PCFieldSplitSetIS(pc, name, set.get()));
+  };
+  std::vector<PetscInt> rows;
+  for (const problem::Field& f : fields) {
+    rows.clear();
+    for (PetscInt i = f.begin; i < f.end; ++i) {
+      rows.push_back(first + i);
+      taken[static_cast<std::size_t>(i)] = true;
+    }
+    add(f.name.c_str(), rows);
+  }
+  rows.clear();
+  for (PetscInt i = first; i < last; ++i)
+    if (!taken[static_cast<std::size_t>(i - first)]) rows.push_back(i);
+  add("border", rows);
+}
+
+// The matrix that the preconditioner works on: if one was chosen by option, the problem's own. A problem without a
+// matrix keeps its solve.
+Mat preconditioned(KSP ksp, SolveContext& c, Mat shell, Vec like) {
+  PC pc = nullptr;
+  PetscBool own = PETSC_TRUE, split = PETSC_FALSE;
+  check(KSPGetPC(ksp, &pc));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &own));
+  if (own) return shell;
+  try {
+    if (!c.problem.matrix() && c.row) c.problem.linearise(like, c.row);  // which makes it
+  } catch (const core::DomainError&) {                                   // NOLINT: the solve says so again
+  }
+  Mat matrix = c.problem.matrix();
+  if (!matrix) {
+    use_own_solve(pc, c);
+    return shell;
+  }
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCFIELDSPLIT, &split));
+  if (split) set_fields(pc, c.problem, like);
+  return matrix;
 }
 
 const char* text_of(SNESConvergedReason reason) {
@@ -129,7 +182,7 @@ struct Newton::Objects {
     shell = make_shell(context, like);
   }
   void make_nonlinear(const NewtonOptions& options, Vec like);
-  void make_linear(const std::string& prefix);
+  void make_linear(const std::string& prefix, Vec like);
 
   SolveContext context;
   PetscInt local = 0, global = 0;
@@ -162,14 +215,16 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   // Digits below Newton's own tolerance are of no use.
   configure(inner, context, context.problem.linear_tolerance(), 0.1 * options.tolerance * root_n);
   check(SNESSetFromOptions(snes.get()));
+  Mat matrix = preconditioned(inner, context, shell.get(), like);
+  if (matrix != shell.get()) check(SNESSetJacobian(snes.get(), shell.get(), matrix, form_jacobian, &context));
 }
 
-void Newton::Objects::make_linear(const std::string& prefix) {
+void Newton::Objects::make_linear(const std::string& prefix, Vec like) {
   check(KSPCreate(context.problem.comm(), ksp.put()));
   check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
   configure(ksp.get(), context, 1e-9, 1e-300);
-  check(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
   check(KSPSetFromOptions(ksp.get()));
+  check(KSPSetOperators(ksp.get(), shell.get(), preconditioned(ksp.get(), context, shell.get(), like)));
 }
 
 Newton::Newton(ExtendedProblem& problem, NewtonOptions options) : problem_(problem), options_(std::move(options)) {}
@@ -191,8 +246,8 @@ Newton::Objects& Newton::objects(Vec like) {
 
 NewtonResult Newton::solve(Vec u, Vec row, double offset) {
   Objects& o = objects(u);
-  if (!o.snes) o.make_nonlinear(options_, u);
   o.context.row = row;
+  if (!o.snes) o.make_nonlinear(options_, u);
   o.context.offset = offset;
   o.context.gate = core::Gate(problem_.comm());
   SNES snes = o.snes.get();
@@ -229,7 +284,7 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
 
 int Newton::solve_linear(Vec rhs, Vec x) {
   Objects& o = objects(x);
-  if (!o.ksp) o.make_linear(options_.linear_prefix);
+  if (!o.ksp) o.make_linear(options_.linear_prefix, x);
   o.context.gate = core::Gate(problem_.comm());
   o.context.gate.rethrow(KSPSolve(o.ksp.get(), rhs, x));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;

@@ -1,9 +1,13 @@
 #pragma once
 // What a branch is made of: n equations in n + 1 unknowns.
 
+#include <petscmat.h>
 #include <petscvec.h>
 
+#include <vector>
+
 #include "whirl/core/petsc.hpp"
+#include "whirl/problem/system.hpp"
 
 namespace whirl::solve {
 
@@ -32,11 +36,18 @@ public:
 
   /// r = R(u), last row untouched. Throws core::DomainError, agreed on all ranks.
   virtual void residual(Vec u, Vec r) = 0;
-  /// Factorises the matrix above at u with the last row `row`, for multiply() and solve().
+  /// Takes the matrix above at u with the last row `row`, for multiply() and solve(), which may factorise it later.
   virtual void linearise(Vec u, Vec row) = 0;
   virtual void multiply(Vec v, Vec y) = 0;
   /// x = matrix^-1 rhs up to rounding; used as a preconditioner, so that lost digits come back by iteration.
   virtual void solve(Vec rhs, Vec x) = 0;
+
+  /// The same matrix entry by entry, with the values of the last linearise(), for preconditioners that are chosen by
+  /// option; the same object in every call. Null if there is none or none yet: then solve() is the only preconditioner.
+  /// Collective.
+  [[nodiscard]] virtual Mat matrix() { return nullptr; }
+  /// The unknowns in parts, in local rows, for field splits; those that are in none are the part "border".
+  [[nodiscard]] virtual std::vector<problem::Field> fields() const { return {}; }
 
   /// To be called when the equations have changed otherwise than by u: what is kept of them is then stale.
   virtual void equations_changed() {}

@@ -9,15 +9,12 @@
 namespace whirl::solve {
 
 class EliminatedResponse;
+class ShiftedSystem;
 
 /// Solves (dF/dx + i omega dF/d(dx/dt)) z = b for the complex amplitude z of x = Re(z exp(i omega t)).
 ///
 /// On one rank the kinematic equations q' = v are eliminated exactly and the rest is factorised as a complex sparse
-/// matrix, analysed once. On several ranks MUMPS factorises the real form of twice the size, real and imaginary parts
-/// interleaved,
-///
-///     [ Jx         -omega Jd ] [ Re z ]   [ Re b ]
-///     [ omega Jd    Jx       ] [ Im z ] = [ Im b ]
+/// matrix, analysed once. On several ranks it is a ShiftedSystem.
 class FrequencyResponse {
 public:
   explicit FrequencyResponse(problem::System& system);
@@ -27,12 +24,12 @@ public:
   void solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
 
 private:
+  void solve_shifted(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
   problem::System& system_;
-  core::Vector rest_, rhs_, answer_, state_scale_, residual_scale_;
-  std::vector<double> whole_scale_;  // [size()] on every rank
-  core::Matrix jx_, jd_, matrix_;
-  core::LinearSolver solver_;
+  core::Vector rest_, state_scale_, residual_scale_;
+  core::Matrix jx_, jd_;
   std::unique_ptr<EliminatedResponse> eliminated_;  // on one rank
+  std::unique_ptr<ShiftedSystem> shifted_;          // on several
 };
 
 }  // namespace whirl::solve
