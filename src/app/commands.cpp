@@ -14,7 +14,7 @@
 #include "whirl/deck/output.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
-#include "whirl/study/sweep.hpp"
+#include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::app {
 namespace {

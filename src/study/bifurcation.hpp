@@ -6,7 +6,7 @@
 
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
-#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/branch/continuation.hpp"
 #include "whirl/study/parameter.hpp"
 #include "whirl/system/options.hpp"
 #include "whirl/system/plant.hpp"

@@ -1,6 +1,6 @@
 #include "branch_state.hpp"
 
-#include "cycle_record.hpp"
+#include "study/cycle/cycle_record.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {

@@ -3,7 +3,7 @@
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/io/record.hpp"
-#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/branch/continuation.hpp"
 
 namespace whirl::study {
 

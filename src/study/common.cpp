@@ -9,7 +9,7 @@
 #include "branch_state.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::study {

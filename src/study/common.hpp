@@ -6,8 +6,8 @@
 
 #include "findings.hpp"
 #include "groups.hpp"
-#include "whirl/solve/continuation.hpp"
-#include "whirl/solve/newton.hpp"
+#include "whirl/solve/branch/continuation.hpp"
+#include "whirl/solve/newton/newton.hpp"
 #include "whirl/study/parameter.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/system/rotor_system.hpp"

@@ -10,7 +10,7 @@
 #include "whirl/deck/output.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/rotor/advice.hpp"
-#include "whirl/study/sweep.hpp"
+#include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::study {
 namespace {

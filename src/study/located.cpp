@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cycle_record.hpp"
+#include "study/cycle/cycle_record.hpp"
 
 namespace whirl::study {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "whirl/io/record.hpp"
-#include "whirl/solve/continuation.hpp"
-#include "whirl/solve/cycle.hpp"
+#include "whirl/solve/branch/continuation.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {

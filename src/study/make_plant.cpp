@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "common.hpp"
-#include "film_mesh.hpp"
+#include "study/bars/film_mesh.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {

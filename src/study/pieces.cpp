@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cycle_record.hpp"
+#include "study/cycle/cycle_record.hpp"
 
 namespace whirl::study {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "findings.hpp"
-#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/branch/continuation.hpp"
 
 namespace whirl::study {
 

@@ -2,7 +2,7 @@
 
 #include "findings.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/study/sweep.hpp"
+#include "whirl/study/sweep/sweep.hpp"
 #include "writer.hpp"
 
 namespace whirl::study {

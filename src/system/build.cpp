@@ -47,6 +47,18 @@ core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
   return out;
 }
 
+// All of `m` on the first rank.
+core::Matrix on_first(Mat m) {
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(m));
+  PetscInt n = 0;
+  check(MatGetSize(m, &n, nullptr));
+  core::IndexSet all;
+  check(ISCreateStride(comm, core::rank_of(comm) == 0 ? n : 0, 0, 1, all.put()));
+  core::Matrix out;
+  check(MatCreateSubMatrix(m, all.get(), all.get(), MAT_INITIAL_MATRIX, out.put()));
+  return out;
+}
+
 }  // namespace
 
 void RotorSystem::build() {
@@ -76,11 +88,17 @@ void RotorSystem::build() {
         bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
     }
   });
-  PetscInt rotor_begin = 0, rotor_end = 0;
-  check(MatGetOwnershipRange(m.mass.get(), &rotor_begin, &rotor_end));
+  PetscInt rotor_begin = 0, rotor_end = 0, rotor_here = 0;
+  check(MatGetLocalSize(m.mass.get(), &rotor_here, nullptr));
   first_holds_rotor_ =
-      train_.rotor.type == rotor::Options::Type::rigid &&
       std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.states != nullptr; });
+  core::Matrix moved[4];
+  Mat parts[] = {m.mass.get(), m.damping.get(), m.stiffness.get(), m.gyroscopic.get()};
+  for (std::size_t k = 0; k < 4 && first_holds_rotor_ && core::size_of(comm_) > 1; ++k) {
+    moved[k] = on_first(parts[k]);
+    parts[k] = moved[k].get();
+  }
+  check(MatGetOwnershipRange(parts[0], &rotor_begin, &rotor_end));
   const int rank = core::rank_of(comm_), with_pedestals_on = first_holds_rotor_ ? 0 : core::size_of(comm_) - 1;
   begin_ = rank > with_pedestals_on ? n_ : rotor_begin;
   end_ = rank >= with_pedestals_on ? n_ : rotor_end;
@@ -93,15 +111,16 @@ void RotorSystem::build() {
         pc.emplace_back(bearings_[i].pedestal[d], train_.supports[i].damping[d]);
         pk.emplace_back(bearings_[i].pedestal[d], train_.supports[i].stiffness[d]);
       }
-  mass_ = with_pedestals(m.mass.get(), end_ - begin_, n_rotor_, pm);
-  damping_ = with_pedestals(m.damping.get(), end_ - begin_, n_rotor_, pc);
-  stiffness_ = with_pedestals(m.stiffness.get(), end_ - begin_, n_rotor_, pk);
-  gyroscopic_ = with_pedestals(m.gyroscopic.get(), end_ - begin_, n_rotor_, pg);
+  mass_ = with_pedestals(parts[0], end_ - begin_, n_rotor_, pm);
+  damping_ = with_pedestals(parts[1], end_ - begin_, n_rotor_, pc);
+  stiffness_ = with_pedestals(parts[2], end_ - begin_, n_rotor_, pk);
+  gyroscopic_ = with_pedestals(parts[3], end_ - begin_, n_rotor_, pg);
 
   load_.assign(static_cast<std::size_t>(end_ - begin_), 0.0);
   {
-    const core::ReadArray g(m.gravity.get());
-    for (PetscInt i = 0; i < g.size(); ++i) load_[static_cast<std::size_t>(i)] = train_.gravity * g[i];
+    const std::vector<double> g = core::gather(m.gravity.get());
+    for (PetscInt i = begin_; i < std::min(end_, n_rotor_); ++i)
+      load_[static_cast<std::size_t>(i - begin_)] = train_.gravity * g[static_cast<std::size_t>(i)];
   }
   if (train_.rotor.type == rotor::Options::Type::rigid && owns(rotor_->coordinate(1, 1)))
     load_[static_cast<std::size_t>(rotor_->coordinate(1, 1) - begin_)] -= train_.rotor.load;
@@ -112,8 +131,7 @@ void RotorSystem::build() {
   }
 
   // U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
-  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_end - rotor_begin, PETSC_DETERMINE),
-                               s = core::duplicate(c.get());
+  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_here, PETSC_DETERMINE), s = core::duplicate(c.get());
   const bool reduced = static_cast<bool>(m.basis);
   if (reduced) {
     check(MatCreateVecs(m.basis.get(), nullptr, full_c.put()));
@@ -172,8 +190,7 @@ void RotorSystem::build() {
   j_at_rest_.reset();
 }
 
-// Own states stand behind all pairs, film by film. Cut at whole lines near equal shares; with the rotor spread over the
-// ranks all that can follow it is on the last one.
+// Own states stand behind all pairs, film by film. Cut at whole lines near equal shares.
 void RotorSystem::share_out_own_states() {
   n_own_ = 0;
   for (Bearing& b : bearings_) {
@@ -184,7 +201,7 @@ void RotorSystem::share_out_own_states() {
   const int rank = core::rank_of(comm_), size = core::size_of(comm_);
   const auto cut = [&](int r) -> PetscInt {
     if (r == size) return n_own_;
-    if (r == 0 || !first_holds_rotor_) return 0;
+    if (r == 0) return 0;
     const PetscInt wanted = n_own_ * r / size;
     for (const Bearing& b : bearings_) {
       if (!b.states || wanted >= b.first + b.count) continue;

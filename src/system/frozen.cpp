@@ -99,7 +99,7 @@ std::unique_ptr<RotorSystem::FilmSolver> RotorSystem::FilmSolver::make(RotorSyst
   for (const Bearing& b : system.bearings_)
     if (b.states && (b.states->ring().lines == 1 || b.part.count() < 2)) enough = 0;
   MPI_Allreduce(MPI_IN_PLACE, &enough, 1, MPI_INT, MPI_MIN, system.comm_);
-  if (!system.first_holds_rotor_ || films != 1 || enough == 0) return nullptr;
+  if (system.train_.rotor.type != rotor::Options::Type::rigid || films != 1 || enough == 0) return nullptr;
   return std::make_unique<FilmSolver>(system);
 }
 

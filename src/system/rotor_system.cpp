@@ -189,6 +189,13 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
     }
 }
 
+std::vector<problem::Field> RotorSystem::fields() const {
+  std::vector<problem::Field> out{{"machine", 0, 2 * (end_ - begin_)}};
+  for (std::size_t i = 0; i < bearings_.size(); ++i)
+    if (const Bearing& b = bearings_[i]; b.states) out.push_back({train_.supports[i].name, b.row, b.row + b.rows()});
+  return out;
+}
+
 problem::Structure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
   if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);

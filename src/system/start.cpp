@@ -31,11 +31,15 @@ core::Vector static_guess(RotorSystem& system) {
   check(KSPSolve(ksp.get(), f.get(), x.get()));
   check(VecScale(x.get(), -1));
   if (system.own_states() == 0) return x;
+  // Films with own states move the rotor to the first rank.
   core::Vector whole = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  const std::vector<double> from = core::gather(x.get());
   {
-    const core::ReadArray from(x.get());
     const core::WriteArray to(whole.get());
-    for (PetscInt i = 0; i < from.size(); ++i) to[i] = from[i];
+    const problem::Field machine = system.fields().front();
+    PetscInt first = 0;
+    check(VecGetOwnershipRange(whole.get(), &first, nullptr));
+    for (PetscInt i = machine.begin; i < machine.end; ++i) to[i] = from[static_cast<std::size_t>(first + i)];
   }
   system.relax_films(whole.get());
   return whole;

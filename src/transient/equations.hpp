@@ -5,7 +5,7 @@
 
 #include "whirl/problem/drive.hpp"
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/scaled_point.hpp"
+#include "whirl/solve/cycle/scaled_point.hpp"
 
 namespace whirl::transient {
 

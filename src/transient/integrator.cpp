@@ -12,7 +12,7 @@
 #include "transient/stages.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/gate.hpp"
-#include "whirl/solve/tableau.hpp"
+#include "whirl/solve/shooting/tableau.hpp"
 
 namespace whirl::transient {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "transient/equations.hpp"
-#include "whirl/solve/tableau.hpp"
+#include "whirl/solve/shooting/tableau.hpp"
 #include "whirl/transient/tangents.hpp"
 
 namespace whirl::transient {

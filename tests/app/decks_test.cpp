@@ -11,9 +11,9 @@
 #include "support/turbine_train.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
-#include "whirl/study/cycle_branch.hpp"
+#include "whirl/study/cycle/cycle_branch.hpp"
 #include "whirl/study/deck.hpp"
-#include "whirl/study/equilibrium_branch.hpp"
+#include "whirl/study/equilibrium/equilibrium_branch.hpp"
 
 namespace {
 

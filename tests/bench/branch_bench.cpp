@@ -17,9 +17,9 @@
 
 #include "bench/timing.hpp"
 #include "whirl/core/session.hpp"
-#include "whirl/solve/continuation.hpp"
-#include "whirl/solve/cycle_problem.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/branch/continuation.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 

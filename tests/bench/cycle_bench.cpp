@@ -9,8 +9,8 @@
 #include "bench/timing.hpp"
 #include "support/train_system.hpp"
 #include "whirl/core/session.hpp"
-#include "whirl/solve/cycle_problem.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 

@@ -13,7 +13,7 @@
 #include "bench/timing.hpp"
 #include "support/finite_rotor.hpp"
 #include "whirl/core/session.hpp"
-#include "whirl/solve/newton_picard.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
 
 using namespace whirl;
 using core::check;

@@ -8,8 +8,8 @@
 #include "bench/timing.hpp"
 #include "support/train_system.hpp"
 #include "whirl/core/session.hpp"
-#include "whirl/solve/equilibrium.hpp"
-#include "whirl/solve/frequency_response.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 

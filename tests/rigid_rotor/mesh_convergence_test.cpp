@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "rigid_rotor/run_deck.hpp"
-#include "whirl/study/mesh_convergence.hpp"
+#include "whirl/study/convergence/mesh_convergence.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "branch_support.hpp"
-#include "whirl/solve/augmented_problem.hpp"
-#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
 
 using namespace whirl;
 using Eigen::VectorXd;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cycle_systems.hpp"
-#include "whirl/solve/continuation.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/branch/continuation.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::test {

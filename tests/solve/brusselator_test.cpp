@@ -8,8 +8,8 @@
 #include "reference/brusselator.hpp"
 #include "support/brusselator.hpp"
 #include "whirl/problem/taylor.hpp"
-#include "whirl/solve/newton_picard.hpp"
-#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 using namespace whirl;

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "support/small_system.hpp"
-#include "whirl/solve/cycle_problem.hpp"
-#include "whirl/solve/newton.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/newton/newton.hpp"
 
 namespace whirl::test {
 

@@ -1,6 +1,6 @@
 // Coexisting solutions: equilibria in closed form, and the three cycles of a bent resonance.
 
-#include "whirl/solve/deflation.hpp"
+#include "whirl/solve/branch/deflation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "branch_support.hpp"
-#include "whirl/solve/augmented_problem.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
 
 using namespace whirl;
 using Eigen::VectorXd;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "cycle_systems.hpp"
-#include "whirl/solve/harmonic_cycle.hpp"
-#include "whirl/solve/normal_form.hpp"
+#include "whirl/solve/bifurcation/harmonic_cycle.hpp"
+#include "whirl/solve/bifurcation/normal_form.hpp"
 
 using namespace whirl;
 using test::Column;

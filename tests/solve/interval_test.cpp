@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "whirl/solve/interval.hpp"
+#include "whirl/solve/cycle/interval.hpp"
 
 using namespace whirl;
 using Eigen::MatrixXd;

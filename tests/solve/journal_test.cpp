@@ -4,8 +4,8 @@
 
 #include "branch_support.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/solve/augmented_problem.hpp"
-#include "whirl/solve/journal.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/newton/journal.hpp"
 
 using namespace whirl;
 using solve::Journal;

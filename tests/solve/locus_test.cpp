@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "branch_support.hpp"
-#include "whirl/solve/augmented_problem.hpp"
-#include "whirl/solve/normal_form.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/bifurcation/normal_form.hpp"
 
 using namespace whirl;
 using Eigen::VectorXd;

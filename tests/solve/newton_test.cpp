@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "branch_support.hpp"
-#include "whirl/solve/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
 
 using namespace whirl;
 using test::Column;

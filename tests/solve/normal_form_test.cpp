@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "cycle_systems.hpp"
-#include "whirl/solve/normal_form.hpp"
+#include "whirl/solve/bifurcation/normal_form.hpp"
 
 using namespace whirl;
 using test::Column;

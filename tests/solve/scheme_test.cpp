@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "whirl/core/error.hpp"
-#include "whirl/solve/scheme.hpp"
+#include "whirl/solve/cycle/scheme.hpp"
 
 using namespace whirl;
 using solve::Points;

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "cycle_systems.hpp"
-#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 using namespace whirl;

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "branch_support.hpp"
-#include "whirl/solve/newton_picard.hpp"
-#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
 
 using namespace whirl;
 using Eigen::VectorXd;

@@ -2,6 +2,7 @@
 """Checks that every room includes only the rooms that cmake/rooms.json allows it.
 
 Looks at each `#include "whirl/ROOM/..."` and `#include "ROOM/..."` in include/ and src/, and that the table has no cycle.
+A room with sub-rooms in the table (`ROOM/SUB`) has all its files in them, and these include each other by the table too.
 """
 import json
 import pathlib
@@ -11,6 +12,7 @@ import sys
 root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
 allowed = json.loads((root / "cmake/rooms.json").read_text())
 include = re.compile(r'^\s*#\s*include\s*["<](?:whirl/)?([a-z_]+)/([^">]+)[">]')
+divided = {name.split("/")[0] for name in allowed if "/" in name}
 errors = []
 
 
@@ -41,6 +43,11 @@ def check_file(path, room):
         if not match:
             continue
         other = match.group(1)
+        if other == room and room in divided:
+            here, there = (f"{room}/{name}" for name in (path.parent.name, match.group(2).split("/")[0]))
+            if there != here and there not in allowed.get(here, []):
+                errors.append(f"{path.relative_to(root)}:{number}: {here} may not include {there}")
+            continue
         if other not in allowed or other == room:
             if '"whirl/' in line and other not in allowed:
                 errors.append(f"{path.relative_to(root)}:{number}: {other} is no room of cmake/rooms.json")
@@ -61,6 +68,8 @@ for folder in ("include/whirl", "src"):
         room = path.relative_to(root / folder).parts[0]
         if room not in allowed:
             errors.append(f"{path.relative_to(root)}: {room} is no room of cmake/rooms.json")
+        elif room in divided and f"{room}/{path.parent.name}" not in allowed:
+            errors.append(f"{path.relative_to(root)}: {room}/{path.parent.name} is no sub-room of cmake/rooms.json")
         else:
             check_file(path, room)
 

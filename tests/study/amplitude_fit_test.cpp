@@ -1,4 +1,4 @@
-#include "study/amplitude_fit.hpp"
+#include "study/locus/amplitude_fit.hpp"
 
 #include <gtest/gtest.h>
 

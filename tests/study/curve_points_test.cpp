@@ -1,5 +1,5 @@
 // Which points of a curve are kept with their solutions.
-#include "study/curve_points.hpp"
+#include "study/locus/curve_points.hpp"
 
 #include <gtest/gtest.h>
 

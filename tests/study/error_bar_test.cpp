@@ -1,4 +1,4 @@
-#include "study/error_bar.hpp"
+#include "study/bars/error_bar.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "study/film_mesh.hpp"
+#include "study/bars/film_mesh.hpp"
 
 namespace whirl::study {
 namespace {

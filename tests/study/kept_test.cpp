@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "study/coexisting.hpp"
-#include "study/film_limit.hpp"
-#include "study/motion_record.hpp"
-#include "study/response_bars.hpp"
+#include "study/bars/film_limit.hpp"
+#include "study/cycle/coexisting.hpp"
+#include "study/linear/response_bars.hpp"
+#include "study/motion/motion_record.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {

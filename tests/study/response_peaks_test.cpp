@@ -1,5 +1,5 @@
 // Peaks of a resonance that is known in closed form.
-#include "study/response_peaks.hpp"
+#include "study/linear/response_peaks.hpp"
 
 #include <gtest/gtest.h>
 

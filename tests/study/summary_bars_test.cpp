@@ -1,4 +1,4 @@
-#include "study/summary_bars.hpp"
+#include "study/bars/summary_bars.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "study/job_queue.hpp"
-#include "study/sweep_table.hpp"
+#include "study/sweep/sweep_table.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
@@ -15,7 +15,7 @@
 #include "whirl/io/hdf5.hpp"
 #include "whirl/rotor/advice.hpp"
 #include "whirl/study/deck.hpp"
-#include "whirl/study/sweep.hpp"
+#include "whirl/study/sweep/sweep.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Which bifurcation is the threshold of stability.
 
-#include "study/verdict.hpp"
+#include "study/bars/verdict.hpp"
 
 #include <gtest/gtest.h>
 

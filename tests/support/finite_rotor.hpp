@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "whirl/core/error.hpp"
-#include "whirl/solve/cycle.hpp"
-#include "whirl/solve/equilibrium.hpp"
-#include "whirl/solve/newton.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/newton.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "whirl/core/error.hpp"
 #include "whirl/problem/taylor.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"

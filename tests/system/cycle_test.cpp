@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "support/train_system.hpp"
-#include "whirl/solve/cycle_problem.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "support/finite_rotor.hpp"
-#include "whirl/solve/newton.hpp"
-#include "whirl/solve/newton_picard.hpp"
-#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/solve/newton/newton.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "whirl/solve/augmented_problem.hpp"
-#include "whirl/solve/continuation.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/branch/continuation.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "whirl/solve/cycle_problem.hpp"
-#include "whirl/solve/newton.hpp"
-#include "whirl/solve/scaled_point.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/cycle/scaled_point.hpp"
+#include "whirl/solve/newton/newton.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;

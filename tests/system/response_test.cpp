@@ -1,6 +1,6 @@
 // The linear response solves its own equations, also those that are eliminated.
 
-#include "whirl/solve/frequency_response.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
 
 #include <gtest/gtest.h>
 

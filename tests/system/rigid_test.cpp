@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "whirl/problem/taylor.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/groups.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"

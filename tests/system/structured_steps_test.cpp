@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "whirl/solve/equilibrium.hpp"
-#include "whirl/solve/newton.hpp"
-#include "whirl/solve/newton_picard.hpp"
-#include "whirl/solve/shooting_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/newton.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"

@@ -6,7 +6,7 @@
 
 #include "support/train_system.hpp"
 #include "whirl/problem/taylor.hpp"
-#include "whirl/solve/equilibrium.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"

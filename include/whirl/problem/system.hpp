@@ -6,12 +6,19 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/frozen.hpp"
 #include "whirl/problem/structure.hpp"
 
 namespace whirl::problem {
+
+/// States of one body or film on this rank: local rows [begin, end) of x.
+struct Field {
+  std::string name;
+  PetscInt begin = 0, end = 0;
+};
 
 /// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.
 ///
@@ -50,6 +57,10 @@ public:
   /// Typical magnitude of each state and of each row of F, all positive, in SI: solvers work on x/state_scale and
   /// F/residual_scale.
   virtual void scales(Vec state_scale, Vec residual_scale) = 0;
+
+  /// All states in parts, the same names on every rank: first the hub, to which the others are joined by few of its
+  /// states; the others do not see each other. Not collective.
+  [[nodiscard]] virtual std::vector<Field> fields() const { return {{"state", 0, local_size()}}; }
 
   /// The linearised equations at (angle, x, xdot) if the system solves them itself, else nullptr (on all ranks). What
   /// `similar`, made by this system and still alive, has prepared may be used again. They end with the system.

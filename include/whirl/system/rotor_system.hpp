@@ -36,8 +36,8 @@ using JournalState = PlaceState;
 /// the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
 /// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
 /// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks in whole
-/// lines if the rotor is rigid, which then stands with the pedestals on the first rank; otherwise they are on the last
-/// one. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// lines; the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14,
+/// 20, 23.
 class RotorSystem : public Plant {
 public:
   /// The speed [rad/s] is the parameter.
@@ -58,6 +58,8 @@ public:
   void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) override;
   void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override;
   void scales(Vec state_scale, Vec residual_scale) override;
+  /// "machine" (rotor and pedestals), then every film with own states by the name of its bearing.
+  [[nodiscard]] std::vector<problem::Field> fields() const override;
   [[nodiscard]] problem::Structure* structure() override;
   /// Of a rigid rotor with one film in lines, at least two on every rank.
   [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
@@ -180,7 +182,7 @@ private:
   std::vector<Bearing> bearings_;
   PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
   PetscInt n_own_ = 0, own_here_ = 0;                     // own states of films: all, on this rank
-  bool first_holds_rotor_ = false;                        // and the own states are shared out over all ranks
+  bool first_holds_rotor_ = false;                        // because films with own states are shared out over all
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
   std::vector<double> load_;                              // gravity on this rank's coordinates [N]

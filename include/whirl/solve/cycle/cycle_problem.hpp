@@ -1,0 +1,195 @@
+#pragma once
+// Periodic solutions by orthogonal collocation, parallel over the intervals.
+
+#include <complex>
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/cycle/assembled_cycle.hpp"
+#include "whirl/solve/cycle/composition.hpp"
+#include "whirl/solve/cycle/interval.hpp"
+#include "whirl/solve/cycle/periodic_problem.hpp"
+#include "whirl/solve/cycle/scaled_point.hpp"
+#include "whirl/solve/newton/adjoint.hpp"
+
+namespace whirl::solve {
+
+struct CycleOptions {
+  int degree = 2;
+  Points points = Points::radau;
+  int turns = 1;               ///< shaft turns per period of a forced cycle
+  bool autonomous = false;     ///< no forcing: the period is an unknown and a phase condition is added
+  double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
+  double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
+  bool use_structure = true;   ///< condense with what the system tells of its structure
+  /// How intervals are joined: by one dense matrix of all states, by sweeps of single states over all intervals, or by
+  /// whichever is thought to cost less.
+  enum class Joining { cheapest, dense, sweeps } joining = Joining::cheapest;
+  bool assembled =
+      false;  ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
+  double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
+  int base_intervals = 0;     ///< adapt() never makes a mesh coarser than this uniform one; 0: its longest interval
+  int max_intervals = 400;
+};
+
+/// Equations F(2 pi k s, x(s), x'(s)/T; p) = 0 at the collocation points of all intervals, with x(0) = x(1).
+///
+/// Each rank of `time` holds a whole System on a communicator of size 1 and a run of intervals. Unknowns per interval:
+/// X_1..X_m at its nodes; its start is its left neighbour's X_m. The condensation eliminates each interval to x_(i+1) =
+/// Gamma_i x_i + ..., multiplies these along the rank's run, gathers one small system from all ranks and solves it
+/// together with the border (parameter, period, added rows), so that folds are regular. Products of Gamma lose log10 of
+/// the largest multiplier in digits, which GMRES around it restores.
+class CycleProblem : public PeriodicProblem, public Adjoint {
+public:
+  /// `local` lives on a communicator of size 1 and outlives this.
+  CycleProblem(MPI_Comm time, problem::System& local, const CycleOptions& options, std::vector<double> mesh);
+  ~CycleProblem() override;
+
+  [[nodiscard]] MPI_Comm comm() const override { return comm_; }
+  [[nodiscard]] core::Vector make_unknown() const override;
+  [[nodiscard]] Vec weights() const override { return weights_.get(); }
+  [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
+  void residual(Vec u, Vec r) override;
+  void linearise(Vec u, Vec row) override;
+  void multiply(Vec v, Vec y) override;
+  void solve(Vec rhs, Vec x) override;
+  bool adapt(core::Vector& u, core::Vector& tangent) override;
+  void equations_changed() override { kept_valid_ = false; }
+  [[nodiscard]] std::vector<double> warm_start() override { return composition_->warm_start(); }
+  void take_warm_start(const std::vector<double>& warm) override { composition_->take_warm_start(warm); }
+
+  [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
+  [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
+  [[nodiscard]] const CycleOptions& options() const { return options_; }
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return point_.state_scale(); }
+  [[nodiscard]] Cycle gather(Vec u) const override;
+  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
+  void set_phase_reference(const Cycle& reference) override;
+  [[nodiscard]] double period_scale() const override { return period_scale_; }
+  /// All of them, or where sweeps join the intervals those above 0.2 and one below, at most 24; where a dense band of
+  /// them lies above 0.2, those above 0.5.
+  [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
+  [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
+  /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
+  /// Large with own states of films, where nothing else forms it. Collective.
+  [[nodiscard]] Eigen::MatrixXd monodromy() const;
+
+  /// What joins the intervals, which knows products of monodromy(). Collective.
+  [[nodiscard]] Composition& composition() { return *composition_; }
+
+  /// Solution of the linearised equations over one period from the scaled start v [n], at the nodes like Cycle::x but
+  /// scaled [n x N m]; its last column is monodromy() v. Collective.
+  [[nodiscard]] Eigen::MatrixXd propagate(const Eigen::VectorXd& v) const;
+
+  // Adjoint equations and second derivatives along the cycle.
+
+  void solve_transposed(Vec rhs, Vec x) override;
+  void curvature(Vec u, Vec v, Vec w, Vec out) override;
+  /// A motion over this rank's intervals, scaled: the state before them [n] and those at their nodes [n x local nodes],
+  /// with changes of the border unknowns ([period,] parameter; scaled).
+  struct Path {
+    Eigen::VectorXd start;
+    Eigen::MatrixXd nodes;
+    Eigen::VectorXd border;
+  };
+  /// The linearised motion from the scaled start v [n], not closed to a period: its end is monodromy() v. Not
+  /// collective.
+  [[nodiscard]] Path forward(const Eigen::VectorXd& v) const;
+  /// The motion from rest under -y, y [mn x local intervals] at the collocation points, and its end after one period
+  /// [n], the same on every rank. Collective.
+  [[nodiscard]] Path forced(const Eigen::MatrixXd& y, Eigen::VectorXd& end) const;
+  /// Weights [mn x local intervals] of the equations with w . monodromy() v = -(sum weights . dR V) for changes dR of
+  /// the linearised equations along the motion V = forward(v). Not collective.
+  [[nodiscard]] Eigen::MatrixXd backward(const Eigen::VectorXd& w) const;
+  /// Gradients [layout of u] of sum_i weights_i . dR_i/dx(u) V, one for each `weights`: those of -w . monodromy() v.
+  [[nodiscard]] std::vector<core::Vector> gradients(Vec u, const Path& v, const std::vector<Eigen::MatrixXd>& weights);
+  /// dR/dx(u + step a) b at the collocation points [mn x local intervals], for each of the `b`; the films are evaluated
+  /// once. Collective.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> tangents(Vec u, double step, const Path& a,
+                                                      const std::vector<const Path*>& b);
+
+protected:
+  /// What an interval's equations are; the scheme's collocation unless a derived problem says otherwise. `i` counts
+  /// this rank's intervals, `own` are the scaled values at its nodes [n x m], `start` is the state before them. Not
+  /// collective; thrown errors are agreed by the caller.
+  virtual void interval_residual(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
+                                 double* out);
+  /// The linearised interval, with dR/d(period, parameter) [mn x borders] in `columns`.
+  [[nodiscard]] virtual std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* own,
+                                                                     const Eigen::VectorXd& start, double period,
+                                                                     Eigen::MatrixXd& columns);
+  /// Transposed tangents of interval i at the given states for each column of y [mn x k]: own [mn x k] +=
+  /// (dR/dX)^T y, before [n x k] += (dR/dx_start)^T y, border [nb x k] += (dR/d(period, parameter))^T y.
+  virtual void interval_transposed(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
+                                   const Eigen::MatrixXd& y, Eigen::MatrixXd& to_own, Eigen::MatrixXd& to_start,
+                                   Eigen::MatrixXd& to_border);
+  /// dR/dX d_own + dR/dx_start d_start [mn x k] of interval i at the given states; d_own [mn x k], d_start [n x k].
+  [[nodiscard]] virtual Eigen::MatrixXd interval_tangent(Eigen::Index i, const double* own,
+                                                         const Eigen::VectorXd& start, double period,
+                                                         const Eigen::MatrixXd& d_own, const Eigen::MatrixXd& d_start);
+  /// x'(s) in SI at node l = 1..m of interval g of the whole mesh, for the phase condition.
+  [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Cycle& reference, Eigen::Index g, Eigen::Index l);
+
+  /// Shaft angle at t in [0, 1] of this rank's interval i; 0 on an autonomous cycle.
+  [[nodiscard]] double angle_at(Eigen::Index i, double t) const;
+  [[nodiscard]] double interval_length(Eigen::Index i) const;
+  [[nodiscard]] problem::System& system() { return system_; }
+  [[nodiscard]] ScaledPoint& point() { return point_; }
+
+private:
+  void layout(std::vector<double> mesh);
+  [[nodiscard]] double period_of(const Eigen::VectorXd& border) const;
+  [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
+  [[nodiscard]] Eigen::VectorXd previous_end(const double* local) const;
+  void set_parameter(const Eigen::VectorXd& border);
+  void interpolate(Eigen::Index i, Eigen::Index j, const double* own, const Eigen::VectorXd& start, double period,
+                   Eigen::VectorXd& value, Eigen::VectorXd& slope) const;
+  /// d/d(period, parameter) of the equations at one point [n x borders], from dF/dp and (dF/d(dx/dt)) x'.
+  [[nodiscard]] Eigen::MatrixXd border_columns(const Eigen::VectorXd& d_parameter, const Eigen::VectorXd& rate,
+                                               double period) const;
+  [[nodiscard]] bool same_as_kept(const core::ReadArray& u, const Eigen::VectorXd& before,
+                                  const Eigen::VectorXd& border) const;
+
+  void displaced(Vec u, double step, const Path& along,
+                 const std::function<void(Eigen::Index, const double*, const Eigen::VectorXd&, double)>& work);
+  [[nodiscard]] Path path_of(Vec v) const;
+  [[nodiscard]] static double largest(const Path& path, MPI_Comm comm);
+
+  /// How an interval is condensed.
+  enum class Way { dense, low_rank, own_states };
+  [[nodiscard]] static Way way_of(const CycleOptions& options, const problem::Structure* structure);
+
+  MPI_Comm comm_;
+  int rank_, size_;
+  problem::System& system_;
+  problem::Structure* structure_;
+  ScaledPoint point_;
+  CycleOptions options_;
+  Scheme scheme_;
+  Eigen::Index n_, borders_;
+  Way way_;
+  double period_scale_ = 0;
+
+  std::vector<double> mesh_;
+  Eigen::Index first_ = 0, count_ = 0;  // this rank's intervals
+  core::Vector weights_;
+  Eigen::MatrixXd phase_row_;  // [n x local nodes], autonomous only
+  double phase_offset_ = 0;
+
+  // What residual() or linearise() kept of the points, which spares linearise() at the same u their evaluation.
+  std::vector<PointState> kept_;
+  Eigen::VectorXd kept_u_, kept_before_, kept_border_;
+  bool kept_valid_ = false;
+  Eigen::VectorXd value_, slope_;  // work space
+
+  // The linearisation: linear parts by length, intervals, border columns and added rows, and how they are joined.
+  std::map<double, std::shared_ptr<const LinearPart>> parts_;
+  Run run_;
+  std::unique_ptr<Composition> composition_;
+  AssembledCycle assembled_;
+};
+
+}  // namespace whirl::solve

@@ -1,0 +1,64 @@
+#pragma once
+// Equilibria F(0, x, 0; p) = 0 and their branches.
+
+#include <memory>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/newton/adjoint.hpp"
+#include "whirl/solve/newton/extended_problem.hpp"
+#include "whirl/solve/newton/newton.hpp"
+
+namespace whirl::solve {
+
+class PortElimination;
+
+/// R(u) = F(angle 0, x, 0; p), without forcing of order one in the angle: for balanced machines and static positions.
+///
+/// The bordered matrix [dF/dx dF/dp; row] is assembled. Films with own states are eliminated on their ports
+/// (`port_elimination`), with the border part of what is left; a machine without any is factorised as a whole (MUMPS).
+/// Both are regular at folds.
+class EquilibriumProblem : public ExtendedProblem, public Adjoint {
+public:
+  /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
+  /// state in the arclength.
+  EquilibriumProblem(problem::System& system, double parameter_scale, double state_weight);
+  ~EquilibriumProblem() override;
+
+  [[nodiscard]] MPI_Comm comm() const override { return system_.comm(); }
+  [[nodiscard]] core::Vector make_unknown() const override;
+  [[nodiscard]] Vec weights() const override { return weights_.get(); }
+  [[nodiscard]] double parameter_scale() const override { return parameter_scale_; }
+  void residual(Vec u, Vec r) override;
+  void linearise(Vec u, Vec row) override;
+  void multiply(Vec v, Vec y) override;
+  void solve(Vec rhs, Vec x) override;
+  [[nodiscard]] Mat matrix() override;
+  [[nodiscard]] std::vector<problem::Field> fields() const override { return system_.fields(); }
+  void solve_transposed(Vec rhs, Vec x) override;
+  void curvature(Vec u, Vec v, Vec w, Vec out) override;
+  /// The same along a motion: (x, dx/dt) moves by eps (v, rate), v with an entry for the parameter, `rate` [n] scaled
+  /// like the states (null: none).
+  void curvature(Vec u, Vec v, Vec rate, Vec w, Vec out);
+
+  [[nodiscard]] Vec state_scale() const { return state_scale_.get(); }
+  [[nodiscard]] Vec residual_scale() const { return residual_scale_.get(); }
+  /// Between the scaled unknown and the state in SI. Collective.
+  void to_state(Vec u, Vec x) const;
+  void from_state(Vec x, double parameter, Vec u) const;
+
+private:
+  void prepare(Vec u);
+  void factorise();
+  problem::System& system_;
+  double parameter_scale_;
+  core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
+  core::Matrix jacobian_, bordered_;
+  std::unique_ptr<PortElimination> ports_;
+  core::LinearSolver solver_;
+  bool factorised_ = false;
+};
+
+/// Solves F(0, x, 0) = 0 at the system's parameter from the guess in x. Collective.
+NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options);
+
+}  // namespace whirl::solve

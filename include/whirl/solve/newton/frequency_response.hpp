@@ -1,0 +1,35 @@
+#pragma once
+// Linear response to harmonic forcing.
+
+#include <memory>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+
+namespace whirl::solve {
+
+class EliminatedResponse;
+class ShiftedSystem;
+
+/// Solves (dF/dx + i omega dF/d(dx/dt)) z = b for the complex amplitude z of x = Re(z exp(i omega t)).
+///
+/// On one rank the kinematic equations q' = v are eliminated exactly and the rest is factorised as a complex sparse
+/// matrix, analysed once. On several ranks it is a ShiftedSystem.
+class FrequencyResponse {
+public:
+  explicit FrequencyResponse(problem::System& system);
+  ~FrequencyResponse();
+  /// `right` and `amplitude` [2 x local size]: real and imaginary part of each local entry in turn, SI. Linearised at
+  /// the equilibrium x. Collective.
+  void solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
+
+private:
+  void solve_shifted(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
+  problem::System& system_;
+  core::Vector rest_, state_scale_, residual_scale_;
+  core::Matrix jx_, jd_;
+  std::unique_ptr<EliminatedResponse> eliminated_;  // on one rank
+  std::unique_ptr<ShiftedSystem> shifted_;          // on several
+};
+
+}  // namespace whirl::solve

@@ -1,0 +1,121 @@
+// A look at a solution: tangent, stability, monitors. What a journal keeps of looks and locations.
+
+#include <cmath>
+#include <utility>
+
+#include "solve/branch/follower.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+
+namespace {
+
+// A point, what a look at it found and what that left: counts, values, monitors and warm start, then the tangent.
+Journal::Answer pack(const State& s, const std::vector<double>& warm) {
+  const Stability& all = s.point.stability;
+  std::vector<double> out{static_cast<double>(all.values.size()),
+                          static_cast<double>(all.distance.size()),
+                          static_cast<double>(s.point.monitors.size()),
+                          static_cast<double>(warm.size()),
+                          static_cast<double>(all.neutral),
+                          s.point.step,
+                          static_cast<double>(s.point.newton_iterations)};
+  for (const auto& v : all.values) out.insert(out.end(), {v.real(), v.imag()});
+  for (const auto& list : {all.distance, s.point.monitors, warm, core::gather(s.tangent.get())})
+    out.insert(out.end(), list.begin(), list.end());
+  return {std::move(out), {}};
+}
+
+// Returns where the rest begins.
+const double* unpack(const Journal::Answer& answer, State& s, std::vector<double>& warm) {
+  const double* at = answer.numbers.data();
+  const auto next = [&at](double n) {
+    const double* begin = std::exchange(at, at + static_cast<std::ptrdiff_t>(n));
+    return std::vector<double>(begin, at);
+  };
+  const std::vector<double> counts = next(7), values = next(2 * counts[0]);
+  s.point.stability = {};
+  for (std::size_t k = 0; k < values.size(); k += 2) s.point.stability.values.emplace_back(values[k], values[k + 1]);
+  s.point.stability.distance = next(counts[1]);
+  s.point.monitors = next(counts[2]);
+  warm = next(counts[3]);
+  s.point.stability.neutral = static_cast<int>(counts[4]);
+  s.point.step = counts[5];
+  s.point.newton_iterations = static_cast<int>(counts[6]);
+  s.tangent = core::duplicate(s.u.get());
+  PetscInt size = 0;
+  check(VecGetSize(s.u.get(), &size));
+  core::fill(s.tangent.get(), next(size));
+  return at;
+}
+
+double norm_of(Vec u) {
+  double norm = 0;
+  check(VecNorm(u, NORM_2, &norm));
+  return norm;
+}
+
+}  // namespace
+
+void Follower::inspect(State& s, Vec along) {
+  if (Journal* journal = options_.newton.journal) {
+    const std::vector<double> question{norm_of(s.u.get()), last_entry(problem_.comm(), s.u.get()), along ? 1.0 : 0.0};
+    const auto found = journal->ask("look", question, [&](const Journal::Answer&) {
+      look_at(s, along);
+      return pack(s, memory_.warm);
+    });
+    (void)unpack(found, s, memory_.warm);
+  } else {
+    look_at(s, along);
+  }
+  s.point.parameter = last_entry(problem_.comm(), s.u.get());
+  s.point.slope = last_entry(problem_.comm(), s.tangent.get());
+}
+
+// Trials that led there are of no use any more.
+bool Follower::locate(const State& a, const State& b, const Test& test, double tolerance, LocatedEvent& found,
+                      State& at) {
+  Journal* journal = options_.newton.journal;
+  if (!journal) return search(a, b, test, tolerance, found, at);
+  const std::vector<double> question{norm_of(a.u.get()), norm_of(b.u.get()), b.point.step, tolerance};
+  const auto answer = journal->ask("locate", question, [&](const Journal::Answer&) {
+    const bool done = search(a, b, test, tolerance, found, at);
+    Journal::Answer out = pack(at, memory_.warm);
+    const std::vector<double> u = core::gather(at.u.get());
+    out.numbers.insert(out.numbers.end(), u.begin(), u.end());
+    out.numbers.insert(out.numbers.end(), {done ? 1.0 : 0.0, found.parameter, found.bracket, found.sensitivity});
+    return out;
+  });
+  at.u = copy(b.u.get());
+  at.point = a.point;
+  const double* rest = unpack(answer, at, memory_.warm);
+  const double* facts = answer.numbers.data() + answer.numbers.size() - 4;
+  core::fill(at.u.get(), {rest, facts});
+  at.point.parameter = last_entry(problem_.comm(), at.u.get());
+  at.point.slope = last_entry(problem_.comm(), at.tangent.get());
+  found.parameter = facts[1];
+  found.bracket = facts[2];
+  found.sensitivity = facts[3];
+  return facts[0] != 0;
+}
+
+void Follower::look_at(State& s, Vec along) {
+  warm_up();
+  core::Vector row = core::duplicate(s.u.get()), rhs = core::duplicate(s.u.get());
+  if (along)
+    weighted_row(problem_, along, row.get());
+  else
+    parameter_row(problem_, row.get());
+  problem_.linearise(s.u.get(), row.get());
+  check(VecSet(rhs.get(), 0.0));
+  set_last_entry(problem_.comm(), rhs.get(), along ? 1.0 : static_cast<double>(direction_));
+  s.tangent = core::duplicate(s.u.get());
+  newton_.solve_linear(rhs.get(), s.tangent.get());
+  check(VecScale(s.tangent.get(), 1 / std::sqrt(inner(problem_, s.tangent.get(), s.tangent.get()))));
+  s.point.stability = questions_.stability ? questions_.stability(s.u.get()) : Stability{};
+  if (questions_.monitors) s.point.monitors = questions_.monitors(s.u.get(), s.tangent.get());
+  memory_.warm = problem_.warm_start();
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,214 @@
+// Adjoint equations and second derivatives of a periodic solution: what its bifurcation conditions are made of.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+
+namespace whirl::solve {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double difference_step(double largest) {
+  return std::cbrt(std::numeric_limits<double>::epsilon()) / std::max(largest, std::numeric_limits<double>::min());
+}
+
+double CycleProblem::largest(const Path& path, MPI_Comm comm) {
+  double value = 0;
+  for (const auto* part : {&path.start, &path.border})
+    if (part->size() > 0) value = std::max(value, part->cwiseAbs().maxCoeff());
+  if (path.nodes.size() > 0) value = std::max(value, path.nodes.cwiseAbs().maxCoeff());
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm);
+  return value;
+}
+
+CycleProblem::Path CycleProblem::path_of(Vec v) const {
+  const core::ReadArray a(v);
+  return {previous_end(a.data()), Map<const MatrixXd>(a.data(), n_, count_ * scheme_.degree), border_of(v)};
+}
+
+void CycleProblem::interval_transposed(Index i, const double* own, const VectorXd& start, double period,
+                                       const MatrixXd& y, MatrixXd& to_own, MatrixXd& to_start, MatrixXd& to_border) {
+  const double length = interval_length(i) * period;
+  VectorXd value(n_), slope(n_), d_parameter(n_), rate(n_), by_value, by_slope;
+  MatrixXd jx, jxdot;
+  PointState at;
+  for (Index j = 0; j < scheme_.degree; ++j) {
+    interpolate(i, j, own, start, period, value, slope);
+    const double angle = angle_at(i, scheme_.c(j));
+    if (structure_) {
+      point_.residual(angle, value, slope, rate, at);
+      point_.parameter_derivative(angle, at, d_parameter);
+      point_.times_rates(at, slope, rate);
+    } else {
+      point_.linearise(angle, value, slope, jx, jxdot, &d_parameter);
+      rate.noalias() = jxdot * slope;
+    }
+    to_border += border_columns(d_parameter, rate, period).transpose() * y.middleRows(j * n_, n_);
+    for (Index k = 0; k < y.cols(); ++k) {
+      const auto part = y.col(k).segment(j * n_, n_);
+      if (structure_) {
+        point_.times_transposed(at, part, by_value, by_slope);
+      } else {
+        by_value.noalias() = jx.transpose() * part;
+        by_slope.noalias() = jxdot.transpose() * part;
+      }
+      by_slope /= length;
+      to_start.col(k) += scheme_.value(j, 0) * by_value + scheme_.slope(j, 0) * by_slope;
+      for (Index l = 1; l <= scheme_.degree; ++l)
+        to_own.col(k).segment((l - 1) * n_, n_) += scheme_.value(j, l) * by_value + scheme_.slope(j, l) * by_slope;
+    }
+  }
+}
+
+MatrixXd CycleProblem::interval_tangent(Index i, const double* own, const VectorXd& start, double period,
+                                        const MatrixXd& d_own, const MatrixXd& d_start) {
+  VectorXd value(n_), slope(n_), d_value(n_), d_slope(n_), unused(n_);
+  MatrixXd jx, jxdot, out(scheme_.degree * n_, d_own.cols());
+  PointState at;
+  for (Index j = 0; j < scheme_.degree; ++j) {
+    interpolate(i, j, own, start, period, value, slope);
+    const double angle = angle_at(i, scheme_.c(j));
+    if (structure_)
+      point_.residual(angle, value, slope, unused, at);
+    else
+      point_.linearise(angle, value, slope, jx, jxdot, nullptr);
+    for (Index k = 0; k < out.cols(); ++k) {
+      interpolate(i, j, d_own.col(k).data(), d_start.col(k), period, d_value, d_slope);
+      if (structure_)
+        point_.times(at, d_value, d_slope, out.col(k).segment(j * n_, n_));
+      else
+        out.col(k).segment(j * n_, n_) = jx * d_value + jxdot * d_slope;
+    }
+  }
+  return out;
+}
+
+// Calls work(interval, own, start, period) at u + step * along.
+void CycleProblem::displaced(Vec u, double step, const Path& along,
+                             const std::function<void(Index, const double*, const VectorXd&, double)>& work) {
+  const Path at = path_of(u);
+  const VectorXd border =
+      at.border + (along.border.size() > 0 ? VectorXd(step * along.border) : VectorXd::Zero(borders_));
+  const MatrixXd nodes = at.nodes + step * along.nodes;
+  const VectorXd before = at.start + step * along.start;
+  core::agree(comm_, [&] {
+    set_parameter(border);
+    const double period = period_of(border);
+    if (!(period > 0)) throw core::DomainError("the period is not positive");
+    point_.refresh();
+    for (Index i = 0; i < count_; ++i) {
+      const double* own = nodes.data() + i * scheme_.degree * n_;
+      work(i, own, i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_)), period);
+    }
+  });
+}
+
+std::vector<core::Vector> CycleProblem::gradients(Vec u, const Path& v, const std::vector<MatrixXd>& weights) {
+  const Index m = scheme_.degree, block = m * n_, many = static_cast<Index>(weights.size());
+  const double h = difference_step(largest(v, comm_));
+  MatrixXd own_sum = MatrixXd::Zero(count_ * block, many), before_sum = MatrixXd::Zero(n_, many),
+           border_sum = MatrixXd::Zero(borders_, many), y(block, many);
+  for (const double sign : {1.0, -1.0})
+    displaced(u, sign * h, v, [&](Index i, const double* own, const VectorXd& start, double period) {
+      MatrixXd to_own = MatrixXd::Zero(block, many), to_start = MatrixXd::Zero(n_, many),
+               to_border = MatrixXd::Zero(borders_, many);
+      for (Index k = 0; k < many; ++k) y.col(k) = weights[static_cast<std::size_t>(k)].col(i);
+      interval_transposed(i, own, start, period, y, to_own, to_start, to_border);
+      const double factor = sign / (2 * h);
+      own_sum.middleRows(i * block, block) += factor * to_own;
+      if (i == 0)
+        before_sum += factor * to_start;
+      else
+        own_sum.middleRows(i * block - n_, n_) += factor * to_start;
+      border_sum += factor * to_border;
+    });
+  set_parameter(border_of(u));
+  point_.refresh();
+  const int next = (rank_ + 1) % size_, previous = (rank_ + size_ - 1) % size_;
+  std::vector<core::Vector> out;
+  for (Index k = 0; k < many; ++k) {
+    VectorXd received(n_);
+    MPI_Sendrecv(before_sum.col(k).data(), static_cast<int>(n_), MPI_DOUBLE, previous, 0, received.data(),
+                 static_cast<int>(n_), MPI_DOUBLE, next, 0, comm_, MPI_STATUS_IGNORE);
+    own_sum.col(k).tail(n_) += received;
+    MPI_Allreduce(MPI_IN_PLACE, border_sum.col(k).data(), static_cast<int>(borders_), MPI_DOUBLE, MPI_SUM, comm_);
+    core::Vector g = make_unknown();
+    const core::WriteArray a(g.get());
+    Map<VectorXd>(a.data(), own_sum.rows()) = own_sum.col(k);
+    if (rank_ == size_ - 1) Map<VectorXd>(a.data() + own_sum.rows(), borders_) = border_sum.col(k);
+    out.push_back(std::move(g));
+  }
+  return out;
+}
+
+void CycleProblem::curvature(Vec u, Vec v, Vec w, Vec out) {
+  const core::ReadArray a(w);
+  const Index block = scheme_.degree * n_;
+  std::vector<MatrixXd> weights{Map<const MatrixXd>(a.data(), block, count_)};
+  core::check(VecCopy(gradients(u, path_of(v), weights).front().get(), out));
+}
+
+std::vector<MatrixXd> CycleProblem::tangents(Vec u, double step, const Path& a, const std::vector<const Path*>& b) {
+  const Index block = scheme_.degree * n_, many = static_cast<Index>(b.size());
+  std::vector<MatrixXd> y(b.size(), MatrixXd(block, count_));
+  MatrixXd d_own(block, many), d_start(n_, many);
+  displaced(u, step, a, [&](Index i, const double* own, const VectorXd& start, double period) {
+    for (Index k = 0; k < many; ++k) {
+      const Path& path = *b[static_cast<std::size_t>(k)];
+      const double* nodes = path.nodes.data() + i * block;
+      d_own.col(k) = Map<const VectorXd>(nodes, block);
+      d_start.col(k) = i == 0 ? path.start : VectorXd(Map<const VectorXd>(nodes - n_, n_));
+    }
+    const MatrixXd out = interval_tangent(i, own, start, period, d_own, d_start);
+    for (Index k = 0; k < many; ++k) y[static_cast<std::size_t>(k)].col(i) = out.col(k);
+  });
+  set_parameter(border_of(u));
+  point_.refresh();
+  return y;
+}
+
+CycleProblem::Path CycleProblem::forward(const VectorXd& v) const {
+  Path path{composition_->entering(v), MatrixXd(n_, count_ * scheme_.degree), {}};
+  VectorXd added = VectorXd::Zero(borders_);
+  (void)run_.drive(nullptr, path.start, nullptr, path.nodes.data(), added);
+  return path;
+}
+
+CycleProblem::Path CycleProblem::forced(const MatrixXd& y, VectorXd& end) const {
+  // Ranks follow one another: what leaves one enters the next.
+  Path path{VectorXd::Zero(n_), MatrixXd(n_, count_ * scheme_.degree), {}};
+  const int n = static_cast<int>(n_);
+  if (rank_ > 0) MPI_Recv(path.start.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_, MPI_STATUS_IGNORE);
+  const MatrixXd rhs = -y;
+  VectorXd added = VectorXd::Zero(borders_);
+  end = run_.drive(rhs.data(), path.start, nullptr, path.nodes.data(), added);
+  if (rank_ < size_ - 1) MPI_Send(end.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_);
+  MPI_Bcast(end.data(), n, MPI_DOUBLE, size_ - 1, comm_);
+  return path;
+}
+
+MatrixXd CycleProblem::backward(const VectorXd& w) const {
+  VectorXd lambda = w, seen = VectorXd::Zero(borders_);
+  const int n = static_cast<int>(n_);
+  if (rank_ < size_ - 1) MPI_Recv(lambda.data(), n, MPI_DOUBLE, rank_ + 1, 0, comm_, MPI_STATUS_IGNORE);
+  MatrixXd weights(scheme_.degree * n_, count_);
+  lambda = run_.drive_back(nullptr, lambda, VectorXd::Zero(borders_), weights.data(), seen);
+  if (rank_ > 0) MPI_Send(lambda.data(), n, MPI_DOUBLE, rank_ - 1, 0, comm_);
+  return weights;
+}
+
+void CycleProblem::solve_transposed(Vec rhs, Vec x) {
+  VectorXd border = border_of(rhs);
+  const core::ReadArray ra(rhs);
+  const core::WriteArray xa(x);
+  composition_->solve_transposed(ra.data(), border, xa.data());
+  if (rank_ == size_ - 1) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,179 @@
+#include "whirl/solve/cycle/linear_part.hpp"
+
+// With V = value(:, 1..m) and D = slope(:, 1..m)/H, the row alpha x_a' + beta x_b = y_i holds at the m points:
+//
+//     alpha D X_a + beta V X_b = Y_i    =>    X_a = D^-1 (Y_i - beta V X_b)/alpha
+//
+// If x_a' occurs in no other row, then X_a enters the other rows (index k: kept) through L0 only, as V x L0_ka, and
+//
+//     [ V x L0_kk + D x L1_kk - (V D^-1 V) x (L0_ka beta/alpha) ] X_k = Y_k - (V D^-1 x L0_ka/alpha) Y_i
+//
+// D^-1 integrates over the interval, so that the elimination multiplies by H times a frequency: it is stable.
+// The transposed equations W0^T x = y eliminate the same rows: with U = D^-T Y_a/alpha,
+//
+//     [ ... ]^T X_k = Y_k - beta V^T U  (at b),    X_i = U - (V D^-1 x L0_ka/alpha)^T X_k
+
+namespace whirl::solve {
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// (a x I) z, with z as a matrix of m neighbouring columns (the points) per right-hand side.
+MatrixXd along(const MatrixXd& a, const MatrixXd& z) {
+  const Index m = a.rows();
+  MatrixXd out = MatrixXd::Zero(z.rows(), z.cols());
+  for (Index first = 0; first < z.cols(); first += m)
+    for (Index j = 0; j < m; ++j)
+      for (Index l = 0; l < m; ++l)
+        if (a(j, l) != 0) out.col(first + j) += a(j, l) * z.col(first + l);
+  return out;
+}
+
+// The only column where a row is not zero, or -1.
+Index single(const MatrixXd& a, Index row) {
+  Index found = -1;
+  for (Index j = 0; j < a.cols(); ++j) {
+    if (a(row, j) == 0) continue;
+    if (found >= 0) return -1;
+    found = j;
+  }
+  return found;
+}
+
+}  // namespace
+
+LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const MatrixXd& l0_, const MatrixXd& b_,
+                       const MatrixXd& c_)
+    : scheme(sc), l1(l1_), l0(l0_), b(b_), c(c_), length(len), n(l1_.rows()), r(b_.cols()), w(c_.rows()) {
+  find_rates();
+  factorise();
+  const Index m = scheme.degree;
+  w00.resize(m * n, n);
+  y = MatrixXd::Zero(m * n, m * r);
+  for (Index j = 0; j < m; ++j) {
+    w00.middleRows(j * n, n) = scheme.value(j, 0) * l0 + (scheme.slope(j, 0) / length) * l1;
+    y.block(j * n, j * r, n, r) = b;
+  }
+  free = -w00;
+  solve(free);
+  solve(y);
+  vy = inputs(y);
+  inputs_free = inputs(free);
+  for (Index j = 0; j < m; ++j) inputs_free.middleRows(j * w, w) += scheme.value(j, 0) * c;
+}
+
+void LinearPart::find_rates() {
+  enum class Use { open, eliminated, kept };
+  std::vector<Use> use(static_cast<std::size_t>(n), Use::open);
+  const auto use_of = [&](Index state) -> Use& { return use[static_cast<std::size_t>(state)]; };
+  std::vector<Index> of;
+  std::vector<double> alpha, beta;
+  for (Index i = 0; i < n; ++i) {
+    const Index s = single(l1, i), v = single(l0, i);
+    if (s < 0 || v < 0 || s == v || use_of(s) != Use::open || use_of(v) == Use::eliminated ||
+        (l1.col(s).array() != 0).count() != 1) {
+      row_.push_back(i);
+      continue;
+    }
+    use_of(s) = Use::eliminated;
+    use_of(v) = Use::kept;
+    rate_row_.push_back(i);
+    rate_state_.push_back(s);
+    of.push_back(v);
+    alpha.push_back(l1(i, s));
+    beta.push_back(l0(i, v));
+  }
+  std::vector<Index> place(static_cast<std::size_t>(n), 0);
+  for (Index s = 0; s < n; ++s) {
+    if (use_of(s) == Use::eliminated) continue;
+    place[static_cast<std::size_t>(s)] = static_cast<Index>(state_.size());
+    state_.push_back(s);
+  }
+  for (const Index v : of) rate_of_.push_back(place[static_cast<std::size_t>(v)]);
+  alpha_ = Map<const Eigen::ArrayXd>(alpha.data(), eliminated());
+  beta_ = Map<const Eigen::ArrayXd>(beta.data(), eliminated());
+}
+
+void LinearPart::factorise() {
+  const Index m = scheme.degree, kept = n - eliminated();
+  const MatrixXd slope = scheme.slope.rightCols(m) / length;
+  value_ = scheme.value.rightCols(m);
+  integral_ = slope.inverse();
+  value_integral_ = value_ * integral_;
+  const MatrixXd twice = value_integral_ * value_;
+  coupling_ = l0(row_, rate_state_) * alpha_.inverse().matrix().asDiagonal();
+  const MatrixXd l0_kept = l0(row_, state_), l1_kept = l1(row_, state_);
+  MatrixXd through = MatrixXd::Zero(kept, kept);
+  for (Index e = 0; e < eliminated(); ++e)
+    through.col(rate_of_[static_cast<std::size_t>(e)]) += beta_(e) * coupling_.col(e);
+  MatrixXd a(m * kept, m * kept);
+  for (Index j = 0; j < m; ++j)
+    for (Index l = 0; l < m; ++l)
+      a.block(j * kept, l * kept, kept, kept) = value_(j, l) * l0_kept + slope(j, l) * l1_kept - twice(j, l) * through;
+  lu_.compute(a);
+}
+
+void LinearPart::solve(MatrixXd& x) const {
+  const Index m = scheme.degree, kept = n - eliminated();
+  Map<MatrixXd> points(x.data(), n, m * x.cols());
+  const MatrixXd y_i = points(rate_row_, Eigen::all);
+  MatrixXd x_k = points(row_, Eigen::all);
+  x_k.noalias() -= coupling_ * along(value_integral_, y_i);
+  if (x.cols() == 1) {  // the kernel for matrices is twice as slow for one column
+    Map<VectorXd> v(x_k.data(), m * kept);
+    v = lu_.solve(v).eval();
+  } else {
+    Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
+    v = lu_.solve(v).eval();
+  }
+  const MatrixXd x_b = along(value_, x_k(rate_of_, Eigen::all));
+  points(state_, Eigen::all) = x_k;
+  points(rate_state_, Eigen::all) =
+      along(integral_, alpha_.inverse().matrix().asDiagonal() * (y_i - beta_.matrix().asDiagonal() * x_b));
+}
+
+void LinearPart::solve_transposed(MatrixXd& x) const {
+  const Index m = scheme.degree, kept = n - eliminated();
+  Map<MatrixXd> points(x.data(), n, m * x.cols());
+  MatrixXd u = along(integral_.transpose(), alpha_.inverse().matrix().asDiagonal() * points(rate_state_, Eigen::all));
+  MatrixXd x_k = points(state_, Eigen::all);
+  const MatrixXd vu = beta_.matrix().asDiagonal() * along(value_.transpose(), u);
+  for (Index e = 0; e < eliminated(); ++e) x_k.row(rate_of_[static_cast<std::size_t>(e)]) -= vu.row(e);
+  if (x.cols() == 1) {
+    Map<VectorXd> v(x_k.data(), m * kept);
+    v = lu_.transpose().solve(v).eval();
+  } else {
+    Map<MatrixXd> v(x_k.data(), m * kept, x.cols());
+    v = lu_.transpose().solve(v).eval();
+  }
+  u -= along(value_integral_.transpose(), coupling_.transpose() * x_k);
+  points(row_, Eigen::all) = x_k;
+  points(rate_row_, Eigen::all) = u;
+}
+
+MatrixXd LinearPart::inputs(const MatrixXd& x) const {
+  const Index m = scheme.degree;
+  std::vector<MatrixXd> cx(static_cast<std::size_t>(m));
+  for (Index l = 0; l < m; ++l) cx[static_cast<std::size_t>(l)].noalias() = c * x.middleRows(l * n, n);
+  MatrixXd out = MatrixXd::Zero(m * w, x.cols());
+  for (Index j = 0; j < m; ++j)
+    for (Index l = 1; l <= m; ++l)
+      if (scheme.value(j, l) != 0) out.middleRows(j * w, w) += scheme.value(j, l) * cx[static_cast<std::size_t>(l - 1)];
+  return out;
+}
+
+MatrixXd LinearPart::inputs_transposed(const MatrixXd& s) const {
+  const Index m = scheme.degree;
+  MatrixXd out = MatrixXd::Zero(m * n, s.cols());
+  for (Index j = 0; j < m; ++j) {
+    const MatrixXd cs = c.transpose() * s.middleRows(j * w, w);
+    for (Index l = 1; l <= m; ++l)
+      if (scheme.value(j, l) != 0) out.middleRows((l - 1) * n, n) += scheme.value(j, l) * cs;
+  }
+  return out;
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,234 @@
+#include "whirl/solve/cycle/scaled_point.hpp"
+
+#include <Eigen/LU>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::solve {
+namespace {
+
+using core::check;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd to_eigen(Vec v) {
+  const core::ReadArray a(v);
+  return Map<const VectorXd>(a.data(), a.size());
+}
+
+MatrixXd to_dense(Mat m, Index n) {
+  MatrixXd out = MatrixXd::Zero(n, n);
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(m, i, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k) out(i, columns[k]) = values[k];
+    check(MatRestoreRow(m, i, &count, &columns, &values));
+  }
+  return out;
+}
+
+}  // namespace
+
+ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure)
+    : system_(system), structure_(structure) {
+  core::require(core::size_of(system.comm()) == 1, "a dense point needs the whole system on one rank");
+  x_ = core::make_vector(system.comm(), system.size(), PETSC_DETERMINE);
+  xdot_ = core::duplicate(x_.get());
+  f_ = core::duplicate(x_.get());
+  system.scales(x_.get(), f_.get());
+  state_scale_ = to_eigen(x_.get());
+  residual_scale_ = to_eigen(f_.get());
+  if (structure_) {
+    const Index n = structure_->size();
+    b_ = residual_scale_.head(n).cwiseInverse().asDiagonal() * structure_->b();
+    c_ = structure_->c() * state_scale_.head(n).asDiagonal();
+    refresh();
+  } else {
+    matrix_ = system.make_jacobian();
+  }
+}
+
+void ScaledPoint::refresh() {
+  if (!structure_) return;
+  const Index n = structure_->size();
+  const auto rows = residual_scale_.head(n).cwiseInverse().asDiagonal();
+  const auto columns = state_scale_.head(n).asDiagonal();
+  l0_ = rows * structure_->l0() * columns;
+  l1_ = rows * structure_->l1() * columns;
+}
+
+void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
+  const core::WriteArray xa(x_.get()), da(xdot_.get());
+  Map<VectorXd>(xa.data(), size()) = x.cwiseProduct(state_scale_);
+  Map<VectorXd>(da.data(), size()) = xdot.cwiseProduct(state_scale_);
+}
+
+void ScaledPoint::structured(double angle, const VectorXd& x, const VectorXd& xdot, bool tangents,
+                             Eigen::Ref<VectorXd> out, PointState& at) {
+  const Index n = structure_->size(), k = own_states();
+  at.value = x.cwiseProduct(state_scale_);
+  at.rate = xdot.cwiseProduct(state_scale_);
+  inputs_.noalias() = c_ * x.head(n);
+  structure_->films(inputs_, at.value.data() + n, at.rate.data() + n, tangents, at.films);
+  structure_->load(angle, load_);
+  auto core = out.head(n);
+  core.noalias() = l0_ * x.head(n);
+  core.noalias() += l1_ * xdot.head(n);
+  core -= load_.cwiseQuotient(residual_scale_.head(n));
+  core.noalias() -= b_ * at.films.forces;
+  if (k > 0) out.tail(k) = at.films.residual.cwiseQuotient(residual_scale_.tail(k));
+}
+
+void ScaledPoint::residual(double angle, const VectorXd& x, const VectorXd& xdot, Eigen::Ref<VectorXd> out,
+                           PointState& keep) {
+  structured(angle, x, xdot, true, out, keep);
+}
+
+void ScaledPoint::residual(double angle, const VectorXd& x, const VectorXd& xdot, Eigen::Ref<VectorXd> out) {
+  if (structure_) return structured(angle, x, xdot, false, out, point_);
+  put(x, xdot);
+  system_.residual(angle, x_.get(), xdot_.get(), f_.get());
+  out = to_eigen(f_.get()).cwiseQuotient(residual_scale_);
+}
+
+void ScaledPoint::parameter_derivative(double angle, const PointState& at, Eigen::Ref<VectorXd> out) {
+  structure_->parameter_derivative(angle, at.value, at.rate, at.films, d_parameter_);
+  out = d_parameter_.cwiseQuotient(residual_scale_);
+}
+
+void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Ref<VectorXd> out) const {
+  const Index n = structure_->size();
+  out.head(n).noalias() = l1_ * v.head(n);
+  out.tail(own_states()).setZero();
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const Eigen::MatrixXd& forces = at.films.own[i].force_rates;
+    const Index first = n + film.first;
+    if (forces.rows() > 0)
+      out.head(n).noalias() -=
+          b_.middleCols(film.first_force, film.forces) *
+          (forces * v.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count)));
+    const std::vector<double>& values = at.films.own[i].rates;
+    for (std::size_t e = 0; e < values.size(); ++e) {
+      const Index row = first + film.rates[e].row, column = first + film.rates[e].column;
+      out(row) += values[e] * v(column) * state_scale_(column) / residual_scale_(row);
+    }
+  }
+}
+
+void ScaledPoint::times(const PointState& at, const VectorXd& a, const VectorXd& b, Eigen::Ref<VectorXd> out) const {
+  const Index n = structure_->size();
+  times_rates(at, b, out);
+  const VectorXd inputs = c_ * a.head(n);
+  VectorXd forces = at.films.d_inputs * inputs;
+  out.head(n).noalias() += l0_ * a.head(n);
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const problem::OwnTangents& t = at.films.own[i];
+    const Index first = n + film.first;
+    const VectorXd s = a.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count));
+    forces.segment(film.first_force, film.forces) += t.forces * s;
+    VectorXd rows = t.inputs.transpose() * inputs.segment(film.first_input, film.inputs);
+    for (std::size_t e = 0; e < t.states.size(); ++e)
+      rows(film.states[e].row) += t.states[e] * s(film.states[e].column);
+    out.segment(first, film.count) += rows.cwiseQuotient(residual_scale_.segment(first, film.count));
+  }
+  out.head(n).noalias() -= b_ * forces;
+}
+
+void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const VectorXd>& y, VectorXd& by_state,
+                                   VectorXd& by_rate) const {
+  const Index n = structure_->size();
+  by_state = by_rate = VectorXd::Zero(size());
+  by_rate.head(n) = l1_.transpose() * y.head(n);
+  const VectorXd forces = -(b_.transpose() * y.head(n));
+  VectorXd inputs = at.films.d_inputs.transpose() * forces;
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const problem::OwnTangents& t = at.films.own[i];
+    const Index first = n + film.first;
+    const VectorXd rows = y.segment(first, film.count).cwiseQuotient(residual_scale_.segment(first, film.count));
+    inputs.segment(film.first_input, film.inputs) += t.inputs * rows;
+    const auto own = forces.segment(film.first_force, film.forces);
+    VectorXd s = t.forces.transpose() * own, r = VectorXd::Zero(film.count);
+    if (t.force_rates.rows() > 0) r = t.force_rates.transpose() * own;
+    for (std::size_t e = 0; e < t.states.size(); ++e)
+      s(film.states[e].column) += t.states[e] * rows(film.states[e].row);
+    for (std::size_t e = 0; e < t.rates.size(); ++e) r(film.rates[e].column) += t.rates[e] * rows(film.rates[e].row);
+    by_state.segment(first, film.count) = s.cwiseProduct(state_scale_.segment(first, film.count));
+    by_rate.segment(first, film.count) = r.cwiseProduct(state_scale_.segment(first, film.count));
+  }
+  by_state.head(n) = l0_.transpose() * y.head(n) + c_.transpose() * inputs;
+}
+
+void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) const {
+  const Index n = structure_->size();
+  jx.setZero(size(), size());
+  jxdot.setZero(size(), size());
+  jx.topLeftCorner(n, n) = l0_;
+  jx.topLeftCorner(n, n).noalias() -= b_ * (at.films.d_inputs * c_);
+  jxdot.topLeftCorner(n, n) = l1_;
+  for (std::size_t i = 0; i < structure_->own().size(); ++i) {
+    const problem::OwnStates& film = structure_->own()[i];
+    const problem::OwnTangents& t = at.films.own[i];
+    const Index first = n + film.first;
+    const auto rows = residual_scale_.segment(first, film.count).cwiseInverse().asDiagonal();
+    jx.block(first, 0, film.count, n).noalias() =
+        rows * (t.inputs.transpose() * c_.middleRows(film.first_input, film.inputs));
+    jx.block(0, first, n, film.count).noalias() =
+        -b_.middleCols(film.first_force, film.forces) * t.forces * state_scale_.segment(first, film.count).asDiagonal();
+    if (t.force_rates.rows() > 0)
+      jxdot.block(0, first, n, film.count).noalias() = -b_.middleCols(film.first_force, film.forces) * t.force_rates *
+                                                       state_scale_.segment(first, film.count).asDiagonal();
+    const auto add = [&](const std::vector<problem::Place>& places, const std::vector<double>& values, MatrixXd& out) {
+      for (std::size_t e = 0; e < places.size(); ++e) {
+        const Index row = first + places[e].row, column = first + places[e].column;
+        out(row, column) += values[e] * state_scale_(column) / residual_scale_(row);
+      }
+    };
+    add(film.states, t.states, jx);
+    add(film.rates, t.rates, jxdot);
+  }
+}
+
+void ScaledPoint::linearise(double angle, const VectorXd& x, const VectorXd& xdot, MatrixXd& jx, MatrixXd& jxdot,
+                            VectorXd* d_parameter) {
+  if (structure_) {
+    VectorXd f(size());
+    structured(angle, x, xdot, true, f, point_);
+    matrices(point_, jx, jxdot);
+    if (!d_parameter) return;
+    d_parameter->resize(size());
+    parameter_derivative(angle, point_, *d_parameter);
+    return;
+  }
+  put(x, xdot);
+  const auto scaled = [&]() -> MatrixXd {
+    return residual_scale_.cwiseInverse().asDiagonal() * to_dense(matrix_.get(), size()) * state_scale_.asDiagonal();
+  };
+  system_.jacobian(angle, x_.get(), xdot_.get(), 1, 0, matrix_.get());
+  jx = scaled();
+  system_.jacobian(angle, x_.get(), xdot_.get(), 0, 1, matrix_.get());
+  jxdot = scaled();
+  if (!d_parameter) return;
+  system_.parameter_derivative(angle, x_.get(), xdot_.get(), f_.get());
+  *d_parameter = to_eigen(f_.get()).cwiseQuotient(residual_scale_);
+}
+
+VectorXd ScaledPoint::rate(double angle, const VectorXd& x) {
+  VectorXd f(size()), rate = VectorXd::Zero(size());
+  MatrixXd jx, jxdot;
+  // The first pass finds the rates of own states, the second one the forces that are cut off at these.
+  for (int pass = 0; pass < 2; ++pass) {
+    residual(angle, x, rate, f);
+    linearise(angle, x, rate, jx, jxdot, nullptr);
+    rate -= jxdot.partialPivLu().solve(f);
+  }
+  return rate;
+}
+
+}  // namespace whirl::solve

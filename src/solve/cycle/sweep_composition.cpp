@@ -1,0 +1,276 @@
+#include "solve/cycle/sweep_composition.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/cycle/dominant_subspace.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::solve {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Up to here all multipliers can be had from the dense matrix where a search for the dominant ones fails.
+constexpr Index whole_up_to = 1000;
+
+}  // namespace
+
+void SweepComposition::enter(double* state, Index count) const {
+  if (size_ == 1) return;
+  MPI_Recv(state, static_cast<int>(count), MPI_DOUBLE, (rank_ + size_ - 1) % size_, 0, run_->comm, MPI_STATUS_IGNORE);
+}
+
+void SweepComposition::leave(const double* state, Index count) const {
+  if (size_ == 1) return;
+  MPI_Send(state, static_cast<int>(count), MPI_DOUBLE, (rank_ + 1) % size_, 0, run_->comm);
+}
+
+void SweepComposition::turn(MatrixXd& state, MatrixXd& added, bool loaded) const {
+  const Index n = run_->n, nb = run_->borders, columns = state.cols();
+  added = MatrixXd::Zero(nb, columns);
+  MatrixXd moved(n + nb, columns);
+  // The last rank's message to the first begins the turn.
+  if (last()) {
+    moved << state, added;
+    leave(moved.data(), moved.size());
+  }
+  if (size_ > 1) {
+    enter(moved.data(), moved.size());
+    state = moved.topRows(n);
+    added = moved.bottomRows(nb);
+  }
+  for (std::size_t i = 0; i < run_->intervals.size(); ++i) {
+    run_->intervals[i]->carry(run_->rows[i], state, added);
+    if (!loaded) continue;
+    state.rightCols(nb) -= loads_[i].bottomRows(n);
+    added.rightCols(nb).noalias() -= run_->rows[i] * loads_[i];
+  }
+  if (!last()) {
+    moved << state, added;
+    leave(moved.data(), moved.size());
+  }
+}
+
+void SweepComposition::compose(const Run& run) {
+  run_ = &run;
+  if (!solver_) set_up(run);
+  if (taken_) {
+    const Index columns = taken_->empty() ? 0 : static_cast<Index>(taken_->size() - 1) / run.n;
+    radius_ = taken_->empty() ? first_radius : taken_->front();
+    basis_.resize(local(), columns);
+    if (columns > 0 && last()) basis_ = Map<const MatrixXd>(taken_->data() + 1, run.n, columns);
+    taken_.reset();
+  }
+  loads_.resize(run.intervals.size());
+  for (std::size_t i = 0; i < run.intervals.size(); ++i) {
+    loads_[i] = run.columns[i];
+    run.intervals[i]->solve(loads_[i]);
+  }
+  prepare();
+}
+
+// Everything of the preconditioner, by one turn of the basis and the border together.
+void SweepComposition::prepare() {
+  const Index n = run_->n, nb = run_->borders, p = basis_.cols();
+  MatrixXd state = MatrixXd::Zero(n, p + nb), added;
+  if (last()) state.leftCols(p) = basis_;
+  turn(state, added, true);
+  if (!last()) return;
+  image_ = state.leftCols(p);
+  basis_added_ = added.leftCols(p);
+  ends_ = state.rightCols(nb);
+  ends_added_ = added.rightCols(nb) + run_->corner;
+  MatrixXd small(p + nb, p + nb);
+  small.topRows(p) = MatrixXd::Identity(p, p + nb) - basis_.transpose() * state;
+  small.bottomRows(nb) << basis_added_, ends_added_;
+  small_.compute(small);
+}
+
+void SweepComposition::solve(const double* rhs, VectorXd& border, double* x) {
+  const Index n = run_->n, nb = run_->borders;
+  // Forward: the motion that the right-hand side alone drives.
+  VectorXd state = VectorXd::Zero(n), added = VectorXd::Zero(nb);
+  if (rank_ > 0) enter(state.data(), n);
+  state = run_->drive(rhs, state, nullptr, nullptr, added);
+  if (!last()) leave(state.data(), n);
+  MPI_Allreduce(MPI_IN_PLACE, added.data(), static_cast<int>(nb), MPI_DOUBLE, MPI_SUM, run_->comm);
+  {
+    const core::WriteArray a(right_.get());
+    if (last()) Map<VectorXd>(a.data(), n + nb) << state, border - added;
+  }
+  gate_.rethrow(KSPSolve(solver_.get(), right_.get(), answer_.get()));
+  {
+    const core::ReadArray a(answer_.get());
+    if (last()) {
+      state = Map<const VectorXd>(a.data(), n);
+      border = Map<const VectorXd>(a.data() + n, nb);
+    }
+  }
+  MPI_Bcast(border.data(), static_cast<int>(nb), MPI_DOUBLE, size_ - 1, run_->comm);
+  // Back: from the start and the border.
+  if (last()) leave(state.data(), n);
+  enter(state.data(), n);
+  state = run_->drive(rhs, state, &border, x, added);
+  if (!last()) leave(state.data(), n);
+}
+
+void SweepComposition::turn_back(const double* rhs, VectorXd& lambda, VectorXd sigma, double* z, VectorXd& seen) const {
+  const auto n = static_cast<int>(run_->n), nb = static_cast<int>(run_->borders);
+  MPI_Bcast(sigma.data(), nb, MPI_DOUBLE, size_ - 1, run_->comm);
+  seen = VectorXd::Zero(nb);
+  if (!last()) MPI_Recv(lambda.data(), n, MPI_DOUBLE, rank_ + 1, 0, run_->comm, MPI_STATUS_IGNORE);
+  lambda = run_->drive_back(rhs, lambda, sigma, z, seen);
+  if (size_ > 1) {
+    MPI_Send(lambda.data(), n, MPI_DOUBLE, (rank_ + size_ - 1) % size_, 0, run_->comm);
+    if (last()) MPI_Recv(lambda.data(), n, MPI_DOUBLE, 0, 0, run_->comm, MPI_STATUS_IGNORE);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, seen.data(), nb, MPI_DOUBLE, MPI_SUM, run_->comm);
+}
+
+void SweepComposition::solve_transposed(const double* rhs, VectorXd& border, double* x) {
+  const Index n = run_->n, nb = run_->borders;
+  VectorXd lambda = VectorXd::Zero(n), sigma = VectorXd::Zero(nb), seen;
+  turn_back(rhs, lambda, sigma, nullptr, seen);
+  {
+    const core::WriteArray a(right_.get());
+    if (last()) Map<VectorXd>(a.data(), n + nb) << lambda, border - seen;
+  }
+  gate_.rethrow(KSPSolveTranspose(solver_.get(), right_.get(), answer_.get()));
+  {
+    const core::ReadArray a(answer_.get());
+    if (last()) {
+      lambda = Map<const VectorXd>(a.data(), n);
+      sigma = Map<const VectorXd>(a.data() + n, nb);
+    }
+  }
+  turn_back(rhs, lambda, sigma, x, seen);
+  MPI_Bcast(sigma.data(), static_cast<int>(nb), MPI_DOUBLE, size_ - 1, run_->comm);
+  border = sigma;
+}
+
+std::vector<std::complex<double>> SweepComposition::multipliers() {
+  const Index n = run_->n;
+  core::Vector first = core::make_vector(run_->comm, static_cast<PetscInt>(local()), static_cast<PetscInt>(n));
+  {
+    const core::WriteArray a(first.get());
+    for (PetscInt k = 0; k < a.size(); ++k)
+      a[k] = basis_.cols() > 0 ? basis_.row(k).sum() : 1 + std::sin(0.7 * static_cast<double>(k));
+  }
+  const auto times_m = [this](Vec v) {
+    MatrixXd state = MatrixXd::Zero(run_->n, 1), added;
+    {
+      const core::ReadArray a(v);
+      if (last()) state = Map<const VectorXd>(a.data(), run_->n);
+    }
+    turn(state, added, false);
+    const core::WriteArray a(v);
+    if (last()) Map<VectorXd>(a.data(), run_->n) = state.col(0);
+  };
+  SubspaceOptions options;
+  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
+  options.most = 24;
+  options.restarts = 20;
+  // From the last point's subspace a few vectors do: what is left of M falls by orders of magnitude.
+  if (basis_.cols() > 0) options.spare = 4;
+  DominantSubspace found;
+  for (bool done = false; !done;) {
+    options.radius = radius_;
+    try {
+      found = dominant_subspace(times_m, first.get(), options);
+      done = true;
+    } catch (const core::NotConverged&) {
+      // Films on soft liners at high speed have a dense band of multipliers, as have stiff films at Gauss points: it
+      // takes no part in what the cycle does, and is left below a larger radius from here on.
+      if (radius_ < 0.5) {
+        radius_ = 0.5;
+      } else if (n > whole_up_to) {
+        throw;
+      } else {
+        found_ = false;
+        return spectral::eigenvalues(run_->comm, monodromy());
+      }
+    }
+  }
+  found_ = true;
+  basis_ = std::move(found.basis);
+  prepare();
+  return found.values;
+}
+
+// The Ritz vector of V^T M V, which the invariant subspace makes an eigenvector.
+VectorXd SweepComposition::critical_start(double mu) {
+  (void)multipliers();
+  const MatrixXd whole = found_ ? MatrixXd() : monodromy();
+  VectorXd v = VectorXd::Zero(run_->n);
+  if (last()) {
+    const MatrixXd projected = found_ ? MatrixXd(basis_.transpose() * image_) : whole;
+    const Index p = projected.rows();
+    const Eigen::PartialPivLU<MatrixXd> lu(projected - mu * (1 + 1e-10) * MatrixXd::Identity(p, p));
+    VectorXd z = VectorXd::Ones(p);
+    for (int k = 0; k < 4; ++k) z = lu.solve(z).normalized();
+    v = found_ ? VectorXd(basis_ * z) : z;
+  }
+  MPI_Bcast(v.data(), static_cast<int>(v.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  return v;
+}
+
+MatrixXd SweepComposition::times(const MatrixXd& v) {
+  MatrixXd state = v, added;
+  turn(state, added, false);
+  MPI_Bcast(state.data(), static_cast<int>(state.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  return state;
+}
+
+MatrixXd SweepComposition::times_transposed(const MatrixXd& w) {
+  MatrixXd out = w;
+  VectorXd lambda, seen;
+  for (Index k = 0; k < w.cols(); ++k) {
+    lambda = w.col(k);
+    turn_back(nullptr, lambda, VectorXd::Zero(run_->borders), nullptr, seen);
+    out.col(k) = lambda;
+  }
+  MPI_Bcast(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  return out;
+}
+
+std::vector<double> SweepComposition::warm_start() {
+  if (taken_) return *taken_;
+  if (!run_) return {};
+  std::vector<double> warm(static_cast<std::size_t>(1 + run_->n * basis_.cols()));
+  warm[0] = radius_;
+  if (last()) std::copy_n(basis_.data(), basis_.size(), warm.data() + 1);
+  if (size_ > 1) MPI_Bcast(warm.data(), static_cast<int>(warm.size()), MPI_DOUBLE, size_ - 1, run_->comm);
+  return warm;
+}
+
+void SweepComposition::dominant(MatrixXd& v, MatrixXd& image) {
+  auto columns = static_cast<int>(basis_.cols());
+  MPI_Bcast(&columns, 1, MPI_INT, size_ - 1, run_->comm);
+  v.resize(run_->n, columns);
+  image.resize(run_->n, columns);
+  if (last()) {
+    v = basis_;
+    image = image_;
+  }
+  for (MatrixXd* m : {&v, &image}) MPI_Bcast(m->data(), static_cast<int>(m->size()), MPI_DOUBLE, size_ - 1, run_->comm);
+}
+
+VectorXd SweepComposition::entering(const VectorXd& v) {
+  MatrixXd state = v, added = MatrixXd::Zero(run_->borders, 1);
+  if (rank_ > 0) enter(state.data(), state.size());
+  const VectorXd here = state;
+  run_->carry(state, added);
+  if (!last()) leave(state.data(), state.size());
+  return here;
+}
+
+std::unique_ptr<Composition> make_sweep_composition() {
+  return std::make_unique<SweepComposition>();
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,165 @@
+#include "whirl/solve/newton/equilibrium.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "solve/newton/port_elimination.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/direct_solver.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+
+EquilibriumProblem::EquilibriumProblem(problem::System& system, double parameter_scale, double state_weight)
+    : system_(system), parameter_scale_(parameter_scale) {
+  weights_ = make_unknown();
+  {
+    const core::WriteArray w(weights_.get());
+    for (PetscInt i = 0; i < system.local_size(); ++i) w[i] = state_weight / static_cast<double>(system.size());
+    if (w.size() > system.local_size()) w[w.size() - 1] = 1;
+  }
+  x_ = core::make_vector(comm(), system.local_size(), PETSC_DETERMINE);
+  rest_ = core::duplicate(x_.get());
+  f_ = core::duplicate(x_.get());
+  state_scale_ = core::duplicate(x_.get());
+  residual_scale_ = core::duplicate(x_.get());
+  check(VecSet(rest_.get(), 0.0));
+  system.scales(state_scale_.get(), residual_scale_.get());
+  row_scale_ = core::duplicate(x_.get());
+  check(VecCopy(residual_scale_.get(), row_scale_.get()));
+  check(VecReciprocal(row_scale_.get()));
+}
+
+EquilibriumProblem::~EquilibriumProblem() = default;
+
+core::Vector EquilibriumProblem::make_unknown() const {
+  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
+  return core::make_vector(comm(), system_.local_size() + (last ? 1 : 0), PETSC_DETERMINE);
+}
+
+void EquilibriumProblem::to_state(Vec u, Vec x) const {
+  const core::ReadArray ua(u), s(state_scale_.get());
+  const core::WriteArray xa(x);
+  for (PetscInt i = 0; i < xa.size(); ++i) xa[i] = ua[i] * s[i];
+}
+
+void EquilibriumProblem::from_state(Vec x, double parameter, Vec u) const {
+  {
+    const core::ReadArray xa(x), s(state_scale_.get());
+    const core::WriteArray ua(u);
+    for (PetscInt i = 0; i < xa.size(); ++i) ua[i] = xa[i] / s[i];
+  }
+  set_last_entry(comm(), u, parameter / parameter_scale_);
+}
+
+void EquilibriumProblem::prepare(Vec u) {
+  const double parameter = last_entry(comm(), u) * parameter_scale_;
+  core::agree(comm(), [&] { system_.set_parameter(parameter); });
+  to_state(u, x_.get());
+}
+
+void EquilibriumProblem::residual(Vec u, Vec r) {
+  prepare(u);
+  system_.residual(0, x_.get(), rest_.get(), f_.get());
+  const core::ReadArray fa(f_.get()), s(residual_scale_.get());
+  const core::WriteArray ra(r);
+  for (PetscInt i = 0; i < fa.size(); ++i) ra[i] = fa[i] / s[i];
+}
+
+Mat EquilibriumProblem::matrix() {
+  if (bordered_) return bordered_.get();
+  PetscBool filled = PETSC_FALSE;
+  if (jacobian_) check(MatAssembled(jacobian_.get(), &filled));
+  if (!filled) return nullptr;
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
+  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
+  const PetscInt n = system_.size(), rows = end - begin + (last ? 1 : 0);
+  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(rows, 1)), n + 1);
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt k = 0;
+    check(MatGetRow(jacobian_.get(), i, &k, nullptr, nullptr));
+    count[static_cast<std::size_t>(i - begin)] = k + 1;
+    check(MatRestoreRow(jacobian_.get(), i, &k, nullptr, nullptr));
+  }
+  std::vector<PetscInt> local = count;
+  for (auto& k : local) k = std::min(k, rows);
+  check(MatCreate(comm(), bordered_.put()));
+  check(MatSetSizes(bordered_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(bordered_.get(), MATAIJ));
+  check(MatSeqAIJSetPreallocation(bordered_.get(), 0, count.data()));
+  check(MatMPIAIJSetPreallocation(bordered_.get(), 0, local.data(), 0, count.data()));
+  return bordered_.get();
+}
+
+void EquilibriumProblem::linearise(Vec u, Vec row) {
+  prepare(u);
+  if (!jacobian_) jacobian_ = system_.make_jacobian();
+  system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
+  (void)matrix();
+  system_.parameter_derivative(0, x_.get(), rest_.get(), f_.get());
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
+  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
+  const PetscInt n = system_.size();
+  check(MatDiagonalScale(jacobian_.get(), row_scale_.get(), state_scale_.get()));
+  {
+    const core::ReadArray rs(residual_scale_.get()), dp(f_.get()), wa(row);
+    for (PetscInt i = begin; i < end; ++i) {
+      PetscInt k = 0;
+      const PetscInt* columns = nullptr;
+      const PetscScalar* values = nullptr;
+      check(MatGetRow(jacobian_.get(), i, &k, &columns, &values));
+      check(MatSetValues(bordered_.get(), 1, &i, k, columns, values, INSERT_VALUES));
+      check(MatRestoreRow(jacobian_.get(), i, &k, &columns, &values));
+      check(MatSetValue(bordered_.get(), i, n, dp[i - begin] / rs[i - begin] * parameter_scale_, INSERT_VALUES));
+      check(MatSetValue(bordered_.get(), n, i, wa[i - begin], INSERT_VALUES));
+    }
+    if (last) check(MatSetValue(bordered_.get(), n, n, wa[wa.size() - 1], INSERT_VALUES));
+  }
+  check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
+  factorised_ = false;
+}
+
+void EquilibriumProblem::factorise() {
+  if (factorised_) return;
+  factorised_ = true;
+  if (std::vector<problem::Field> parts = system_.fields(); parts.size() > 1) {
+    if (!ports_) ports_ = std::make_unique<PortElimination>(comm(), std::move(parts));
+    ports_->factorise(bordered_.get());
+    return;
+  }
+  if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
+  check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
+  check(KSPSetUp(solver_.get()));
+}
+
+void EquilibriumProblem::multiply(Vec v, Vec y) {
+  check(MatMult(bordered_.get(), v, y));
+}
+
+void EquilibriumProblem::solve(Vec rhs, Vec x) {
+  factorise();
+  if (ports_)
+    ports_->solve(rhs, x);
+  else
+    check(KSPSolve(solver_.get(), rhs, x));
+}
+
+NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options) {
+  const double parameter = system.parameter(), unit = parameter != 0 ? std::abs(parameter) : 1.0;
+  EquilibriumProblem problem(system, unit, 1);
+  core::Vector u = problem.make_unknown(), row = core::duplicate(u.get());
+  problem.from_state(x, parameter, u.get());
+  parameter_row(problem, row.get());
+  const NewtonResult result = newton(problem, u.get(), row.get(), parameter / unit, options);
+  problem.to_state(u.get(), x);
+  system.set_parameter(parameter);
+  return result;
+}
+
+}  // namespace whirl::solve

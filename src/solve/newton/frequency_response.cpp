@@ -1,0 +1,53 @@
+#include "whirl/solve/newton/frequency_response.hpp"
+
+#include "solve/newton/eliminated_response.hpp"
+#include "solve/newton/shifted_system.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+
+FrequencyResponse::FrequencyResponse(problem::System& system) : system_(system) {
+  if (core::size_of(system.comm()) > 1) {
+    shifted_ = std::make_unique<ShiftedSystem>(system);
+    return;
+  }
+  eliminated_ = std::make_unique<EliminatedResponse>();
+  rest_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  state_scale_ = core::duplicate(rest_.get());
+  residual_scale_ = core::duplicate(rest_.get());
+  system.scales(state_scale_.get(), residual_scale_.get());
+  jx_ = system.make_jacobian();
+  jd_ = system.make_jacobian();
+}
+
+FrequencyResponse::~FrequencyResponse() = default;
+
+void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude) {
+  if (shifted_) {
+    solve_shifted(x, omega, right, amplitude);
+    return;
+  }
+  system_.jacobian(0, x, rest_.get(), 1, 0, jx_.get());
+  system_.jacobian(0, x, rest_.get(), 0, 1, jd_.get());
+  const core::ReadArray rows(residual_scale_.get()), columns(state_scale_.get());
+  eliminated_->solve(jx_.get(), jd_.get(), omega, rows.data(), columns.data(), right, amplitude);
+}
+
+void FrequencyResponse::solve_shifted(Vec x, double omega, const std::vector<double>& right,
+                                      std::vector<double>& amplitude) {
+  shifted_->linearise(x);
+  shifted_->factorise(omega);
+  core::Vector b = shifted_->make_vector(), z = core::duplicate(b.get());
+  {
+    const core::ReadArray scale(shifted_->residual_scale());
+    const core::WriteArray a(b.get());
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = right[static_cast<std::size_t>(i)] / scale[i / 2];
+  }
+  shifted_->solve(b.get(), z.get());
+  const core::ReadArray a(z.get()), scale(shifted_->state_scale());
+  amplitude.resize(static_cast<std::size_t>(a.size()));
+  for (PetscInt i = 0; i < a.size(); ++i) amplitude[static_cast<std::size_t>(i)] = a[i] * scale[i / 2];
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,220 @@
+#include "solve/newton/shifted_system.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/newton/port_elimination.hpp"
+#include "whirl/core/direct_solver.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+using Complex = std::complex<double>;
+
+ShiftedSystem::ShiftedSystem(problem::System& system) : system_(system) {
+  rest_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  state_scale_ = core::duplicate(rest_.get());
+  residual_scale_ = core::duplicate(rest_.get());
+  system.scales(state_scale_.get(), residual_scale_.get());
+  row_scale_ = core::duplicate(rest_.get());
+  check(VecCopy(residual_scale_.get(), row_scale_.get()));
+  check(VecReciprocal(row_scale_.get()));
+  jx_ = system.make_jacobian();
+  jd_ = system.make_jacobian();
+}
+
+ShiftedSystem::~ShiftedSystem() = default;
+
+void ShiftedSystem::linearise(Vec x) {
+  system_.jacobian(0, x, rest_.get(), 1, 0, jx_.get());
+  system_.jacobian(0, x, rest_.get(), 0, 1, jd_.get());
+  for (Mat j : {jx_.get(), jd_.get()}) check(MatDiagonalScale(j, row_scale_.get(), state_scale_.get()));
+}
+
+void ShiftedSystem::make_matrix() {
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(jx_.get(), &begin, &end));
+  const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
+  const PetscInt n = system_.size(), rows = 2 * (end - begin) + (last && bordered_ ? 2 : 0);
+  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(rows, 1)), 2 * n + 2);
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt k = 0;
+    check(MatGetRow(jx_.get(), i, &k, nullptr, nullptr));
+    for (PetscInt part = 0; part < 2; ++part)
+      count[static_cast<std::size_t>(2 * (i - begin) + part)] = 2 * k + (bordered_ ? 2 : 0);
+    check(MatRestoreRow(jx_.get(), i, &k, nullptr, nullptr));
+  }
+  std::vector<PetscInt> local = count;
+  for (auto& k : local) k = std::min(k, rows);
+  check(MatCreate(system_.comm(), matrix_.put()));
+  check(MatSetSizes(matrix_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(matrix_.get(), MATAIJ));
+  check(MatSeqAIJSetPreallocation(matrix_.get(), 0, count.data()));
+  check(MatMPIAIJSetPreallocation(matrix_.get(), 0, local.data(), 0, count.data()));
+}
+
+void ShiftedSystem::factorise(double omega, const ComplexVector& b, const ComplexVector& c) {
+  if (!matrix_ || bordered_ != !b.empty()) {
+    bordered_ = !b.empty();
+    make_matrix();
+    ports_.reset();
+    solver_.reset();
+  }
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(jx_.get(), &begin, &end));
+  const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
+  const PetscInt n = system_.size();
+  std::vector<PetscInt> to;
+  std::vector<PetscScalar> upper, lower;
+  const auto put = [&](PetscInt row) {
+    for (PetscInt part = 0; part < 2; ++part) {
+      const PetscInt r = 2 * row + part;
+      check(MatSetValues(matrix_.get(), 1, &r, static_cast<PetscInt>(to.size()), to.data(),
+                         (part == 0 ? upper : lower).data(), INSERT_VALUES));
+    }
+  };
+  const auto add = [&](PetscInt column, Complex z) {
+    for (PetscInt part = 0; part < 2; ++part) to.push_back(2 * column + part);
+    upper.insert(upper.end(), {z.real(), -z.imag()});
+    lower.insert(lower.end(), {z.imag(), z.real()});
+  };
+  const auto clear = [&] {
+    to.clear();
+    upper.clear();
+    lower.clear();
+  };
+  for (PetscInt i = begin; i < end; ++i) {
+    // Both Jacobians have the same pattern, so that their rows run in step.
+    PetscInt k = 0, kd = 0;
+    const PetscInt *columns = nullptr, *columns_d = nullptr;
+    const PetscScalar *a = nullptr, *d = nullptr;
+    check(MatGetRow(jx_.get(), i, &k, &columns, &a));
+    check(MatGetRow(jd_.get(), i, &kd, &columns_d, &d));
+    core::require(k == kd, "dF/dx and dF/d(dx/dt) have one pattern");
+    clear();
+    for (PetscInt e = 0; e < k; ++e) add(columns[e], {a[e], omega * d[e]});
+    check(MatRestoreRow(jx_.get(), i, &k, &columns, &a));
+    check(MatRestoreRow(jd_.get(), i, &kd, &columns_d, &d));
+    if (bordered_) add(n, b[static_cast<std::size_t>(i)]);
+    put(i);
+  }
+  if (last && bordered_) {
+    clear();
+    for (PetscInt i = 0; i < n; ++i) add(i, std::conj(c[static_cast<std::size_t>(i)]));
+    add(n, 0);
+    put(n);
+  }
+  check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));
+  if (std::vector<problem::Field> fields = system_.fields(); fields.size() > 1) {
+    for (problem::Field& f : fields) f = {f.name, 2 * f.begin, 2 * f.end};
+    if (!ports_) ports_ = std::make_unique<PortElimination>(system_.comm(), std::move(fields));
+    ports_->factorise(matrix_.get());
+    return;
+  }
+  if (!solver_) solver_ = core::make_direct_solver(system_.comm(), "shifted_");
+  check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
+}
+
+core::Vector ShiftedSystem::make_vector() const {
+  const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
+  return core::make_vector(system_.comm(), 2 * system_.local_size() + (last && bordered_ ? 2 : 0), PETSC_DETERMINE);
+}
+
+// The transpose of the real matrix is the conjugate transpose of the complex one.
+void ShiftedSystem::solve(bool adjoint, Vec rhs, Vec z) {
+  if (ports_) {
+    adjoint ? ports_->solve_transposed(rhs, z) : ports_->solve(rhs, z);
+    return;
+  }
+  check(adjoint ? KSPSolveTranspose(solver_.get(), rhs, z) : KSPSolve(solver_.get(), rhs, z));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(solver_.get(), &reason));
+  if (reason < 0) throw core::NotConverged("the matrix at this frequency is singular");
+}
+
+void ShiftedSystem::solve(Vec rhs, Vec z) {
+  solve(false, rhs, z);
+}
+
+void ShiftedSystem::solve_adjoint(Vec rhs, Vec z) {
+  solve(true, rhs, z);
+}
+
+void ShiftedSystem::solve(bool adjoint, const ComplexVector& rhs, ComplexVector& x, Complex& corner) {
+  core::Vector b = make_vector(), z = core::duplicate(b.get());
+  PetscInt begin = 0, end = 0;
+  check(VecGetOwnershipRange(b.get(), &begin, &end));
+  const std::size_t n = size();
+  const auto entry = [&](PetscInt row) {
+    return static_cast<std::size_t>(row) < n ? rhs[static_cast<std::size_t>(row)] : corner;
+  };
+  {
+    const core::WriteArray a(b.get());
+    for (PetscInt i = begin; i < end; ++i) a[i - begin] = i % 2 == 0 ? entry(i / 2).real() : entry(i / 2).imag();
+  }
+  solve(adjoint, b.get(), z.get());
+  const std::vector<double> whole = core::gather(z.get());
+  x.resize(n);
+  for (std::size_t k = 0; k < n; ++k) x[k] = {whole[2 * k], whole[2 * k + 1]};
+  if (bordered_) corner = {whole[2 * n], whole[2 * n + 1]};
+}
+
+void ShiftedSystem::solve(const ComplexVector& rhs, ComplexVector& x, Complex& corner) {
+  solve(false, rhs, x, corner);
+}
+
+void ShiftedSystem::solve_adjoint(const ComplexVector& rhs, ComplexVector& x, Complex& corner) {
+  solve(true, rhs, x, corner);
+}
+
+// The first borders are generic, the second ones the null vectors themselves.
+CriticalVectors critical_vectors(ShiftedSystem& shifted, double omega) {
+  const std::size_t n = shifted.size();
+  ComplexVector b(n), c(n), none(n);
+  CriticalVectors out;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto t = static_cast<double>(k);
+    b[k] = {std::sin(1 + t), std::cos(2 + 0.7 * t)};
+    c[k] = {std::cos(3 + 1.3 * t), std::sin(2 + 1.7 * t)};
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    shifted.factorise(omega, b, c);
+    Complex corner = 1, other = 1;
+    shifted.solve(none, out.q, corner);
+    shifted.solve_adjoint(none, out.p, other);
+    for (ComplexVector* v : {&out.q, &out.p}) {
+      double sum = 0;
+      for (const Complex& e : *v) sum += std::norm(e);
+      for (Complex& e : *v) e *= std::sqrt(static_cast<double>(n) / sum);
+    }
+    b = out.p;
+    c = out.q;
+  }
+  return out;
+}
+
+ComplexVector ShiftedSystem::rates_times(const ComplexVector& v) const {
+  ComplexVector out(size());
+  core::Vector in = core::duplicate(rest_.get()), y = core::duplicate(rest_.get());
+  PetscInt begin = 0, end = 0;
+  check(VecGetOwnershipRange(in.get(), &begin, &end));
+  for (int part = 0; part < 2; ++part) {
+    {
+      const core::WriteArray a(in.get());
+      for (PetscInt i = begin; i < end; ++i) {
+        const Complex z = v[static_cast<std::size_t>(i)];
+        a[i - begin] = part == 0 ? z.real() : z.imag();
+      }
+    }
+    check(MatMult(jd_.get(), in.get(), y.get()));
+    const std::vector<double> whole = core::gather(y.get());
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += part == 0 ? Complex(whole[k], 0) : Complex(0, whole[k]);
+  }
+  return out;
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,162 @@
+// The subspace of a Newton-Picard problem and the multipliers in it.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "solve/cycle/dominant_subspace.hpp"
+#include "solve/shooting/local_part.hpp"
+#include "solve/shooting/sparse_step.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Columns to an orthonormal basis of their span, one after the other, so that leading columns span what they did.
+void NewtonPicardProblem::orthonormalise(MatrixXd& v, Index from) const {
+  for (Index c = from; c < v.cols(); ++c) {
+    for (int pass = 0; pass < 2; ++pass) {
+      MatrixXd inner = v.leftCols(c).transpose() * v.col(c);
+      sum(inner);
+      v.col(c) -= v.leftCols(c) * inner;
+      MatrixXd square(1, 1);
+      square(0) = v.col(c).squaredNorm();
+      sum(square);
+      v.col(c) /= std::sqrt(square(0));
+    }
+  }
+}
+
+// M V. While V is not invariant and gets better at once, V <- orth(M V): it spares linear iterations. Multipliers below
+// the radius are near it or not, which does not change from one point to the next: what did not help is not tried
+// again.
+void NewtonPicardProblem::find_image() {
+  constexpr double invariant = 1e-7, at_once = 0.1;
+  double last = 0;
+  for (int k = 0;; ++k) {
+    image_ = monodromy_times(basis_, basis_added_);
+    MatrixXd sizes(2, 1);
+    sizes << complement(image_).squaredNorm(), image_.squaredNorm();
+    sum(sizes);
+    const double defect = sizes(1) > 0 ? std::sqrt(sizes(0) / sizes(1)) : 0;
+    if (k > 0) contraction_ = defect / last;
+    if (defect <= invariant || k == 2 || contraction_ > at_once) return;
+    last = defect;
+    basis_ = image_;
+    orthonormalise(basis_, 0);
+  }
+}
+
+std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
+  VectorXd start(local_);
+  if (basis_.cols() > 0) {
+    start = basis_.rowwise().sum();
+  } else {
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
+    for (Index k = 0; k < local_; ++k) start(k) = 1 + std::sin(0.7 * static_cast<double>(begin + k));
+  }
+  core::Vector first = core::duplicate(work_.get());
+  put(start, first.get());
+  SubspaceOptions options;
+  options.radius = options_.radius;
+  options.tolerance = options_.multiplier_tolerance;
+  options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
+  DominantSubspace found = dominant_subspace(
+      [this](Vec v) {
+        MatrixXd state = get(v);
+        for (Index i = 0; i < intervals(); ++i) apply(i, state);
+        put(state, v);
+        ++products_;
+      },
+      first.get(), options);
+  if (found.basis.cols() != basis_.cols()) contraction_ = 0;
+  basis_ = std::move(found.basis);
+  return found.values;
+}
+
+// Multipliers by orthogonal iteration on V and two generic vectors, which would show a multiplier that V does not know;
+// those below the radius, which nothing depends on, to six digits. Empty if this does not settle at once, because there
+// are multipliers just below the radius, or if their number has changed: then they are to be found anew.
+std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
+  constexpr Index probes = 2;
+  constexpr int most = 2;
+  constexpr double below_radius = 1e-6, slow = 1e-2;
+  const Index p = basis_.cols();
+  if (image_.rows() != local_ || p == 0 || p + probes > system_.size()) return {};
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
+  MatrixXd x(local_, p + probes), y = x, added(borders_, p + probes), new_added;
+  x.leftCols(p) = basis_;
+  for (Index c = 0; c < probes; ++c)
+    for (Index k = 0; k < local_; ++k) {
+      const double phase = (0.7 + 0.4 * static_cast<double>(c)) * static_cast<double>(begin + k);
+      x(k, p + c) = 1 + std::sin(phase + std::sin(phase * phase));
+    }
+  orthonormalise(x, p);
+  y.leftCols(p) = image_;
+  y.rightCols(probes) = monodromy_times(x.rightCols(probes), new_added);
+  added << basis_added_, new_added;
+  for (int k = 0;; ++k) {
+    MatrixXd projected = x.transpose() * y;
+    sum(projected);
+    if (!projected.allFinite()) return {};
+    const auto modes = spectral::eigenpairs(projected);
+    const Eigen::MatrixXcd defects = (y - x * projected) * modes.vectors;
+    MatrixXd sizes = defects.colwise().squaredNorm().transpose();
+    sum(sizes);
+    bool settled = true;
+    std::vector<std::complex<double>> values;
+    for (Index c = 0; c < x.cols(); ++c) {
+      values.push_back(modes.values(c));
+      const double size = std::abs(values.back());
+      settled = settled &&
+                std::sqrt(sizes(c)) <= (size > options_.radius ? options_.multiplier_tolerance * size : below_radius);
+    }
+    std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+    if (settled) {
+      const auto large =
+          std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > options_.radius; });
+      if (large != p) return {};
+      if (k == 0) return values;
+      basis_ = x.leftCols(p);
+      image_ = y.leftCols(p);
+      basis_added_ = added.leftCols(p);
+      prepare();
+      return values;
+    }
+    if (k == most || sizes.maxCoeff() > slow * slow) return {};
+    x = y;
+    orthonormalise(x, 0);
+    y = monodromy_times(x, added);
+  }
+}
+
+std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
+  auto values = settled_multipliers();
+  if (!values.empty()) return values;
+  values = find_subspace();
+  find_image();
+  prepare();
+  return values;
+}
+
+// In the basis the motion is the eigenvector of V^T M V; the intervals carry it on.
+MatrixXd NewtonPicardProblem::critical_motion(double mu) {
+  MatrixXd projected = basis_.transpose() * image_;
+  sum(projected);
+  MatrixXd state = basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized();
+  MatrixXd motion(local_, intervals());
+  for (Index i = 0; i < intervals(); ++i) {
+    apply(i, state);
+    motion.col(i) = scale_.cwiseProduct(state);
+  }
+  return whole(motion);
+}
+
+}  // namespace whirl::solve

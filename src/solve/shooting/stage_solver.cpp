@@ -1,0 +1,178 @@
+#include "solve/shooting/stage_solver.hpp"
+
+#include <vector>
+
+#include "solve/shooting/local_part.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr PetscInt direct_below = 3000;
+
+// Fills the places of the only entries of rows and columns, all on their own rank; false if the matrix has others.
+bool find_entries(MPI_Comm comm, Mat matrix, VectorXd& inverse, Eigen::VectorX<PetscInt>& column) {
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(matrix, &begin, &end));
+  inverse.setZero(end - begin);
+  column.setConstant(end - begin, -1);
+  std::vector<bool> taken(static_cast<std::size_t>(end - begin), false);
+  int single = 1;
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrix, i, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k) {
+      if (values[k] == 0) continue;
+      const PetscInt c = columns[k] - begin;
+      if (c < 0 || c >= end - begin || column(i - begin) >= 0 || taken[static_cast<std::size_t>(c)]) {
+        single = 0;
+        continue;
+      }
+      taken[static_cast<std::size_t>(c)] = true;
+      column(i - begin) = c;
+      inverse(i - begin) = 1 / values[k];
+    }
+    if (column(i - begin) < 0) single = 0;
+    check(MatRestoreRow(matrix, i, &count, &columns, &values));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &single, 1, MPI_INT, MPI_MIN, comm);
+  return single != 0;
+}
+
+// The block Jacobi of large matrices solves its blocks exactly.
+void exact_blocks(PC pc) {
+  PetscBool blocks = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCBJACOBI, &blocks));
+  if (!blocks) return;
+  PetscInt count = 0;
+  KSP* sub = nullptr;
+  check(PCBJacobiGetSubKSP(pc, &count, nullptr, &sub));
+  for (PetscInt i = 0; i < count; ++i) {
+    PC inner = nullptr;
+    check(KSPGetPC(sub[i], &inner));
+    check(PCSetType(inner, PCLU));
+  }
+}
+
+// Solves to rounding, so that products are exact. Small matrices are factorised, on every rank if there are several,
+// with one step of refinement for what LU without pivoting loses: no reductions, which cost more than the arithmetic.
+core::LinearSolver make_solver(MPI_Comm comm, Mat matrix) {
+  core::LinearSolver solver;
+  check(KSPCreate(comm, solver.put()));
+  KSP ksp = solver.get();
+  PC pc = nullptr;
+  PetscInt n = 0;
+  check(MatGetSize(matrix, &n, nullptr));
+  check(KSPSetOptionsPrefix(ksp, "stage_"));
+  check(KSPSetOperators(ksp, matrix, matrix));
+  check(KSPGetPC(ksp, &pc));
+  const bool alone = core::size_of(comm) == 1;
+  if (alone || n < direct_below) {
+    check(KSPSetType(ksp, KSPRICHARDSON));
+    check(KSPSetNormType(ksp, KSP_NORM_NONE));
+    check(KSPSetConvergenceTest(ksp, KSPConvergedSkip, nullptr, nullptr));
+    check(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 2));
+    check(PCSetType(pc, alone ? PCLU : PCREDUNDANT));
+  } else {
+    check(KSPSetType(ksp, KSPGMRES));
+    check(KSPSetTolerances(ksp, 1e-13, 1e-300, PETSC_DEFAULT, 200));
+    check(PCSetType(pc, PCBJACOBI));
+  }
+  check(KSPSetFromOptions(ksp));
+  check(KSPSetUp(ksp));
+  exact_blocks(pc);
+  return solver;
+}
+
+}  // namespace
+
+StageSolver::StageSolver(core::Matrix matrix) : matrix_(std::move(matrix)) {
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(matrix_.get()));
+  if (!find_entries(comm, matrix_.get(), inverse_, column_)) solver_ = make_solver(comm, matrix_.get());
+}
+
+void StageSolver::solve(Vec rhs, Vec x) const {
+  if (solver_) {
+    check(KSPSolve(solver_.get(), rhs, x));
+    return;
+  }
+  const core::ReadArray b(rhs);
+  const core::WriteArray a(x);
+  for (Index i = 0; i < inverse_.size(); ++i) a[column_(i)] = inverse_(i) * b[static_cast<PetscInt>(i)];
+}
+
+StageProduct::StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver) : solver_(std::move(solver)) {
+  const Index n = solver_->column().size();
+  Eigen::VectorX<PetscInt> row(n);
+  for (Index i = 0; i < n; ++i) row(solver_->column()(i)) = static_cast<PetscInt>(i);
+  direct_.resize(n, n);
+  for (Index c = 0; c < n; ++c) {
+    PetscInt count = 0;
+    const PetscInt* column = nullptr;
+    const PetscScalar* value = nullptr;
+    check(MatGetRow(jx, row(c), &count, &column, &value));
+    direct_.startVec(c);
+    for (PetscInt k = 0; k < count; ++k)
+      if (value[k] != 0) direct_.insertBack(c, column[k]) = -solver_->inverse()(row(c)) * value[k];
+    check(MatRestoreRow(jx, row(c), &count, &column, &value));
+  }
+  direct_.finalize();
+}
+
+StageProduct::StageProduct(std::shared_ptr<const problem::Frozen> frozen, double own, Vec like)
+    : frozen_(std::move(frozen)), own_(own) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(like)));
+  *like_.put() = like;
+}
+
+// own dF/dx w = A w - dF/d(dx/dt) w.
+MatrixXd StageProduct::frozen_slope(const MatrixXd& w, const VectorXd* load) const {
+  constexpr double tolerance = 1e-9;
+  MatrixXd out(w.rows(), w.cols());
+  core::Vector v = core::duplicate(like_.get()), rhs = core::duplicate(like_.get()), k = core::duplicate(like_.get());
+  for (Index c = 0; c < w.cols(); ++c) {
+    put(w.col(c), v.get());
+    frozen_->multiply_rates(v.get(), rhs.get());
+    frozen_->multiply(v.get(), k.get());
+    check(VecAXPY(rhs.get(), -1, k.get()));
+    if (load) {
+      put(*load, v.get());
+      check(VecAXPY(rhs.get(), -own_, v.get()));
+    }
+    frozen_->solve(rhs.get(), k.get(), tolerance);
+    out.col(c) = get(k.get()) / own_;
+  }
+  return out;
+}
+
+MatrixXd StageProduct::slope(const MatrixXd& w, const VectorXd* load) const {
+  if (frozen_) return frozen_slope(w, load);
+  if (!jx_) {
+    MatrixXd k = direct_ * w;
+    for (Index i = 0; load && i < k.rows(); ++i) k(solver_->column()(i), 0) -= solver_->inverse()(i) * (*load)(i);
+    return k;
+  }
+  MatrixXd out(w.rows(), w.cols());
+  core::Vector x, f;
+  check(MatCreateVecs(jx_.get(), x.put(), f.put()));
+  for (Index c = 0; c < w.cols(); ++c) {
+    put(w.col(c), x.get());
+    check(MatMult(jx_.get(), x.get(), f.get()));
+    if (load) {
+      put(*load, x.get());
+      check(VecAXPY(f.get(), 1, x.get()));
+    }
+    solver_->solve(f.get(), x.get());
+    out.col(c) = -get(x.get());
+  }
+  return out;
+}
+
+}  // namespace whirl::solve

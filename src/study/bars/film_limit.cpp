@@ -1,0 +1,93 @@
+#include "study/bars/film_limit.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace whirl::study {
+
+FilmLimit::FilmLimit(const system::Places& places)
+    : names_(places.names), limits_(places.least_films), clearances_(places.clearances) {}
+
+double FilmLimit::margin(double thickness, std::size_t place) const {
+  const double unit = clearances_[place] > 0 ? clearances_[place] : 1;
+  return (thickness - limits_[place]) / unit;
+}
+
+double FilmLimit::margin(const std::vector<double>& thickness) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < limits_.size() && k < thickness.size(); ++k)
+    least = std::min(least, margin(thickness[k], k));
+  return least;
+}
+
+std::string FilmLimit::reason(const std::vector<double>& thickness) const {
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < limits_.size() && k < thickness.size(); ++k)
+    if (margin(thickness[k], k) < margin(thickness[worst], worst)) worst = k;
+  if (limits_[worst] <= 0) return fmt::format("the journal touches bearing {}", names_[worst]);
+  return fmt::format("film of bearing {} falls below {:.3g} um (minimum_film)", names_[worst], limits_[worst] * 1e6);
+}
+
+void FilmLimit::warn(const std::vector<double>& thickness, const std::string& where, io::StudySummary& summary) const {
+  for (std::size_t k = 0; k < limits_.size() && k < thickness.size(); ++k)
+    if (thickness[k] < limits_[k] || thickness[k] <= 0)
+      summary.warnings.push_back(
+          fmt::format("film of bearing {} {}: {:.3g} um at mid-plane, less than the {:.3g} um below which "
+                      "the surfaces touch (minimum_film)",
+                      names_[k], where, thickness[k] * 1e6, limits_[k] * 1e6));
+}
+
+void MarginSlope::add(double parameter, double margin) {
+  if (any_ && parameter != parameter_) slope_ = (margin - margin_) / (parameter - parameter_);
+  parameter_ = parameter;
+  margin_ = margin;
+  any_ = true;
+}
+
+void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, double slope,
+                 const MeshLaw& law, const std::vector<MarginThere>& there) {
+  Bars bars({place}, law);
+  bool with_time = false;
+  for (const MarginThere& m : there) {
+    bars.add(m.axis, m.spacing, {place - m.margin / slope});
+    with_time |= m.axis == Axis::time;
+  }
+  Bar bar = bars[0];
+  bar.location = location;
+  auto more = bar.parts(with_time);
+  more["uncertainty"] = bar.total();
+  summary.set("contact", place, unit, more);
+}
+
+std::vector<double> film_column(std::vector<double> thickness, std::size_t places) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  thickness.resize(places, none);
+  for (double& h : thickness)
+    if (!std::isfinite(h)) h = none;
+  return thickness;
+}
+
+std::vector<double> least_films(const solve::Cycle& cycle, const system::Plant& plant) {
+  std::vector<std::vector<double>> films;  // [node][place]
+  for (Eigen::Index k = 0; k < cycle.x.cols(); ++k) {
+    const Eigen::VectorXd x = cycle.x.col(k);
+    films.push_back(plant.film_thickness(x.data()));
+    if (films.back().empty()) return {};
+  }
+  const std::size_t n = films.size();
+  std::vector<double> least(films.front().size(), std::numeric_limits<double>::infinity());
+  for (std::size_t place = 0; place < least.size(); ++place) {
+    std::size_t at = 0;
+    for (std::size_t k = 1; k < n; ++k)
+      if (films[k][place] < films[at][place]) at = k;
+    const double a = films[(at + n - 1) % n][place], b = films[at][place], c = films[(at + 1) % n][place];
+    const double curvature = a - 2 * b + c;
+    least[place] = curvature > 0 && std::isfinite(curvature) ? b - (a - c) * (a - c) / (8 * curvature) : b;
+  }
+  return least;
+}
+
+}  // namespace whirl::study

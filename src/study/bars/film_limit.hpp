@@ -1,0 +1,65 @@
+#pragma once
+// Film thicknesses against the least ones that journals and bearings bear.
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "study/bars/error_bar.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// Margin at the parameter of a contact on another mesh; not a number if there is no solution.
+struct MarginThere {
+  Axis axis = Axis::around;
+  double spacing = 1, margin = 0;
+};
+
+/// The limits of the places of a plant. Thicknesses are those of Plant::film_thickness().
+class FilmLimit {
+public:
+  explicit FilmLimit(const system::Places& places);
+
+  /// False for plants without films.
+  [[nodiscard]] bool exists() const { return !limits_.empty(); }
+  /// The least of (thickness - limit)/clearance over all places; not positive where two surfaces touch.
+  [[nodiscard]] double margin(const std::vector<double>& thickness) const;
+  /// "film of bearing B4 falls below 0.09 um (minimum_film)": of the place of the least margin.
+  [[nodiscard]] std::string reason(const std::vector<double>& thickness) const;
+  /// Adds a warning for each place whose film is thinner than its limit; `where` says of what: "at 3600 rpm".
+  void warn(const std::vector<double>& thickness, const std::string& where, io::StudySummary& summary) const;
+
+private:
+  [[nodiscard]] double margin(double thickness, std::size_t place) const;
+  std::vector<std::string> names_;
+  std::vector<double> limits_, clearances_;
+};
+
+/// Margin of one more point of a branch, and the slope of the margins over the parameter between the last two points.
+class MarginSlope {
+public:
+  void add(double parameter, double margin);
+  /// Not a number before the second point, or if the parameter did not move.
+  [[nodiscard]] double value() const { return slope_; }
+
+private:
+  double parameter_ = 0, margin_ = 0, slope_ = std::numeric_limits<double>::quiet_NaN();
+  bool any_ = false;
+};
+
+/// Puts where a branch met its limit as the value `contact` into the summary. On another mesh the limit lies where the
+/// `margin` there, at the same parameter, comes to zero by `slope`. The bar is unknown where there is no such solution:
+/// a coarser film touches earlier.
+void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, double slope,
+                 const MeshLaw& law, const std::vector<MarginThere>& there);
+
+/// One number for each of `places` places: the thickness, or not a number where there is no film.
+[[nodiscard]] std::vector<double> film_column(std::vector<double> thickness, std::size_t places);
+
+/// Smallest thickness of each place over a cycle, by the parabola through the least node and its neighbours.
+[[nodiscard]] std::vector<double> least_films(const solve::Cycle& cycle, const system::Plant& plant);
+
+}  // namespace whirl::study

@@ -1,0 +1,47 @@
+#pragma once
+// The film meshes beside the one in use, on which studies compute a number again to know its error.
+
+#include <array>
+#include <vector>
+
+#include "study/bars/error_bar.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
+#include "whirl/system/options.hpp"
+#include "whirl/system/plant.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::study {
+
+/// All films of a machine with other numbers of cells in one direction.
+struct FilmMesh {
+  Axis axis = Axis::around;
+  std::array<double, 2> factor{1, 1};  ///< cells over cells in use, before rounding
+  double spacing = 1;                  ///< over the spacing in use, after rounding
+};
+
+/// Half and double the cells of each direction that a film of the machine has a mesh in; two more between them where
+/// forces have kinks, and coarser meshes only where films have more than 4000 states of their own: finer ones would
+/// cost more than the branch. Empty for machines without film meshes.
+[[nodiscard]] std::vector<FilmMesh> film_meshes(const system::Machine& machine);
+
+/// The train with the cells of its films multiplied and rounded: at least four, even ones for Simpson's rule.
+[[nodiscard]] system::Train with_film_mesh(system::Train train, const std::array<double, 2>& factor);
+
+/// Order of the films' equations (one with upwind differences, else two: cavitation limits it) and whether their forces
+/// have kinks themselves (film::smoothness: Simpson's rule, whose weights jump where the pressure changes its sign), or
+/// derivatives of them.
+[[nodiscard]] MeshLaw law_of(const system::Machine& machine);
+
+/// Order at which errors of time steps fall that a scheme of order `scheme` makes on the machine's films. A step with a
+/// jump of a force's derivative k + 1 in it leaves an error of h^(k+2), in whichever place the jump stands: a film
+/// whose force has k continuous derivatives (film::smoothness) limits the order to k + 2.
+[[nodiscard]] double order_in_time(const system::Machine& machine, double scheme);
+
+/// The whole state of `from` on the film meshes of `to`, distributed. Collective.
+[[nodiscard]] core::Vector resampled(const system::Plant& to, const system::Plant& from,
+                                     const std::vector<double>& whole);
+/// The same of a cycle, point by point.
+[[nodiscard]] solve::Cycle resampled(const system::Plant& to, const system::Plant& from, solve::Cycle cycle);
+
+}  // namespace whirl::study

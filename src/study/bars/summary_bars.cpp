@@ -1,0 +1,94 @@
+#include "study/bars/summary_bars.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr double share_of_kin = 0.25;
+
+bool is_exact(const std::string& name) {
+  return name.ends_with(".node") || name.ends_with(".minimum_film") || name.starts_with("nondimensional.");
+}
+
+}  // namespace
+
+bool has_answer(const std::function<void()>& compute) {
+  try {
+    compute();
+    return true;
+  } catch (const core::NotConverged&) {
+    return false;
+  } catch (const core::DomainError&) {
+    return false;
+  } catch (const core::InputError&) {
+    return false;
+  }
+}
+
+std::string stem_of(const std::string& name) {
+  const std::size_t end = name.find_last_not_of("xy");
+  return end == std::string::npos ? name : name.substr(0, end + 1);
+}
+
+SummaryBars::SummaryBars(io::StudySummary& summary, MeshLaw law) : summary_(summary), bars_({}, law) {
+  for (const auto& [name, q] : summary.values) {
+    if (is_exact(name)) continue;
+    names_.push_back(name);
+    values_.push_back(q.value);
+  }
+  moved_.assign(values_.size(), false);
+  bars_ = Bars(values_, law);
+}
+
+void SummaryBars::add(Axis axis, double spacing, const io::StudySummary& there) {
+  std::map<std::string, double> known;
+  for (const auto& [name, q] : there.values) known[name] = q.value;
+  std::vector<double> values;
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    const auto at = known.find(names_[k]);
+    values.push_back(at == known.end() ? io::no_value : at->second);
+    if (values.back() != values_[k]) moved_[k] = true;
+  }
+  bars_.add(axis, spacing, values);
+  with_time_ |= axis == Axis::time;
+  any_ = true;
+}
+
+void SummaryBars::add(Axis axis, double spacing, const std::function<void(io::StudySummary& there)>& compute) {
+  io::StudySummary there;
+  if (!has_answer([&] { compute(there); })) there = {};
+  add(axis, spacing, there);
+}
+
+void SummaryBars::write(const Location& location) {
+  if (!any_) return;
+  std::map<std::string, Bar> largest;
+  std::vector<Bar> bars;
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    bars.push_back(bars_[k]);
+    bars[k].location = location(names_[k], values_[k]);
+    Bar& kin = largest[stem_of(names_[k])];
+    kin.film_mesh = std::max(kin.film_mesh, bars[k].film_mesh);
+    kin.time_mesh = std::max(kin.time_mesh, bars[k].time_mesh);
+    kin.kinks = std::max(kin.kinks, bars[k].kinks);
+  }
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    const auto at = std::find_if(summary_.values.begin(), summary_.values.end(),
+                                 [&](const auto& entry) { return entry.first == names_[k]; });
+    const Bar& kin = largest[stem_of(names_[k])];
+    if (!moved_[k] && kin.total() == 0) continue;
+    Bar& bar = bars[k];
+    bar.film_mesh = std::max(bar.film_mesh, share_of_kin * kin.film_mesh);
+    bar.time_mesh = std::max(bar.time_mesh, share_of_kin * kin.time_mesh);
+    bar.kinks = std::max(bar.kinks, share_of_kin * kin.kinks);
+    at->second.more = bar.parts(with_time_);
+    at->second.more["uncertainty"] = bar.total();
+  }
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,328 @@
+#include "whirl/study/bearing/bearing_map.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
+#include "study/bearing/one_bearing.hpp"
+#include "study/common.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/system/groups.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr std::array<const char*, 4> entries = {"xx", "xy", "yx", "yy"};
+
+/// A point of the locus with its coefficients at all frequencies.
+struct Point {
+  BearingEquilibrium at;
+  std::vector<BearingCoefficients> coefficients;
+};
+
+/// A point at a load that was asked for.
+struct Loaded {
+  double sommerfeld = 0;
+  Point point;
+  BearingProfile profile;
+};
+
+// What one rank computes; all do it alike.
+class Mapper {
+public:
+  Mapper(const BearingMapOptions& options, const system::Support& support)
+      : options_(options), bearing_(support, options.speed.value) {}
+
+  // The locus ends where journal and bearing touch; some bores carry no vertical load at small eccentricities.
+  void follow() {
+    BearingEquilibrium last = bearing_.centred();
+    for (int i = 1; i <= options_.points; ++i) {
+      const auto e = bearing_.carrying(options_.max_eccentricity * i / options_.points, last);
+      if (!e && bearing_.has_states()) break;
+      if (!e) continue;
+      locus.push_back(complete(*e));
+      last = *e;
+    }
+  }
+
+  // The first place on the locus where `margin` changes its sign; the bearing is left there.
+  std::optional<Point> find(const std::function<double(const BearingEquilibrium&)>& margin) {
+    for (std::size_t i = 0; i + 1 < locus.size(); ++i) {
+      if (margin(locus[i].at) * margin(locus[i + 1].at) > 0) continue;
+      BearingEquilibrium low = locus[i].at, high = locus[i + 1].at;
+      for (int k = 0; k < 60; ++k) {
+        const auto middle = bearing_.carrying(0.5 * (low.eccentricity + high.eccentricity), low);
+        if (!middle) return std::nullopt;
+        (margin(*middle) * margin(low) > 0 ? low : high) = *middle;
+      }
+      return complete(low);
+    }
+    return std::nullopt;
+  }
+
+  // A load that the map does not reach is refused: whoever asked for it would look for its values in vain.
+  void load() {
+    for (const double s : options_.sommerfeld) {
+      const auto point = find([s](const BearingEquilibrium& e) { return e.sommerfeld - s; });
+      if (point)
+        loaded.push_back({s, *point, bearing_.profile()});
+      else
+        refuse(s);
+    }
+  }
+
+  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A film
+  // with own states is another one at every speed: its thresholds belong to branches of equilibria.
+  void find_threshold(const std::optional<system::Groups>& groups) {
+    if (!groups || bearing_.has_states()) return;
+    const auto found = find([&](const BearingEquilibrium& e) {
+      return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
+    });
+    if (found) threshold = found->at;
+  }
+
+  void squeeze() {
+    if (bearing_.has_states()) return;
+    // W grows like powers of 1/(1 - e): its logarithm is all but linear in log(1 - e).
+    const int last = options_.grid - 1;
+    for (int i = 0; i <= last; ++i)
+      radii.push_back(1 - std::pow(1 - options_.max_eccentricity, static_cast<double>(i) / last));
+    for (int j = 0; j <= 2 * last; ++j) angles.push_back(std::numbers::pi * j / last);
+    for (const double e : radii)
+      for (const double phi : angles) {
+        const auto w = bearing_.impedance(e * std::cos(phi), e * std::sin(phi));
+        along.push_back(w[0]);
+        across.push_back(w[1]);
+      }
+  }
+
+  std::vector<Point> locus;
+  std::vector<Loaded> loaded;
+  std::optional<BearingEquilibrium> threshold;
+  std::vector<double> radii, angles, along, across;
+  std::string refused;  // loads that the map does not reach, with the reason
+
+  // The last eccentricity carries the next load only if the film exists there.
+  [[nodiscard]] bool touches() const { return locus.back().at.eccentricity < options_.max_eccentricity * (1 - 1e-12); }
+
+private:
+  void refuse(double s) {
+    if (locus.empty()) return;
+    const auto [low, high] = std::minmax_element(
+        locus.begin(), locus.end(), [](const Point& a, const Point& b) { return a.at.sommerfeld < b.at.sommerfeld; });
+    const bool small = s < low->at.sommerfeld;
+    refused += fmt::format(
+        "{}the load {:.6g} of 'sommerfeld' lies beyond the map, which reaches from {:.6g} at eccentricity {:.4g} to "
+        "{:.6g} at {:.4g}: {}",
+        refused.empty() ? "" : "; ", s, low->at.sommerfeld, low->at.eccentricity, high->at.sommerfeld,
+        high->at.eccentricity,
+        small       ? "give more 'points', which begin at smaller eccentricities"
+        : touches() ? "there journal and bearing touch"
+                    : "raise 'max_eccentricity'");
+  }
+  Point complete(const BearingEquilibrium& e) {
+    Point p{e, {}};
+    for (const double ratio : options_.frequencies) p.coefficients.push_back(bearing_.coefficients(ratio));
+    return p;
+  }
+
+  const BearingMapOptions& options_;
+  OneBearing bearing_;
+};
+
+// One column of the locus.
+template <class Value>
+std::vector<double> column(const std::vector<Point>& locus, const Value& value) {
+  std::vector<double> out;
+  for (const Point& p : locus) out.push_back(value(p));
+  return out;
+}
+
+void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vector<double>& frequencies) {
+  using P = Point;
+  auto& table = group.child("locus");
+  table.put("eccentricity", column(locus, [](const P& p) { return p.at.eccentricity; }), "1", "in clearances");
+  table.put("attitude", column(locus, [](const P& p) { return p.at.attitude; }), "rad", "from the load to the journal");
+  table.put("sommerfeld", column(locus, [](const P& p) { return p.at.sommerfeld; }), "1",
+            "S = (c/R)^2 load/(mu Omega L D)");
+  table.put("x", column(locus, [](const P& p) { return p.at.eccentricity * std::sin(p.at.attitude); }), "1",
+            "in clearances");
+  table.put("y", column(locus, [](const P& p) { return -p.at.eccentricity * std::cos(p.at.attitude); }), "1",
+            "in clearances");
+  table.put("speed_limit", column(locus, [](const P& p) { return p.at.speed_limit; }), "1",
+            "Omega* = Omega sqrt(m c/load) of a rigid rotor at the border of stability; NaN: stable at every speed");
+  table.put("whirl_ratio", column(locus, [](const P& p) { return p.at.whirl_ratio; }), "1",
+            "whirl frequency there over Omega");
+  table.set("frequency_ratio", frequencies.front());
+  for (std::size_t i = 0; i < 4; ++i) {
+    table.put(fmt::format("k_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].k[i]; }), "1",
+              "stiffness c k/(load/S)");
+    table.put(fmt::format("b_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].b[i]; }), "1",
+              "damping c Omega b/(load/S)");
+  }
+  if (frequencies.size() < 2) return;
+  auto& over = group.child("frequencies");
+  over.put("ratio", frequencies, "1", "omega/Omega");
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::vector<double> k, b;
+    for (const Point& p : locus)
+      for (const BearingCoefficients& c : p.coefficients) {
+        k.push_back(c.k[i]);
+        b.push_back(c.b[i]);
+      }
+    const io::Shape shape{locus.size(), frequencies.size()};
+    over.put(fmt::format("k_{}", entries[i]), shape, k, "1", "stiffness [point of the locus][frequency]");
+    over.put(fmt::format("b_{}", entries[i]), shape, b, "1", "damping [point of the locus][frequency]");
+  }
+}
+
+void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<Loaded>& loaded) {
+  std::vector<double> sommerfeld, pressure, thickness;
+  for (const Loaded& l : loaded) {
+    const std::string head = fmt::format("sommerfeld.{:.6g}.", l.sommerfeld);
+    summary.set(head + "eccentricity", l.point.at.eccentricity, "1");
+    summary.set(head + "attitude", l.point.at.attitude, "rad");
+    summary.set(head + "speed_limit", l.point.at.speed_limit, "1");
+    summary.set(head + "whirl_ratio", l.point.at.whirl_ratio, "1");
+    for (std::size_t i = 0; i < 4; ++i) {
+      summary.set(fmt::format("{}k.{}", head, entries[i]), l.point.coefficients[0].k[i], "1");
+      summary.set(fmt::format("{}b.{}", head, entries[i]), l.point.coefficients[0].b[i], "1");
+    }
+    if (l.profile.pressure.empty()) continue;
+    sommerfeld.push_back(l.sommerfeld);
+    pressure.insert(pressure.end(), l.profile.pressure.begin(), l.profile.pressure.end());
+    thickness.insert(thickness.end(), l.profile.thickness.begin(), l.profile.thickness.end());
+  }
+  if (sommerfeld.empty()) return;
+  auto& table = group.child("profiles");
+  const io::Shape shape{sommerfeld.size(), loaded.back().profile.theta.size()};
+  table.put("sommerfeld", sommerfeld, "1", "load S");
+  table.put("theta", loaded.back().profile.theta, "rad", "angle from +x");
+  table.put("pressure", shape, pressure, "1", "(c/R)^2 p/(6 mu Omega) in the mid-plane [load][theta]");
+  table.put("thickness", shape, thickness, "1", "film thickness in clearances [load][theta]");
+}
+
+void put_threshold(io::StudySummary& summary, const Mapper& map, const std::optional<system::Groups>& groups) {
+  if (!map.threshold) return;
+  const double speed = groups->load / (groups->bearings * map.threshold->sommerfeld);
+  summary.set("threshold.nondimensional_speed", speed, "1");
+  summary.set("threshold.speed", speed * groups->speed_scale, "rad/s");
+  summary.set("threshold.eccentricity", map.threshold->eccentricity, "1");
+  summary.set("threshold.whirl_ratio", map.threshold->whirl_ratio, "1");
+}
+
+// What the locus says at one eccentricity, in the order of `with_bars`.
+constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio",
+                                                   "k_xx",     "k_xy",       "k_yx",        "k_yy",
+                                                   "b_xx",     "b_xy",       "b_yx",        "b_yy"};
+std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vector<Point>& like) {
+  std::vector<double> out;
+  for (const Point& wanted : like) {
+    const auto at = std::find_if(locus.begin(), locus.end(),
+                                 [&](const Point& p) { return p.at.eccentricity == wanted.at.eccentricity; });
+    if (at == locus.end()) {
+      out.insert(out.end(), with_bars.size(), io::no_value);
+      continue;
+    }
+    out.insert(out.end(), {at->at.attitude, at->at.sommerfeld, at->at.speed_limit, at->at.whirl_ratio});
+    const BearingCoefficients& c = at->coefficients.front();
+    out.insert(out.end(), c.k.begin(), c.k.end());
+    out.insert(out.end(), c.b.begin(), c.b.end());
+  }
+  return out;
+}
+
+// The map on other film meshes: bars of the locus and of all that the summary says of it.
+void put_bars(const Context& context, const BearingMapOptions& options, std::size_t which, const Mapper& map,
+              const std::optional<system::Groups>& groups) {
+  io::StudySummary& summary = context.results.summary();
+  Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
+  SummaryBars of_summary(summary, law_of(context.machine));
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  for (const FilmMesh& mesh : meshes) {
+    std::vector<double> numbers;
+    io::StudySummary there;
+    core::agree(context.comm, [&] {
+      const bool answered = has_answer([&] {
+        const system::Train train = with_film_mesh(system::train_of(context.machine), mesh.factor);
+        Mapper other(options, train.supports[which]);
+        other.follow();
+        other.find_threshold(groups);
+        other.load();
+        numbers = numbers_of(other.locus, map.locus);
+        io::Group unused;
+        put_loaded(unused, there, other.loaded);
+        put_threshold(there, other, groups);
+      });
+      if (!answered) numbers.clear();
+    });
+    bars.add(mesh.axis, mesh.spacing, numbers);
+    of_summary.add(mesh.axis, mesh.spacing, there);
+  }
+  of_summary.write(1e-9);
+  if (meshes.empty()) return;
+  auto& table = context.results.group().child("locus");
+  for (std::size_t k = 0; k < with_bars.size(); ++k) {
+    std::vector<double> column;
+    for (std::size_t i = 0; i < map.locus.size(); ++i) column.push_back(bars[i * with_bars.size() + k].total());
+    // Neighbours on the locus err alike: a difference of meshes that vanishes by chance hides nothing.
+    std::vector<double> floored = column;
+    for (std::size_t i = 0; i < column.size(); ++i)
+      for (const std::size_t j : {i - 1, i + 1})
+        if (j < column.size()) floored[i] = std::max(floored[i], column[j] / 2);
+    table.put(std::string(with_bars[k]) + "_uncertainty", floored, k == 0 ? "rad" : "1",
+              std::string("estimated error of ") + with_bars[k] + " from the film mesh");
+  }
+}
+
+}  // namespace
+
+StudyResult BearingMap::run(Context& context) {
+  const system::Train train = system::train_of(context.machine);
+  const std::size_t which = options.bearing.empty() ? 0 : *system::find_bearing(context.machine, options.bearing);
+  auto& results = context.results;
+  auto& summary = results.summary();
+  auto& group = results.group();
+  const auto groups = system::groups_of(train);
+  put_groups(summary, train);
+
+  std::optional<Mapper> map;
+  core::agree(context.comm, [&] {
+    map.emplace(options, train.supports[which]);
+    map->follow();
+    map->find_threshold(groups);
+    map->load();
+    map->squeeze();
+  });
+  if (map->locus.empty()) throw core::NotConverged("no eccentricity carries a vertical load");
+
+  group.set("bearing", context.machine.bearings[which].name);
+  group.set("speed", options.speed.value);
+  put_locus(group, map->locus, options.frequencies);
+  put_loaded(group, summary, map->loaded);
+  if (!map->radii.empty()) {
+    auto& table = group.child("impedance");
+    const io::Shape shape{map->radii.size(), map->angles.size()};
+    table.put("eccentricity", map->radii, "1", "distance of the journal from the centre, in clearances");
+    table.put("angle", map->angles, "rad", "from the squeeze velocity to the journal, counter-clockwise");
+    table.put("W_along", shape, map->along, "1", "impedance [eccentricity][angle], resisting the squeeze");
+    table.put("W_across", shape, map->across, "1", "impedance [eccentricity][angle], to the left of the squeeze");
+  }
+  put_threshold(summary, *map, groups);
+  put_bars(context, options, which, *map, groups);
+  summary.points = static_cast<long>(map->locus.size());
+  if (!map->refused.empty()) return results.finish(map->refused, false);
+  return results.finish(map->touches() ? fmt::format("ended at eccentricity {:.6g}: journal and bearing touch",
+                                                     map->locus.back().at.eccentricity)
+                                       : "completed",
+                        true);
+}
+
+}  // namespace whirl::study

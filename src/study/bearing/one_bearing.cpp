@@ -1,0 +1,164 @@
+#include "study/bearing/one_bearing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+// Angle of the force from the vertical [rad] below which it counts as vertical; a relaxed film is less exact than a
+// closed form.
+constexpr double vertical = 1e-13, vertical_relaxed = 1e-11;
+
+}  // namespace
+
+OneBearing::OneBearing(const system::Support& support, double speed)
+    : clearance_(support.geometry.clearance), speed_(speed) {
+  const film::Geometry& g = support.geometry;
+  const double ratio = g.radius / g.clearance, shear = support.lubricant.viscosity * ratio * ratio * speed;
+  load_ = shear * g.length * 2 * g.radius;
+  pressure_ = 6 * shear;
+  motion_.speed = speed;
+  if (film::has_states(support.film.kind)) {
+    stateful_ = film::make_state_model(g, support.film, support.lubricant);
+    rest_.resize(stateful_->states());
+  } else {
+    film_ = film::make_model(g, support.film, support.lubricant);
+  }
+}
+
+BearingEquilibrium OneBearing::centred() const {
+  BearingEquilibrium e{0, 0.5 * std::numbers::pi, 0, nan, nan, {}};
+  if (!stateful_) return e;
+  film::Motion m;
+  m.speed = speed_;
+  e.states.resize(stateful_->states());
+  stateful_->unloaded(m, e.states);
+  return e;
+}
+
+// F* at the position of motion_, the film at rest.
+std::array<double, 2> OneBearing::force() {
+  if (stateful_) {
+    film::relax(*stateful_, motion_, states_);
+    stateful_->evaluate(motion_, states_, rest_, film::Need::force, state_response_);
+    response_ = state_response_.journal;
+  } else {
+    film_->evaluate(motion_, film::Need::tangents, response_);
+  }
+  return {response_.force[0] / load_, response_.force[1] / load_};
+}
+
+// Turning the journal turns the force of a full film by as much, so that one step is exact; other bores take secants.
+std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, const BearingEquilibrium& near) {
+  BearingEquilibrium e;
+  states_ = near.states;
+  e.eccentricity = eccentricity;
+  const auto miss = [&](double angle) {
+    motion_.position = {eccentricity * clearance_ * std::sin(angle), -eccentricity * clearance_ * std::cos(angle), 0,
+                        0};
+    const auto f = force();
+    e.sommerfeld = f[1];
+    return std::atan2(f[0], f[1]);
+  };
+  double before = near.attitude, d = 0, angle = before;
+  bool found = false;
+  try {
+    double d_before = miss(before);
+    angle = before + d_before;
+    for (int i = 0; i < 40 && !found; ++i) {
+      d = miss(angle);
+      found = std::abs(d) < (stateful_ ? vertical_relaxed : vertical);
+      if (found || angle == before) break;
+      const double slope = (d - d_before) / (angle - before);
+      const double step = slope != 0 ? std::clamp(-d / slope, -0.3, 0.3) : d;
+      if (std::abs(step) < 1e-14) found = true;
+      before = angle;
+      d_before = d;
+      angle += step;
+    }
+    if (!found && std::abs(d) > 1e-9) return std::nullopt;
+    e.attitude = std::atan2(motion_.position[0], -motion_.position[1]);
+    e.states = states_;
+    set_border(e);
+  } catch (const core::DomainError&) {
+    return std::nullopt;
+  } catch (const core::NotConverged&) {
+    return std::nullopt;
+  }
+  return e;
+}
+
+// The border of stability of a rigid rotor: it whirls freely at nu Omega, det(k - k_e + i nu b) = 0 with the effective
+// stiffness k_e = nu^2 m c Omega^2/(load of F* = 1). Coefficients that depend on the frequency are those at nu.
+void OneBearing::set_border(BearingEquilibrium& e) {
+  e.speed_limit = e.whirl_ratio = nan;
+  double nu = 0.5;
+  for (int i = 0; i < 100; ++i) {
+    const auto [k, b] = coefficients(nu);
+    const double k_e = (k[0] * b[3] + k[3] * b[0] - k[1] * b[2] - k[2] * b[1]) / (b[0] + b[3]);
+    const double nu2 = ((k_e - k[0]) * (k_e - k[3]) - k[1] * k[2]) / (b[0] * b[3] - b[1] * b[2]);
+    if (!(nu2 > 0 && k_e > 0)) return;
+    const double last = std::exchange(nu, std::sqrt(nu2));
+    if (stateful_ && std::abs(nu - last) > 1e-12) continue;
+    e.whirl_ratio = nu;
+    e.speed_limit = std::sqrt(k_e / (nu2 * e.sommerfeld));
+    return;
+  }
+}
+
+BearingCoefficients OneBearing::coefficients(double ratio) {
+  BearingCoefficients out{};
+  if (stateful_) {
+    const film::Coefficients c = film::coefficients(*stateful_, motion_, states_, ratio * speed_);
+    for (std::size_t i = 0; i < 4; ++i) {
+      out.k[i] = c.stiffness[i] * clearance_ / load_;
+      out.b[i] = c.damping[i] * clearance_ * speed_ / load_;
+    }
+    return out;
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      out.k[2 * i + j] = -response_.d_position[i][j] * clearance_ / load_;
+      out.b[2 * i + j] = -response_.d_velocity[i][j] * clearance_ * speed_ / load_;
+    }
+  return out;
+}
+
+BearingProfile OneBearing::profile() {
+  BearingProfile out;
+  const auto fields = stateful_ ? stateful_->fields(motion_, states_) : film_->fields(motion_);
+  for (const film::Field& f : fields) {
+    if (f.name == "theta") out.theta.insert(out.theta.end(), f.values.begin(), f.values.end());
+    const bool pressure = f.name == "pressure";
+    if (!pressure && f.name != "thickness") continue;
+    const std::size_t along = f.shape.at(1);
+    for (std::size_t i = 0; i < f.shape.at(0); ++i) {
+      // An even number of nodes along the bearing has none in the middle.
+      const double* row = f.values.data() + i * along;
+      const double middle = 0.5 * (row[(along - 1) / 2] + row[along / 2]);
+      (pressure ? out.pressure : out.thickness).push_back(middle / (pressure ? pressure_ : clearance_));
+    }
+  }
+  return out;
+}
+
+std::array<double, 2> OneBearing::impedance(double along, double across) {
+  film::Motion m;
+  m.position = {along * clearance_, across * clearance_, 0, 0};
+  m.velocity = {clearance_ * speed_, 0, 0, 0};
+  try {
+    film_->evaluate(m, film::Need::force, response_);
+  } catch (const core::DomainError&) {
+    return {nan, nan};
+  }
+  return {-response_.force[0] / load_, -response_.force[1] / load_};
+}
+
+}  // namespace whirl::study

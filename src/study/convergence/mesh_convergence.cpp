@@ -1,0 +1,189 @@
+#include "whirl/study/convergence/mesh_convergence.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "study/bifurcation.hpp"
+#include "study/common.hpp"
+#include "study/convergence/mesh_convergence.hpp"
+#include "study/cycle/cycle_follower.hpp"
+#include "study/located.hpp"
+#include "study/pieces.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+
+namespace whirl::study {
+namespace {
+
+// Machine and solver at one level: film meshes doubled `level` times.
+struct Level {
+  Level(Context& context, const CycleBranchOptions& options, int level)
+      : machine(context.machine), here{context.comm,      machine,        context.results, context.earlier,
+                                       context.summaries, context.resume, context.studies, context.checkpoint_of} {
+    for (auto& b : machine.bearings)
+      for (int& cells : b.film.cells) cells <<= level;
+    follower = std::make_unique<CycleFollower>(here, options);
+  }
+  system::Machine machine;
+  Context here;
+  std::unique_ptr<CycleFollower> follower;
+};
+
+// What is known of one bifurcation: a value per level, in the unit of the branch.
+struct History {
+  Located last;
+  std::vector<double> value, bracket, seconds;
+  double time_error = io::no_value;
+};
+
+// The options of a branch by its name in the results.
+CycleBranchOptions options_of(const Context& context, const std::string& name) {
+  for (const auto& s : context.studies)
+    if (auto branch = branch_called(*s, name)) return *branch;
+  throw core::Bug("validate_among lets no other name pass");
+}
+
+}  // namespace
+
+io::Table convergence_table(const std::string& unit) {
+  return io::Table({{"bifurcation", "1", "which one of the branch, from 1"},
+                    {"refinement", "1", "cells in each direction per cells of the deck"},
+                    {"parameter", unit, "where"},
+                    {"bracket", unit, "what the location left"},
+                    {"seconds", "s", "wall time"}});
+}
+
+MeshLimit mesh_limit(const std::vector<double>& values) {
+  MeshLimit out;
+  const std::size_t n = values.size();
+  if (n == 0) return out;
+  out.limit = values.back();
+  if (n == 1) return out;
+  const double last = values[n - 1] - values[n - 2];
+  if (n > 2) out.order = std::log2(std::abs((values[n - 2] - values[n - 3]) / last));
+  const bool shows = n > 2 && (values[n - 2] - values[n - 3]) * last > 0 && out.order >= 0.5 && out.order <= 3;
+  const double order = shows ? out.order : 2;
+  out.limit += last / (std::exp2(order) - 1);
+  out.error = (shows ? 1.25 : 3.0) * std::abs(last) / (std::exp2(order) - 1);
+  return out;
+}
+
+StudyResult MeshConvergence::run(Context& context) {
+  if (!context.earlier.has_group(io::safe_name(options.of)))
+    throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
+  const io::Group& of = context.earlier.group(io::safe_name(options.of));
+  if (!of.has_group("located"))
+    throw core::NotConverged(
+        fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
+  const std::vector<Located> all = read_located(of.group("located"));
+  std::vector<int> chosen = options.bifurcations;
+  if (chosen.empty()) {
+    chosen.resize(all.size());
+    std::iota(chosen.begin(), chosen.end(), 1);
+  }
+  if (chosen.empty()) throw core::NotConverged(fmt::format("'{}' has no bifurcations", options.of));
+  for (const int k : chosen)
+    if (static_cast<std::size_t>(k) > all.size())
+      throw core::NotConverged(fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), k));
+
+  if (const EquilibriumBranch* rest = equilibria_called(context, options.of))
+    return converge(context, options, rest->options, all, chosen);
+  const CycleBranchOptions branch = options_of(context, options.of);
+  auto& results = context.results;
+  const std::string& unit = branch.parameter.range.unit;
+  const double scale = deck::number_to_si(1, unit);
+  io::Table rows = convergence_table(unit);
+  History now;
+  std::size_t first = 0;
+  std::string trouble;
+  const auto note = [&](const std::string& text) { trouble += (trouble.empty() ? "" : "; ") + text; };
+  Pieces pieces(results, context.resume, true, core::size_of(context.comm));
+  if (const io::Group& state = pieces.state(); state.has_group("rows")) {
+    rows.read(state.group("rows"));
+    first = static_cast<std::size_t>(state.integer("bifurcation"));
+    now = {read_located(state.group("located")).front(), state.reals("value"), state.reals("bracket"),
+           state.reals("seconds"), state.real("time_error")};
+    read_summary(state.group("summary"), results.summary());
+    trouble = state.text("trouble");
+  }
+  for (std::size_t i = first; i < chosen.size(); ++i) {
+    const Located& origin = all[static_cast<std::size_t>(chosen[i]) - 1];
+    if (origin.event == solve::Event::branch_point) {  // for one a Hopf point, where there is no cycle yet
+      note(fmt::format("bifurcation {} is none of cycles, or was not located", chosen[i]));
+      continue;
+    }
+    if (now.value.empty()) now = {origin, {origin.cycle.parameter / scale}, {0}, {0}, io::no_value};
+    auto coarse = std::make_unique<Level>(context, branch, static_cast<int>(now.value.size()) - 1);
+    if (now.value.size() == 1)
+      now.time_error =
+          pieces.number(fmt::format("time error {}", i), [&] { return coarse->follower->time_error(origin); });
+    for (int level = static_cast<int>(now.value.size()); level <= options.doublings; ++level) {
+      const double begin = results.seconds();
+      auto fine = std::make_unique<Level>(context, branch, level);
+      const auto stopped = [&](const core::Error& e) {
+        note(fmt::format("bifurcation {} stopped at {} times the cells of the deck: {}", chosen[i], 1 << level,
+                         e.what()));
+      };
+      try {
+        const Relocated found = fine->follower->relocate(now.last, *coarse->follower, pieces.journal());
+        now.last = found.found;
+        now.bracket.push_back(found.bracket);
+      } catch (const core::NotConverged& e) {
+        stopped(e);
+        break;
+      } catch (const core::DomainError& e) {
+        stopped(e);
+        break;
+      }
+      now.value.push_back(now.last.cycle.parameter / scale);
+      now.seconds.push_back(results.seconds() - begin);
+      coarse = std::move(fine);
+      io::Group state;
+      rows.write(state.child("rows"));
+      state.set("bifurcation", static_cast<int>(i));
+      write_located(state.child("located"), {now.last});
+      state.put("value", now.value, unit, "per level");
+      state.put("bracket", now.bracket, unit, "per level");
+      state.put("seconds", now.seconds, "s", "per level");
+      state.set("time_error", now.time_error);
+      write_summary(state.child("summary"), results.summary());
+      state.set("trouble", trouble);
+      pieces.save(std::move(state));
+    }
+    const MeshLimit limit = mesh_limit(now.value);
+    io::Bifurcation b = bifurcation_at(type_of(now.last.event), limit.limit, branch.parameter.path, unit,
+                                       context.machine, branch.unbalance, coarse->follower->system());
+    b.period_s = now.last.cycle.period;
+    b.uncertainty = limit.error + now.time_error + now.bracket.back();
+    b.criticality_by = "see the branch";
+    b.more["uncertainty_film_mesh"] = limit.error;
+    b.more["uncertainty_time_mesh"] = now.time_error;
+    b.more["observed_order"] = limit.order;
+    for (std::size_t k = 0; k < now.value.size(); ++k) {
+      b.more[fmt::format("refined_{}", 1 << k)] = now.value[k];
+      rows.append({static_cast<double>(chosen[i]), std::exp2(k), now.value[k], now.bracket[k], now.seconds[k]});
+    }
+    results.summary().bifurcations.push_back(b);
+    now = {};
+  }
+  return finish_convergence(context, options, rows, branch.parameter, trouble);
+}
+
+StudyResult finish_convergence(Context& context, const MeshConvergenceOptions& options, const io::Table& rows,
+                               const Parameter& parameter, const std::string& trouble) {
+  auto& results = context.results;
+  auto& group = results.group();
+  rows.write(group.child("convergence"));
+  put_bifurcations(group, results.summary().bifurcations);
+  group.set("of", options.of);
+  group.set("parameter", parameter.path);
+  group.set("parameter_unit", parameter.range.unit);
+  results.summary().points = static_cast<long>(rows.rows());
+  return results.finish(trouble.empty() ? "completed" : trouble, !results.summary().bifurcations.empty());
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,129 @@
+// What a branch of cycles needs to go on after an interruption.
+
+#include <fmt/core.h>
+
+#include "study/branch_state.hpp"
+#include "study/cycle/cycle_follower.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/newton/newton.hpp"
+
+namespace whirl::study {
+
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds) {
+  group.set("count", static_cast<int>(seeds.size()));
+  group.set("restart", 1);
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    auto& g = group.child(fmt::format("{}", k + 1));
+    write_cycle(g.child("cycle"), seeds[k].cycle);
+    write_cycle(g.child("direction"), seeds[k].direction);
+  }
+}
+
+std::vector<FlipSeed> read_seeds(const io::Group& group) {
+  std::vector<FlipSeed> seeds;
+  for (std::int64_t k = 1; k <= group.integer("count"); ++k) {
+    const auto& g = group.group(fmt::format("{}", k));
+    seeds.push_back({read_cycle(g.group("cycle")), read_cycle(g.group("direction"))});
+  }
+  return seeds;
+}
+
+// The next phase is measured against this cycle, in a resumed branch as in this one. The tangent obeyed the condition
+// before: where few points of the cycle are unknowns it slides along the cycle by no small angle.
+void CycleFollower::renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent) {
+  problem_->set_phase_reference(cycle);
+  const auto renew = [&] {
+    core::Vector row = core::duplicate(u), rhs = core::duplicate(u);
+    solve::weighted_row(*problem_, tangent, row.get());
+    problem_->linearise(u, row.get());
+    core::check(VecSet(rhs.get(), 0.0));
+    solve::set_last_entry(problem_->comm(), rhs.get(), 1);
+    core::Vector renewed = core::duplicate(tangent);
+    (void)solve::solve_linear(*problem_, rhs.get(), renewed.get(), "tangent_");
+    core::check(VecCopy(renewed.get(), tangent));
+    core::check(VecScale(tangent, 1 / std::sqrt(solve::inner(*problem_, tangent, tangent))));
+  };
+  try {
+    double norm = 0;
+    core::check(VecNorm(u, NORM_2, &norm));
+    const auto renewed = solve::Journal::ask(newton_.journal, "phase", {norm}, [&](const auto&) {
+      renew();
+      return solve::Journal::Answer{core::gather(tangent), {}};
+    });
+    core::fill(tangent, renewed.numbers);
+  } catch (const core::NotConverged&) {  // singular, at a branch point for one: the old one serves
+  }
+}
+
+void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
+  const solve::Cycle cycle = problem_->gather(u);
+  // What a resumed branch reads is rounded once more. This one goes on from there as well, so that both are the same.
+  const auto round = [this](Vec v) {
+    const solve::Cycle c = problem_->gather(v);
+    core::check(VecCopy(problem_->scatter(c).get(), v));
+    return c;
+  };
+  const bool saves = newton_.journal != nullptr;
+  if (saves) (void)round(u);
+  if (autonomous()) renew_phase(cycle, u, tangent);
+  if (!saves) return;
+  const solve::Cycle direction = round(tangent);
+  if (!pieces_->state_due()) return;
+  io::Group state;
+  record_.write(state.child("record"), true);
+  nodes_.write(state);
+  multiplier_bars_.write(state.child("multiplier_bars"));
+  write_cycle(state.child("cycle"), cycle);
+  write_cycle(state.child("tangent"), direction);
+  // Cycles asked for begin there, on the mesh before its adaptation.
+  if (last_ && !options_.at.empty()) write_cycle(state.child("last"), *last_);
+  state.set("period_scale", problem_->period_scale());
+  solve::BranchPoint now = at.point;
+  now.slope = solve::last_entry(problem_->comm(), tangent);
+  write_point(state.child("point"), now);
+  write_memory(state.child("memory"), *at.memory);
+  state.set("next_step", at.next_step);
+  state.set("largest_difference", largest_difference_);
+  state.set("events", events_);
+  write_summary(state.child("summary"), context_.results.summary());
+  write_seeds(state.child("flips"), seeds_);
+  write_located(state.child("located"), located_);
+  pieces_->save(std::move(state));
+}
+
+std::optional<solve::Restart> CycleFollower::restore() {
+  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(space()));
+  newton_.journal = continuation_.newton.journal = pieces_->journal();
+  if (!pieces_->state().has_group("cycle")) return std::nullopt;
+  const io::Group state = pieces_->state();
+  record_.read(state.group("record"));
+  nodes_.read(state);
+  multiplier_bars_.read(state.group("multiplier_bars"));
+  const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
+  problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
+  if (autonomous()) {
+    solve::Cycle first = cycle;  // gives the period its unit
+    first.period = state.real("period_scale");
+    problem_->set_phase_reference(first);
+    problem_->set_phase_reference(cycle);
+  }
+  read_summary(state.group("summary"), context_.results.summary());
+  events_ = static_cast<int>(state.integer("events"));
+  solve::Restart restart{problem_->scatter(cycle),
+                         problem_->scatter(direction),
+                         state.real("next_step"),
+                         read_point(state.group("point")),
+                         {}};
+  if (pieces_->same_layout()) restart.memory = read_memory(state.group("memory"), restart.u.get());
+  seeds_ = read_seeds(state.group("flips"));
+  located_ = read_located(state.group("located"));
+  last_ = state.has_group("last") ? read_cycle(state.group("last")) : cycle;
+  largest_difference_ = state.real("largest_difference");
+  system_->set_parameter(cycle.parameter);
+  const solve::Cycle orbit = problem_->orbit(restart.u.get());
+  if (seed_) (void)returned(orbit);
+  add_margin(restart.point.parameter, orbit);
+  return restart;
+}
+
+}  // namespace whirl::study

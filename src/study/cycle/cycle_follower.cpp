@@ -1,0 +1,248 @@
+#include "study/cycle/cycle_follower.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "study/bars/summary_bars.hpp"
+#include "study/bifurcation.hpp"
+#include "study/cycle/coexisting.hpp"
+#include "study/make_plant.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+
+namespace whirl::study {
+
+double distance_of_multiplier(std::complex<double> mu) {
+  return std::abs(mu) - 1;
+}
+
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed,
+                             std::vector<FlipSeed> siblings)
+    : context_(context),
+      options_(std::move(options)),
+      seed_(std::move(seed)),
+      siblings_(std::move(siblings)),
+      unit_(options_.parameter.range.unit),
+      scale_(deck::number_to_si(1, unit_)),
+      system_(make_system({1, 1})),
+      record_(system_->places(), unit_, options_.multipliers),
+      films_(system_->places()),
+      nodes_(options_.nodes, unit_),
+      multiplier_bars_(multiplier_table(unit_)),
+      keeps_located_(is_followed(context, context.results.summary().name)) {
+  const auto& range = options_.parameter.range;
+  const double width = std::abs(range.to - range.from) / scale_;
+  continuation_.from = (options_.start ? options_.start->value : range.from) / scale_;
+  continuation_.to = range.to / scale_;
+  continuation_.initial_step = options_.parameter.step ? options_.parameter.step->initial.value / scale_ : width / 200;
+  continuation_.min_step = options_.parameter.step ? options_.parameter.step->min.value / scale_ : width / 1e6;
+  continuation_.max_step = options_.parameter.step ? options_.parameter.step->max.value / scale_ : width / 30;
+  continuation_.beta_1 = options_.parameter.beta_1;
+  continuation_.beta_2 = options_.parameter.beta_2;
+  continuation_.kind = kind_of(options_.parameter.continuation);
+  continuation_.max_points = options_.max_points;
+  const bool adapt = options_.method == CycleBranchOptions::Method::collocation && options_.adapt_mesh;
+  continuation_.adapt_every = adapt ? options_.adapt_every : 0;
+  continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
+  newton_.tolerance = options_.tolerance;
+  continuation_.newton = newton_;
+}
+
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first)
+    : CycleFollower(context, std::move(options)) {
+  first_ = std::move(first);
+}
+
+std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells) const {
+  PlantRequest wanted{options_.unbalance, &options_.parameter};
+  wanted.value = options_.start ? options_.start->value : options_.parameter.range.from;
+  wanted.speed = options_.speed ? options_.speed->value : 0;
+  wanted.film_cells = film_cells;
+  return make_plant(space(), context_.machine, wanted);
+}
+
+solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) const {
+  auto values = problem.multipliers();
+  // The trivial multiplier of a self-excited cycle says nothing.
+  if (autonomous())
+    values.erase(std::min_element(values.begin(), values.end(),
+                                  [](auto a, auto b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
+  return solve::make_stability(std::move(values), distance_of_multiplier);
+}
+
+double CycleFollower::room(const solve::Cycle& orbit, const system::Plant& system) const {
+  if (!options_.max_eccentricity) return std::numeric_limits<double>::infinity();
+  return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), system);
+}
+
+double CycleFollower::margin(const solve::Cycle& orbit, const system::Plant& system) const {
+  return std::min(films_.margin(least_films(orbit, system)), room(orbit, system));
+}
+
+void CycleFollower::add_margin(double parameter, const solve::Cycle& orbit) {
+  if (films_.exists() || options_.max_eccentricity) margins_.add(parameter, margin(orbit, *system_));
+}
+
+void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
+  const solve::Cycle cycle = problem_->gather(u);
+  system_->set_parameter(cycle.parameter);  // closer looks may have left it elsewhere
+  const solve::Cycle orbit = problem_->orbit(u);
+  record_.append(point, orbit, problem_->orbit_scheme(), *system_, scale_);
+  nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
+  add_margin(point.parameter, orbit);
+  report_between(last_ ? *last_ : cycle, cycle);
+  if ((point.index + 1) % points_per_bar == 0) judge_multiplier(point, u);
+  last_ = cycle;
+  const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
+  context_.results.progress(
+      fmt::format("{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, {} intervals, |mu| {:.5f}, {:.1f} s",
+                  context_.results.summary().name, point.index + 1, options_.parameter.path, point.parameter, unit_,
+                  point.step, point.newton_iterations, cycle.intervals(), mu, context_.results.seconds()));
+}
+
+// Cycles asked for at given parameters, solved there and not interpolated.
+void CycleFollower::report_between(const solve::Cycle& a, const solve::Cycle& b) {
+  for (const auto& wanted : options_.at) {
+    const double p = wanted.value;
+    // The branch starts and ends at its limits but for rounding.
+    const double slack = 1e-10 * std::abs(p);
+    if (p < std::min(a.parameter, b.parameter) - slack || p > std::max(a.parameter, b.parameter) + slack) continue;
+    const std::string key = number_text(p, unit_);
+    if (record_.reported(key)) continue;
+    const double w = b.parameter == a.parameter ? 1 : (p - a.parameter) / (b.parameter - a.parameter);
+    solve::Cycle guess = b;
+    guess.x = (1 - w) * a.on(problem_->scheme(), b.mesh).x + w * b.x;
+    guess.parameter = p;
+    core::Vector u = problem_->scatter(guess), row = core::duplicate(u.get());
+    solve::parameter_row(*problem_, row.get());
+    const auto result = solve::newton(*problem_, u.get(), row.get(), p / scale_, newton_);
+    if (!result.converged) continue;
+    problem_->linearise(u.get(), row.get());
+    report(key, u.get());
+  }
+}
+
+void CycleFollower::report(const std::string& key, Vec u) {
+  io::StudySummary own;
+  record_.report(key, problem_->orbit(u), problem_->orbit_scheme(), *system_, stability_of(*problem_), own);
+  const solve::Cycle cycle = problem_->gather(u);
+  SummaryBars bars(own, law());
+  for (const CycleMesh& mesh : meshes())
+    bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
+      if (const auto other = corrected_on(mesh, cycle))
+        record_.report(key, other->problem->orbit(other->u.get()), other->problem->orbit_scheme(),
+                       other->other ? *other->other : *system_, stability_of(*other->problem), there);
+    });
+  bars.write(newton_.tolerance);
+  for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
+}
+
+// The flip that a branch of twice the period ran back into lies between its last cycle and where the next step landed.
+void CycleFollower::close_at_flip(double landed) {
+  // Other methods keep their unknowns, not the orbit.
+  if (record_.points() == 0 || options_.method != CycleBranchOptions::Method::collocation) return;
+  const auto [low, high] = std::minmax({record_.last_parameter(), landed});
+  const FlipSeed* only = nullptr;
+  for (const FlipSeed& s : siblings_) {
+    const double p = s.cycle.parameter / scale_;
+    if (p < low || p > high || p == seed_->cycle.parameter / scale_) continue;
+    if (only) return;
+    only = &s;
+  }
+  if (!only) return;
+  solve::Cycle simple = only->cycle;  // run through once it shows all that twice would
+  simple.period *= 2;
+  record_.close(simple, problem_->orbit_scheme(), *system_, scale_);
+}
+
+StudyResult CycleFollower::run() {
+  std::optional<solve::Restart> restart = restore();
+  core::Vector u;
+  if (!restart) {
+    problem_ = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), 1);
+    if (seed_)
+      restart = start_at_flip();
+    else if (autonomous())
+      restart = start_at_hopf();
+    else
+      u = start(*problem_);
+    if (restart) record_.begin(problem_->orbit(restart->u.get()), problem_->orbit_scheme(), *system_, scale_);
+  }
+  put_groups(context_.results.summary(), system_->groups());
+  solve::BranchCallbacks callbacks;
+  callbacks.cycles = true;
+  callbacks.stability = [this](Vec) { return stability_of(*problem_); };
+  callbacks.on_point = [this](const solve::BranchPoint& p, Vec v) { on_point(p, v); };
+  callbacks.on_event = [this](const solve::LocatedEvent& e, Vec v) { on_event(e, v); };
+  if (auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get()))
+    callbacks.refine = [this, cycles](const solve::LocatedEvent& e, Vec v, Vec t) {
+      return solve::refine(*cycles, e, v, t, newton_);
+    };
+  // The branch has touched, as it was asked to, or its film has become too thin.
+  bool contact = false;
+  if (films_.exists() || options_.max_eccentricity) {
+    // What was known already has not set the system.
+    const auto orbit_of = [this](Vec v) {
+      system_->set_parameter(problem_->gather(v).parameter);
+      return problem_->orbit(v);
+    };
+    callbacks.limit = [this, orbit_of](Vec v) { return margin(orbit_of(v), *system_); };
+    callbacks.why = [this, orbit_of, &contact](Vec v) {
+      const solve::Cycle orbit = orbit_of(v);
+      const std::vector<double> films = least_films(orbit, *system_);
+      contact = room(orbit, *system_) <= films_.margin(films);
+      return contact ? fmt::format("the eccentricity reaches {:.6g} (max_eccentricity)", *options_.max_eccentricity)
+                     : films_.reason(films);
+    };
+  }
+  callbacks.on_suspicion = [this](const solve::Suspicion& s) {
+    context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
+  };
+  callbacks.checkpoint = [this](const solve::Settled& at, Vec v, Vec t) {
+    save(at, v, t);
+    returned_ = seed_ && returned(problem_->orbit(v));
+    return !returned_;
+  };
+  const solve::BranchEnd end =
+      solve::follow_branch(*problem_, std::move(u), continuation_, callbacks, std::move(restart));
+
+  auto& results = context_.results;
+  auto& group = results.group();
+  if (returned_) {
+    // The step that showed the return landed on the simple cycle, or beyond it on the branch already followed.
+    record_.drop_last();
+    nodes_.drop_last();
+    close_at_flip(end.parameter);
+    std::erase_if(results.summary().suspected, [&](const io::Suspicion& s) { return s.to == end.parameter; });
+    group.set("end", "the cycle of half the period, at a flip");
+  } else if (contact) {
+    group.set("end", "contact");
+  }
+  record_.write(group, false);
+  nodes_.write(group);
+  multiplier_bars_.write(group.child("multiplier_bars"));
+  record_.write_orbits(group.child("orbits"), options_.orbits);
+  put_places(group, context_.machine, *system_);
+  put_bifurcations(group, results.summary().bifurcations);
+  group.set("parameter", options_.parameter.path);
+  group.set("parameter_unit", unit_);
+  group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
+  group.set("period_turns", options_.period);
+  results.summary().points = end.points - (returned_ ? 1 : 0);
+  if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
+  if (keeps_located_) write_located(group.child("located"), located_);
+  if (returned_) results.summary().set("returned", end.parameter, unit_);
+  if (end.limited && last_)
+    put_contact(results.summary(), end.parameter, unit_, end.bracket, margins_.value(), law(), margins_there(*last_));
+  results.summary().stability = record_.verdict();
+  if (options_.parameter.deflation) put_solutions(group, results.summary(), [this] { return coexisting(); });
+  return results.finish(returned_ || (end.limited && contact) ? "completed" : branch_status(end, unit_),
+                        end.points > 0);
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,205 @@
+#pragma once
+// One branch of cycles from its first guess to its tables.
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/bars/film_limit.hpp"
+#include "study/bars/film_mesh.hpp"
+#include "study/common.hpp"
+#include "study/cycle/cycle_record.hpp"
+#include "study/cycle/node_record.hpp"
+#include "study/located.hpp"
+#include "study/pieces.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/study/cycle/cycle_branch.hpp"
+
+namespace whirl::study {
+
+/// A located flip and the direction [n x N m] (SI) in which the cycle of twice its period leaves: the linearised motion
+/// of the multiplier -1 over one lap, reversed on the second one.
+struct FlipSeed {
+  solve::Cycle cycle, direction;
+};
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds);
+[[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group);
+
+/// A bifurcation found again on another film mesh.
+struct Relocated {
+  Located found;
+  double bracket = 0;  ///< scaled width left by the location
+  int solves = 0;      ///< cycles that were solved
+};
+
+/// A discretisation of a cycle that differs from the one in use in one direction.
+struct CycleMesh {
+  Axis axis = Axis::time;
+  double spacing = 1;                ///< over the spacing in use
+  std::array<double, 2> film{1, 1};  ///< cells of the films over those in use
+};
+
+/// Every other point of a mesh of time; empty if fewer than eight intervals would be left.
+[[nodiscard]] std::vector<double> merged(const std::vector<double>& mesh);
+
+/// What a bifurcation of cycles is told by.
+struct CycleNumbers {
+  double place = 0;        ///< scaled parameter
+  double angle = 0;        ///< of the critical multiplier [rad]
+  double period = 0;       ///< [s]
+  double coefficient = 0;  ///< of its normal form; of a fold the second derivative of the parameter
+  [[nodiscard]] std::vector<double> list() const { return {place, angle, period, coefficient}; }
+};
+
+/// Every so many points of a branch the leading multiplier is computed on other meshes, which costs about as much as
+/// seven points.
+inline constexpr int points_per_bar = 25;
+/// Where a branch knows the bar of its leading multiplier: point, parameter, modulus, bar by its parts, and whether it
+/// is on one side of the unit circle for certain.
+[[nodiscard]] io::Table multiplier_table(const std::string& unit);
+
+/// The parameter of a branch of cycles near its birth, p = p_0 + curvature h^2, h the root mean square amplitude in
+/// clearances.
+struct Parabola {
+  double curvature = 0, error = 0;
+};
+
+/// The solver's problem, what is recorded of the branch, and how to restart it. Collective throughout.
+class CycleFollower {
+public:
+  /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
+  /// options are those of that branch: period and intervals doubled), with all flips of the simple branch.
+  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt,
+                std::vector<FlipSeed> siblings = {});
+  /// Follows the branch that begins at a given forced cycle.
+  CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first);
+  /// Solves and records. The study that runs is finished.
+  [[nodiscard]] StudyResult run();
+  [[nodiscard]] const system::Plant& system() const { return *system_; }
+  /// Finds the bifurcation that `other` found on another film mesh, with what the journal (may be null) knows of the
+  /// way. Throws core::NotConverged or core::DomainError.
+  [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other, solve::Journal* journal);
+  /// How far the steps in time leave the bifurcation uncertain, scaled; NaN if that cannot be told.
+  [[nodiscard]] double time_error(const Located& at);
+
+private:
+  [[nodiscard]] std::unique_ptr<system::Plant> make_system(const std::array<double, 2>& film_cells) const;
+  /// Who shares a system: its states are distributed by solvers that are parallel in space.
+  [[nodiscard]] MPI_Comm space() const;
+  /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with `finer` (1/2, 1, 2) times as
+  /// many steps in time.
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::Plant& system, int turns,
+                                                                     std::vector<double> mesh, double finer) const;
+  /// A change of the root mean square state by half a clearance counts as one longest step.
+  [[nodiscard]] double state_weight() const { return std::pow(continuation_.max_step / 0.5, 2); }
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed) const;
+  [[nodiscard]] solve::Restart leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const;
+  [[nodiscard]] core::Vector start(const solve::PeriodicProblem& problem) const;
+  /// Forced cycles beside the first one, at its parameter.
+  [[nodiscard]] std::vector<solve::Cycle> coexisting();
+  [[nodiscard]] solve::Restart start_at_hopf();
+  [[nodiscard]] solve::Restart start_at_flip();
+  [[nodiscard]] FlipSeed seed_at(const solve::Cycle& cycle);
+  /// Reads off, on the branch through u along the unit `tangent`, whether a branch born at a bifurcation lives where
+  /// the old one is unstable (supercritical) or where it is stable; `sensitivity` is the slope of the old one's
+  /// distance from its border of stability over the scaled parameter. A verdict that `b` has already is only doubted.
+  [[nodiscard]] std::optional<Parabola> parabola(solve::PeriodicProblem& problem, Vec u, Vec tangent) const;
+  void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
+                       double sensitivity) const;
+  [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
+  /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
+  [[nodiscard]] double margin(const solve::Cycle& orbit, const system::Plant& system) const;
+  /// Of a point of the branch, for the slope at which it meets its limit.
+  void add_margin(double parameter, const solve::Cycle& orbit);
+  [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
+  void doubt_at_birth(io::Bifurcation& b) const;
+  void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
+  [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& orbit) const;
+  /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
+  [[nodiscard]] bool at_simple_cycle(const solve::Cycle& orbit) const;
+  [[nodiscard]] bool returned(const solve::Cycle& orbit);
+  [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
+  /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
+  [[nodiscard]] double room(const solve::Cycle& orbit, const system::Plant& system) const;
+  void on_point(const solve::BranchPoint& point, Vec u);
+  void on_event(const solve::LocatedEvent& found, Vec u);
+  /// Name of a piece of work about the event that comes next.
+  [[nodiscard]] std::string piece(const std::string& what) const;
+  void report_between(const solve::Cycle& a, const solve::Cycle& b);
+  /// The bar of the leading multiplier's modulus at a point of the branch.
+  void judge_multiplier(const solve::BranchPoint& point, Vec u);
+  /// Values of a cycle asked for with their bars, under `at.<key>.` in the summary.
+  void report(const std::string& key, Vec u);
+  [[nodiscard]] solve::Stability stability_of(solve::PeriodicProblem& problem) const;
+  /// What is known of the errors of films and time steps.
+  [[nodiscard]] MeshLaw law() const;
+  [[nodiscard]] double order_of_scheme() const;
+  [[nodiscard]] std::vector<CycleMesh> meshes() const;
+  /// The solver on another mesh; null where there is no such mesh.
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> problem_on(const CycleMesh& mesh, system::Plant& system,
+                                                                   const solve::Cycle& cycle) const;
+  /// A cycle on another mesh.
+  struct Elsewhere {
+    std::unique_ptr<system::Plant> other;  // null: the system is the one followed
+    std::unique_ptr<solve::PeriodicProblem> problem;
+    core::Vector u;
+  };
+  [[nodiscard]] std::optional<Elsewhere> carried_to(const CycleMesh& mesh, const solve::Cycle& given) const;
+  /// Solves it there at the same parameter, and linearises.
+  [[nodiscard]] bool correct_there(Elsewhere& there, const solve::Cycle& given) const;
+  [[nodiscard]] std::optional<Elsewhere> corrected_on(const CycleMesh& mesh, const solve::Cycle& given) const;
+  [[nodiscard]] std::optional<CycleNumbers> fold_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+                                                    const solve::Cycle& given) const;
+  /// The same bifurcation on another mesh; nothing if it cannot be had.
+  [[nodiscard]] std::optional<CycleNumbers> numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+                                                       const solve::Cycle& cycle, bool with_coefficient) const;
+  [[nodiscard]] double normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
+                                   std::complex<double> critical, Vec u, double step) const;
+  void put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
+  /// The cycle with the own states of its films on the meshes of `to`.
+  [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
+  void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
+  [[nodiscard]] std::vector<double> read_off(Vec u, Vec row, const std::function<std::vector<double>()>& work);
+  void relocate_crossing(core::Vector& u, Relocated& out);
+  void relocate_fold(core::Vector& u, Relocated& out);
+  void renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent);
+  void close_at_flip(double landed);
+  void save(const solve::Settled& at, Vec u, Vec tangent);
+  [[nodiscard]] std::optional<solve::Restart> restore();
+
+  Context& context_;
+  CycleBranchOptions options_;
+  std::optional<FlipSeed> seed_;
+  std::optional<solve::Cycle> first_;
+  std::vector<FlipSeed> siblings_;
+  std::string unit_;
+  double scale_;  // SI value of one unit of the range
+  solve::NewtonOptions newton_;
+  solve::ContinuationOptions continuation_;
+  std::unique_ptr<system::Plant> system_;
+  std::unique_ptr<solve::PeriodicProblem> problem_;
+  CycleRecord record_;
+  FilmLimit films_;
+  MarginSlope margins_;
+  NodeRecord nodes_;
+  io::Table multiplier_bars_;
+  std::optional<solve::Cycle> last_;
+  std::unique_ptr<Pieces> pieces_;  // of the study that runs
+  int events_ = 0;                  // seen so far
+  std::vector<FlipSeed> seeds_;
+  bool keeps_located_;              // a locus of the deck starts from one of them
+  std::vector<Located> located_;    // one for each bifurcation of the summary
+  Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
+  double largest_difference_ = 0;   // its largest norm so far
+  bool returned_ = false;
+};
+
+/// Signed distance of a Floquet multiplier from the unit circle.
+[[nodiscard]] double distance_of_multiplier(std::complex<double> mu);
+
+}  // namespace whirl::study

@@ -1,0 +1,97 @@
+// Which solver of periodic solutions follows the branch.
+
+#include <cmath>
+#include <cstdlib>
+
+#include "study/cycle/cycle_follower.hpp"
+#include "study/groups.hpp"
+#include "whirl/film/state_model.hpp"
+#include "whirl/solve/shooting/newton_picard.hpp"
+#include "whirl/solve/shooting/shooting_problem.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Method = CycleBranchOptions::Method;
+
+solve::Tableau tableau_of(CycleBranchOptions::Stepping scheme) {
+  using enum CycleBranchOptions::Stepping;
+  switch (scheme) {
+    case sdirk_2:
+      return solve::sdirk(2);
+    case sdirk_4:
+      return solve::sdirk(4);
+    case radau_iia_2:
+      return solve::radau_iia(2);
+    case radau_iia_3:
+      return solve::radau_iia(3);
+    case improved_euler:
+      return solve::heun();
+    case third_order:
+      return solve::third_order();
+    case classical:
+      return solve::classical();
+  }
+  std::abort();
+}
+
+}  // namespace
+
+double CycleFollower::order_of_scheme() const {
+  if (options_.method != Method::collocation) return tableau_of(options_.scheme).order;
+  return 2 * options_.degree - (options_.points == CycleBranchOptions::Points::radau ? 1 : 0);
+}
+
+// Only films with many states of their own are worth the messages; below that every rank does the same.
+MPI_Comm CycleFollower::space() const {
+  constexpr int shared_from = 3000;
+  int states = 0;
+  for (const auto& b : context_.machine.bearings)
+    if (film::has_states(b.film.kind))
+      states += b.film.cells[0] * (b.film.kind == film::Options::Kind::compliant_finite ? b.film.cells[1] : 1);
+  return options_.method == Method::newton_picard && states >= shared_from ? context_.comm : PETSC_COMM_SELF;
+}
+
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,
+                                                                    std::vector<double> mesh, double finer) const {
+  const int laps = turns / options_.period;
+  int steps = steps_of(options_);
+  if (options_.method == Method::shooting) {
+    mesh = {0, 1};
+    steps *= laps;
+  }
+  // Where an interval is one step, as in a finite-difference method, it is the mesh that makes steps shorter.
+  if (finer > 1 && (options_.method == Method::collocation || steps == 1))
+    mesh = solve::doubled(mesh);
+  else
+    steps = static_cast<int>(std::lround(steps * finer));
+
+  if (options_.method == Method::newton_picard) {
+    solve::NewtonPicardOptions o;
+    o.turns = turns;
+    o.autonomous = autonomous();
+    o.parameter_scale = scale_;
+    o.state_weight = state_weight();
+    o.radius = options_.radius;
+    o.constant_rates = system.constant_rates();
+    return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
+  }
+  // Single shooting has nothing to share: every rank computes the same.
+  const MPI_Comm time =
+      options_.method == Method::shooting ? PETSC_COMM_SELF : sharing_time(context_.comm, mesh.size() - 1);
+  solve::CycleOptions o;
+  o.degree = options_.degree;
+  o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
+  o.turns = turns;
+  o.autonomous = autonomous();
+  o.parameter_scale = scale_;
+  o.state_weight = state_weight();
+  o.base_intervals = options_.intervals * laps;
+  o.mesh_tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
+  if (options_.method == Method::collocation)
+    return std::make_unique<solve::CycleProblem>(time, system, o, std::move(mesh));
+  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh),
+                                                  system.constant_rates());
+}
+
+}  // namespace whirl::study

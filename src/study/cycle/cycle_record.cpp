@@ -1,0 +1,316 @@
+#include "study/cycle/cycle_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/bars/film_limit.hpp"
+#include "study/bars/verdict.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr int samples_per_orbit = 128;
+
+struct Extremes {
+  std::vector<double> x_max, x_min, y_max, y_min, radius;
+};
+
+// What is shown of all places at `count` equidistant times: [time][place][x, y].
+std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                           int count) {
+  std::vector<double> out;
+  for (int k = 0; k < count; ++k) {
+    const Eigen::VectorXd x = cycle.at(scheme, static_cast<double>(k) / count);
+    for (const auto& j : system.shown(x.data())) {
+      out.push_back(j.position[0]);
+      out.push_back(j.position[1]);
+    }
+  }
+  return out;
+}
+
+// Largest value of a periodic signal by the parabola through the largest sample and its neighbours.
+template <class Signal>
+double peak(std::size_t n, const Signal& signal) {
+  const auto value = [&](std::size_t k) { return signal(k % n); };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < n; ++k)
+    if (value(k) > value(best)) best = k;
+  const double a = value(best + n - 1), b = value(best), c = value(best + 1), curvature = a - 2 * b + c;
+  return curvature < 0 ? b - (a - c) * (a - c) / (8 * curvature) : b;
+}
+
+Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
+  Extremes e;
+  const std::size_t n = motion.size() / (2 * bearings);
+  for (std::size_t i = 0; i < bearings; ++i) {
+    const auto x = [&](std::size_t k) { return motion[(k * bearings + i) * 2]; };
+    const auto y = [&](std::size_t k) { return motion[(k * bearings + i) * 2 + 1]; };
+    e.x_max.push_back(peak(n, x));
+    e.x_min.push_back(-peak(n, [&](std::size_t k) { return -x(k); }));
+    e.y_max.push_back(peak(n, y));
+    e.y_min.push_back(-peak(n, [&](std::size_t k) { return -y(k); }));
+    e.radius.push_back(peak(n, [&](std::size_t k) { return std::hypot(x(k), y(k)); }));
+  }
+  return e;
+}
+
+std::vector<io::Table::Column> columns(const system::Places& places, const std::string& unit, std::size_t multipliers) {
+  const io::Shape b{places.names.size()}, m{multipliers};
+  const std::string& length = places.unit;
+  return {{"parameter", unit, "parameter of the branch"},
+          {"period", "s", "period of the cycle"},
+          {"stable", "1", "1 if no multiplier is outside the unit circle"},
+          {"unstable_count", "1", "multipliers outside the unit circle"},
+          {"step", unit, "arclength from the previous point"},
+          {"newton_iterations", "1", "of the accepted step"},
+          {"intervals", "1", "of the time mesh"},
+          {"x_max", length, "largest x of " + places.text, b},
+          {"x_min", length, "smallest", b},
+          {"y_max", length, "largest y of " + places.text, b},
+          {"y_min", length, "smallest", b},
+          {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
+          {"film_min", length, "smallest film thickness at mid-plane over the cycle, not a number without a film", b},
+          {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
+          {"multipliers_imag", "1", "their imaginary parts", m}};
+}
+
+std::vector<io::Table::Column> columns_of_birth(const system::Places& places, const std::string& unit) {
+  std::vector<io::Table::Column> some;
+  for (auto& c : columns(places, unit, 0))
+    if (c.name == "parameter" || c.name == "period" || c.name == "eccentricity_max" || c.name.ends_with("_max") ||
+        c.name.ends_with("_min"))
+      some.push_back(c);
+  return some;
+}
+
+}  // namespace
+
+CycleRecord::CycleRecord(system::Places places, std::string unit, int multipliers)
+    : places_(std::move(places)),
+      unit_(std::move(unit)),
+      multipliers_(multipliers),
+      table_(columns(places_, unit_, static_cast<std::size_t>(multipliers))),
+      birth_(columns_of_birth(places_, unit_)),
+      closing_(birth_) {}
+
+std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius) const {
+  std::vector<double> eccentricity(places_.names.size(), 0.0);
+  for (std::size_t i = 0; i < eccentricity.size(); ++i)
+    if (places_.clearances[i] > 0) eccentricity[i] = radius[i] / places_.clearances[i];
+  return eccentricity;
+}
+
+void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                       const system::Plant& system, double scale) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  end.append({{cycle.parameter / scale},
+              {cycle.period},
+              e.x_max,
+              e.x_min,
+              e.y_max,
+              e.y_min,
+              per_clearance(e.radius),
+              film_column(least_films(cycle, system), places_.names.size())});
+}
+
+void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(birth_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+                        double scale) {
+  keep(closing_, cycle, scheme, system, scale);
+}
+
+void CycleRecord::drop_last() {
+  if (orbits_.empty()) return;
+  orbits_.pop_back();
+  table_.truncate(orbits_.size());
+}
+
+void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                         const system::Plant& system, double scale) {
+  std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
+  const Extremes e = extremes(motion, places_.names.size());
+  std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
+  for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
+    re[k] = point.stability.values[k].real();
+    im[k] = point.stability.values[k].imag();
+  }
+  const int unstable = point.stability.unstable();
+  table_.append({{cycle.parameter / scale},
+                 {cycle.period},
+                 {unstable == 0 ? 1.0 : 0.0},
+                 {static_cast<double>(unstable)},
+                 {point.step},
+                 {static_cast<double>(point.newton_iterations)},
+                 {static_cast<double>(cycle.intervals())},
+                 e.x_max,
+                 e.x_min,
+                 e.y_max,
+                 e.y_min,
+                 per_clearance(e.radius),
+                 film_column(least_films(cycle, system), places_.names.size()),
+                 re,
+                 im});
+  orbits_.push_back(std::move(motion));
+}
+
+double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                 const system::Plant& system) const {
+  const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < e.radius.size(); ++i)
+    if (places_.clearances[i] > 0) largest = std::max(largest, e.radius[i] / places_.clearances[i]);
+  return largest;
+}
+
+std::string CycleRecord::verdict() const {
+  BranchVerdict verdict;
+  for (const double stable : table_.column("stable"))
+    verdict.add(stable > 0 ? StabilityClass::stable : StabilityClass::unstable);
+  return verdict.text();
+}
+
+void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                         const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
+  const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());
+  const std::string head = "at." + key + ".";
+  for (std::size_t i = 0; i < places_.names.size(); ++i) {
+    summary.set(head + "peak_to_peak." + places_.names[i] + ".x", e.x_max[i] - e.x_min[i], places_.unit);
+    summary.set(head + "peak_to_peak." + places_.names[i] + ".y", e.y_max[i] - e.y_min[i], places_.unit);
+  }
+  if (!stability.values.empty()) {
+    summary.set(head + "multiplier.modulus", std::abs(stability.values.front()), "1");
+    summary.set(head + "multiplier.angle", std::abs(std::arg(stability.values.front())), "rad");
+  }
+  summary.set(head + "period", cycle.period, "s");
+  reported_.insert(key);
+}
+
+void CycleRecord::write(io::Group& group, bool everything) const {
+  table_.write(group.child("branch"));
+  if (birth_.rows() > 0) birth_.write(group.child("birth"));
+  if (closing_.rows() > 0) closing_.write(group.child("closing"));
+  if (!everything) return;
+  std::vector<double> flat;
+  for (const auto& o : orbits_) flat.insert(flat.end(), o.begin(), o.end());
+  group.put("orbits", {orbits_.size(), samples_per_orbit, places_.names.size(), 2}, std::move(flat), places_.unit,
+            "what is shown of every point");
+  group.put("reported", std::vector<std::string>(reported_.begin(), reported_.end()), "parameters already reported");
+}
+
+void CycleRecord::read(const io::Group& group) {
+  table_.read(group.group("branch"));
+  if (group.has_group("birth")) birth_.read(group.group("birth"));
+  const auto& flat = group.reals("orbits");
+  const std::size_t width = samples_per_orbit * places_.names.size() * 2;
+  orbits_.clear();
+  for (std::size_t k = 0; k + width <= flat.size(); k += width)
+    orbits_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(k),
+                         flat.begin() + static_cast<std::ptrdiff_t>(k + width));
+  for (const auto& key : group.strings("reported")) reported_.insert(key);
+}
+
+void CycleRecord::write_orbits(io::Group& group, int count) const {
+  const std::size_t total = orbits_.size(),
+                    n = std::min<std::size_t>(total, static_cast<std::size_t>(std::max(count, 0)));
+  std::vector<double> parameter, x, y;
+  std::vector<std::int64_t> point;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = n == 1 ? 0 : k * (total - 1) / (n - 1);
+    parameter.push_back(table_.column("parameter")[i]);
+    point.push_back(static_cast<std::int64_t>(i));
+    for (std::size_t v = 0; v < orbits_[i].size(); v += 2) {
+      x.push_back(orbits_[i][v]);
+      y.push_back(orbits_[i][v + 1]);
+    }
+  }
+  const io::Shape shape{n, samples_per_orbit, places_.names.size()};
+  group.put("parameter", parameter, unit_, "where on the branch");
+  group.put("point", point, "its row in the table of the branch, from 0");
+  group.put("x", shape, x, places_.unit, "x of " + places_.text + " [orbit][time][bearing]");
+  group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
+}
+
+void write_cycle(io::Group& group, const solve::Cycle& cycle) {
+  group.put("mesh", cycle.mesh, "1", "s = t/T");
+  // Nodes are the slow index.
+  group.put("x", {static_cast<std::size_t>(cycle.x.cols()), static_cast<std::size_t>(cycle.x.rows())},
+            std::vector<double>(cycle.x.data(), cycle.x.data() + cycle.x.size()), "SI",
+            "states at the nodes, natural order");
+  group.set("period", cycle.period);
+  group.set("parameter", cycle.parameter);
+}
+
+solve::Cycle read_cycle(const io::Group& group) {
+  solve::Cycle cycle;
+  cycle.mesh = group.reals("mesh");
+  const auto& data = group.dataset("x");
+  const auto& values = group.reals("x");
+  cycle.x = Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(data.shape[1]),
+                                              static_cast<Eigen::Index>(data.shape[0]));
+  cycle.period = group.real("period");
+  cycle.parameter = group.real("parameter");
+  return cycle;
+}
+
+void write_stability(io::Group& group, const solve::Stability& stability) {
+  std::vector<double> re, im;
+  for (const auto& v : stability.values) {
+    re.push_back(v.real());
+    im.push_back(v.imag());
+  }
+  group.put("real", re, "1", "eigenvalues or multipliers");
+  group.put("imag", im, "1", "their imaginary parts");
+  group.put("distance", stability.distance, "1", "from the border of stability");
+  group.set("neutral", stability.neutral);
+}
+
+solve::Stability read_stability(const io::Group& group) {
+  solve::Stability s;
+  const auto &re = group.reals("real"), &im = group.reals("imag");
+  for (std::size_t k = 0; k < re.size(); ++k) s.values.emplace_back(re[k], im[k]);
+  s.distance = group.reals("distance");
+  s.neutral = static_cast<int>(group.integer("neutral"));
+  return s;
+}
+
+void write_point(io::Group& group, const solve::BranchPoint& point) {
+  group.set("index", point.index);
+  group.set("parameter", point.parameter);
+  group.set("slope", point.slope);
+  group.set("step", point.step);
+  group.set("newton_iterations", point.newton_iterations);
+  write_stability(group.child("stability"), point.stability);
+  group.put("monitors", point.monitors, "1", "functions whose zeros are located");
+}
+
+solve::BranchPoint read_point(const io::Group& group) {
+  solve::BranchPoint point;
+  point.index = static_cast<int>(group.integer("index"));
+  point.parameter = group.real("parameter");
+  point.slope = group.real("slope");
+  point.step = group.real("step");
+  point.newton_iterations = static_cast<int>(group.integer("newton_iterations"));
+  point.stability = read_stability(group.group("stability"));
+  point.monitors = group.reals("monitors");
+  return point;
+}
+
+void write_summary(io::Group& group, const io::StudySummary& summary) {
+  io::Summary one;
+  one.set(summary);
+  group.put("json", std::vector<std::string>{one.to_json()}, "summary of the study so far");
+}
+
+void read_summary(const io::Group& group, io::StudySummary& summary) {
+  const io::Summary one = io::Summary::from_json(group.strings("json").front());
+  core::require(one.studies.size() == 1, "a checkpoint holds one study");
+  summary = one.studies.front();
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,75 @@
+#pragma once
+// What is kept of a branch of cycles, and how it goes into results and checkpoints.
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/branch/continuation.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// Rows of a branch of cycles: extremes of what is shown (journals in their bearings), multipliers, orbits. Replicated
+/// on all ranks.
+class CycleRecord {
+public:
+  CycleRecord(system::Places places, std::string unit, int multipliers);
+
+  /// Adds a point; `scale` is the SI value of one unit of the parameter.
+  void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
+              const system::Plant& system, double scale);
+  /// Keeps the cycle that the branch leaves from, of no amplitude at a Hopf point or run through twice at a flip: it
+  /// belongs to the branch, but is no point of it.
+  void begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system, double scale);
+  /// Keeps the cycle that the branch runs into, likewise: the simple one at a flip.
+  void close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system, double scale);
+  /// Removes the last point.
+  void drop_last();
+  /// Largest eccentricity per clearance of any journal on a cycle.
+  [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
+                                    const system::Plant& system) const;
+  /// Verdict on the stability of the points so far.
+  [[nodiscard]] std::string verdict() const;
+  /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
+  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
+              const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary);
+  [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
+
+  /// Parameter of the last point, in the unit of the branch.
+  [[nodiscard]] double last_parameter() const { return table_.column("parameter").back(); }
+  [[nodiscard]] std::size_t points() const { return table_.rows(); }
+
+  /// Tables `branch` and, if it left from a bifurcation or ran into one, `birth` and `closing` into `group`; with
+  /// `everything`, also what a restart needs.
+  void write(io::Group& group, bool everything) const;
+  void read(const io::Group& group);
+  /// `count` orbits spread evenly over the points.
+  void write_orbits(io::Group& group, int count) const;
+
+private:
+  void keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+            double scale) const;
+  [[nodiscard]] std::vector<double> per_clearance(const std::vector<double>& radius) const;
+  system::Places places_;
+  std::string unit_;
+  int multipliers_;
+  io::Table table_, birth_, closing_;
+  std::vector<std::vector<double>> orbits_;  // per point: [time][place][x, y]
+  std::set<std::string> reported_;
+};
+
+void write_cycle(io::Group& group, const solve::Cycle& cycle);
+[[nodiscard]] solve::Cycle read_cycle(const io::Group& group);
+void write_stability(io::Group& group, const solve::Stability& stability);
+[[nodiscard]] solve::Stability read_stability(const io::Group& group);
+void write_point(io::Group& group, const solve::BranchPoint& point);
+[[nodiscard]] solve::BranchPoint read_point(const io::Group& group);
+void write_summary(io::Group& group, const io::StudySummary& summary);
+void read_summary(const io::Group& group, io::StudySummary& summary);
+
+}  // namespace whirl::study

@@ -1,0 +1,248 @@
+// Where branches of cycles begin: at an equilibrium, at a Hopf point, at a flip.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "study/cycle/coexisting.hpp"
+#include "study/cycle/cycle_follower.hpp"
+#include "study/make_plant.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// Two laps on one mesh.
+std::vector<double> two_laps(const std::vector<double>& mesh) {
+  std::vector<double> out;
+  for (const double s : mesh) out.push_back(s / 2);
+  for (std::size_t k = 1; k < mesh.size(); ++k) out.push_back((1 + mesh[k]) / 2);
+  return out;
+}
+
+}  // namespace
+
+// The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
+core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
+  if (first_) return problem.scatter(*first_);
+  const std::vector<double> whole = system_->gather(find_rest(*system_).get());
+  solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), system_->parameter()};
+  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
+                .replicate(1, guess.intervals() * problem.scheme().degree);
+  return problem.scatter(guess);
+}
+
+// The Hopf point is found on the branch of equilibria; there the cycle is the equilibrium itself, and the branch leaves
+// along the critical mode x(s) = x_H + a Re(phi exp(2 pi i s)) with T = 2 pi/omega. A step along this tangent asks for
+// an amplitude and leaves speed and period free.
+solve::Restart CycleFollower::start_at_hopf() {
+  solve::EquilibriumProblem equilibria(*system_, scale_, state_weight());
+  core::Vector u = equilibria.make_unknown(), at_hopf,
+               x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
+  if (system_->parameter_is_speed()) {
+    Walker walker(*system_);
+    check(VecCopy(walker.at(system_->parameter()), x.get()));
+  } else {
+    x = system_->guess();
+  }
+  equilibria.from_state(x.get(), system_->parameter(), u.get());
+  double parameter = 0;
+  solve::LocatedEvent hopf{};
+  solve::BranchCallbacks callbacks;
+  callbacks.stability = [&](Vec v) {
+    equilibria.to_state(v, x.get());
+    return equilibrium_stability(*system_, x.get());
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
+    if (at_hopf || found.event != solve::Event::hopf || !found.located) return;
+    at_hopf = core::duplicate(x.get());
+    equilibria.to_state(v, at_hopf.get());
+    parameter = found.parameter * scale_;
+    hopf = found;
+  };
+  callbacks.checkpoint = [&](const solve::Settled&, Vec, Vec) { return !at_hopf; };
+  const auto search = [&] {
+    solve::ContinuationOptions o = continuation_;
+    o.initial_step = o.max_step;
+    o.newton.max_iterations = 20;
+    const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), o, callbacks);
+    if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
+    std::vector<double> found{parameter, hopf.parameter, hopf.bracket, hopf.sensitivity};
+    const auto rest = system_->gather(at_hopf.get());
+    found.insert(found.end(), rest.begin(), rest.end());
+    return found;
+  };
+  const std::vector<double> known = pieces_->numbers("hopf", search);
+  parameter = known[0];
+  hopf.parameter = known[1];
+  hopf.bracket = known[2];
+  hopf.sensitivity = known[3];
+  at_hopf = core::duplicate(x.get());
+  {
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(at_hopf.get(), &begin, nullptr));
+    const core::WriteArray a(at_hopf.get());
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = known[static_cast<std::size_t>(4 + begin + i)];
+  }
+
+  system_->set_parameter(parameter);
+  const auto modes = spectral::modes(*system_, at_hopf.get(), {});
+  const spectral::Mode* critical = nullptr;
+  for (const auto& m : modes)
+    if (m.lambda.imag() > 0 && (!critical || std::abs(m.lambda.real()) < std::abs(critical->lambda.real())))
+      critical = &m;
+  core::require(critical != nullptr, "a Hopf point has a complex eigenvalue");
+  const std::vector<double> rest = system_->gather(at_hopf.get());
+  const auto n = static_cast<Eigen::Index>(rest.size());
+  Eigen::VectorXcd phi(n);
+  for (Eigen::Index k = 0; k < n; ++k) phi(k) = critical->shape[static_cast<std::size_t>(k)];
+  // The phase in which the motion is largest at s = 0: there it stands at right angles to its rate, so that even one
+  // point of the cycle fixes the phase and is not moved by it.
+  const std::complex<double> square = phi.cwiseQuotient(problem_->state_scale()).array().square().sum();
+  phi *= std::exp(std::complex<double>(0, -0.5 * std::arg(square)));
+  solve::Cycle still{problem_->mesh(), {}, two_pi / critical->lambda.imag(), parameter}, mode = still;
+  const auto& scheme = problem_->scheme();
+  still.x = Eigen::Map<const Eigen::VectorXd>(rest.data(), n).replicate(1, still.intervals() * scheme.degree);
+  mode.x.resize(n, still.x.cols());
+  for (Eigen::Index i = 0; i < still.intervals(); ++i)
+    for (Eigen::Index l = 1; l <= scheme.degree; ++l) {
+      const double begin = still.mesh[static_cast<std::size_t>(i)];
+      const double s = begin + (still.mesh[static_cast<std::size_t>(i) + 1] - begin) * scheme.node(l);
+      mode.x.col(i * scheme.degree + l - 1) = (phi * std::exp(std::complex<double>(0, two_pi * s))).real();
+    }
+  // Small, so that the equation's own rate about the equilibrium is that of the mode.
+  solve::Cycle reference = still;
+  reference.x += 1e-4 * mode.x;
+  problem_->set_phase_reference(reference);
+  solve::Restart restart;
+  restart.u = problem_->scatter(still);
+  mode.period = mode.parameter = 0;
+  restart.tangent = problem_->scatter(mode);
+  check(VecScale(restart.tangent.get(),
+                 1 / std::sqrt(solve::inner(*problem_, restart.tangent.get(), restart.tangent.get()))));
+  restart.step = continuation_.initial_step;
+  restart.point.index = -1;  // the Hopf point is no cycle: the first one comes next
+  restart.point.parameter = parameter / scale_;
+  hopf.event = solve::Event::hopf;
+  hopf.critical = {0, critical->lambda.imag()};
+  record_hopf(hopf, at_hopf.get(), restart);
+  return restart;
+}
+
+std::vector<solve::Cycle> CycleFollower::coexisting() {
+  system_->set_parameter(continuation_.from * scale_);
+  const auto made = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), 1);
+  solve::PeriodicProblem& problem = *made;
+  std::vector<core::Vector> known;
+  known.push_back(start(problem));
+  core::Vector row = core::duplicate(known.front().get());
+  solve::parameter_row(problem, row.get());
+  solve::NewtonOptions newton = newton_;
+  newton.max_iterations = 40;
+  if (!solve::newton(problem, known.front().get(), row.get(), continuation_.from, newton).converged) return {};
+  const solve::Cycle first = problem.gather(known.front().get());
+  // The same motion begun some turns later is no other one.
+  const auto copies = [&](Vec u) {
+    const solve::Cycle cycle = problem.gather(u);
+    std::vector<core::Vector> out;
+    for (int turn = 1; turn < options_.period; ++turn)
+      out.push_back(problem.scatter(delayed(cycle, problem.scheme(), static_cast<double>(turn) / options_.period)));
+    return out;
+  };
+  const auto guess = [&](int k) {
+    return problem.scatter(other_vibration(first, problem.scheme(), options_.period, k));
+  };
+  std::vector<solve::Cycle> out;
+  for (const auto& u : solve::deflate(problem, state_weight(), known, guess,
+                                      deflation_options(*options_.parameter.deflation, newton), copies))
+    out.push_back(problem.gather(u.get()));
+  return out;
+}
+
+FlipSeed CycleFollower::seed_at(const solve::Cycle& cycle) {
+  FlipSeed seed{cycle, cycle};
+  seed.direction.x = problem_->critical_motion(-1);
+  return seed;
+}
+
+namespace {
+
+// A motion on the first lap, `second` times it on the second one.
+solve::Cycle two(const solve::Cycle& one, double second) {
+  solve::Cycle out{two_laps(one.mesh), Eigen::MatrixXd(one.x.rows(), 2 * one.x.cols()), 2 * one.period, one.parameter};
+  out.x << one.x, second * one.x;
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
+  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), 1);
+  if (autonomous()) twice->set_phase_reference(two(seed.cycle, 1));
+  return twice;
+}
+
+// The branch leaves along +delta on the first lap and -delta on the second, at first without a change of the parameter.
+solve::Restart CycleFollower::leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const {
+  solve::Cycle direction = two(seed.direction, -1);
+  direction.parameter = 0;
+  solve::Restart restart;
+  restart.u = twice.scatter(two(seed.cycle, 1));
+  restart.tangent = twice.scatter(direction);
+  check(VecScale(restart.tangent.get(),
+                 1 / std::sqrt(solve::inner(twice, restart.tangent.get(), restart.tangent.get()))));
+  return restart;
+}
+
+solve::Restart CycleFollower::start_at_flip() {
+  system_->set_parameter(seed_->cycle.parameter);
+  problem_ = make_problem(*system_, options_.period, two_laps(seed_->cycle.mesh), 1);
+  if (autonomous()) problem_->set_phase_reference(two(seed_->cycle, 1));
+  solve::Restart restart = leave_flip(*problem_, *seed_);
+  restart.step = continuation_.initial_step;
+  restart.point.index = -1;  // the flip itself belongs to the branch of the simple period
+  restart.point.parameter = seed_->cycle.parameter / scale_;
+  context_.results.summary().set("flip", seed_->cycle.parameter / scale_, unit_);
+  return restart;
+}
+
+// First lap minus second one at equidistant times, scaled.
+Eigen::MatrixXd CycleFollower::lap_difference(const solve::Cycle& orbit) const {
+  constexpr int samples = 24;
+  Eigen::MatrixXd difference(orbit.x.rows(), samples);
+  for (int k = 0; k < samples; ++k) {
+    const double s = 0.5 * k / samples;
+    difference.col(k) = (orbit.at(problem_->orbit_scheme(), s) - orbit.at(problem_->orbit_scheme(), s + 0.5))
+                            .cwiseQuotient(problem_->state_scale());
+  }
+  return difference;
+}
+
+// Where the branch runs into the simple cycle its parameter turns as at a fold, which it is not.
+bool CycleFollower::at_simple_cycle(const solve::Cycle& orbit) const {
+  if (!seed_ || lap_difference_.size() == 0) return false;
+  const Eigen::MatrixXd difference = lap_difference(orbit);
+  return (difference.array() * lap_difference_.array()).sum() < 0 || difference.norm() < 0.02 * largest_difference_;
+}
+
+// A branch of twice the period may run back into the one it came from. Beyond that point it either repeats itself with
+// the laps exchanged, when the difference of the laps changes its sign, or the step has landed on the simple cycle run
+// twice, when there is no difference.
+bool CycleFollower::returned(const solve::Cycle& orbit) {
+  Eigen::MatrixXd difference = lap_difference(orbit);
+  const bool turned = lap_difference_.size() > 0 && (difference.array() * lap_difference_.array()).sum() < 0;
+  largest_difference_ = std::max(largest_difference_, difference.norm());
+  const bool vanished = difference.norm() < 1e-3 * largest_difference_;
+  lap_difference_ = std::move(difference);
+  return turned || vanished;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,75 @@
+#include "study/cycle/node_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr int samples_per_turn = 128;
+
+std::vector<io::Table::Column> columns(const std::string& unit, std::size_t nodes) {
+  const io::Shape n{nodes};
+  return {{"parameter", unit, "parameter of the branch"},
+          {"amplitude", "m", "largest distance of the shaft's node from its mean position over the cycle", n},
+          {"x", "m", "half the travel of the node in x", n},
+          {"y", "m", "half the travel of the node in y", n}};
+}
+
+}  // namespace
+
+NodeRecord::NodeRecord(std::vector<int> nodes, std::string unit)
+    : nodes_(std::move(nodes)), unit_(std::move(unit)), table_(columns(unit_, nodes_.size())) {}
+
+void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
+                        const system::Plant& system) {
+  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
+  if (nodes_.empty() || !rotor) return;
+  std::vector<std::vector<double>> x(nodes_.size()), y(nodes_.size());
+  for (int k = 0; k < samples_per_turn; ++k) {
+    const Eigen::VectorXd state = cycle.at(scheme, static_cast<double>(k) / samples_per_turn);
+    const std::vector<double> shaft = rotor->shaft(state.data(), 0, false);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const auto at = static_cast<std::size_t>(4 * (nodes_[i] - 1));
+      x[i].push_back(shaft[at]);
+      y[i].push_back(shaft[at + 1]);
+    }
+  }
+  const auto mean = [](const std::vector<double>& v) {
+    double sum = 0;
+    for (double one : v) sum += one;
+    return sum / static_cast<double>(v.size());
+  };
+  const auto half_travel = [](const std::vector<double>& v) {
+    const auto [low, high] = std::minmax_element(v.begin(), v.end());
+    return (*high - *low) / 2;
+  };
+  std::vector<double> amplitude(nodes_.size(), 0.0), half_x, half_y;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const double mx = mean(x[i]), my = mean(y[i]);
+    for (std::size_t k = 0; k < x[i].size(); ++k)
+      amplitude[i] = std::max(amplitude[i], std::hypot(x[i][k] - mx, y[i][k] - my));
+    half_x.push_back(half_travel(x[i]));
+    half_y.push_back(half_travel(y[i]));
+  }
+  table_.append({{parameter}, amplitude, half_x, half_y});
+}
+
+void NodeRecord::drop_last() {
+  if (table_.rows() > 0) table_.truncate(table_.rows() - 1);
+}
+
+void NodeRecord::write(io::Group& group) const {
+  if (nodes_.empty()) return;
+  auto& mine = group.child("nodes");
+  table_.write(mine);
+  mine.put("node", std::vector<std::int64_t>(nodes_.begin(), nodes_.end()), "shaft nodes, 1-based");
+}
+
+void NodeRecord::read(const io::Group& group) {
+  if (!nodes_.empty()) table_.read(group.group("nodes"));
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,35 @@
+#pragma once
+// How far the shaft moves at chosen nodes over a branch of cycles.
+
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/cycle/cycle.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// Amplitudes of the shaft in space at nodes (1-based), one row per cycle. Replicated on all ranks.
+class NodeRecord {
+public:
+  NodeRecord(std::vector<int> nodes, std::string unit);
+
+  /// Adds a cycle with its parameter in the unit of the branch. Collective on the system's communicator. Nothing
+  /// happens without nodes, or if the system is no rotor.
+  void append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system);
+  /// Removes the last row, if there is one.
+  void drop_last();
+  /// Table of parameter, `amplitude` (largest distance from the mean position), `x` and `y` (half the travel) [m],
+  /// 0-peak [cycle][node], with `node`; nothing without nodes.
+  void write(io::Group& group) const;
+  void read(const io::Group& group);
+
+private:
+  std::vector<int> nodes_;
+  std::string unit_;
+  io::Table table_;
+};
+
+}  // namespace whirl::study

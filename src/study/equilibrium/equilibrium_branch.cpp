@@ -1,0 +1,279 @@
+#include "whirl/study/equilibrium/equilibrium_branch.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+
+#include "study/bars/film_limit.hpp"
+#include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
+#include "study/bars/verdict.hpp"
+#include "study/bifurcation.hpp"
+#include "study/common.hpp"
+#include "study/cycle/coexisting.hpp"
+#include "study/equilibrium/equilibrium_event.hpp"
+#include "study/groups.hpp"
+#include "study/located.hpp"
+#include "study/make_plant.hpp"
+#include "study/pieces.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::study {
+
+using core::check;
+
+std::unique_ptr<system::Plant> plant_of(const Context& context, const EquilibriumBranchOptions& o,
+                                        const std::array<double, 2>& film_cells) {
+  PlantRequest wanted{{}, &o.parameter};
+  wanted.value = o.parameter.range.from;
+  wanted.speed = o.speed ? o.speed->value : 0;
+  wanted.film_cells = film_cells;
+  return make_plant(Groups::split(context.comm, context.machine).space, context.machine, wanted);
+}
+
+double state_weight_of(const EquilibriumBranchOptions& o) {
+  const auto& range = o.parameter.range;
+  const double scale = deck::number_to_si(1, range.unit), width = std::abs(range.to - range.from) / scale;
+  return std::pow((o.parameter.step ? o.parameter.step->max.value / scale : width / 25) / 0.5, 2);
+}
+
+namespace {
+
+// The margins of equilibria at the same parameter on other film meshes.
+std::vector<MarginThere> margins_there(const Context& context, const EquilibriumBranchOptions& options,
+                                       const system::Plant& system, const std::vector<double>& whole, double parameter,
+                                       const solve::NewtonOptions& newton) {
+  std::vector<MarginThere> out;
+  for (const FilmMesh& mesh : film_meshes(context.machine)) {
+    out.push_back({mesh.axis, mesh.spacing, io::no_value});
+    // Stays unknown where there is none.
+    (void)has_answer([&] {
+      const auto other = plant_of(context, options, mesh.factor);
+      other->set_parameter(parameter);
+      const core::Vector x = resampled(*other, system, whole);
+      if (solve::find_equilibrium(*other, x.get(), newton).converged)
+        out.back().margin = FilmLimit(other->places()).margin(other->film_thickness(other->gather(x.get()).data()));
+    });
+  }
+  return out;
+}
+
+// Follows the branch from `first`, or from the equilibrium that is easiest to find.
+StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& options, const solve::Cycle* first) {
+  const auto& range = options.parameter.range;
+  const std::string unit = range.unit;
+  const double scale = deck::number_to_si(1, unit), width = std::abs(range.to - range.from) / scale;
+  solve::ContinuationOptions continuation;
+  continuation.from = range.from / scale;
+  continuation.to = range.to / scale;
+  const auto& step = options.parameter.step;
+  continuation.initial_step = step ? step->initial.value / scale : width / 100;
+  continuation.min_step = step ? step->min.value / scale : width / 1e6;
+  continuation.max_step = step ? step->max.value / scale : width / 25;
+  continuation.beta_1 = options.parameter.beta_1;
+  continuation.beta_2 = options.parameter.beta_2;
+  continuation.kind = kind_of(options.parameter.continuation);
+  continuation.max_points = options.max_points;
+  continuation.location_tolerance = 1e-6 * std::max(std::abs(range.from), std::abs(range.to)) / scale;
+  continuation.newton.max_iterations = 20;
+
+  const auto system = plant_of(context, options);
+  const double state_weight = state_weight_of(options);
+  solve::EquilibriumProblem problem(*system, scale, state_weight);
+  core::Vector u = problem.make_unknown(), x = core::make_vector(system->comm(), system->local_size(), PETSC_DETERMINE);
+  if (first) {
+    const core::WriteArray to(x.get());
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(x.get(), &begin, nullptr));
+    for (PetscInt i = 0; i < to.size(); ++i) to[i] = first->x(begin + i, 0);
+  } else if (system->parameter_is_speed()) {
+    Walker walker(*system);
+    check(VecCopy(walker.at(range.from), x.get()));
+  } else {
+    x = system->guess();
+  }
+  problem.from_state(x.get(), range.from, u.get());
+
+  const system::Places places = system->places();
+  io::Table table({{"parameter", unit, "parameter of the branch"},
+                   {"stable", "1", "1 if no eigenvalue has a positive real part"},
+                   {"unstable_count", "1", "eigenvalues with positive real part"},
+                   {"undamped_count", "1", "eigenvalues whose real part is rounding"},
+                   {"step", unit, "arclength from the previous point"},
+                   {"leading_real", "1/s", "real part of the least stable eigenvalue"},
+                   {"leading_imag", "rad/s", "its imaginary part"},
+                   {"x", places.unit, places.text, {places.names.size()}},
+                   {"y", places.unit, places.text, {places.names.size()}},
+                   {"film",
+                    places.unit,
+                    "smallest film thickness at mid-plane, not a number without a film",
+                    {places.names.size()}}});
+  std::vector<Located> located;      // one for each bifurcation of the summary
+  std::vector<BorderEvent> borders;  // likewise
+  BranchVerdict verdict;
+  const FilmLimit films(places);
+  MarginSlope margins;
+  auto& results = context.results;
+  put_groups(results.summary(), system->groups());
+  solve::BranchCallbacks callbacks;
+  // A resumed branch is followed anew: Newton's method costs little beside the eigenvalues, which are kept.
+  Pieces pieces(results, context.resume);
+  int looks = 0;
+  callbacks.stability = [&](Vec v) {
+    // The place tells them apart where a step was taken otherwise than before: rounded, as decisions are.
+    const double place = solve::last_entry(problem.comm(), v);
+    return pieces.stability(fmt::format("look {} at {:.10g}", ++looks, place), [&] {
+      problem.to_state(v, x.get());
+      return equilibrium_stability(*system, x.get());
+    });
+  };
+  callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
+    problem.to_state(v, x.get());
+    std::vector<double> px, py;
+    const std::vector<double> whole = system->gather(x.get());
+    for (const auto& j : system->shown(whole.data())) {
+      px.push_back(j.position[0]);
+      py.push_back(j.position[1]);
+    }
+    const auto& s = point.stability;
+    margins.add(point.parameter, films.margin(system->film_thickness(whole.data())));
+    verdict.add(class_of(s));
+    std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
+    if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
+    table.append({{point.parameter},
+                  {s.unstable() == 0 ? 1.0 : 0.0},
+                  {static_cast<double>(s.unstable())},
+                  {static_cast<double>(s.neutral)},
+                  {point.step},
+                  {leading.real()},
+                  {std::abs(leading.imag())},
+                  px,
+                  py,
+                  film_column(system->film_thickness(whole.data()), places.names.size())});
+    results.progress(fmt::format(
+        "{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
+        results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
+        point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
+    if (!wanted(found.event, options.detect)) return;
+    io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
+                                       context.machine, {}, *system);
+    problem.to_state(v, x.get());
+    const std::string event = fmt::format("event {}", results.summary().bifurcations.size() + 1);
+    pieces.complete(event, b, [&] {
+      describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
+                   law_of(context.machine), [&](const auto& cells) { return plant_of(context, options, cells); },
+                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); }});
+    });
+    b.more["others_unstable"] = found.others_unstable;
+    borders.push_back({found.others_unstable == 0 && found.located, found.loses});
+    results.summary().bifurcations.push_back(b);
+    if (is_followed(context, results.summary().name)) {
+      problem.to_state(v, x.get());
+      const std::vector<double> whole = system->gather(x.get());
+      located.push_back({found.event,
+                         found.critical,
+                         {{0, 1},
+                          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+                          b.period_s,
+                          found.parameter * scale},
+                         found.sensitivity});
+    }
+  };
+  callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {
+    return solve::refine(*system, problem, e, v, t, continuation.newton);
+  };
+  if (films.exists()) {
+    const auto thickness = [&](Vec v) {
+      problem.to_state(v, x.get());
+      return system->film_thickness(system->gather(x.get()).data());
+    };
+    callbacks.limit = [&, thickness](Vec v) { return films.margin(thickness(v)); };
+    callbacks.why = [&, thickness](Vec v) { return films.reason(thickness(v)); };
+  }
+  callbacks.on_suspicion = [&](const solve::Suspicion& s) {
+    results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
+  };
+  const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
+  const std::vector<double> at_limit = system->gather(x.get());  // the last point
+  if (options.parameter.deflation) {
+    system->set_parameter(range.from);
+    const auto others = put_solutions(results.group(), results.summary(), [&] {
+      return coexisting_equilibria(*system, *options.parameter.deflation, continuation.newton);
+    });
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      const auto shown = system->shown(others[k].x.data());
+      for (std::size_t place = 0; place < shown.size(); ++place)
+        for (std::size_t d = 0; d < 2; ++d)
+          results.summary().set(fmt::format("solution.{}.{}.{}", k + 2, places.names[place], d == 0 ? "x" : "y"),
+                                shown[place].position[d], places.unit);
+    }
+  }
+
+  auto& group = results.group();
+  if (is_followed(context, results.summary().name)) write_located(group.child("located"), located);
+  table.write(group.child("branch"));
+  put_places(group, context.machine, *system);
+  put_bifurcations(group, results.summary().bifurcations);
+  group.set("parameter", options.parameter.path);
+  group.set("parameter_unit", unit);
+  const std::string si_unit =
+      deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path);
+  results.summary().stability = verdict.text();
+  if (const int k = threshold_among(borders, range.to >= range.from); k >= 0) {
+    const auto& b = results.summary().bifurcations[static_cast<std::size_t>(k)];
+    results.summary().set("threshold", b.value * scale, si_unit, {{"uncertainty", b.uncertainty * scale}});
+    if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
+      results.summary().set("whirl_frequency", omega->second, "rad/s",
+                            {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
+  }
+  if (end.limited)
+    put_contact(results.summary(), end.parameter, unit, end.bracket, margins.value(), law_of(context.machine),
+                margins_there(context, options, *system, at_limit, end.parameter * scale, continuation.newton));
+  results.summary().points = end.points;
+  return results.finish(branch_status(end, unit), end.points > 0);
+}
+
+// The branch that begins at an equilibrium beside the first one of another branch.
+class BesideBranch final : public Study {
+public:
+  BesideBranch(std::string name, EquilibriumBranchOptions options, solve::Cycle first)
+      : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
+  [[nodiscard]] std::string_view kind() const override { return EquilibriumBranch::key; }
+  [[nodiscard]] std::string name() const override { return name_; }
+  void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
+  [[nodiscard]] StudyResult run(Context& context) override { return follow_equilibria(context, options_, &first_); }
+
+private:
+  std::string name_;
+  EquilibriumBranchOptions options_;
+  solve::Cycle first_;
+};
+
+}  // namespace
+
+bool EquilibriumBranch::may_add(std::string_view other) const {
+  return options.parameter.deflation && may_be_solution(name(), other);
+}
+
+StudyResult EquilibriumBranch::run(Context& context) {
+  return follow_equilibria(context, options, nullptr);
+}
+
+std::vector<std::unique_ptr<Study>> EquilibriumBranch::further(const io::Group& result) const {
+  std::vector<std::unique_ptr<Study>> beside;
+  EquilibriumBranchOptions own = options;
+  own.parameter.deflation.reset();
+  for (std::size_t k = 2; auto& first : read_solutions(result))
+    beside.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), own, std::move(first)));
+  return beside;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,171 @@
+#include "whirl/study/equilibrium/static.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "study/bars/film_limit.hpp"
+#include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
+#include "study/common.hpp"
+#include "study/groups.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+
+namespace whirl::study {
+namespace {
+
+// Pressure and thickness of every pad, and where ParaView finds them.
+void put_films(Context& context, system::RotorSystem& system, const std::vector<double>& x,
+               const std::vector<double>& z) {
+  auto& group = context.results.group();
+  const auto names = names_of_bearings(context.machine);
+  for (int b = 0; b < system.n_bearings(); ++b) {
+    const auto k = static_cast<std::size_t>(b);
+    const auto& support = system.train().supports[k];
+    std::vector<film::Field> fields;
+    core::agree(context.comm, [&] { fields = system.film_fields(b, x.data()); });
+    for (const film::Field& f : fields) {
+      auto& pad = group.child("films").child(io::safe_name(names[k])).child(fmt::format("pad{}", f.pad + 1));
+      pad.put(f.name, f.shape, f.values, f.unit, f.name + " at the nodes of the film mesh");
+    }
+    if (fields.empty()) continue;
+    io::FilmPlace place;
+    place.radius = support.geometry.radius;
+    place.centre_y = support.elevation;
+    place.centre_z = z[static_cast<std::size_t>(support.node - 1)];
+    auto& pads = group.child("films").child(io::safe_name(names[k]));
+    const auto groups = pads.groups();
+    for (const auto& entry : groups) {
+      const std::string path = "films/" + io::safe_name(names[k]) + "/" + entry.first;
+      for (auto& g : io::film_grids(pads.child(entry.first), path, names[k] + " " + entry.first, place))
+        context.results.show(std::move(g));
+    }
+  }
+}
+
+// What follows from the films at the state x.
+void put_values(const Context& context, system::RotorSystem& system, const std::vector<double>& x,
+                io::StudySummary& summary) {
+  const auto journals = system.journals(x.data());
+  const auto films = system.film_responses(x.data(), film::Need::force);
+  const auto names = names_of_bearings(context.machine);
+  const std::vector<double> thickness = system.film_thickness(x.data());
+  double total_loss = 0;
+  const char* const axis[] = {"x", "y"};
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    const auto& support = system.train().supports[b];
+    const std::string head = "bearing." + names[b] + ".";
+    summary.set("load." + names[b], films[b].force[1], "N");
+    summary.set(head + "force.x", films[b].force[0], "N");
+    summary.set(head + "force.y", films[b].force[1], "N");
+    for (std::size_t d = 0; d < 2; ++d) summary.set(head + axis[d], journals[b].position[d], "m");
+    if (support.geometry.clearance > 0) {
+      for (std::size_t d = 0; d < 2; ++d)
+        summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
+      film::Summary report;
+      core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
+      // Between the nodes of a mesh, too.
+      const double thinnest = std::min(report.min_thickness, thickness[b]);
+      summary.set(head + "min_thickness", thinnest, "m");
+      summary.set(head + "min_thickness_ratio", thinnest / support.geometry.clearance, "1");
+      summary.set(head + "minimum_film", support.minimum_film, "m");
+      summary.set(head + "max_pressure", report.max_pressure, "Pa");
+      summary.set(head + "side_flow", report.side_flow, "m^3/s");
+      // Only pads with a start know it; a film that reforms freely has no inlet.
+      if (std::isfinite(report.inlet_flow)) summary.set(head + "inlet_flow", report.inlet_flow, "m^3/s");
+      summary.set(head + "power_loss", report.power_loss, "W");
+      total_loss += report.power_loss;
+    }
+    // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
+    film::Coefficients tangents;
+    core::agree(context.comm,
+                [&] { tangents = system.film_coefficients(static_cast<int>(b), x.data(), system.speed()); });
+    for (std::size_t d = 0; d < 2; ++d)
+      for (std::size_t e = 0; e < 2; ++e) {
+        summary.set(head + "K." + axis[d] + axis[e], tangents.stiffness[2 * d + e], "N/m");
+        summary.set(head + "C." + axis[d] + axis[e], tangents.damping[2 * d + e], "N s/m");
+      }
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
+      if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");
+    }
+  }
+  summary.set("power_loss", total_loss, "W");
+}
+
+// The same on other film meshes, for the error bars.
+void put_bars(const Context& context, const system::RotorSystem& system, double speed, const std::vector<double>& x) {
+  SummaryBars bars(context.results.summary(), law_of(context.machine));
+  for (const FilmMesh& mesh : film_meshes(context.machine))
+    bars.add(mesh.axis, mesh.spacing, [&](io::StudySummary& there) {
+      system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);
+      const core::Vector at = resampled(other, system, x);
+      other.set_forcing(false);
+      if (solve::find_equilibrium(other, at.get(), {}).converged)
+        put_values(context, other, other.gather(at.get()), there);
+    });
+  bars.write(1e-9);
+}
+
+}  // namespace
+
+StudyResult Static::run(Context& context) {
+  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine),
+                             options.speed.value);
+  Walker walker(system);
+  const std::vector<double> x = system.gather(walker.at(options.speed.value));
+  const auto journals = system.journals(x.data());
+  const auto films = system.film_responses(x.data(), film::Need::force);
+  const auto names = names_of_bearings(context.machine);
+  auto& summary = context.results.summary();
+  auto& group = context.results.group();
+
+  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
+  put_values(context, system, x, summary);
+  // Of all that the summary holds so far: what follows has no mesh.
+  put_bars(context, system, options.speed.value, x);
+  const auto& rotor = system.train().rotor;
+  summary.set("mass.total", rotor::total_mass(rotor), "kg");
+  for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
+    const auto &a = context.machine.bearings[i], &b = context.machine.bearings[i + 1];
+    if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
+  }
+  summary.set("length.total", rotor::node_positions(rotor).back(), "m");
+  std::vector<double> px, py, load;
+  for (std::size_t b = 0; b < names.size(); ++b) {
+    px.push_back(journals[b].position[0]);
+    py.push_back(journals[b].position[1]);
+    load.push_back(films[b].force[1]);
+  }
+
+  const std::vector<double> shaft = system.shaft(x.data(), 0, true), z = rotor::node_positions(rotor);
+  std::vector<double> sx, sy, slope_x, slope_y;
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    sx.push_back(shaft[4 * k]);
+    sy.push_back(shaft[4 * k + 1]);
+    slope_x.push_back(shaft[4 * k + 2]);
+    slope_y.push_back(shaft[4 * k + 3]);
+  }
+  auto& nodes = group.child("nodes");
+  nodes.put("z", z, "m", "axial position of the shaft's nodes");
+  nodes.put("x", sx, "m", "horizontal position of the shaft");
+  nodes.put("y", sy, "m", "vertical position of the shaft, positive up (sag line)");
+  nodes.put("slope_x", slope_x, "1", "dx/dz of the shaft");
+  nodes.put("slope_y", slope_y, "1", "dy/dz of the shaft");
+  put_bearings(group, context.machine);
+  auto& bearings = group.child("bearings");
+  bearings.put("x", px, "m", "journal relative to the bearing centre");
+  bearings.put("y", py, "m", "journal relative to the bearing centre");
+  bearings.put("load", load, "N", "journal on bearing, positive down");
+  std::vector<double> bz;
+  for (const auto& s : system.train().supports) bz.push_back(z[static_cast<std::size_t>(s.node - 1)]);
+  bearings.put("z", bz, "m", "axial position");
+  group.set("speed", options.speed.value);
+  if (options.fields) put_films(context, system, x, z);
+  summary.points = 1;
+  return context.results.finish("completed", true);
+}
+
+}  // namespace whirl::study

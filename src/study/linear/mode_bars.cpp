@@ -1,0 +1,120 @@
+#include "study/linear/mode_bars.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
+#include "study/common.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_speeds = 5;
+
+void append(std::vector<double>& out, std::complex<double> lambda) {
+  out.insert(out.end(), {lambda.real(), lambda.imag(), spectral::log_decrement(lambda)});
+}
+
+// Real part, imaginary part and log decrement of each mode of `here` as it is among `there`.
+std::vector<double> paired(const std::vector<spectral::ModePoint>& here,
+                           const std::vector<spectral::ModePoint>& there) {
+  const std::vector<int> before = spectral::match_modes(here, there, 0).before;
+  std::vector<double> out;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    const auto at = std::find(before.begin(), before.end(), static_cast<int>(k));
+    if (at == before.end())
+      out.insert(out.end(), 3, unknown);
+    else
+      append(out, there[static_cast<std::size_t>(at - before.begin())].lambda);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::size_t> few_of(std::size_t n) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < std::min(n, most_speeds); ++k)
+    out.push_back(n <= most_speeds ? k : k * (n - 1) / (most_speeds - 1));
+  return out;
+}
+
+// One task is one mesh at all these speeds, each from its neighbour.
+ModeBars::ModeBars(const Context& context, const Groups& groups, Pieces& pieces,
+                   const std::vector<SampledModes>& sampled,
+                   const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  any_ = !meshes.empty();
+  if (!any_ || sampled.empty()) return;
+  const auto compute = [&](std::size_t i) {
+    std::vector<double> all;
+    const bool answered = has_answer([&] {
+      system::RotorSystem there(groups.space, with_film_mesh(system::train_of(context.machine), meshes[i].factor),
+                                sampled.front().speed);
+      Walker walker(there);
+      for (const SampledModes& s : sampled) {
+        const auto numbers = paired(s.modes, modes_at(there, walker.at(s.speed)));
+        all.insert(all.end(), numbers.begin(), numbers.end());
+      }
+    });
+    if (!answered) all.clear();
+    return all;
+  };
+  // Each mesh starts anew and leaves nothing behind.
+  const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
+  const auto on_meshes = distribute(groups, meshes.size(), compute, pieces, "film mesh", none);
+  std::vector<double> here;
+  for (const SampledModes& s : sampled)
+    for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);
+  Bars bars(here, law_of(context.machine));
+  for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
+  std::size_t k = 0;
+  for (const SampledModes& s : sampled)
+    for (const int id : s.ids) {
+      of_[id].push_back({s.speed, {bars[k].total(), bars[k + 1].total(), bars[k + 2].total()}});
+      k += 3;
+    }
+}
+
+std::array<double, 3> ModeBars::at(int id, double speed) const {
+  std::array<double, 3> out{unknown, unknown, unknown};
+  const auto found = of_.find(id);
+  if (found == of_.end()) return out;
+  const auto& points = found->second;
+  auto right = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.speed >= speed; });
+  const auto left = right == points.begin() ? right : std::prev(right);
+  if (right == points.end()) right = left;
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = std::isnan(left->bar[k]) || std::isnan(right->bar[k]) ? unknown : std::max(left->bar[k], right->bar[k]);
+  return out;
+}
+
+std::map<std::string, double> ModeBars::named(int id, double speed) const {
+  if (!any_) return {};
+  const auto bar = at(id, speed);
+  return {{"real_uncertainty", bar[0]}, {"imag_uncertainty", bar[1]}, {"log_decrement_uncertainty", bar[2]}};
+}
+
+std::map<std::string, double> ModeBars::as_bar(double error) const {
+  if (!any_) return {};
+  return {{"uncertainty", error}};
+}
+
+void ModeBars::put(io::Group& spectrum, const std::vector<std::int64_t>& ids, const std::vector<double>& speeds) const {
+  if (!any_) return;
+  std::array<std::vector<double>, 3> column;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    const auto bar = at(static_cast<int>(ids[k]), speeds[k]);
+    for (std::size_t i = 0; i < 3; ++i) column[i].push_back(bar[i]);
+  }
+  spectrum.put("damping_real_uncertainty", column[0], "1/s", "estimated error from the film mesh");
+  spectrum.put("frequency_uncertainty", column[1], "rad/s", "likewise");
+  spectrum.put("log_decrement_uncertainty", column[2], "1", "likewise");
+}
+
+}  // namespace whirl::study

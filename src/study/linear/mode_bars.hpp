@@ -1,0 +1,55 @@
+#pragma once
+// Error bars of eigenvalues over speed.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "study/groups.hpp"
+#include "study/pieces.hpp"
+#include "whirl/spectral/follow.hpp"
+#include "whirl/study/study.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+/// The modes of one speed with the identities that they have over all speeds.
+struct SampledModes {
+  double speed = 0;
+  std::vector<int> ids;
+  std::vector<spectral::ModePoint> modes;
+};
+
+/// At most five of n, first and last among them: the speeds at which modes are computed on other meshes.
+[[nodiscard]] std::vector<std::size_t> few_of(std::size_t n);
+
+class ModeBars {
+public:
+  /// Computes the modes at the same equilibria on other film meshes, each paired by its shape. `modes_at` gives those
+  /// of a system at an equilibrium. Collective.
+  ModeBars(const Context& context, const Groups& groups, Pieces& pieces, const std::vector<SampledModes>& sampled,
+           const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at);
+
+  /// Bars of the real part [1/s], imaginary part [rad/s] and log decrement of a mode: the larger one of the neighbours,
+  /// so that a difference of meshes that vanishes by chance at one speed hides nothing. NaN: unknown.
+  [[nodiscard]] std::array<double, 3> at(int id, double speed) const;
+  // All of these give nothing where no film has a mesh.
+  /// The same as numbers of a summary.
+  [[nodiscard]] std::map<std::string, double> named(int id, double speed) const;
+  [[nodiscard]] std::map<std::string, double> as_bar(double error) const;
+  /// The same as columns beside those of the modes with these identities at these speeds.
+  void put(io::Group& spectrum, const std::vector<std::int64_t>& ids, const std::vector<double>& speeds) const;
+
+private:
+  struct Point {
+    double speed;
+    std::array<double, 3> bar;
+  };
+  std::map<int, std::vector<Point>> of_;
+  bool any_ = false;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,400 @@
+#include "whirl/study/linear/modes.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "study/bars/verdict.hpp"
+#include "study/common.hpp"
+#include "study/groups.hpp"
+#include "study/linear/mode_bars.hpp"
+#include "study/linear/mode_margins.hpp"
+#include "study/pieces.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/rotor/frequencies.hpp"
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/follow.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+// A mode with its shape along the shaft.
+struct ShaftMode {
+  Complex lambda;
+  std::vector<Complex> x, y, slope_x, slope_y;  // per node
+  bool undamped = false;                        // its real part is rounding
+  int id = -1;                                  // the same for the same mode at other speeds
+
+  [[nodiscard]] std::vector<Complex> both() const {
+    std::vector<Complex> all = x;
+    all.insert(all.end(), y.begin(), y.end());
+    return all;
+  }
+  [[nodiscard]] std::array<std::vector<Complex>*, 4> columns() { return {&x, &y, &slope_x, &slope_y}; }
+};
+
+std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency) {
+  spectral::EigenOptions options;
+  options.count = 2 * count + 40;
+  options.rounding = true;
+  std::vector<ShaftMode> out;
+  for (const auto& mode : spectral::modes(system, equilibrium, options)) {
+    // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
+    if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
+    if (static_cast<int>(out.size()) == count) break;
+    std::vector<double> part[2];
+    for (int k = 0; k < 2; ++k) {
+      std::vector<double> state(mode.shape.size());
+      for (std::size_t i = 0; i < state.size(); ++i) state[i] = k == 0 ? mode.shape[i].real() : mode.shape[i].imag();
+      part[k] = system.shaft(state.data(), 0, false);
+    }
+    ShaftMode m;
+    m.undamped = mode.neutral();
+    m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
+    Complex largest = 0;
+    for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
+      for (std::size_t k = 0; k < 4; ++k) m.columns()[k]->emplace_back(part[0][i + k], part[1][i + k]);
+      for (const Complex& v : {m.x.back(), m.y.back()})
+        if (std::abs(v) > std::abs(largest)) largest = v;
+    }
+    if (largest != 0.0)
+      for (auto* column : m.columns())
+        for (Complex& v : *column) v /= largest;
+    out.push_back(std::move(m));
+  }
+  return out;
+}
+
+// Modes of one speed as numbers, to send them between ranks.
+std::vector<double> pack(std::vector<ShaftMode> modes) {
+  std::vector<double> flat{static_cast<double>(modes.size()),
+                           modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
+  const auto put = [&](Complex v) {
+    flat.push_back(v.real());
+    flat.push_back(v.imag());
+  };
+  for (ShaftMode& m : modes) {
+    put(m.lambda);
+    put(m.undamped ? 1.0 : 0.0);
+    for (const auto* column : m.columns())
+      for (const Complex& v : *column) put(v);
+  }
+  return flat;
+}
+
+std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
+  const auto count = static_cast<std::size_t>(flat[0]), nodes = static_cast<std::size_t>(flat[1]);
+  std::vector<ShaftMode> modes(count);
+  std::size_t at = 2;
+  const auto take = [&] {
+    at += 2;
+    return Complex(flat[at - 2], flat[at - 1]);
+  };
+  for (ShaftMode& m : modes) {
+    m.lambda = take();
+    m.undamped = take().real() > 0;
+    for (auto* column : m.columns())
+      for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
+  }
+  return modes;
+}
+
+// The modes at one speed, those of lowest frequency first.
+struct Station {
+  double speed = 0;
+  bool reported = false;  // asked for; others only help to follow the modes
+  std::vector<ShaftMode> modes;
+};
+
+constexpr std::size_t beyond = 8;  // modes above those asked for, from which some come down on the way
+constexpr int most_halvings = 4;   // of the way between two speeds asked for
+
+std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes) {
+  std::vector<spectral::ModePoint> points;
+  for (const ShaftMode& m : modes) points.push_back({m.lambda, m.both()});
+  return points;
+}
+
+// Puts stations between those whose modes cannot be told apart, and then gives each mode an identity. As many speeds
+// are added at most as were asked for.
+void follow(std::vector<Station>& stations, std::size_t count,
+            const std::function<std::vector<std::vector<ShaftMode>>(const std::vector<double>&)>& modes_at) {
+  const std::size_t most = 2 * stations.size();
+  std::vector<double> widths;
+  for (std::size_t i = 1; i < stations.size(); ++i) widths.push_back(stations[i].speed - stations[i - 1].speed);
+  const double least =
+      widths.empty() ? 0 : *std::max_element(widths.begin(), widths.end()) / std::pow(2.0, most_halvings + 0.5);
+  for (;;) {
+    std::vector<double> between;
+    for (std::size_t i = 1; i < stations.size(); ++i) {
+      const Station &left = stations[i - 1], &right = stations[i];
+      if (right.speed - left.speed > 2 * least && stations.size() + between.size() < most &&
+          !spectral::match_modes(points_of(left.modes), points_of(right.modes), count).sure)
+        between.push_back((left.speed + right.speed) / 2);
+    }
+    if (between.empty()) break;
+    auto found = modes_at(between);
+    for (std::size_t i = 0; i < between.size(); ++i) stations.push_back({between[i], false, std::move(found[i])});
+    std::sort(stations.begin(), stations.end(), [](const Station& a, const Station& b) { return a.speed < b.speed; });
+  }
+  int next = 0;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    auto& now = stations[i].modes;
+    if (i > 0) {
+      const auto& last = stations[i - 1].modes;
+      const spectral::ModeMatching pairs = spectral::match_modes(points_of(last), points_of(now), count);
+      for (std::size_t k = 0; k < now.size(); ++k)
+        if (pairs.before[k] >= 0) now[k].id = last[static_cast<std::size_t>(pairs.before[k])].id;
+    }
+    for (ShaftMode& m : now)
+      if (m.id < 0) m.id = next++;
+  }
+  // Numbers from one in the order in which the results show the modes.
+  std::map<int, int> number;
+  for (Station& s : stations)
+    if (s.reported)
+      for (std::size_t k = 0; k < std::min(count, s.modes.size()); ++k)
+        number.emplace(s.modes[k].id, static_cast<int>(number.size()) + 1);
+  for (Station& s : stations)
+    for (ShaftMode& m : s.modes) m.id = number.contains(m.id) ? number.at(m.id) : 0;
+}
+
+// Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
+StudyResult rigid_modes(Context& context, const ModesOptions& options) {
+  rotor::Options shaft = context.machine.rotor;
+  shaft.reduction = {};
+  std::vector<int> pinned;
+  if (options.supports == ModesOptions::Supports::pinned)
+    for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
+  const auto frequencies =
+      rotor::natural_frequencies(Groups::split(context.comm, context.machine).space, shaft, pinned, options.count);
+  auto& summary = context.results.summary();
+  for (std::size_t k = 0; k < frequencies.size(); ++k) {
+    summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
+    summary.modes.push_back({0, 0, frequencies[k], 0, "planar", "rad/s", {}, name_of(StabilityClass::undamped)});
+  }
+  context.results.group()
+      .child("spectrum")
+      .put("frequency", frequencies, "rad/s", "undamped natural frequencies in one plane");
+  summary.points = 1;
+  return context.results.finish("completed", true);
+}
+
+}  // namespace
+
+StudyResult Modes::run(Context& context) {
+  if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
+  const std::vector<double> speeds = options.all_speeds();
+  const std::vector<double> shape_speeds = options.all_shape_speeds();
+  const std::string unit = options.unit();
+  const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
+  const auto count = static_cast<std::size_t>(options.count);
+  const Groups groups = Groups::split(context.comm, context.machine);
+  system::RotorSystem system(groups.space, system::train_of(context.machine), speeds.front());
+  Walker walker(system);
+  auto& results = context.results;
+  auto& summary = results.summary();
+  auto& group = results.group();
+  std::size_t ready = 0, wanted = 0;
+  int rounds = 0;
+  Pieces pieces(results, context.resume);
+  const auto modes_at = [&](const std::vector<double>& list) {
+    wanted += list.size();
+    const auto compute = [&](std::size_t i) {
+      auto modes = pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit));
+      ready += static_cast<std::size_t>(groups.count);
+      results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
+                                   wanted, deck::from_si(list[i], unit), unit, results.seconds()));
+      return modes;
+    };
+    const auto packed = distribute(groups, list.size(), compute, pieces,
+                                   rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
+    ++rounds;
+    std::vector<std::vector<ShaftMode>> out;
+    for (const auto& p : packed) out.push_back(unpack(p));
+    return out;
+  };
+
+  std::vector<double> all = speeds;
+  all.insert(all.end(), shape_speeds.begin(), shape_speeds.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  std::vector<Station> stations;
+  auto first = modes_at(all);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    stations.push_back({all[i], std::find(speeds.begin(), speeds.end(), all[i]) != speeds.end(), std::move(first[i])});
+  // Modes are followed over a range; single speeds far apart have only their own.
+  if (options.range) {
+    follow(stations, count, modes_at);
+  } else {
+    for (Station& s : stations)
+      for (std::size_t k = 0; k < s.modes.size(); ++k) s.modes[k].id = static_cast<int>(k) + 1;
+  }
+  const auto station_at = [&](double speed) -> const Station& {
+    return *std::find_if(stations.begin(), stations.end(), [&](const Station& s) { return s.speed == speed; });
+  };
+
+  std::vector<SampledModes> sampled;
+  for (const std::size_t i : few_of(stations.size())) {
+    sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes)});
+    for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
+  }
+  const ModeBars bars(context, groups, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
+    return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit));
+  });
+
+  const std::vector<double> mass = rotor::node_masses(system.train().rotor);
+  std::vector<double> speed_column, frequency, real, decrement, factor, whirl_column, forward_column;
+  std::vector<std::int64_t> id_column;
+  std::vector<std::string> sense_column, stability_column;
+  for (const double speed : speeds) {
+    const auto& modes = station_at(speed).modes;
+    for (std::size_t k = 0; k < std::min(count, modes.size()); ++k) {
+      const ShaftMode& m = modes[k];
+      const auto energy = spectral::whirl_energy(m.x, m.y, mass);
+      const auto* sense = spectral::name_of(spectral::sense_of_whirl(energy));
+      speed_column.push_back(speed);
+      id_column.push_back(m.id);
+      frequency.push_back(m.lambda.imag());
+      real.push_back(m.lambda.real());
+      decrement.push_back(m.undamped ? 0 : spectral::log_decrement(m.lambda));
+      factor.push_back(spectral::stability_factor(m.lambda));
+      whirl_column.push_back(energy.whirl);
+      forward_column.push_back(energy.forward);
+      sense_column.emplace_back(sense);
+      const char* const stability = name_of(m.undamped            ? StabilityClass::undamped
+                                            : m.lambda.real() > 0 ? StabilityClass::unstable
+                                                                  : StabilityClass::stable);
+      stability_column.emplace_back(stability);
+      summary.modes.push_back(
+          {deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense, unit, {}, stability});
+      summary.modes.back().more = bars.named(m.id, speed);
+    }
+  }
+
+  // Damped frequency meets the speed of the shaft between two speeds.
+  struct Crossing {
+    double s0, s1, f0, f1;
+    ShaftMode guide;
+  };
+  std::vector<Crossing> crossings;
+  for (std::size_t i = 1; options.range && i < stations.size(); ++i)
+    for (const ShaftMode& m : stations[i].modes)
+      for (const ShaftMode& b : stations[i - 1].modes) {
+        const double f0 = b.lambda.imag() - stations[i - 1].speed, f1 = m.lambda.imag() - stations[i].speed;
+        if (m.id == b.id && m.id > 0 && f0 * f1 < 0)
+          crossings.push_back({stations[i - 1].speed, stations[i].speed, f0, f1, m});
+      }
+  // Where the chords cross, refined by solving there and following the mode.
+  const auto refine = [&](std::size_t i) {
+    Crossing c = crossings[i];
+    for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
+      const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
+      const auto there = shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit);
+      const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
+      const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
+      if (found == pairs.before.end()) break;
+      const ShaftMode& m = there[static_cast<std::size_t>(found - pairs.before.begin())];
+      const double f = m.lambda.imag() - s;
+      if (f * c.f1 < 0) c.s0 = c.s1, c.f0 = c.f1;
+      c.s1 = s;
+      c.f1 = f;
+      c.guide.lambda = m.lambda;
+      if (std::abs(f) < 1e-7 * s) break;
+    }
+    return std::vector<double>{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
+  };
+  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical", walker.trail());
+  struct Critical {
+    double speed, decrement;
+    int id;
+    double error, decrement_error;
+  };
+  std::vector<Critical> criticals;
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const Crossing& c = crossings[i];
+    const auto bar = bars.at(c.guide.id, refined[i][0]);
+    criticals.push_back({refined[i][0], spectral::log_decrement({refined[i][1], refined[i][2]}), c.guide.id,
+                         bar[1] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)), bar[2]});
+  }
+
+  auto& spectrum = group.child("spectrum");
+  spectrum.put("speed", speed_column, "rad/s", "shaft speed");
+  spectrum.put("mode", id_column, "mode followed by its shape");
+  spectrum.put("frequency", frequency, "rad/s", "damped frequency, imaginary part of the eigenvalue");
+  spectrum.put("damping_real", real, "1/s", "real part of the eigenvalue");
+  spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
+  bars.put(spectrum, id_column, speed_column);
+  spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
+  spectrum.put("whirl", sense_column, "sense of whirl by the kinetic energy of the shaft's nodes");
+  spectrum.put("whirl_share", whirl_column, "1", "of the kinetic energy: 0 every node on a line, 1 on a circle");
+  spectrum.put("forward_share", forward_column, "1", "the same, backward motion counted negative");
+  spectrum.put("stability", stability_column,
+               "stable, unstable, or undamped: the real part is rounding, shown as zero");
+  group.set("speed_unit", unit);
+
+  std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
+  std::vector<double> critical_speed, critical_decrement;
+  std::vector<std::int64_t> critical_mode;
+  for (std::size_t k = 0; k < criticals.size(); ++k) {
+    summary.set(fmt::format("critical.{}.speed", k + 1), deck::from_si(criticals[k].speed, unit), unit,
+                bars.as_bar(deck::from_si(criticals[k].error, unit)));
+    summary.set(fmt::format("critical.{}.log_decrement", k + 1), criticals[k].decrement, "1",
+                bars.as_bar(criticals[k].decrement_error));
+    put_margins(summary, fmt::format("critical.{}.", k + 1), criticals[k].speed, criticals[k].error,
+                criticals[k].decrement, criticals[k].decrement_error, options.operating);
+    critical_speed.push_back(criticals[k].speed);
+    critical_decrement.push_back(criticals[k].decrement);
+    critical_mode.push_back(criticals[k].id);
+  }
+  group.child("critical").put("speed", critical_speed, "rad/s", "speed equal to the damped frequency");
+  group.child("critical").put("log_decrement", critical_decrement, "1", "of the mode there");
+  group.child("critical").put("mode", critical_mode, "mode followed by its shape");
+
+  put_bearings(group, context.machine);
+  auto& shapes = group.child("shapes");
+  const auto z = rotor::node_positions(system.train().rotor);
+  std::vector<double> flat[8], at_frequency, at_speed, at_decrement;
+  std::vector<std::string> at_sense;
+  std::vector<std::int64_t> at_mode;
+  for (const double speed : shape_speeds) {
+    const auto& modes = station_at(speed).modes;
+    for (std::size_t j = 0; j < std::min(count, modes.size()); ++j) {
+      ShaftMode m = modes[j];
+      at_speed.push_back(speed);
+      at_mode.push_back(m.id);
+      at_frequency.push_back(m.lambda.imag());
+      at_decrement.push_back(spectral::log_decrement(m.lambda));
+      at_sense.emplace_back(spectral::name_of(spectral::sense_of_whirl(m.x, m.y, mass)));
+      for (std::size_t k = 0; k < 8; ++k)
+        for (const Complex& v : *m.columns()[k / 2]) flat[k].push_back(k % 2 == 0 ? v.real() : v.imag());
+    }
+  }
+  const char* const names[] = {"x_real",       "x_imag",       "y_real",       "y_imag",
+                               "slope_x_real", "slope_x_imag", "slope_y_real", "slope_y_imag"};
+  for (std::size_t k = 0; k < 8; ++k)
+    shapes.put(names[k], {at_speed.size(), z.size()}, flat[k], k < 4 ? "1" : "1/m",
+               k < 4 ? "shape [mode][node], largest displacement one" : "its derivative along the shaft");
+  shapes.put("speed", at_speed, "rad/s", "speed of the shapes");
+  shapes.put("mode", at_mode, "mode followed by its shape");
+  shapes.put("z", z, "m", "axial position of the nodes");
+  shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
+  shapes.put("log_decrement", at_decrement, "1", "of the shapes");
+  shapes.put("whirl", at_sense, "sense of whirl by the kinetic energy of the shaft's nodes");
+  summary.points = static_cast<long>(speeds.size());
+  return results.finish("completed", true);
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,80 @@
+#include "whirl/study/linear/modes.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "study/cost.hpp"
+
+namespace whirl::study {
+
+std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
+  using enum ModesOptions::Supports;
+  static constexpr deck::Name<ModesOptions::Supports> table[] = {{films, "films", "linearised films and pedestals"},
+                                                                 {pinned, "pinned", "journals held, slopes free"},
+                                                                 {free, "free", "no bearings"}};
+  return table;
+}
+
+void describe(deck::Description<ModesOptions>& d) {
+  d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
+  d.add("supports", &ModesOptions::supports, "what holds the journals");
+  d.add("range", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
+  d.add("points", &ModesOptions::points, deck::in(2, 1e8), "speeds in the range, evenly spaced with both ends");
+  d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
+  d.add("count", &ModesOptions::count, deck::in(1, 1e5), "modes at each speed, those of lowest frequency");
+  d.add("max_frequency", &ModesOptions::max_frequency, "rad/s", deck::positive,
+        "whirl frequency up to which modes are reported");
+  d.add("operating", &ModesOptions::operating, "rad/s", deck::positive,
+        "operating speeds, lowest to highest, from which separation margins of critical speeds are counted",
+        "API 617, API 684");
+  d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
+        "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
+  d.check([](const ModesOptions& o, const deck::Report& r) {
+    if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
+    if (o.operating && !(o.operating->from <= o.operating->to))
+      r.fail("operating", "the lowest operating speed comes first");
+    // Without films the shaft is taken at rest, whatever its speed.
+    if (o.supports != ModesOptions::Supports::films) return;
+    if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
+  });
+}
+
+std::vector<double> ModesOptions::all_speeds() const {
+  std::vector<double> s;
+  for (const deck::Quantity& q : speeds) s.push_back(q.value);
+  if (range)
+    for (int i = 0; i < points; ++i) s.push_back(range->from + (range->to - range->from) * i / (points - 1));
+  return s;
+}
+
+std::vector<double> ModesOptions::all_shape_speeds() const {
+  std::vector<double> s;
+  for (const deck::Quantity& q : shapes_at) s.push_back(q.value);
+  if (s.empty()) s.push_back(all_speeds().back());
+  return s;
+}
+
+std::string ModesOptions::unit() const {
+  return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
+}
+
+double Modes::memory(const system::Machine& machine) const {
+  const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
+  return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
+}
+
+void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (options.supports != ModesOptions::Supports::films) return;
+  bool at_rest = options.range && std::min(options.range->from, options.range->to) <= 0;
+  for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;
+  if (!at_rest) return;
+  for (const system::Bearing& b : machine.bearings)
+    if (b.film.kind != film::Options::Kind::linear)
+      return report.fail(options.range ? "range" : "speeds",
+                         fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
+                                     "films have coefficients at rest, too)",
+                                     b.name));
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,105 @@
+#include "study/linear/response_bars.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/bars/summary_bars.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr double apart = 5e-3, together = 4e-3;  // of the speed
+
+// Of a single resonance g = 1/f^2 is a parabola over the speed, with g''/g = 2 (2 Q/s)^2 at its foot, however far apart
+// the three speeds stand on its flanks.
+struct Top {
+  double speed, height, quality;
+};
+
+Top top_of(double centre, const std::array<double, 3>& f) {
+  std::array<double, 3> g{};
+  for (std::size_t i = 0; i < 3; ++i) g[i] = 1 / (f[i] * f[i]);
+  const double h = apart * centre, slope = (g[2] - g[0]) / (2 * h), curvature = (g[0] - 2 * g[1] + g[2]) / (h * h),
+               foot = g[1] - slope * slope / (2 * curvature);
+  return {centre - slope / curvature, 1 / std::sqrt(foot), centre / 2 * std::sqrt(std::max(0.0, curvature / foot / 2))};
+}
+
+class Tops {
+public:
+  explicit Tops(const std::vector<NamedPeak>& peaks) {
+    for (const NamedPeak& p : peaks)
+      if (of(p.speed) == centres_.size()) centres_.push_back(p.speed);
+  }
+  [[nodiscard]] std::vector<double> speeds() const {
+    std::vector<double> out;
+    for (const double c : centres_) out.insert(out.end(), {c * (1 - apart), c, c * (1 + apart)});
+    return out;
+  }
+  [[nodiscard]] Top of(const NamedPeak& peak, const MeshResponse& r) const {
+    const std::size_t k = of(peak.speed);
+    std::array<double, 3> f{};
+    for (std::size_t i = 0; i < 3; ++i) f[i] = r.height[3 * k + i][peak.node];
+    return top_of(centres_[k], f);
+  }
+
+private:
+  [[nodiscard]] std::size_t of(double speed) const {
+    const auto at =
+        std::find_if(centres_.begin(), centres_.end(), [&](double c) { return std::abs(c - speed) < together * c; });
+    return static_cast<std::size_t>(at - centres_.begin());
+  }
+  std::vector<double> centres_;
+};
+
+// What refining leaves of a value of one of the peaks; nothing of values at the operating speed. A margin is a
+// difference of speeds over one of them; the required one moves with 1/(AF - 1.5).
+double location_of(const std::vector<NamedPeak>& peaks, const std::string& name, double value) {
+  const auto p = std::find_if(peaks.begin(), peaks.end(), [&](const NamedPeak& q) { return name.starts_with(q.head); });
+  if (p == peaks.end()) return 0;
+  if (name.ends_with("separation_margin")) return value == 0 ? 0 : p->errors.speed * (1 + value);
+  if (name.ends_with("required_margin")) {
+    const double af = p->amplification;
+    return af < 2.5 ? 0 : 0.17 * p->errors.factor * af / ((af - 1.5) * (af - 1.5));
+  }
+  return std::abs(value) * (name.ends_with("speed")                  ? p->errors.speed
+                            : name.ends_with("amplification_factor") ? p->errors.factor
+                                                                     : p->errors.height);
+}
+
+// Films in closed form have no mesh: what the refinement of the peaks leaves is all.
+void put_locations(io::StudySummary& summary, const std::vector<NamedPeak>& peaks) {
+  for (auto& [name, q] : summary.values)
+    for (const NamedPeak& p : peaks)
+      if (name.starts_with(p.head) && !name.ends_with(".node"))
+        q.more["uncertainty"] = q.more["uncertainty_location"] = location_of(peaks, name, q.value);
+}
+
+}  // namespace
+
+void put_response_bars(io::StudySummary& summary, const std::vector<FilmMesh>& meshes, const MeshLaw& law,
+                       const std::vector<NamedPeak>& peaks, const PutPeak& put, const SolveOnMesh& solve) {
+  if (meshes.empty()) return put_locations(summary, peaks);
+  const Tops tops(peaks);
+  const std::vector<double> speeds = tops.speeds();
+  SummaryBars bars(summary, law);
+  // Without the response about the peaks on this mesh all bars are unknown; the response itself stays.
+  MeshResponse here;
+  const bool known = has_answer([&] { here = solve({1, 1}, speeds, "bars"); });
+  if (!known) summary.warnings.emplace_back("the response beside its peaks could not be computed: no error bars");
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    bars.add(meshes[i].axis, meshes[i].spacing, [&](io::StudySummary& there) {
+      if (!known) return;
+      const MeshResponse moved = solve(meshes[i].factor, speeds, fmt::format("bars {}", i + 1));
+      there = moved.operating;
+      for (const NamedPeak& p : peaks) {
+        const Top a = tops.of(p, here), b = tops.of(p, moved);
+        put(there, p.head, p.speed + b.speed - a.speed, p.height + b.height - a.height,
+            p.amplification * b.quality / a.quality);
+      }
+    });
+  bars.write([&](const std::string& name, double value) { return location_of(peaks, name, value); });
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,128 @@
+#include "study/linear/response_peaks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace whirl::study {
+namespace {
+
+// Where the parabola of 1/f^2 through the speeds about a top has its foot: exactly the top of a single resonance. Not a
+// number if that lies beyond its neighbours. Speeds closer to the top than a few tolerances, which other places may
+// have asked for, say nothing of its curvature.
+double foot_of(const ResponseCurve& curve, std::size_t top) {
+  const double s1 = curve.speed[top], apart = 4 * peak_tolerance * s1;
+  std::size_t low = top - 1, high = top + 1;
+  while (low > 0 && s1 - curve.speed[low] < apart) --low;
+  while (high + 1 < curve.speed.size() && curve.speed[high] - s1 < apart) ++high;
+  const auto g = [&](std::size_t k) { return 1 / std::pow(curve.height[k], 2); };
+  const double s0 = curve.speed[low], s2 = curve.speed[high], g0 = g(low), g1 = g(top), g2 = g(high);
+  const double u = (s1 - s0) * (s1 - s0) * (g1 - g2), v = (s1 - s2) * (s1 - s2) * (g1 - g0),
+               w = (s1 - s0) * (g1 - g2) - (s1 - s2) * (g1 - g0);
+  const double foot = w != 0 ? s1 - 0.5 * (u - v) / w : s1;
+  return foot > s0 && foot < s2 ? foot : std::numeric_limits<double>::quiet_NaN();
+}
+
+// Where the curve falls to 0.707 of a peak's height on either side of it (API 684): between two speeds of the curve.
+// There 1/f^2 is a straight line over (N - N_top)^2, as it is of a single resonance f = f_top/sqrt(1 + (2 Q (N/N_top -
+// 1))^2). Nothing where the curve ends first.
+struct Side {
+  double inner = 0, outer = 0, crossing = 0;
+};
+std::array<std::optional<Side>, 2> sides_of(const ResponseCurve& curve, std::size_t top) {
+  const auto value = [&](std::size_t k) { return curve.height[k]; };
+  const double level = value(top) / std::sqrt(2.0), middle = curve.speed[top];
+  std::array<std::optional<Side>, 2> sides;
+  for (std::size_t s = 0; s < 2; ++s) {
+    std::size_t outer = top;
+    while ((s == 0 ? outer > 0 : outer + 1 < curve.speed.size()) && value(outer) > level) s == 0 ? --outer : ++outer;
+    if (value(outer) > level) continue;
+    const std::size_t inner = s == 0 ? outer + 1 : outer - 1;
+    const auto g = [](double f) { return 1 / (f * f); };
+    const auto apart = [&](std::size_t k) { return (curve.speed[k] - middle) * (curve.speed[k] - middle); };
+    const double w = (g(level) - g(value(inner))) / (g(value(outer)) - g(value(inner)));
+    const double distance = std::sqrt(apart(inner) + w * (apart(outer) - apart(inner)));
+    sides[s] = {curve.speed[inner], curve.speed[outer], middle + (s == 0 ? -distance : distance)};
+  }
+  return sides;
+}
+
+// N/(N2 - N1)
+double amplification(const ResponseCurve& curve, std::size_t top) {
+  const auto sides = sides_of(curve, top);
+  if (!sides[0] || !sides[1]) return std::numeric_limits<double>::quiet_NaN();
+  return curve.speed[top] / (sides[1]->crossing - sides[0]->crossing);
+}
+
+// What is left of a width: its crossings may be off by their distance from the nearer one of their neighbours, relative
+// to the width; nothing if one of them is missing.
+std::array<double, 2> left_of_width(const std::array<std::optional<Side>, 2>& sides) {
+  const double width = sides[1]->crossing - sides[0]->crossing;
+  std::array<double, 2> left{};
+  for (std::size_t k = 0; k < 2; ++k)
+    left[k] = std::min(std::abs(sides[k]->crossing - sides[k]->inner), std::abs(sides[k]->crossing - sides[k]->outer)) /
+              width;
+  return left;
+}
+
+// A top that is off by a part d of its speed is too low by (2 Q d)^2/2 of its height. Where a resonance is narrower
+// than that it has no height that could be told: an undamped one.
+constexpr double narrow = 0.5;
+
+}  // namespace
+
+std::vector<std::size_t> ResponseCurve::tops() const {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 1; k + 1 < height.size(); ++k) {
+    if (!(height[k] > height[k - 1] && height[k] >= height[k + 1])) continue;
+    if (!found.empty() && speed[k] - speed[found.back()] < 2 * peak_tolerance * speed[k]) {
+      if (height[k] > height[found.back()]) found.back() = k;
+      continue;
+    }
+    found.push_back(k);
+  }
+  return found;
+}
+
+void ask_for_top(const ResponseCurve& curve, std::size_t top, int pass, std::vector<double>& speeds) {
+  const double here = curve.speed[top], before = curve.speed[top - 1], after = curve.speed[top + 1];
+  const double foot = foot_of(curve, top), off = std::abs(foot - here);
+  if (off <= peak_tolerance * here) return;
+  if (std::isnan(foot)) {  // no parabola with a foot between them: halves
+    speeds.insert(speeds.end(), {(before + here) / 2, (here + after) / 2});
+    return;
+  }
+  speeds.push_back(foot);
+  // A neighbour that stays far away spoils the parabola: nearer ones on either side, which shrink with the move.
+  if (pass < 2) return;
+  for (const double beside : {foot - 5 * off, foot + 5 * off})
+    if (beside > before && beside < after) speeds.push_back(beside);
+}
+
+void ask_for_width(const ResponseCurve& curve, std::size_t top, std::vector<double>& speeds) {
+  const auto sides = sides_of(curve, top);
+  if (!sides[0] || !sides[1]) return;
+  const auto left = left_of_width(sides);
+  for (std::size_t k = 0; k < 2; ++k)
+    if (left[k] > width_tolerance) speeds.push_back(sides[k]->crossing);
+}
+
+Peak peak_at(const ResponseCurve& curve, std::size_t top) {
+  Peak p{curve.speed[top], curve.height[top], amplification(curve, top), {}};
+  const double off = std::abs(foot_of(curve, top) - p.speed) / p.speed;
+  p.errors.speed = off <= peak_tolerance ? peak_tolerance : PeakErrors::unknown;
+  const double share = 2 * p.amplification * peak_tolerance;
+  if (share > narrow) {
+    p.height = p.amplification = PeakErrors::unknown;
+    return p;
+  }
+  p.errors.height = p.errors.speed + (std::isfinite(share) ? share * share / 2 : 0);
+  if (!std::isfinite(p.amplification)) return p;
+  const auto left = left_of_width(sides_of(curve, top));
+  p.errors.factor =
+      std::max(left[0], left[1]) <= width_tolerance ? width_tolerance + p.errors.height : PeakErrors::unknown;
+  return p;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,355 @@
+#include "whirl/study/locus/locus.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "study/bars/film_limit.hpp"
+#include "study/bars/film_mesh.hpp"
+#include "study/bifurcation.hpp"
+#include "study/common.hpp"
+#include "study/cycle/cycle_follower.hpp"
+#include "study/cycle/cycle_record.hpp"
+#include "study/groups.hpp"
+#include "study/located.hpp"
+#include "study/locus/locus_follower.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/solve/bifurcation/normal_form.hpp"
+#include "whirl/study/equilibrium/equilibrium_branch.hpp"
+#include "whirl/system/groups.hpp"
+
+namespace whirl::study {
+namespace {
+
+double width(const deck::Range& range) {
+  return std::abs(range.to - range.from);
+}
+
+}  // namespace
+
+LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : context_(context), options_(options) {
+  for (const auto& s : context.studies) {
+    if (auto cycles = branch_called(*s, options.of)) of_cycles_ = std::move(cycles);
+    if (const auto* rest = dynamic_cast<const EquilibriumBranch*>(s.get()); rest && s->name() == options.of)
+      of_rest_ = &rest->options;
+  }
+  if (!context.earlier.has_group(io::safe_name(options.of)))
+    throw core::NotConverged(fmt::format("there is no branch '{}': fewer flips were found than that", options.of));
+  const io::Group& group = context.earlier.group(io::safe_name(options.of));
+  if (!group.has_group("located"))
+    throw core::NotConverged(
+        fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
+  const std::vector<Located> all = read_located(group.group("located"));
+  if (static_cast<std::size_t>(options.bifurcation) > all.size())
+    throw core::NotConverged(
+        fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), options.bifurcation));
+  seed_ = all[static_cast<std::size_t>(options.bifurcation) - 1];
+  if (of_cycles_ && seed_.cycle.mesh.size() < 2)
+    throw core::NotConverged(
+        fmt::format("bifurcation {} of '{}' is the Hopf point where its cycles are born: follow it from the branch of "
+                    "equilibria, or choose another one",
+                    options.bifurcation, options.of));
+  first_ = of_cycles_ ? of_cycles_->parameter : of_rest_->parameter;
+  first_range_ = options.first_range.value_or(first_.range);
+  first_scale_ = width(first_range_);
+  second_scale_ = width(options.second.range);
+  start_second_ = value_of(context.machine, options.second.path);
+  const auto& step = options.second.step;
+  continuation_.initial_step = step ? step->initial.value / second_scale_ : 1.0 / 200;
+  continuation_.min_step = step ? step->min.value / second_scale_ : 1e-6;
+  continuation_.max_step = step ? step->max.value / second_scale_ : 1.0 / 30;
+  continuation_.max_points = options.max_points;
+  continuation_.kind = kind_of(options.second.continuation);
+  continuation_.location_tolerance = 1e-7;
+}
+
+void LocusFollower::begin() {
+  second_value_ = start_second_;
+  problem_.reset();
+  condition_.reset();
+  cycles_.reset();
+  rest_.reset();
+  if (of_cycles_)
+    make_cycles(*of_cycles_);
+  else
+    make_equilibria();
+  if (!condition_)
+    throw core::NotConverged(
+        fmt::format("bifurcation {} of '{}' is none that can be followed", options_.bifurcation, options_.of));
+}
+
+system::Train LocusFollower::train_at(double first, const FilmFactor& film) const {
+  system::Machine machine = with_parameter(context_.machine, options_.second.path, second_value_);
+  if (first_.path != "speed") machine = with_parameter(machine, first_.path, first);
+  return with_film_mesh(system::train_of(machine, unbalance_), film);
+}
+
+std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, const FilmFactor& film) const {
+  if (first_.path == "speed")
+    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(first, film), first);
+  system::Varying varying;
+  varying.train = [this, film](double p) { return train_at(p, film); };
+  varying.value = first;
+  varying.magnitude = std::max(std::abs(first_range_.from), std::abs(first_range_.to));
+  const auto& speed = of_cycles_ ? of_cycles_->speed : of_rest_->speed;
+  return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), speed->value);
+}
+
+void LocusFollower::make_cycles(const CycleBranchOptions& o) {
+  unbalance_ = o.unbalance;
+  system_ = make_system(seed_.cycle.parameter);
+  solve::CycleOptions c;
+  c.degree = o.degree;
+  c.points = o.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
+  c.turns = o.period;
+  c.autonomous = o.origin == CycleBranchOptions::Origin::hopf;
+  c.parameter_scale = first_scale_;
+  // A change of the root mean square state by half a clearance counts as one longest step.
+  c.state_weight = std::pow(continuation_.max_step / 0.5, 2);
+  c.base_intervals = o.intervals;
+  c.mesh_tolerance = o.adapt_mesh ? o.mesh_tolerance : 0;
+  continuation_.adapt_every = o.adapt_mesh ? o.adapt_every : 0;
+  // Folds of small cycles are flat: what Newton's method leaves there shifts all of them to the same side.
+  const bool flat = c.autonomous && seed_.event == solve::Event::cyclic_fold;
+  continuation_.newton.tolerance = flat ? o.tolerance / 100 : o.tolerance;
+  cycles_ = std::make_unique<solve::CycleProblem>(sharing_time(context_.comm, seed_.cycle.mesh.size() - 1), *system_, c,
+                                                  seed_.cycle.mesh);
+  if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
+  branch_ = cycles_.get();
+  const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());
+  condition_ = solve::condition_of(*cycles_, seed_.event, seed_.critical);
+}
+
+void LocusFollower::make_equilibria() {
+  system_ = make_system(seed_.cycle.parameter);
+  continuation_.adapt_every = 0;
+  continuation_.newton.max_iterations = 20;
+  rest_ =
+      std::make_unique<solve::EquilibriumProblem>(*system_, first_scale_, std::pow(continuation_.max_step / 0.5, 2));
+  branch_ = rest_.get();
+  condition_ = solve::condition_of(*system_, *rest_, seed_.event, seed_.critical);
+}
+
+solve::SecondParameter LocusFollower::second(system::RotorSystem& system, const FilmFactor& film) {
+  return {[this, &system, film](double value) {
+            second_value_ = value;
+            system.set_train(train_at(system.parameter(), film));
+          },
+          second_scale_};
+}
+
+Row LocusFollower::row_at(Vec whole, double second) const {
+  const core::Vector u = problem_->branch_part(whole);
+  const Eigen::VectorXd inner = problem_->inner(whole);
+  Row row{solve::last_entry(branch_->comm(), u.get()) * first_scale_, second * second_scale_, 0, 0, 0};
+  if (cycles_) row.period = cycles_->gather(u.get()).period;
+  if (seed_.event == solve::Event::hopf) row.period = 2 * std::numbers::pi / std::abs(inner(0));
+  if (seed_.event == solve::Event::flip) row.angle = std::numbers::pi;
+  if (seed_.event == solve::Event::neimark_sacker) row.angle = std::acos(std::clamp(inner(0), -1.0, 1.0));
+  return row;
+}
+
+std::vector<Row> LocusFollower::follow(double to, double back, solve::BranchEnd& end) {
+  // An interrupted run goes on from where it was; what it started from is put back below.
+  const Located born = seed_;
+  const double start_second = start_second_;
+  const std::optional<io::Group> left = interrupted();
+  if (left) {
+    seed_.cycle = read_cycle(left->group("cycle"));
+    start_second_ = left->real("second");
+  }
+  begin();
+  core::Vector u = core::duplicate(branch_->weights());
+  if (cycles_) {
+    u = cycles_->scatter(seed_.cycle);
+  } else {
+    core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
+    {
+      const core::WriteArray a(x.get());
+      for (PetscInt i = 0; i < a.size(); ++i) a[i] = seed_.cycle.x(i, 0);
+    }
+    rest_->from_state(x.get(), seed_.cycle.parameter, u.get());
+  }
+  const core::Vector along = solve::any_tangent(*branch_, u.get());
+  problem_ = std::make_unique<solve::AugmentedProblem>(*branch_, *condition_, along.get(), second(*system_));
+  core::Vector start = problem_->make_unknown();
+  problem_->join(u.get(), condition_->start(), start_second_ / second_scale_, start.get());
+  seed_ = born;
+  start_second_ = start_second;
+  rows_.clear();
+  last_swing_.resize(0, 0);
+  inner_sign_ = 0;
+  length_ = 0;
+  spread_.clear();
+  std::optional<solve::Restart> restart;
+  if (left) {
+    restart = restore(*left, start.get());
+    core::check(VecCopy(restart->u.get(), start.get()));
+    // Whether the first step passes amplitude zero is seen by comparison with the last point.
+    if (cycles_ && cycles_->options().autonomous) last_swing_ = swing(start.get());
+  }
+  problem_->prime(start.get());
+
+  solve::ContinuationOptions continuation = continuation_;
+  continuation.from = start_second_ / second_scale_;
+  continuation.to = to;
+  continuation.back = back;
+  std::vector<const char*> names;
+  left_ = ended_ = false;
+  solve::BranchCallbacks callbacks;
+  callbacks.monitors = [&](Vec whole, Vec tangent) {
+    std::vector<double> values;
+    names.clear();
+    for (const auto& test : tests(whole, tangent)) {
+      names.push_back(test.name);
+      values.push_back(test.value);
+    }
+    return values;
+  };
+  callbacks.on_zero = [&](const solve::LocatedZero& zero, Vec whole) {
+    if (!zero.located) return;
+    const std::string type = names[zero.monitor];
+    if (type == solve::generalised_flip || type == generalised_hopf)
+      return record_generalised(type, zero.parameter, zero.bracket, whole);
+    record(type, zero.parameter, zero.bracket, whole);
+  };
+  callbacks.on_event = [&](const solve::LocatedEvent& event, Vec whole) {
+    if (event.event == solve::Event::fold && event.located) record(meeting, event.parameter, event.bracket, whole);
+  };
+  callbacks.on_suspicion = [&](const solve::Suspicion& s) { suspect(s.from, s.to, s.reason); };
+  // The parameters may change what a film bears.
+  bool shrunk = false;
+  callbacks.limit = [&](Vec whole) {
+    return std::min(FilmLimit(system_->places()).margin(films(whole)), margin_of_amplitude(whole));
+  };
+  callbacks.why = [&](Vec whole) -> std::string {
+    shrunk = margin_of_amplitude(whole) <= FilmLimit(system_->places()).margin(films(whole));
+    return shrunk ? "ends at a generalised Hopf point" : FilmLimit(system_->places()).reason(films(whole));
+  };
+  callbacks.on_point = [&](const solve::BranchPoint& point, Vec whole) {
+    const Row before = last_;
+    last_ = row_at(whole, point.parameter);
+    last_.others_unstable = others_unstable(whole);
+    if (cycles_ && cycles_->options().autonomous) {
+      last_swing_ = swing(whole);
+      last_.amplitude = amplitude_of(last_swing_);
+    }
+    if (point.index > 0)
+      rows_.push_back(last_);
+    else
+      start_ = last_;
+    if (point.index > 0)
+      length_ +=
+          std::hypot((last_.first - before.first) / first_scale_, (last_.second - before.second) / second_scale_);
+    if (point.index > 0 || !second_way_) {
+      CurvePoint kept = point_at(whole);
+      kept.arclength = length_;
+      kept.row = rows_.size();
+      spread_.add(std::move(kept));
+    }
+    // Beyond a Bogdanov-Takens point a Hopf curve runs back on itself; beyond the strong resonances 1:1 and 1:2 a
+    // Neimark-Sacker curve is one of two real multipliers with product one.
+    const Eigen::VectorXd inner = problem_->inner(whole);
+    if (seed_.event == solve::Event::hopf) {
+      if (inner_sign_ == 0) inner_sign_ = inner(0);
+      ended_ = inner(0) * inner_sign_ < 0;
+    }
+    if (seed_.event == solve::Event::neimark_sacker) ended_ = std::abs(inner(0)) > 1;
+    problem_->update();
+    context_.results.progress(fmt::format("{}: point {}, {} {:.6g} {}, {} {:.6g} {}, step {:.3g}, {:.1f} s",
+                                          context_.results.summary().name, point.index + 1, first_.path,
+                                          deck::from_si(last_.first, first_range_.unit), first_range_.unit,
+                                          options_.second.path, deck::from_si(last_.second, options_.second.range.unit),
+                                          options_.second.range.unit, point.step, context_.results.seconds()));
+  };
+  callbacks.checkpoint = [&](const solve::Settled& at, Vec whole, Vec tangent) {
+    if (cycles_ && cycles_->options().autonomous)
+      cycles_->set_phase_reference(cycles_->gather(problem_->branch_part(whole).get()));
+    const double low = std::min(first_range_.from, first_range_.to),
+                 high = std::max(first_range_.from, first_range_.to);
+    left_ = last_.first < low || last_.first > high;
+    if (!left_ && !ended_) save(at, whole, tangent);
+    return !left_ && !ended_;
+  };
+  if (restart) {
+    // The signs of the tests are those of the borders, which are other ones than those of the interrupted run.
+    const core::Vector row = core::duplicate(start.get());
+    solve::weighted_row(*problem_, restart->tangent.get(), row.get());
+    problem_->linearise(restart->u.get(), row.get());
+    restart->point.monitors = callbacks.monitors(restart->u.get(), restart->tangent.get());
+    problem_->update();
+  }
+  end = solve::follow_branch(*problem_, std::move(start), continuation, callbacks, std::move(restart));
+  if (end.limited && shrunk) {
+    ended_ = end_at_generalised_hopf();
+    context_.results.group().set("end", end.reason);
+  }
+  end.completed = end.completed || left_ || ended_;
+  return std::move(rows_);
+}
+
+StudyResult LocusFollower::run() {
+  const deck::Range& range = options_.second.range;
+  const double from = range.from / second_scale_, to = range.to / second_scale_;
+  solve::BranchEnd here;
+  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume);
+  const io::Group& kept = pieces_->state();
+  second_way_ = kept.has_group("done");
+  if (second_way_) {
+    done_ = read_rows(kept.group("done"));
+    done_spread_.read(kept.group("done_spread"));
+    done_end_ = {kept.text("done_reason"), kept.integer("done_completed") != 0,
+                 static_cast<int>(kept.integer("done_points")), kept.real("done_parameter")};
+  } else {
+    done_ = follow(to, from, done_end_);
+    if (done_end_.points == 0) throw core::NotConverged(done_end_.reason);
+    std::swap(done_spread_, spread_);
+  }
+  second_way_ = true;
+  const std::vector<Row>& rows = done_;
+  const solve::BranchEnd& there = done_end_;
+  const std::vector<Row> back = follow(from, to, here);
+  std::vector<Row> all(back.rbegin(), back.rend());
+  all.push_back(start_);
+  all.insert(all.end(), rows.begin(), rows.end());
+  auto& results = context_.results;
+  put_groups(results.summary(), system_->train());
+  auto& group = results.group();
+  put_curve(all, bars_of(all, back.size()));
+  std::vector<std::string> types;
+  std::vector<double> first, second;
+  for (const auto& c : results.summary().codimension_two) {
+    types.push_back(c.type);
+    first.push_back(c.value.value);
+    second.push_back(c.second_value.value);
+  }
+  auto& points = group.child("codimension_two");
+  points.put("type", types, "kind of point");
+  points.put("parameter", first, first_range_.unit, "first parameter");
+  points.put("second", second, range.unit, "second parameter");
+  group.set("bifurcation", solve::name_of(seed_.event));
+  group.set("of", options_.of);
+  group.set("parameter", first_.path);
+  group.set("parameter_unit", first_range_.unit);
+  group.set("second", options_.second.path);
+  group.set("second_unit", range.unit);
+  results.summary().points = static_cast<long>(all.size());
+  const auto status = [&](const solve::BranchEnd& end) {
+    return fmt::format("ended at {:.6g} {} of {}: {}", deck::from_si(end.parameter * second_scale_, range.unit),
+                       range.unit, options_.second.path, end.reason);
+  };
+  return results.finish(!there.completed ? status(there) : !here.completed ? status(here) : "completed", true);
+}
+
+StudyResult Locus::run(Context& context) {
+  return LocusFollower(context, options).run();
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,58 @@
+// The points of a curve of bifurcations in results and summary.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "study/locus/locus_follower.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/io/table.hpp"
+
+namespace whirl::study {
+
+// With a warning where the curve is no border of stability.
+void LocusFollower::put_curve(const std::vector<Row>& rows, const std::vector<RowBar>& bars) {
+  const std::string &first = first_range_.unit, &second = options_.second.range.unit;
+  io::Table table(
+      {{"parameter", first, "first parameter, that of the branch"},
+       {"second", second, "second parameter"},
+       {"period", "s", "period of the cycle, or 2 pi/omega at Hopf points"},
+       {"angle", "rad", "angle of the critical multiplier"},
+       {"amplitude", "1", "of a self-excited cycle, per clearance of the place that moves most; else 0"},
+       {"others_unstable", "1", "unstable eigenvalues or multipliers beside the critical ones"},
+       {"parameter_uncertainty", first,
+        fmt::format("bar of the first parameter at a fixed second one, from other meshes; none where the curve runs "
+                    "within {:.2g} rad along the first parameter",
+                    least_share)},
+       {"second_uncertainty", second, "bar of the second parameter at a fixed first one, likewise"},
+       {"normal_uncertainty", "1",
+        fmt::format("bar of the distance normal to the curve, parameters in units of {:.6g} {} and {:.6g} {} (widths "
+                    "of the ranges)",
+                    deck::from_si(first_scale_, first), first, deck::from_si(second_scale_, second), second)},
+       {"uncertainty_computed", "1", "1: from solutions on other meshes; 0: between those, linear in the arclength"}});
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  int marked = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Row& row = rows[k];
+    const double there = deck::from_si(row.second, second);
+    table.append({deck::from_si(row.first, first), there, row.period, row.angle, row.amplitude,
+                  static_cast<double>(row.others_unstable), bars[k].first / deck::number_to_si(1, first),
+                  bars[k].second / deck::number_to_si(1, second), bars[k].normal, bars[k].computed ? 1.0 : 0.0});
+    if (row.others_unstable == 0) continue;
+    ++marked;
+    low = std::min(low, there);
+    high = std::max(high, there);
+  }
+  auto& summary = context_.results.summary();
+  if (marked > 0)
+    summary.warnings.push_back(fmt::format(
+        "no border of stability at {} of {} points, second parameter from {:.6g} to {:.6g} {}: others are unstable "
+        "there already (others_unstable)",
+        marked, rows.size(), low, high, second));
+  for (const io::Table::Column& column : table.columns())
+    summary.curve.push_back({column.name, column.unit, table.column(column.name)});
+  table.write(context_.results.group().child("locus"));
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,169 @@
+#pragma once
+// A curve of bifurcations in two parameters: what it is followed with.
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "study/bars/error_bar.hpp"
+#include "study/bars/film_mesh.hpp"
+#include "study/common.hpp"
+#include "study/cycle/cycle_follower.hpp"
+#include "study/located.hpp"
+#include "study/locus/curve_points.hpp"
+#include "study/pieces.hpp"
+#include "whirl/solve/bifurcation/augmented_problem.hpp"
+#include "whirl/study/cycle/cycle_branch.hpp"
+#include "whirl/study/equilibrium/equilibrium_branch.hpp"
+#include "whirl/study/locus/locus.hpp"
+
+namespace whirl::study {
+
+/// Names of monitors behind the tests of the condition: for Hopf points, and where the curve turns in the second and in
+/// the first parameter.
+inline constexpr const char* generalised_hopf = "generalised_hopf";
+inline constexpr const char* meeting = "meeting";
+inline constexpr const char* meeting_over_second = "meeting_over_second";
+
+/// Cells of the films over those of the deck.
+using FilmFactor = std::array<double, 2>;
+
+/// A point of a curve, SI; the amplitude of a self-excited cycle in clearances.
+struct Row {
+  double first = 0, second = 0, period = 0, angle = 0, amplitude = 0;
+  int others_unstable = 0;
+};
+
+/// The bar of a point of a curve, not a number where it is unknown.
+struct RowBar {
+  double normal = std::numeric_limits<double>::quiet_NaN();  ///< of the distance normal to the curve, scaled
+  double first = std::numeric_limits<double>::quiet_NaN();   ///< of the first parameter at a fixed second one [SI]
+  double second = std::numeric_limits<double>::quiet_NaN();  ///< of the second parameter at a fixed first one [SI]
+  bool computed = false;                                     ///< else between its neighbours'
+};
+/// Share of a parameter in the normal of a curve, both scaled, below which that parameter has no bar of its own: the
+/// curve runs along it.
+inline constexpr double least_share = 0.1;
+
+void write_rows(io::Group& group, const std::vector<Row>& rows);
+[[nodiscard]] std::vector<Row> read_rows(const io::Group& group);
+
+/// Coefficients of normal forms on the curve, a little behind and ahead of a point of it, and what lies between the two
+/// in the scaled parameters.
+struct Beside {
+  double behind = 0, ahead = 0;
+  Eigen::Vector2d moved = Eigen::Vector2d::Zero();
+};
+
+/// The branch problem at the bifurcation that the curve begins with, in both parameters.
+class LocusFollower {
+public:
+  LocusFollower(Context& context, const LocusOptions& options);
+  StudyResult run();
+
+private:
+  static constexpr std::size_t points_each_way = 8;  // that are kept with their solutions
+  // System, branch problem and condition at the start of the curve.
+  void begin();
+  void make_cycles(const CycleBranchOptions& o);
+  void make_equilibria();
+  // At a first parameter and the present second one.
+  [[nodiscard]] system::Train train_at(double first, const FilmFactor& film = {1, 1}) const;
+  [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(double first, const FilmFactor& film = {1, 1}) const;
+  [[nodiscard]] solve::SecondParameter second(system::RotorSystem& system, const FilmFactor& film = {1, 1});
+  [[nodiscard]] Row row_at(Vec whole, double second) const;
+  [[nodiscard]] std::vector<solve::CodimensionTest> tests(Vec whole, Vec tangent);
+  // `error` in scaled second parameter; not a number: unknown.
+  void record(const std::string& type, double second, double error, Vec whole);
+  void record_row(const std::string& type, const Row& row, double error);
+  // A zero of the coefficient of a normal form, if it is one of the equations.
+  void record_generalised(const std::string& type, double second, double bracket, Vec whole);
+  [[nodiscard]] Beside flips_beside(Vec whole, const std::vector<double>& mesh, double reach);
+  // With the usual film mesh or the halved one, and differences of `step` times their usual length.
+  [[nodiscard]] Beside hopfs_beside(Vec whole, bool half_film, double step, double reach);
+  // On the discretisation of the curve, or on another one.
+  [[nodiscard]] Beside beside(Vec whole, bool other, double reach);
+  // Whether the zero of the coefficient at `whole` is one on another discretisation too: its error in scaled second
+  // parameter, or not a number; and whether there is another one near.
+  struct Verdict {
+    double error = std::numeric_limits<double>::quiet_NaN();
+    bool unclear = false;
+  };
+  [[nodiscard]] Verdict judge(Vec whole, double reach);
+  // The curve and its points of codimension two on other meshes.
+  struct Elsewhere;
+  [[nodiscard]] MeshLaw law() const;
+  [[nodiscard]] std::vector<CycleMesh> meshes() const;
+  [[nodiscard]] CurvePoint point_at(Vec whole) const;
+  [[nodiscard]] std::unique_ptr<Elsewhere> carried_to(const CycleMesh& mesh, const CurvePoint& given);
+  [[nodiscard]] std::vector<double> beside_curve(const CycleMesh& mesh, const CurvePoint& point,
+                                                 const Eigen::Vector2d& along);
+  [[nodiscard]] std::vector<double> zero_on(const CycleMesh& mesh, const CurvePoint& near, const std::string& type);
+  [[nodiscard]] std::vector<double> direction_at(const CurvePoint& point);
+  [[nodiscard]] Bar bar_beside(const std::string& name, const CurvePoint& point, const Eigen::Vector2d& along);
+  [[nodiscard]] double tolerance_at(const Eigen::Vector2d& place) const;
+  // Bars of both parameters; `location` as of record().
+  void put_bars(io::CodimensionTwo& c, Vec whole, double location);
+  // Of the whole curve, the start of which is row `start`: a few are computed, and those between them interpolated.
+  [[nodiscard]] std::vector<RowBar> bars_of(const std::vector<Row>& rows, std::size_t start);
+  void put_curve(const std::vector<Row>& rows, const std::vector<RowBar>& bars);
+  // Unstable eigenvalues or multipliers beside the critical ones.
+  [[nodiscard]] int others_unstable(Vec whole);
+  [[nodiscard]] std::vector<double> films(Vec whole) const;
+  // The cycle at `whole` as it swings about its mean, and how far a place does.
+  [[nodiscard]] Eigen::MatrixXd swing(Vec whole) const;
+  [[nodiscard]] double amplitude_of(const Eigen::MatrixXd& swing) const;
+  // Positive as long as cycles of a fold are large enough to go on.
+  [[nodiscard]] double margin_of_amplitude(Vec whole) const;
+  [[nodiscard]] std::vector<Row> smallest_cycles() const;
+  [[nodiscard]] bool end_at_generalised_hopf();
+  void suspect(double from, double to, const std::string& reason);
+  // Points in one direction from the start, without it.
+  std::vector<Row> follow(double to, double back, solve::BranchEnd& end);
+  // What the checkpoint of an interrupted run holds of the present direction.
+  [[nodiscard]] std::optional<io::Group> interrupted() const;
+  [[nodiscard]] solve::Restart restore(const io::Group& state, Vec like);
+  void save(const solve::Settled& at, Vec whole, Vec tangent);
+
+  Context& context_;
+  const LocusOptions& options_;
+  std::optional<CycleBranchOptions> of_cycles_;
+  const EquilibriumBranchOptions* of_rest_ = nullptr;
+  Located seed_;
+  Parameter first_;
+  std::vector<std::string> unbalance_;
+  deck::Range first_range_;
+  double first_scale_ = 1, second_scale_ = 1;   // SI values of one unit of the scaled parameters: widths of the ranges
+  double start_second_ = 0, second_value_ = 0;  // SI: at the start, and to which the system is set
+  solve::ContinuationOptions continuation_;
+  std::unique_ptr<system::RotorSystem> system_;
+  std::unique_ptr<solve::CycleProblem> cycles_;
+  std::unique_ptr<solve::EquilibriumProblem> rest_;
+  solve::ExtendedProblem* branch_ = nullptr;
+  std::unique_ptr<solve::Condition> condition_;
+  std::unique_ptr<solve::AugmentedProblem> problem_;
+  std::unique_ptr<Pieces> pieces_;
+  bool second_way_ = false;  // the first direction is done:
+  std::vector<Row> done_;    // its points
+  solve::BranchEnd done_end_;
+  std::vector<Row> rows_;  // of the present one
+  double inner_sign_ = 0;  // of the inner unknown at its first point
+  int zeros_ = 0;          // generalised points looked at so far
+  Row start_, last_;
+  double length_ = 0;                                                    // from the start, scaled
+  SpreadPoints spread_{points_each_way}, done_spread_{points_each_way};  // of the present direction, and the other one
+  Eigen::MatrixXd last_swing_;                                           // of the last point
+  // Generalised points that are confirmed: both parameters, and how far around was looked at, scaled.
+  struct Confirmed {
+    double first, second, looked;
+  };
+  std::vector<Confirmed> generalised_;
+  bool left_ = false, ended_ = false;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,173 @@
+#include "whirl/study/motion/motion.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "study/bars/film_limit.hpp"
+#include "study/common.hpp"
+#include "study/groups.hpp"
+#include "study/make_plant.hpp"
+#include "study/motion/motion_record.hpp"
+#include "study/motion/motion_start.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/transient/integrator.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+
+// There are as many exponents as states.
+MotionOptions limited(MotionOptions options, const system::Plant& system) {
+  options.exponents = std::min(options.exponents, static_cast<int>(system.size()));
+  return options;
+}
+
+// A motion revolution by revolution. Time begins anew with each one, so that the equations repeat themselves to the
+// bit.
+class Player {
+public:
+  Player(Context& context, const MotionOptions& given)
+      : context_(context),
+        plant_(make_plant(Groups::split(context.comm, context.machine).space, context.machine,
+                          {.unbalance = given.unbalance, .value = given.speed.value})),
+        system_(*plant_),
+        options_(limited(given, system_)),
+        start_(start_state(system_, options_.start)),
+        integrator_(system_, {options_.speed.value}, start_.x.get(),
+                    {.tolerance = options_.tolerance,
+                     .after_step = [this](double time, double step) { progress(time, step); }}),
+        record_(options_, system_.places()),
+        films_(system_.places()) {
+    if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
+  }
+
+  StudyResult run() {
+    if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
+    const int total = options_.discard + options_.revolutions;
+    std::string status = "completed";
+    try {
+      for (; done_ < total; ++done_) {
+        // Directions need time to turn to those that grow most, before their growth counts.
+        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
+        revolve(done_ >= options_.discard);
+        save();
+      }
+    } catch (const core::DomainError& e) {
+      if (record_.revolutions() < 2) throw;
+      status = fmt::format("ended in revolution {}: {}", done_ + 1, e.what());
+    }
+    return report(status);
+  }
+
+private:
+  void revolve(bool record) {
+    const double period = 2 * std::numbers::pi / options_.speed.value;
+    std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
+    for (int k = 1; k <= options_.samples; ++k) {
+      integrator_.advance(period * k / options_.samples);
+      if (tangents_) {
+        const std::vector<double> more = tangents_->orthonormalise();
+        for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
+      }
+      integrator_.state(start_.x.get());
+      const std::vector<double> whole = system_.gather(start_.x.get());
+      if (const auto thickness = system_.film_thickness(whole.data()); !(films_.margin(thickness) > 0))
+        throw core::DomainError(films_.reason(thickness));
+      if (record) record_.sample(system_.shown(whole.data()), system_.gather(integrator_.scaled()));
+    }
+    if (record) record_.close(growth, period);
+    integrator_.restart(0, integrator_.step());
+  }
+
+  // A revolution may take minutes: each step says where it ended.
+  void progress(double time, double step) {
+    if (!context_.results.shows_progress()) return;
+    const double turn = options_.speed.value * 180 / std::numbers::pi;
+    context_.results.progress(
+        fmt::format("{}: revolution {} of {}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
+                    done_ + 1, options_.discard + options_.revolutions, done_ < options_.discard ? " (discarded)" : "",
+                    turn * time, turn * step, context_.results.seconds()));
+  }
+
+  void save() {
+    if (!options_.checkpoint) return;
+    // At most once a second; rank 0 decides for all.
+    int due = context_.results.seconds() - last_saved_ >= 1;
+    MPI_Bcast(&due, 1, MPI_INT, 0, context_.comm);
+    if (!due) return;
+    io::Group state;
+    state.set("done", done_ + 1);
+    state.set("step", integrator_.step());
+    state.set("seconds", context_.results.seconds());
+    state.put("u", system_.gather(integrator_.scaled()), "1", "scaled state");
+    for (int k = 0; tangents_ && k < tangents_->count(); ++k)
+      state.put(fmt::format("tangent_{}", k + 1), system_.gather(tangents_->column(k)), "1", "deviation");
+    record_.save(state.child("record"));
+    context_.results.save_checkpoint(state);
+    last_saved_ = context_.results.seconds();
+  }
+
+  static void put(const std::vector<double>& whole, Vec v) {
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(v, &begin, nullptr));
+    const core::WriteArray a(v);
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = whole[static_cast<std::size_t>(begin + i)];
+  }
+
+  void restore(const io::Group& state) {
+    done_ = static_cast<int>(state.integer("done"));
+    put(state.reals("u"), integrator_.scaled());
+    integrator_.restart(0, state.real("step"));
+    for (int k = 0; tangents_ && k < tangents_->count(); ++k)
+      put(state.reals(fmt::format("tangent_{}", k + 1)), tangents_->column(k));
+    record_.load(state.group("record"));
+    context_.results.add_earlier_seconds(state.real("seconds"));
+  }
+
+  StudyResult report(const std::string& status) {
+    auto& results = context_.results;
+    auto& summary = results.summary();
+    put_groups(summary, system_.groups());
+    summary.set("speed", options_.speed.value, "rad/s");
+    const double period = 2 * std::numbers::pi / options_.speed.value;
+    for (std::size_t k = 0; k < start_.multipliers.size() && k < static_cast<std::size_t>(options_.exponents); ++k) {
+      const double modulus = std::abs(start_.multipliers[k]);
+      summary.set(fmt::format("cycle.multiplier.{}.modulus", k + 1), modulus, "1");
+      summary.set(fmt::format("cycle.multiplier.{}.angle", k + 1), std::abs(std::arg(start_.multipliers[k])), "rad");
+      summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period, "1/s");
+    }
+    auto& group = results.group();
+    group.set("speed", options_.speed.value);
+    group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
+    put_places(group, context_.machine, system_);
+    record_.write(group, summary);
+    summary.points = record_.revolutions();
+    return results.finish(status, true);
+  }
+
+  Context& context_;
+  std::unique_ptr<system::Plant> plant_;
+  system::Plant& system_;
+  MotionOptions options_;
+  StartState start_;
+  transient::Integrator integrator_;
+  std::optional<transient::Tangents> tangents_;
+  MotionRecord record_;
+  FilmLimit films_;
+  int done_ = 0;
+  double last_saved_ = -1e9;
+};
+
+}  // namespace
+
+StudyResult Motion::run(Context& context) {
+  return Player(context, options).run();
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,61 @@
+#include <fmt/core.h>
+
+#include "study/cost.hpp"
+#include "whirl/study/motion/motion.hpp"
+
+namespace whirl::study {
+
+std::span<const deck::Name<MotionStart::From>> names(MotionStart::From) {
+  using enum MotionStart::From;
+  static constexpr deck::Name<MotionStart::From> table[] = {
+      {equilibrium, "equilibrium", "where the balanced machine sits"},
+      {cycle, "cycle", "the synchronous cycle of the unbalanced machine, stable or not, with its multipliers"}};
+  return table;
+}
+
+std::span<const deck::Name<MotionOptions::Window>> names(MotionOptions::Window) {
+  using enum MotionOptions::Window;
+  static constexpr deck::Name<MotionOptions::Window> table[] = {
+      {none, "none", "exact for motions that repeat themselves within the record"},
+      {hann, "hann", "Hann's: leaks little where tones lie between the lines"}};
+  return table;
+}
+
+void describe(deck::Description<MotionStart>& d) {
+  d.add("from", &MotionStart::from, "where the motion begins");
+  d.add("offset", &MotionStart::offset, "1", deck::in(-1, 1),
+        "displacement of every journal from there in x and y, per clearance");
+}
+
+void describe(deck::Description<MotionOptions>& d) {
+  using O = MotionOptions;
+  d.add("name", &O::name, "name in the results; the kind if not given");
+  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; none for the balanced machine");
+  d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.add("start", &O::start, "state at the beginning");
+  d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
+  d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
+  d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, of orbits and spectra");
+  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
+        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
+  d.add("exponents", &O::exponents, deck::in(0, 1e4), "Lyapunov exponents to compute, the largest; none: 0");
+  d.add("max_period", &O::max_period, deck::in(1, 1e5), "longest period to look for, in revolutions");
+  d.add("return_tolerance", &O::return_tolerance, deck::in(1e-13, 1),
+        "distance between Poincare points, relative to the size of the motion, below which it repeats itself");
+  d.add("window", &O::window, "what multiplies the record before its Fourier transform");
+  d.add("orbit", &O::orbit, deck::non_negative, "revolutions whose orbit is stored, the last ones");
+  d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
+}
+
+void Motion::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
+  if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
+    report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+}
+
+double Motion::memory(const system::Machine& machine) const {
+  const double places = static_cast<double>(machine.bearings.size()) + 1;
+  return memory_of_equilibria(machine) + 70 * places * options.revolutions * options.samples;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,63 @@
+#pragma once
+// What is kept of a motion, how it is judged, and how it goes into results and checkpoints.
+
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/study/motion/motion.hpp"
+#include "whirl/system/plant.hpp"
+#include "whirl/transient/classify.hpp"
+#include "whirl/transient/exponents.hpp"
+
+namespace whirl::study {
+
+/// Samples of what is shown (journals), states at the end of each revolution, growth of deviations. Replicated on all
+/// ranks.
+class MotionRecord {
+public:
+  MotionRecord(const MotionOptions& options, system::Places places);
+
+  /// A sample at a whole state [size of the system] in SI; `scaled` is the same over its scales.
+  void sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled);
+  /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried. Samples of a
+  /// revolution that is never closed, because it ended in contact, count for nothing.
+  void close(const std::vector<double>& growth, double duration);
+  [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
+
+  /// The verdict so far.
+  [[nodiscard]] transient::Verdict verdict() const;
+  /// Tables into `group`, numbers and verdict into the summary.
+  void write(io::Group& group, io::StudySummary& summary) const;
+
+  void save(io::Group& group) const;
+  void load(const io::Group& group);
+
+private:
+  [[nodiscard]] transient::Evidence evidence() const;
+  [[nodiscard]] std::vector<double> signal(std::size_t bearing, std::size_t direction) const;
+  void write_orbit(io::Group& group) const;
+  void write_points(io::Group& group) const;
+  void write_spectrum(io::Group& group, io::StudySummary& summary) const;
+  void write_exponents(io::Group& group, io::StudySummary& summary) const;
+
+  const MotionOptions& options_;
+  system::Places places_;
+  double period_;                // of a revolution [s]
+  std::vector<double> samples_;  // [sample][place][x, y]
+  std::vector<double> ends_;     // [revolution][place][x, y, vx, vy]
+  std::vector<double> last_;     // the same of the last sample
+  std::vector<double> sum_;      // of the scaled states of all samples
+  double squares_ = 0;           // of their norms
+  struct Open {
+    std::vector<double> samples, sum;
+    double squares = 0;
+  };
+  Open open_;                                // the same of the revolution that is not closed yet
+  std::vector<double> last_state_;           // the last scaled state
+  std::vector<std::vector<double>> points_;  // scaled states at the ends of revolutions
+  transient::Exponents exponents_;
+};
+
+}  // namespace whirl::study

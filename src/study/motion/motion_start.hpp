@@ -1,0 +1,20 @@
+#pragma once
+// The state a motion begins with.
+
+#include <complex>
+#include <vector>
+
+#include "whirl/study/motion/motion.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+struct StartState {
+  core::Vector x;                                 ///< SI
+  std::vector<std::complex<double>> multipliers;  ///< of the cycle it lies on, the largest first; empty if on none
+};
+
+/// The state at shaft angle zero. Collective on the system's communicator; throws core::NotConverged.
+[[nodiscard]] StartState start_state(system::Plant& system, const MotionStart& start);
+
+}  // namespace whirl::study
