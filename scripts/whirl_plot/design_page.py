@@ -323,9 +323,10 @@ def main(names):
     unknown = [n for n in names if n not in TABLES]
     if unknown:
         sys.exit(f"design_studies: there is no table {', '.join(unknown)}; there are {', '.join(TABLES)}")
-    page = PAGE.read_text()
     for name in names or TABLES:
-        page, count = re.subn(rf"(<!-- table {name} -->\n).*?(<!-- end -->)", lambda m: f"{m[1]}{TABLES[name]()}\n{m[2]}", page, flags=re.S)
+        table = TABLES[name]()
+        # The page is read after the computation, which takes long: its text may have been edited meanwhile.
+        page, count = re.subn(rf"(<!-- table {name} -->\n).*?(<!-- end -->)", lambda m: f"{m[1]}{table}\n{m[2]}", PAGE.read_text(), flags=re.S)
         if count != 1:
             sys.exit(f"design_studies: {PAGE} has {count} places for the table {name}")
         PAGE.write_text(page)
