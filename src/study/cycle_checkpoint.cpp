@@ -59,7 +59,7 @@ void CycleFollower::save(const solve::BranchPoint& point, Vec u, Vec tangent, do
   now.slope = solve::last_entry(problem_->comm(), tangent);
   write_point(state.child("point"), now);
   state.set("next_step", next_step);
-  state.set("largest_difference", largest_difference_);
+  state.set("largest_difference", largest_);
   state.set("events", events_);
   write_summary(state.child("summary"), context_.results.summary());
   write_seeds(state.child("flips"), seeds_);
@@ -84,9 +84,9 @@ std::optional<solve::Restart> CycleFollower::restore() {
   seeds_ = read_seeds(state.group("flips"));
   located_ = read_located(state.group("located"));
   last_ = cycle;
-  largest_difference_ = state.real("largest_difference");
+  largest_ = state.real("largest_difference");
   const solve::Cycle orbit = problem_->orbit(restart.u.get());
-  if (seed_) (void)returned(orbit);
+  if (may_return()) (void)returned(orbit);
   add_margin(restart.point.parameter, orbit);
   return restart;
 }

@@ -123,7 +123,7 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
-  if (found.event == solve::Event::cyclic_fold && at_simple_cycle(problem_->orbit(u))) return;
+  if (found.event == solve::Event::cyclic_fold && at_its_origin(problem_->orbit(u))) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
   b.more["others_unstable"] = found.others_unstable;
