@@ -1,4 +1,4 @@
-"""Tables of docs/design_studies.md from the results of their decks: design_page.py [TABLE...], in the root of the sources.
+"""Tables and pictures of docs/design_studies.md from the results of their decks: design_page.py [NAME...], in the root of the sources.
 
 A table stands between `<!-- table NAME -->` and `<!-- end -->`. What the source states and the rule by which we agree are here;
 numbers and verdicts come from summary.json and results.h5.
@@ -14,6 +14,8 @@ import sys
 import h5py
 import numpy
 
+from .design_pictures import PICTURES, Pictures
+
 PAGE = pathlib.Path("docs/design_studies.md")
 RESULTS = pathlib.Path(os.environ.get("WHIRL_RESULTS", "results/design_studies"))
 # Balanced trains only, on the whole shaft: the cycles give way to a place of rest.
@@ -21,7 +23,7 @@ WHOLE = ["rotor.reduction={type: none}", "studies.2={static: {name: rest 1, spee
          "studies.3={static: {name: rest 2, speed: 3600 rpm}}", "studies.{4,5,6,7,8,9,10}.sweep.of=[balanced]",
          "studies.1.equilibrium_branch.range={from: 2800 rpm, to: 6800 rpm}"]
 RUNS = {"design": ("design", []), "whole": ("design", WHOLE),
-        **{name: (name, []) for name in ("pedestals_whirl", "reduction")}}
+        **{name: (name, []) for name in ("pedestals_whirl", "reduction", "coefficients", "film_meshes")}}
 SERVICE = 3600  # rpm: the operating range ends here
 SECOND = (2300, 3100)  # rpm: around the second critical speed of the generator
 SIGNIFICANT = 250  # rpm: half of the shifts that the source calls an effect
@@ -80,7 +82,8 @@ class Run:
         return self.variants[variant][study]
 
 
-def compute(name):
+def computed(name):
+    """The folder of a run, computed unless it is there."""
     deck, overrides = RUNS[name]
     out = RESULTS / name
     words = ["build/whirl", "run", f"inputs/turbine_train/{deck}.yaml", "-o", str(out), "--resume"]
@@ -92,6 +95,11 @@ def compute(name):
         done = subprocess.run(words, stdout=subprocess.DEVNULL)
         if done.returncode not in (0, 3):
             sys.exit(f"design_studies: {deck}: exit {done.returncode}")
+    return out
+
+
+def compute(name):
+    computed(name)
     return Run(name)
 
 
@@ -319,16 +327,26 @@ def statements():
 TABLES = {f.__name__: f for f in (variants, service, statements, whirl, reduction, whole)}
 
 
+def fill(name):
+    """Replaces a table of the page."""
+    table = TABLES[name]()
+    # The page is read after the computation, which takes long: its text may have been edited meanwhile.
+    page, count = re.subn(rf"(<!-- table {name} -->\n).*?(<!-- end -->)", lambda m: f"{m[1]}{table}\n{m[2]}", PAGE.read_text(), flags=re.S)
+    if count != 1:
+        sys.exit(f"design_studies: {PAGE} has {count} places for the table {name}")
+    PAGE.write_text(page)
+
+
 def main(names):
-    unknown = [n for n in names if n not in TABLES]
+    unknown = [n for n in names if n not in (*TABLES, *PICTURES)]
     if unknown:
-        sys.exit(f"design_studies: there is no table {', '.join(unknown)}; there are {', '.join(TABLES)}")
-    page = PAGE.read_text()
-    for name in names or TABLES:
-        page, count = re.subn(rf"(<!-- table {name} -->\n).*?(<!-- end -->)", lambda m: f"{m[1]}{TABLES[name]()}\n{m[2]}", page, flags=re.S)
-        if count != 1:
-            sys.exit(f"design_studies: {PAGE} has {count} places for the table {name}")
-        PAGE.write_text(page)
+        sys.exit(f"design_studies: there is no table or picture {', '.join(unknown)}; there are {', '.join((*TABLES, *PICTURES))}")
+    pictures = Pictures(computed)
+    for name in names or (*TABLES, *PICTURES):
+        if name in TABLES:
+            fill(name)
+        else:
+            pictures.copy(name, PAGE.parent)
 
 
 if __name__ == "__main__":

@@ -90,8 +90,9 @@ def draw_branches(study):
                 axis.set_title(place)
                 axis.set_xlabel(f"{first.attribute('parameter', 'parameter')} [{unit}]")
                 axis.set_ylabel("y / c" if clearance is not None else "y [m]")
-            note = "journal relative to the bearing centre, in clearances of each variant; all points of a cycle lie between its two curves"
-            files += save(figure, study, plain(name), note if len(columns) > 1 else "",
+            note = first.shown + (", in clearances of each variant" if clearance is not None else "")
+            note += "; all points of a cycle lie between its two curves" if len(columns) > 1 else ""
+            files += save(figure, study, plain(name), note,
                           branch_legend([k for _, f in followed for k in f.kinds], legend(rows), [e for _, f in followed for e in f.ends]),
                           of=words_of(first))
     return files

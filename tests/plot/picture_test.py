@@ -238,7 +238,7 @@ def responses_of_a_sweep(folder):
 
 
 def branches_of_a_sweep(folder):
-    """The title says whose branches they are, and with which unbalance."""
+    """The title says whose branches they are, and with which unbalance; the note what their positions are, of equilibria too."""
     def fill(root):
         group = synthetic.study(root, "pedestals", "sweep")
         for k, title in enumerate(("weak", "strong")):
@@ -251,14 +251,17 @@ def branches_of_a_sweep(folder):
 
     with results_with(folder, fill) as results:
         results["pedestals"].summary = {"variants": [{"name": n, "changes": {}, "studies": []} for n in ("weak", "strong")]}
-        titles = {}
-        real, style.write = style.write, lambda figure, stem: titles.update({stem.name: figure.texts[1].get_text()}) or []
+        texts = {}
+        real, style.write = style.write, lambda figure, stem: texts.update({stem.name: (
+            figure.texts[1].get_text(), " ".join(figure.texts[-1].get_text().split()))}) or []
         try:
             sweep.draw_branches(results["pedestals"])
         finally:
             style.write = real
-    assert titles == {"pedestals.balanced": "pedestals: balanced",
-                      "pedestals.pair__G2.5": "pedestals: pair, G2.5, unbalance gen_pair_g63"}, titles
+    where = "journal relative to the bearing centre, in clearances of each variant"
+    assert texts == {"pedestals.balanced": ("pedestals: balanced", where),
+                     "pedestals.pair__G2.5": ("pedestals: pair, G2.5, unbalance gen_pair_g63",
+                                              where + "; all points of a cycle lie between its two curves")}, texts
 
 
 def stability_factors(folder):

@@ -82,11 +82,37 @@ def self_excited(h):
     spectrum = numpy.fft.fft(z[0] + 1j * z[1], axis=1) / z[0].shape[1] / 300e-6
     axis = numpy.abs(spectrum[:, 1]) + numpy.abs(spectrum[:, -1])
     born = numpy.interp([0.1, 0.2], axis, speed)
+    # The branch starts upwards and ends upwards: what folds beside the birth folds back there as well.
     beside = [f for f in s["bifurcations"] if f["type"] == "cyclic_fold" and abs(f["value"] - hopf) < f["uncertainty"]]
-    h.true("a fold that cannot be told from the birth says so", len(beside) == 1 and beside[0]["criticality"] == "undetermined"
-           and beside[0]["distance_from_birth"] < 1 and len(s["warnings"]) == 1, f"{beside}, {s.get('warnings')}")
+    h.true("folds that cannot be told from the birth come in pairs and say so", len(beside) == 2 and len(s["warnings"]) == 2
+           and all(f["criticality"] == "undetermined" and f["distance_from_birth"] < 1 for f in beside), f"{beside}, {s.get('warnings')}")
     h.close("curvature of the branch [rpm per clearance^2]", -b["criticality_coefficient"], (born[1] - born[0]) / 0.03,
             b["criticality_uncertainty"])
+
+
+def bubble(h):
+    """Whirl that lives between two Hopf points, over the viscosity: the branch from one ends at the other, for the equilibrium is no
+    whirl."""
+    import h5py
+    over = "parameter: lubricants.water.viscosity, speed: 410 rad/s, range: {from: 0.4 mPa s, to: 0.05 mPa s}"
+    run = h.run((h.source / "inputs/rigid_rotor/short_f1.yaml").resolve(), "bubble", [
+        f"studies=[{{equilibrium_branch: {{name: balanced, {over}}}}}, "
+        f"{{cycle_branch: {{name: whirl, origin: hopf, intervals: 30, degree: 3, {over}}}}}]"])
+    ends, whirl = [b["value"] for b in run["balanced"]["bifurcations"]], run["whirl"]
+    h.true("two Hopf points, whirl is born at the first one", len(ends) == 2 and [b["type"] for b in whirl["bifurcations"]] == ["hopf"],
+           f"{ends}, {whirl['bifurcations']}")
+    h.true("it ends as a branch that has arrived", whirl["status"] == "completed" and value(whirl, "returned") is not None, whirl["status"])
+    with h5py.File(h.work / "bubble" / "results.h5") as f:
+        group = f["studies/whirl"]
+        place = group["branch/parameter"][()]
+        swing = (group["branch/y_max"][()] - group["branch/y_min"][()])[:, 0]
+        h.true("why it ends", group.attrs["end"] == "an equilibrium, at a Hopf point")
+    h.true("every cycle lies between the Hopf points and moves", len(place) == whirl["points"] > 10 and ends[1] < place.min() < place.max() < ends[0]
+           and swing.min() > 1e-7, f"{place.min()} to {place.max()}, {swing.min()} m")
+    # Near its end the square of the swing falls on a straight line to nothing.
+    square = swing[-2:]**2
+    h.close("the line through the last two points meets the other Hopf point [mPa s]", place[-1] - square[1] * (place[-1] - place[-2]) / (square[1] - square[0]),
+            ends[1], 0.01 * ends[1])
 
 
 def period_doubling(h):
@@ -152,6 +178,6 @@ def ranks(h):
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
     cases = {"reference": reference, "doubled": doubled, "doubled_whole": lambda h: doubled(h, []), "ranks": ranks,
-             "self_excited": self_excited, "period_doubling": period_doubling}
+             "self_excited": self_excited, "bubble": bubble, "period_doubling": period_doubling}
     cases[sys.argv[3]](harness)
     harness.finish()

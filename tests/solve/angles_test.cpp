@@ -31,6 +31,17 @@ struct Helix {
   }
 };
 
+// Equilibria p = -1.2 x^2. The positive factor changes no solution, but sends Newton's method across the fold.
+struct Parabola {
+  double phase = 0;
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T p) const {
+    Column<T> f(1);
+    f << xdot(0) + (p + 1.2 * x(0) * x(0)) * (1.0 + 0.9 * sin(8.0 * x(0) + phase));
+    return f;
+  }
+};
+
 double longest(const test::Recorded& r, bool in_parameter) {
   double most = 0;
   for (std::size_t k = 1; k + 1 < r.points.size(); ++k)
@@ -66,4 +77,21 @@ TEST(Angles, Beta2BoundsTheChordWithoutTheParameter) {
   const double bounded = follow(0.1);
   EXPECT_LE(bounded, 0.2 * (1 + 1e-9));
   EXPECT_GT(bounded, 0.09);
+}
+
+// A step that lands behind a fold, where the branch has turned by more than 120 degrees, finds a tangent that looks
+// forward and leads back: the branch would be followed home again.
+TEST(Angles, ASharpFoldIsPassed) {
+  for (const double step : {4.2, 4.4, 4.6, 4.8})
+    for (int k = 0; k < 12; ++k) {
+      test::SmallSystem s(MPI_COMM_WORLD, 1, -4.8, 1, Parabola{k * std::numbers::pi / 6});
+      auto options = test::range(-4.8, 1, step);
+      options.back = -4.9;
+      const auto r = test::follow(s, Eigen::VectorXd::Constant(1, -2), options);
+      const auto folds = r.of(solve::Event::fold);
+      EXPECT_TRUE(r.of(solve::Event::branch_point).empty()) << step << ", " << k;
+      ASSERT_EQ(folds.size(), 1u) << step << ", " << k;
+      EXPECT_NEAR(folds[0].parameter, 0, 0.1) << step << ", " << k;
+      EXPECT_LT(r.points.back().slope, 0) << step << ", " << k;
+    }
 }

@@ -108,6 +108,21 @@ TEST(Detection, OppositeCrossings) {
   EXPECT_TRUE(r.suspected.empty());
 }
 
+// A pair leaves at 0, becomes real at 0.05, and one of the two returns at 0.05635, all within one step: the count
+// changes by one, which is no pair's doing.
+TEST(Detection, APairOfWhichOneReturns) {
+  const auto r = follow(half_turning([](auto a, auto b, auto p) {
+                          return std::pair(decltype(a)(p * a + 0.5 * (p - 0.05) * b), decltype(a)(a + p * b));
+                        }),
+                        -1, 0.4, 0.3);
+  const auto pairs = places(r, Event::neimark_sacker), flips = places(r, Event::flip);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_NEAR(pairs[0], 0, 1e-9);
+  ASSERT_EQ(flips.size(), 1U);
+  EXPECT_NEAR(flips[0], 0.25 - std::sqrt(0.0375), 1e-9);
+  EXPECT_TRUE(r.suspected.empty());
+}
+
 // The crossings are found between the two points, and not once more when points on either side show a kink there.
 TEST(Detection, OppositeCrossingsAreReportedOnce) {
   for (const double last : {0.04, 0.11, 0.17}) {

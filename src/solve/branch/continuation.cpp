@@ -54,6 +54,7 @@ bool Follower::on_course(const State& from, const State& to) const {
   const double product = forward * inner(problem_, from.tangent.get(), chord.get()),
                length = inner(problem_, chord.get(), chord.get());
   return within(product, 1, length, options_.beta_1) &&
+         within(forward * inner(problem_, to.tangent.get(), chord.get()), 1, length, options_.beta_1) &&
          within(product - forward * weight * tp * dp, 1 - weight * tp * tp, length - weight * dp * dp, options_.beta_2);
 }
 

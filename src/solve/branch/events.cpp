@@ -250,7 +250,8 @@ void Follower::crossings(const State& a, const State& b, int depth) {
           found.event = Event::branch_point;
       },
       found, at);
-  if (real && std::abs(to - from) == 2 && separate()) return;
+  // A real value changes the count by one, a pair by two: else another one crosses in this step.
+  if (std::abs(to - from) == (real ? 2 : 1) && separate()) return;
   // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such. After a split the
   // two may lie on different sides of the middle.
   const auto is_it = [&](const auto& fold) { return std::abs(found.parameter - fold.first) <= 0.01 * fold.second; };

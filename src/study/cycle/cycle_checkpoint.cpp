@@ -83,7 +83,7 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   write_point(state.child("point"), now);
   write_memory(state.child("memory"), *at.memory);
   state.set("next_step", at.next_step);
-  state.set("largest_difference", largest_difference_);
+  state.set("largest_difference", largest_);
   state.set("events", events_);
   write_summary(state.child("summary"), context_.results.summary());
   write_seeds(state.child("flips"), seeds_);
@@ -118,10 +118,10 @@ std::optional<solve::Restart> CycleFollower::restore() {
   seeds_ = read_seeds(state.group("flips"));
   located_ = read_located(state.group("located"));
   last_ = state.has_group("last") ? read_cycle(state.group("last")) : cycle;
-  largest_difference_ = state.real("largest_difference");
+  largest_ = state.real("largest_difference");
   system_->set_parameter(cycle.parameter);
   const solve::Cycle orbit = problem_->orbit(restart.u.get());
-  if (seed_) (void)returned(orbit);
+  if (may_return()) (void)returned(orbit);
   add_margin(restart.point.parameter, orbit);
   return restart;
 }

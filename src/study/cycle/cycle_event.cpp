@@ -124,7 +124,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (!wanted(found.event, options_.detect)) return;
   const solve::Cycle cycle = problem_->gather(u);
   system_->set_parameter(cycle.parameter);
-  if (found.event == solve::Event::cyclic_fold && at_simple_cycle(problem_->orbit(u))) return;
+  if (found.event == solve::Event::cyclic_fold && at_its_origin(problem_->orbit(u))) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
   b.more["others_unstable"] = found.others_unstable;

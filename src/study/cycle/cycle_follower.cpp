@@ -203,9 +203,11 @@ StudyResult CycleFollower::run() {
   callbacks.on_suspicion = [this](const solve::Suspicion& s) {
     context_.results.summary().suspected.push_back({s.from, s.to, unit_, s.reason});
   };
-  callbacks.checkpoint = [this](const solve::Settled& at, Vec v, Vec t) {
+  std::size_t suspicions = context_.results.summary().suspected.size();  // up to the last point
+  callbacks.checkpoint = [this, &suspicions](const solve::Settled& at, Vec v, Vec t) {
     save(at, v, t);
-    returned_ = seed_ && returned(problem_->orbit(v));
+    returned_ = may_return() && returned(problem_->orbit(v));
+    if (!returned_) suspicions = context_.results.summary().suspected.size();
     return !returned_;
   };
   const solve::BranchEnd end =
@@ -214,12 +216,13 @@ StudyResult CycleFollower::run() {
   auto& results = context_.results;
   auto& group = results.group();
   if (returned_) {
-    // The step that showed the return landed on the simple cycle, or beyond it on the branch already followed.
+    // The step that showed the return landed on what the branch was born of, or beyond it on the branch already
+    // followed.
     record_.drop_last();
     nodes_.drop_last();
-    close_at_flip(end.parameter);
-    std::erase_if(results.summary().suspected, [&](const io::Suspicion& s) { return s.to == end.parameter; });
-    group.set("end", "the cycle of half the period, at a flip");
+    if (seed_) close_at_flip(end.parameter);
+    results.summary().suspected.resize(suspicions);
+    group.set("end", seed_ ? "the cycle of half the period, at a flip" : "an equilibrium, at a Hopf point");
   } else if (contact) {
     group.set("end", "contact");
   }

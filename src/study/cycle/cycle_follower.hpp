@@ -119,9 +119,11 @@ private:
   [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
-  [[nodiscard]] Eigen::MatrixXd lap_difference(const solve::Cycle& orbit) const;
-  /// On a branch born at a flip: the laps are alike, or have just exchanged their places.
-  [[nodiscard]] bool at_simple_cycle(const solve::Cycle& orbit) const;
+  /// What vanishes where the branch runs back into what it was born of [states x times]. Its sign changes beyond.
+  [[nodiscard]] Eigen::MatrixXd vanishing(const solve::Cycle& orbit) const;
+  [[nodiscard]] bool may_return() const { return seed_ || autonomous(); }
+  /// Little is left of that, or its sign has just changed.
+  [[nodiscard]] bool at_its_origin(const solve::Cycle& orbit) const;
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
@@ -192,10 +194,10 @@ private:
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;
-  bool keeps_located_;              // a locus of the deck starts from one of them
-  std::vector<Located> located_;    // one for each bifurcation of the summary
-  Eigen::MatrixXd lap_difference_;  // first lap minus second one, of the last point of a branch born at a flip
-  double largest_difference_ = 0;   // its largest norm so far
+  bool keeps_located_;            // a locus of the deck starts from one of them
+  std::vector<Located> located_;  // one for each bifurcation of the summary
+  Eigen::MatrixXd vanishing_;     // of the last point of a branch that may return
+  double largest_ = 0;            // its largest norm so far
   bool returned_ = false;
 };
 

@@ -214,34 +214,38 @@ solve::Restart CycleFollower::start_at_flip() {
   return restart;
 }
 
-// First lap minus second one at equidistant times, scaled.
-Eigen::MatrixXd CycleFollower::lap_difference(const solve::Cycle& orbit) const {
+// Of a branch born at a flip the first lap minus the second one, of one born at a Hopf point the motion about its mean:
+// at equidistant times, scaled.
+Eigen::MatrixXd CycleFollower::vanishing(const solve::Cycle& orbit) const {
   constexpr int samples = 24;
-  Eigen::MatrixXd difference(orbit.x.rows(), samples);
+  const auto at = [&](double s) -> Eigen::VectorXd {
+    return orbit.at(problem_->orbit_scheme(), s).cwiseQuotient(problem_->state_scale());
+  };
+  Eigen::MatrixXd motion(orbit.x.rows(), samples);
   for (int k = 0; k < samples; ++k) {
-    const double s = 0.5 * k / samples;
-    difference.col(k) = (orbit.at(problem_->orbit_scheme(), s) - orbit.at(problem_->orbit_scheme(), s + 0.5))
-                            .cwiseQuotient(problem_->state_scale());
+    const double s = static_cast<double>(k) / samples;
+    motion.col(k) = seed_ ? at(s / 2) - at(s / 2 + 0.5) : at(s);
   }
-  return difference;
+  if (!seed_) motion.colwise() -= motion.rowwise().mean().eval();
+  return motion;
 }
 
-// Where the branch runs into the simple cycle its parameter turns as at a fold, which it is not.
-bool CycleFollower::at_simple_cycle(const solve::Cycle& orbit) const {
-  if (!seed_ || lap_difference_.size() == 0) return false;
-  const Eigen::MatrixXd difference = lap_difference(orbit);
-  return (difference.array() * lap_difference_.array()).sum() < 0 || difference.norm() < 0.02 * largest_difference_;
+// Where the branch runs into what it was born of its parameter turns as at a fold, which it is not.
+bool CycleFollower::at_its_origin(const solve::Cycle& orbit) const {
+  if (!may_return() || vanishing_.size() == 0) return false;
+  const Eigen::MatrixXd motion = vanishing(orbit);
+  return (motion.array() * vanishing_.array()).sum() < 0 || motion.norm() < 0.02 * largest_;
 }
 
-// A branch of twice the period may run back into the one it came from. Beyond that point it either repeats itself with
-// the laps exchanged, when the difference of the laps changes its sign, or the step has landed on the simple cycle run
-// twice, when there is no difference.
+// A branch may run back into what it was born of: the cycle of half the period, or an equilibrium. Beyond that point it
+// either repeats itself with the laps exchanged or half a period later, when what vanishes there changes its sign, or
+// the step has landed on the simple cycle run twice or on the equilibrium, when nothing is left of it.
 bool CycleFollower::returned(const solve::Cycle& orbit) {
-  Eigen::MatrixXd difference = lap_difference(orbit);
-  const bool turned = lap_difference_.size() > 0 && (difference.array() * lap_difference_.array()).sum() < 0;
-  largest_difference_ = std::max(largest_difference_, difference.norm());
-  const bool vanished = difference.norm() < 1e-3 * largest_difference_;
-  lap_difference_ = std::move(difference);
+  Eigen::MatrixXd motion = vanishing(orbit);
+  const bool turned = vanishing_.size() > 0 && (motion.array() * vanishing_.array()).sum() < 0;
+  largest_ = std::max(largest_, motion.norm());
+  const bool vanished = motion.norm() < 1e-3 * largest_;
+  vanishing_ = std::move(motion);
   return turned || vanished;
 }
 
