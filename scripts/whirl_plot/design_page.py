@@ -181,11 +181,28 @@ def service():
 
 
 def stretches(study):
-    """Speeds between which a branch of whirl is stable, by its points."""
-    speed, stable = study.group["branch/parameter"][()], study.group["branch/stable"][()] > 0
+    """Speeds between which a branch of whirl is stable, by its birth and its points; those nearer to the birth than a tenth of its bar
+    cannot be told from it."""
+    speed, stable, hopf = study.group["branch/parameter"][()], study.group["branch/stable"][()] > 0, study.first("hopf")
+    kept = abs(speed - hopf["value"]) > 0.1 * hopf["uncertainty"]
+    speed, stable = numpy.append(hopf["value"], speed[kept]), numpy.append(stable[kept][:1], stable[kept])
     edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[False], stable, [False]]).astype(int)))
     pairs = [(speed[a], speed[b - 1]) for a, b in zip(edges[::2], edges[1::2])]
     return "; ".join(f"{min(p):.0f} to {max(p):.0f}" for p in pairs) or "nowhere"
+
+
+def apart_from_birth(study):
+    """Folds of a branch of whirl. One nearer to the Hopf point than a tenth of its bar cannot be told from it."""
+    hopf = study.first("hopf")
+    return [b for b in study.of("cyclic_fold") if abs(b["value"] - hopf["value"]) > 0.1 * hopf["uncertainty"]]
+
+
+def ending(study):
+    """Where a branch of whirl ends, and why."""
+    film, contact = re.search(r"film of bearing \D*(\d+) falls below (.*?) \(", study.status), study.summary["values"].get("contact")
+    if not film or not contact:
+        return study.status
+    return f"contact at {number(contact['value'], contact['uncertainty'])}: film of bearing {film[1]} below {film[2]}"
 
 
 def whirl():
@@ -195,7 +212,7 @@ def whirl():
         s = studies["whirl"]
         hopf = s.first("hopf")
         rows.append([LABELS.get(name, name), f"{where(hopf)} {SIDE[hopf['criticality']]}", stretches(s),
-                     listed(s.of("cyclic_fold")), with_side(s.of("neimark_sacker")), s.status])
+                     listed(apart_from_birth(s)), with_side(s.of("neimark_sacker")), ending(s)])
     return markdown(["variant", "Hopf point", "stable", "folds", "Neimark-Sacker points", "end"], rows)
 
 
