@@ -7,6 +7,8 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/problem/settles.hpp"
 
 namespace whirl::solve {
 
@@ -61,6 +63,23 @@ void EquilibriumProblem::residual(Vec u, Vec r) {
   const core::ReadArray fa(f_.get()), s(residual_scale_.get());
   const core::WriteArray ra(r);
   for (PetscInt i = 0; i < fa.size(); ++i) ra[i] = fa[i] / s[i];
+}
+
+bool EquilibriumProblem::settle(Vec u) {
+  auto* const settles = dynamic_cast<problem::Settles*>(&system_);
+  if (settles == nullptr || !settles->settles()) return false;
+  try {
+    prepare(u);
+    settles->settle(x_.get());
+  } catch (const core::DomainError&) {
+    return false;
+  } catch (const core::NotConverged&) {
+    return false;
+  }
+  const core::ReadArray xa(x_.get()), s(state_scale_.get());
+  const core::WriteArray ua(u);
+  for (PetscInt i = 0; i < xa.size(); ++i) ua[i] = xa[i] / s[i];
+  return true;
 }
 
 void EquilibriumProblem::linearise(Vec u, Vec row) {

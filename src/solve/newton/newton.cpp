@@ -41,6 +41,17 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
+// The whole step ends where the problem settles; the search goes there straight.
+PetscErrorCode settle_step(SNESLineSearch, Vec u, Vec step, PetscBool* changed, void* raw) {
+  auto& c = *static_cast<SolveContext*>(raw);
+  return c.gate.run([&] {
+    core::Vector end = core::duplicate(u);
+    check(VecWAXPY(end.get(), -1, step, u));
+    *changed = c.problem.settle(end.get()) ? PETSC_TRUE : PETSC_FALSE;
+    if (*changed) check(VecWAXPY(step, -1, end.get(), u));
+  });
+}
+
 PetscErrorCode multiply_by_jacobian(Mat m, Vec v, Vec y) {
   void* raw = nullptr;
   PetscCall(MatShellGetContext(m, &raw));
@@ -157,6 +168,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+  check(SNESLineSearchSetPreCheck(search, settle_step, &context));
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));
   // Digits below Newton's own tolerance are of no use.
@@ -196,6 +208,7 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
   o.context.offset = offset;
   o.context.gate = core::Gate(problem_.comm());
   SNES snes = o.snes.get();
+  (void)problem_.settle(u);
   o.context.gate.rethrow(SNESSolve(snes, nullptr, u));
 
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;

@@ -38,6 +38,10 @@ public:
   /// x = matrix^-1 rhs up to rounding; used as a preconditioner, so that lost digits come back by iteration.
   virtual void solve(Vec rhs, Vec x) = 0;
 
+  /// Moves u, which Newton's method is about to try, to a better point by equations of its own; false if there is none
+  /// (u is then as it was). Collective.
+  virtual bool settle(Vec /*u*/) { return false; }
+
   /// To be called when the equations have changed otherwise than by u: what is kept of them is then stale.
   virtual void equations_changed() {}
 
