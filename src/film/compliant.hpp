@@ -77,6 +77,9 @@ public:
   CompliantModel(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
   [[nodiscard]] bool constant_rates() const final { return !liner_.damped(); }
   [[nodiscard]] double state_scale() const final { return g_.clearance; }
+  [[nodiscard]] double least_thickness(const Motion& /*motion*/, std::span<const double> states) const final {
+    return *std::min_element(states.begin(), states.end());
+  }
 
 protected:
   /// Thickness over an undeflected liner at node k around the bearing, in clearances.

@@ -56,9 +56,18 @@ std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation) {
       {Options::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
       {Options::Cavitation::mass_conserving, "mass_conserving",
        "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
-       "edges of pads, grooves and inlets. Loads, stiffness and flows are exact, damping is that of a cavity that "
-       "neither fills nor empties"},
+       "edges of pads, grooves and inlets. Loads, stiffness and flows are exact; damping is that of a cavity that "
+       "neither fills nor empties, unless 'states' are dynamic"},
       {Options::Cavitation::none, "none", "negative pressure stays"}};
+  return table;
+}
+
+std::span<const deck::Name<Options::States>> names(Options::States) {
+  static constexpr deck::Name<Options::States> table[] = {
+      {Options::States::condensed, "condensed", "none: what the cavity holds does not change as the journal moves"},
+      {Options::States::dynamic, "dynamic",
+       "what the gap holds beyond or short of its volume, at every node: the cavity fills and empties in time, and the "
+       "oil is compressible"}};
   return table;
 }
 
@@ -169,6 +178,14 @@ void describe(deck::Description<Options>& d) {
         "part of the gap that is full of oil where it enters a pad, of mass_conserving films")
       .continuable()
       .only(&Options::kind, {reynolds});
+  d.add("states", &Options::states, "own states of a mass_conserving film; condensed, the cheapest, unless given")
+      .only(&Options::kind, {reynolds});
+  d.add(
+       "bulk_modulus", &Options::bulk_modulus, "Pa", positive,
+       "of the oil where the gap is full, of a film with dynamic states: it stores h (1 + p/bulk_modulus). Mineral oil "
+       "without air, 1.5 GPa, unless given; equilibria do not depend on it")
+      .continuable()
+      .only(&Options::kind, {reynolds});
   d.add("turbulence", &Options::turbulence,
         "flow coefficients of the film; laminar unless given, however large the Reynolds number", "004 errata 15")
       .only(&Options::kind, {reynolds});
@@ -220,6 +237,13 @@ void describe(deck::Description<Options>& d) {
     const bool conserves = o.kind == reynolds && o.cavitation == Options::Cavitation::mass_conserving;
     if (!conserves && o.edge_fill != 1)
       r.fail("edge_fill", "only a film with cavitation mass_conserving knows how full the gap is");
+    const bool dynamic = o.states == Options::States::dynamic;
+    if (!conserves && dynamic) r.fail("states", "only a film with cavitation mass_conserving has states of its own");
+    if (dynamic && o.inlet.type == Inlet::Type::maximum_gap)
+      r.fail("inlet",
+             "an inlet at the maximum gap turns with the journal: a film with dynamic states cannot follow it");
+    if (!dynamic && o.bulk_modulus != Options{}.bulk_modulus)
+      r.fail("bulk_modulus", "only a film with dynamic states is compressible");
     for (const Groove& g : o.grooves)
       if (!conserves && g.pressure != 0)
         r.fail("grooves", "only grooves of films with cavitation mass_conserving have a pressure");

@@ -8,6 +8,8 @@
 
 namespace whirl::film {
 
+/// Throws core::InputError on values outside the range of films on rigid pads.
+void check_pads(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 /// Reynolds' equation on the pads of a bore; throws core::InputError on values outside their range.
 std::unique_ptr<Model> make_reynolds(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 /// Short, long or approximate finite-length film of a cylindrical bore; throws core::InputError alike.
@@ -21,5 +23,7 @@ std::unique_ptr<StateModel> make_compliant(const Geometry& geometry, const Optio
 /// The same of finite length, on a mesh around and along the bearing.
 std::unique_ptr<StateModel> make_compliant_finite(const Geometry& geometry, const Options& options,
                                                   const Lubricant& lubricant);
+/// Film on rigid pads that conserves its mass, with what its gap holds as states; throws core::InputError alike.
+std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film

@@ -36,11 +36,6 @@ double BandedPad::deficit_at(int i, int j) const {
   return !pad_.closed && i == (ahead_ > 0 ? 0 : grid_.n_theta) ? std::abs(speed_) * void_at_edge_ : 0.0;
 }
 
-// What a deficit of one at the upstream node of face i brings through it, per unit of cell area.
-double BandedPad::carried(int face, int j) const {
-  return 0.5 * share(j) * a_.h[around(wrap(face), j)] / grid_.dtheta;
-}
-
 void BandedPad::solve_conserving() {
   constexpr int kMost = 100;
   constexpr double kRounding = 1e-13;
@@ -107,7 +102,7 @@ void BandedPad::assemble_conserving() {
         const bool upstream = side == i - ahead_;
         const int face = std::min(side, i);
         if (wall(side)) {
-          const double p = pad_.closed ? groove_pressure_[static_cast<std::size_t>(wrap(side))] : 0.0;
+          const double p = wall_pressure(side);
           x_[here] += share(j) * a_.value[around(wrap(face), j)] * p;
           if (upstream) x_[here] -= carried(face, j) * deficit_at(side, j);
           continue;
@@ -141,46 +136,15 @@ void BandedPad::integrate_conserving(Need need, Response& response) {
   for (int f = 0; f < 4; ++f) response.force[static_cast<std::size_t>(f)] += force[f];
 }
 
-// Film that is ruptured within a cell or cut off counts as it is written in the equations. Volume flows through the
-// faces next to the edges of the pad, in m^3/s; with the squeezed volume of the cells between them they sum to zero to
-// rounding.
+// Film that is ruptured within a cell or cut off counts as it is written in the equations.
 std::optional<Flows> BandedPad::flows(const Motion& motion) {
   if (cavitation_ == Options::Cavitation::half_sommerfeld) return {};
   Response ignored;
   solved_.reset();
   add(motion, Need::force, ignored);
   const bool conserving = cavitation_ == Options::Cavitation::mass_conserving;
-  const double cell = pad_.radius * grid_.dtheta * grid_.dz;
-  Flows out;
-  for (int i = first_; i <= grid_.n_theta; ++i) {
-    const bool last = i == grid_.n_theta;
-    for (int j = 0; j < rows_; ++j) {
-      const double times = cell * (tilt_ ? 1.0 : 2.0);
-      if (!last && !wall(i)) {
-        if (j == 0) out.sides += times * b_.value[along(i, 0)] * pressure_at(i, 0);
-        if (tilt_ && j + 1 == rows_) out.sides += times * b_.value[along(i, rows_)] * pressure_at(i, j);
-        out.squeezed += times * source_[at(i, j)];
-      }
-      // The face between columns i - 1 and i.
-      const int face = wrap(i - 1);
-      if (last && pad_.closed) continue;
-      const bool before = wall(i - 1), after = wall(i);
-      const double couette = 0.5 * speed_ * share(j) * a_.h[around(face, j)] / grid_.dtheta;
-      if (!last && !before && !after) continue;
-      double flow = couette + share(j) * a_.value[around(face, j)] * (pressure_at(i - 1, j) - pressure_at(i, j));
-      if (conserving) flow -= ahead_ * carried(face, j) * deficit_at(ahead_ > 0 ? i - 1 : i, j);
-      if (before && after) continue;
-      (before ? out.enters : out.leaves) += times * flow;
-    }
-  }
-  // The wedge is what the faces between the cells change; what is left of the source is the squeeze.
-  for (int i = first_; i < grid_.n_theta; ++i)
-    for (int j = 0; j < rows_; ++j) {
-      if (wall(i)) continue;
-      const double times = cell * (tilt_ ? 1.0 : 2.0) * share(j);
-      out.squeezed -= times * 0.5 * speed_ * (a_.h[around(i, j)] - a_.h[around(wrap(i - 1), j)]) / grid_.dtheta;
-    }
-  return out;
+  return PadEquations::flows([&](int i, int j) { return pressure_at(i, j); },
+                             [&](int i, int j) { return conserving ? deficit_at(i, j) : 0.0; });
 }
 
 }  // namespace whirl::film

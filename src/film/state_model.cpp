@@ -95,7 +95,7 @@ void relax(StateModel& film, const Motion& motion, std::vector<double>& states) 
       } catch (const core::DomainError&) {
         continue;
       }
-      if (!last && norm(there.residual) > (1.0 - 1e-4 * damping) * norm(here.residual)) continue;
+      if (!last && !film.whole_steps() && norm(there.residual) > (1.0 - 1e-4 * damping) * norm(here.residual)) continue;
       states = std::move(trial);
       std::swap(here, there);
       break;

@@ -20,9 +20,7 @@ double n_states(const system::Machine& machine) {
   double own = 0;
   for (const system::Bearing& b : machine.bearings) {
     if (b.pedestal) freedoms += 2;
-    if (!film::has_states(b.film.kind)) continue;
-    own += b.film.kind == film::Options::Kind::compliant_finite ? static_cast<double>(b.film.cells[0]) * b.film.cells[1]
-                                                                : b.film.cells[0];
+    own += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
   }
   return 2 * freedoms + own;
 }

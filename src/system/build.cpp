@@ -82,7 +82,7 @@ void RotorSystem::build() {
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const Support& s = train_.supports[i];
-      if (film::has_states(s.film.kind))
+      if (film::has_states(s.film))
         bearings_[i].states = film::make_state_model(s.geometry, s.film, s.lubricant);
       else
         bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);

@@ -232,6 +232,27 @@ film::Coefficients RotorSystem::film_coefficients(int b, const double* x, double
   return out;
 }
 
+bool RotorSystem::settles() const {
+  return std::any_of(bearings_.begin(), bearings_.end(),
+                     [](const Bearing& b) { return b.states && b.states->whole_steps(); });
+}
+
+// Films that are not cut stand on one rank.
+void RotorSystem::settle(Vec x) {
+  const std::vector<JournalState> journals = journals_of(gather_inputs(x));
+  core::agree(comm_, [&] {
+    const core::WriteArray xa(x);
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      const Bearing& b = bearings_[i];
+      if (b.part.count() == 0 || !b.states->whole_steps()) continue;
+      core::require(b.rows() == b.count, "a film that settles is not cut");
+      std::vector<double> states(xa.data() + b.row, xa.data() + b.row + b.count);
+      film::relax(*b.states, motion(journals[i]), states);
+      std::copy(states.begin(), states.end(), xa.data() + b.row);
+    }
+  });
+}
+
 // Every rank relaxes the whole of a film that it has a part of.
 void RotorSystem::relax_films(Vec x) {
   const std::vector<JournalState> journals = journals_of(gather_inputs(x));

@@ -224,9 +224,8 @@ std::vector<double> RotorSystem::film_thickness(const double* x) const {
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Bearing& b = bearings_[i];
-    const double* own = x + 2 * n_ + b.first;
     if (b.states)
-      out[i] = *std::min_element(own, own + b.count);
+      out[i] = b.states->least_thickness(motion(at[i]), {x + 2 * n_ + b.first, static_cast<std::size_t>(b.count)});
     else if (!b.film->linear())
       out[i] = film::minimum_thickness(train_.supports[i].geometry, {at[i].position[0], at[i].position[1], 0, 0});
   }

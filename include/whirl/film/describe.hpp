@@ -9,6 +9,7 @@ namespace whirl::film {
 [[nodiscard]] std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore);
 [[nodiscard]] std::span<const deck::Name<Options::Kind>> names(Options::Kind);
 [[nodiscard]] std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation);
+[[nodiscard]] std::span<const deck::Name<Options::States>> names(Options::States);
 [[nodiscard]] std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence);
 [[nodiscard]] std::span<const deck::Name<Inlet::Type>> names(Inlet::Type);
 [[nodiscard]] std::span<const deck::Name<Options::Quadrature>> names(Options::Quadrature);

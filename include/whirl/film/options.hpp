@@ -70,11 +70,14 @@ struct Options {
   enum class Differences { central, upwind, third_order };
   enum class Cavitation { half_sommerfeld, reynolds, mass_conserving, none };
   enum class Turbulence { laminar, constantinescu };
+  enum class States { condensed, dynamic };
   Kind kind = Kind::reynolds;
   Cavitation cavitation = Cavitation::half_sommerfeld;
   Turbulence turbulence = Turbulence::laminar;
-  Inlet inlet;             // of a cylindrical bore
-  double edge_fill = 1.0;  // -, part of the gap that is full of oil where it enters a pad (mass_conserving)
+  Inlet inlet;                        // of a cylindrical bore
+  double edge_fill = 1.0;             // -, part of the gap that is full of oil where it enters a pad (mass_conserving)
+  States states = States::condensed;  // of a mass_conserving film: does its cavity fill and empty in time?
+  double bulk_modulus = 1.5e9;        // Pa, of the oil where the gap is full, of a film with dynamic states
   std::array<int, 2> cells = {60, 16};                     // -, intervals around x along each pad
   bool tilt = false;                                       // -, false: tilt is ignored and moments are zero
   std::array<double, 4> stiffness = {0.0, 0.0, 0.0, 0.0};  // N/m, xx xy yx yy; linear film: force = -K d - C d'

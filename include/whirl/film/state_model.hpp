@@ -68,6 +68,9 @@ public:
   [[nodiscard]] virtual bool constant_rates() const { return true; }
   /// Typical magnitude of every state.
   [[nodiscard]] virtual double state_scale() const = 0;
+  /// True if Newton's method on a film by itself is to take whole steps even where the residual rises: a film that is
+  /// linear but for the set of its full nodes, of which a whole step finds the next one.
+  [[nodiscard]] virtual bool whole_steps() const { return false; }
   /// The states of a film that carries nothing, to start from. Throws as evaluate() does.
   virtual void unloaded(const Motion& motion, std::span<double> states) const = 0;
   /// Fills `response`; derivatives are empty or zero if only the force is needed. Throws core::DomainError outside the
@@ -81,14 +84,23 @@ public:
   /// Own states on this mesh from those of `other`, the same film on another one.
   virtual void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
                         std::span<double> to) const = 0;
+  /// Least thickness of the film [m].
+  [[nodiscard]] virtual double least_thickness(const Motion& motion, std::span<const double> states) const = 0;
   virtual Summary summary(const Motion& motion, std::span<const double> states) = 0;
   virtual std::vector<Field> fields(const Motion& motion, std::span<const double> states) = 0;
 };
 
-/// True for the kinds that make_state_model() makes; the others belong to make_model().
-[[nodiscard]] bool has_states(Options::Kind kind);
+/// True for the films that make_state_model() makes; the others belong to make_model().
+[[nodiscard]] bool has_states(const Options& options);
+/// True for the kinds with an elastic liner, whose bore gives way to the journal.
+[[nodiscard]] bool has_liner(Options::Kind kind);
+/// True for the kinds whose mesh lies around and along the bearing.
+[[nodiscard]] bool has_mesh_along(Options::Kind kind);
 /// True for the kinds that are computed on a mesh (Options::cells), not in closed form.
 [[nodiscard]] bool has_mesh(Options::Kind kind);
+
+/// About how many own states a film has, zero for those without; nothing is made or checked.
+[[nodiscard]] int estimated_states(const Geometry& geometry, const Options& options);
 
 /// The film described by the options; throws core::InputError on values outside their range.
 std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "whirl/film/state_model.hpp"
+#include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
 #include "whirl/system/plant.hpp"
 #include "whirl/system/train.hpp"
@@ -38,7 +39,7 @@ using JournalState = PlaceState;
 /// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks in whole
 /// lines; the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14,
 /// 20, 23.
-class RotorSystem : public Plant {
+class RotorSystem : public Plant, public problem::Settles {
 public:
   /// The speed [rad/s] is the parameter.
   RotorSystem(MPI_Comm comm, Train train, double speed);
@@ -116,6 +117,9 @@ public:
   [[nodiscard]] film::Coefficients film_coefficients(int b, const double* x, double omega);
   /// Gives every film the own states at which it rests with the journals where x has them. Collective.
   void relax_films(Vec x);
+  /// Films that are linear but for the set of their full nodes settle.
+  [[nodiscard]] bool settles() const override;
+  void settle(Vec x) override;
   /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes
   /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;

@@ -8,6 +8,8 @@
 #include "solve/newton/port_elimination.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/problem/settles.hpp"
 
 namespace whirl::solve {
 
@@ -93,6 +95,23 @@ Mat EquilibriumProblem::matrix() {
   check(MatSeqAIJSetPreallocation(bordered_.get(), 0, count.data()));
   check(MatMPIAIJSetPreallocation(bordered_.get(), 0, local.data(), 0, count.data()));
   return bordered_.get();
+}
+
+bool EquilibriumProblem::settle(Vec u) {
+  auto* const settles = dynamic_cast<problem::Settles*>(&system_);
+  if (settles == nullptr || !settles->settles()) return false;
+  try {
+    prepare(u);
+    settles->settle(x_.get());
+  } catch (const core::DomainError&) {
+    return false;
+  } catch (const core::NotConverged&) {
+    return false;
+  }
+  const core::ReadArray xa(x_.get()), s(state_scale_.get());
+  const core::WriteArray ua(u);
+  for (PetscInt i = 0; i < xa.size(); ++i) ua[i] = xa[i] / s[i];
+  return true;
 }
 
 void EquilibriumProblem::linearise(Vec u, Vec row) {

@@ -71,6 +71,17 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
+// The whole step ends where the problem settles; the search goes there straight.
+PetscErrorCode settle_step(SNESLineSearch, Vec u, Vec step, PetscBool* changed, void* raw) {
+  auto& c = *static_cast<SolveContext*>(raw);
+  return c.gate.run([&] {
+    core::Vector end = core::duplicate(u);
+    check(VecWAXPY(end.get(), -1, step, u));
+    *changed = c.problem.settle(end.get()) ? PETSC_TRUE : PETSC_FALSE;
+    if (*changed) check(VecWAXPY(step, -1, end.get(), u));
+  });
+}
+
 PetscErrorCode multiply_by_jacobian(Mat m, Vec v, Vec y) {
   void* raw = nullptr;
   PetscCall(MatShellGetContext(m, &raw));
@@ -240,6 +251,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+  check(SNESLineSearchSetPreCheck(search, settle_step, &context));
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));
   // Digits below Newton's own tolerance are of no use.
@@ -307,6 +319,7 @@ NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<doubl
     if (before > 0) check(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, n, PETSC_DEFAULT));
   };
   allow(most - before);
+  if (before == 0) (void)problem_.settle(u);
   const PetscErrorCode code = SNESSolve(snes, nullptr, u);
   allow(most);
   o.context.gate.rethrow(code);

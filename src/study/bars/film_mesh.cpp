@@ -9,13 +9,7 @@
 namespace whirl::study {
 namespace {
 
-using Kind = film::Options::Kind;
-
 constexpr int most_states = 4000;
-
-bool two_directions(const film::Options& o) {
-  return o.kind == Kind::reynolds || o.kind == Kind::compliant_finite;
-}
 
 int cells_of(const film::Options& o, std::size_t d, double factor) {
   if (factor == 1) return o.cells[d];
@@ -54,7 +48,7 @@ double order_in_time(const system::Machine& machine, double scheme) {
 std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
   int states = 0;
   for (const auto& b : machine.bearings)
-    if (film::has_states(b.film.kind)) states += b.film.cells[0] * (two_directions(b.film) ? b.film.cells[1] : 1);
+    states += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
   std::vector<double> factors{0.5, 2};
   if (states > most_states)
     factors = {0.5, 2.0 / 3};
@@ -68,7 +62,7 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
       // The film whose mesh changes least speaks for all: its spacing gives the largest error.
       bool any = false;
       for (const auto& b : machine.bearings) {
-        if (!film::has_mesh(b.film.kind) || (d == 1 && !two_directions(b.film))) continue;
+        if (!film::has_mesh(b.film.kind) || (d == 1 && !film::has_mesh_along(b.film.kind))) continue;
         const double spacing = static_cast<double>(b.film.cells[d]) / cells_of(b.film, d, factor);
         if (!any || std::abs(std::log(spacing)) < std::abs(std::log(mesh.spacing))) mesh.spacing = spacing;
         any = true;

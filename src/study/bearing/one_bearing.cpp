@@ -25,7 +25,7 @@ OneBearing::OneBearing(const system::Support& support, double speed)
   load_ = shear * g.length * 2 * g.radius;
   pressure_ = 6 * shear;
   motion_.speed = speed;
-  if (film::has_states(support.film.kind)) {
+  if (film::has_states(support.film)) {
     stateful_ = film::make_state_model(g, support.film, support.lubricant);
     rest_.resize(stateful_->states());
   } else {

@@ -47,8 +47,7 @@ MPI_Comm CycleFollower::space() const {
   constexpr int shared_from = 3000;
   int states = 0;
   for (const auto& b : context_.machine.bearings)
-    if (film::has_states(b.film.kind))
-      states += b.film.cells[0] * (b.film.kind == film::Options::Kind::compliant_finite ? b.film.cells[1] : 1);
+    states += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
   return options_.method == Method::newton_picard && states >= shared_from ? context_.comm : PETSC_COMM_SELF;
 }
 

@@ -69,7 +69,7 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
 // gives way; there the motion counts against the clearance.
 double film_left(const system::Support& s, const std::array<double, 2>& at, const Motion& m) {
   if (s.film.kind == film::Options::Kind::linear) return std::numeric_limits<double>::infinity();
-  if (film::has_states(s.film.kind)) return s.geometry.clearance - m.semi_major();
+  if (film::has_liner(s.film.kind)) return s.geometry.clearance - m.semi_major();
   double least = std::numeric_limits<double>::infinity();
   constexpr int samples = 90;
   for (int k = 0; k < samples; ++k) {

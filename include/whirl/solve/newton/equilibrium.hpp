@@ -29,6 +29,7 @@ public:
   [[nodiscard]] Vec weights() const override { return weights_.get(); }
   [[nodiscard]] double parameter_scale() const override { return parameter_scale_; }
   void residual(Vec u, Vec r) override;
+  bool settle(Vec u) override;
   void linearise(Vec u, Vec row) override;
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;

@@ -49,6 +49,10 @@ public:
   /// The unknowns in parts, in local rows, for field splits; those that are in none are the part "border".
   [[nodiscard]] virtual std::vector<problem::Field> fields() const { return {}; }
 
+  /// Moves u, which Newton's method is about to try, to a better point by equations of its own; false if there is none
+  /// (u is then as it was). Collective.
+  virtual bool settle(Vec /*u*/) { return false; }
+
   /// To be called when the equations have changed otherwise than by u: what is kept of them is then stale.
   virtual void equations_changed() {}
 

@@ -1,0 +1,97 @@
+#pragma once
+// Films whose content is their state, that several tests share.
+
+#include <Eigen/SparseLU>
+#include <array>
+#include <vector>
+
+#include "film/cases.hpp"
+#include "whirl/film/state_model.hpp"
+
+namespace whirl::film::testing {
+
+inline Options dynamic(std::array<int, 2> cells) {
+  Options o;
+  o.cavitation = Options::Cavitation::mass_conserving;
+  o.states = Options::States::dynamic;
+  o.cells = cells;
+  return o;
+}
+inline Options without_states(Options o) {
+  o.states = Options::States::condensed;
+  return o;
+}
+
+/// The states at which nothing changes while the journal moves as `m` says.
+inline std::vector<double> settled(StateModel& film, const Motion& m) {
+  std::vector<double> q(film.states());
+  film.unloaded(m, q);
+  relax(film, m, q);
+  return q;
+}
+
+/// dg/ds + sigma dg/ds'.
+inline Eigen::SparseMatrix<double> matrix_of(const StateResponse& r, double sigma) {
+  const auto n = static_cast<Eigen::Index>(r.residual.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Entry& e : r.d_states) entries.emplace_back(e.row, e.column, e.value);
+  for (const Entry& e : r.d_rates) entries.emplace_back(e.row, e.column, sigma * e.value);
+  Eigen::SparseMatrix<double> m(n, n);
+  m.setFromTriplets(entries.begin(), entries.end());
+  return m;
+}
+
+/// Derivatives of the force with the states eliminated where they do not change.
+struct Eliminated {
+  std::array<std::array<double, 2>, 2> d_position, d_velocity;
+  std::array<double, 2> d_speed;
+};
+inline Eliminated eliminate(const StateResponse& r) {
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(r, 0.0));
+  const auto n = static_cast<Eigen::Index>(r.residual.size());
+  Eigen::MatrixXd by(n, 5), force(2, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto s = static_cast<std::size_t>(k);
+    by.row(k) << r.d_position[s][0], r.d_position[s][1], r.d_velocity[s][0], r.d_velocity[s][1], r.d_speed[s];
+    force.col(k) << r.force_d_states[s][0], r.force_d_states[s][1];
+  }
+  const Eigen::MatrixXd through = -force * lu.solve(by).eval();
+  Eliminated out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j < 2; ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      out.d_position[i][j] = r.journal.d_position[i][j] + through(row, column);
+      out.d_velocity[i][j] = r.journal.d_velocity[i][j] + through(row, 2 + column);
+    }
+    out.d_speed[i] = r.journal.d_speed[i] + through(row, 4);
+  }
+  return out;
+}
+
+/// A step of e in a direction: 0 to 3 position, 4 to 7 velocity, 8 speed.
+inline double step_of(const Geometry& g, int direction, double e) {
+  const double tilt = g.clearance / g.length;
+  return e * (direction == 8 ? 377.0 : direction % 4 < 2 ? g.clearance : tilt) * (direction / 4 == 1 ? 377.0 : 1.0);
+}
+
+/// Area [m^2] of the cell of every state, both halves of an aligned film.
+inline std::vector<double> cell_areas(const Geometry& g, const Options& o) {
+  const bool closed = g.type == Geometry::Bore::cylindrical, edges = !closed || o.inlet.type == Inlet::Type::line;
+  const double step = (closed ? 2.0 * std::numbers::pi : g.arc) / o.cells[0];
+  const int rows = o.tilt ? o.cells[1] - 1 : o.cells[1] / 2, pads = g.type == Geometry::Bore::lemon_bore ? 2 : 1;
+  int columns = o.cells[0] - 1;
+  if (!edges) {  // grooves
+    const auto film = make_state_model(g, o, oil());
+    columns = static_cast<int>(film->states()) / rows;
+  }
+  std::vector<double> out;
+  for (int i = 0; i < pads * columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const bool middle = !o.tilt && o.cells[1] % 2 == 0 && j == rows - 1;
+      out.push_back(g.radius * step * g.length / o.cells[1] * (o.tilt || middle ? 1.0 : 2.0));
+    }
+  return out;
+}
+
+}  // namespace whirl::film::testing
