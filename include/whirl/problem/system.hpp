@@ -9,9 +9,10 @@
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/frozen.hpp"
-#include "whirl/problem/structure.hpp"
 
 namespace whirl::problem {
+
+class Structure;
 
 /// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.
 ///
