@@ -10,8 +10,16 @@ namespace {
 
 using core::check;
 
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+problem::SparseBlock block(Eigen::Index rows, Eigen::Index columns, const Entries& entries) {
+  problem::SparseBlock out(rows, columns);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
 // Adds the entries of m [N x N] at (2 i, 2 j + rate).
-void scatter(Mat m, PetscInt rate, Eigen::MatrixXd& out) {
+void scatter(Mat m, int rate, Entries& out) {
   PetscInt rows = 0;
   check(MatGetSize(m, &rows, nullptr));
   for (PetscInt i = 0; i < rows; ++i) {
@@ -19,7 +27,8 @@ void scatter(Mat m, PetscInt rate, Eigen::MatrixXd& out) {
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;
     check(MatGetRow(m, i, &k, &columns, &values));
-    for (PetscInt e = 0; e < k; ++e) out(2 * i, 2 * columns[e] + rate) += values[e];
+    for (PetscInt e = 0; e < k; ++e)
+      if (values[e] != 0) out.emplace_back(2 * i, 2 * columns[e] + rate, values[e]);
     check(MatRestoreRow(m, i, &k, &columns, &values));
   }
 }
@@ -34,28 +43,31 @@ RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
 void RotorSystem::Blocks::rebuild() {
   const RotorSystem& system = system_;
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
-  l1_ = l0_at_rest_ = gyroscopic_ = Eigen::MatrixXd::Zero(n, n);
-  scatter(system.mass_.get(), 1, l1_);
-  scatter(system.stiffness_.get(), 0, l0_at_rest_);
-  scatter(system.damping_.get(), 1, l0_at_rest_);
-  scatter(system.gyroscopic_.get(), 1, gyroscopic_);
-  for (Eigen::Index i = 0; i < n / 2; ++i) {
-    l1_(2 * i + 1, 2 * i) = 1;
-    l0_at_rest_(2 * i + 1, 2 * i + 1) = -1;
+  Entries rates, at_rest, gyroscopic, b, c;
+  scatter(system.mass_.get(), 1, rates);
+  scatter(system.stiffness_.get(), 0, at_rest);
+  scatter(system.damping_.get(), 1, at_rest);
+  scatter(system.gyroscopic_.get(), 1, gyroscopic);
+  for (int i = 0; i < static_cast<int>(n / 2); ++i) {
+    rates.emplace_back(2 * i + 1, 2 * i, 1);
+    at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);
   }
-  b_ = Eigen::MatrixXd::Zero(n, 2 * bearings);
-  c_ = Eigen::MatrixXd::Zero(4 * bearings, n);
   for (int i = 0; i < bearings; ++i)
     for (int d = 0; d < 2; ++d) {
       const PetscInt j = system.journal(i, d), p = system.pedestal(i, d);
-      b_(2 * j, 2 * i + d) = 1;
-      c_(4 * i + d, 2 * j) = 1;
-      c_(4 * i + 2 + d, 2 * j + 1) = 1;
+      b.emplace_back(2 * j, 2 * i + d, 1);
+      c.emplace_back(4 * i + d, 2 * j, 1);
+      c.emplace_back(4 * i + 2 + d, 2 * j + 1, 1);
       if (p < 0) continue;
-      b_(2 * p, 2 * i + d) = -1;
-      c_(4 * i + d, 2 * p) = -1;
-      c_(4 * i + 2 + d, 2 * p + 1) = -1;
+      b.emplace_back(2 * p, 2 * i + d, -1);
+      c.emplace_back(4 * i + d, 2 * p, -1);
+      c.emplace_back(4 * i + 2 + d, 2 * p + 1, -1);
     }
+  l1_ = block(n, n, rates);
+  l0_at_rest_ = block(n, n, at_rest);
+  gyroscopic_ = block(n, n, gyroscopic);
+  b_ = block(n, 2 * bearings, b);
+  c_ = block(4 * bearings, n, c);
   l0_speed_ = -1;
 }
 
@@ -77,7 +89,7 @@ void RotorSystem::Blocks::find_own_states() {
   }
 }
 
-const Eigen::MatrixXd& RotorSystem::Blocks::l0() {
+const problem::SparseBlock& RotorSystem::Blocks::l0() {
   if (l0_speed_ != system_.speed_) {
     l0_speed_ = system_.speed_;
     l0_ = l0_at_rest_ + l0_speed_ * gyroscopic_;
@@ -184,9 +196,9 @@ void RotorSystem::Blocks::residual(double angle, const Eigen::VectorXd& x, const
   films(c_ * x.head(n), x.data() + n, xdot.data() + n, false, films_);
   load(angle, load_);
   out.resize(n + k);
-  out.head(n).noalias() = l1_ * xdot.head(n);
-  out.head(n).noalias() += l0() * x.head(n);
-  out.head(n).noalias() -= b_ * films_.forces;
+  out.head(n) = l1_ * xdot.head(n);
+  out.head(n) += l0() * x.head(n);
+  out.head(n) -= b_ * films_.forces;
   out.head(n) -= load_;
   out.tail(k) = films_.residual;
 }
@@ -204,8 +216,8 @@ void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::Vector
     return;
   }
   out.resize(n + k);
-  out.head(n).noalias() = gyroscopic_ * x.head(n);
-  out.head(n).noalias() -= b_ * films.d_speed.head(b_.cols());
+  out.head(n) = gyroscopic_ * x.head(n);
+  out.head(n) -= b_ * films.d_speed.head(b_.cols());
   out.tail(k) = films.d_speed.tail(k);
   if (!system_.forcing_) return;
   const double c = 2 * system_.speed_ * std::cos(angle), s = 2 * system_.speed_ * std::sin(angle);

@@ -1,5 +1,5 @@
 #pragma once
-// The dense blocks that a train on one rank shows to structured solvers.
+// The blocks that a train on one rank shows to structured solvers.
 
 #include <Eigen/Core>
 
@@ -21,10 +21,10 @@ public:
   [[nodiscard]] Eigen::Index n_forces() const override { return b_.cols(); }
   [[nodiscard]] Eigen::Index n_inputs() const override { return c_.rows(); }
   [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return own_; }
-  [[nodiscard]] const Eigen::MatrixXd& l1() override { return l1_; }
-  [[nodiscard]] const Eigen::MatrixXd& l0() override;
-  [[nodiscard]] const Eigen::MatrixXd& b() const override { return b_; }
-  [[nodiscard]] const Eigen::MatrixXd& c() const override { return c_; }
+  [[nodiscard]] const problem::SparseBlock& l1() override { return l1_; }
+  [[nodiscard]] const problem::SparseBlock& l0() override;
+  [[nodiscard]] const problem::SparseBlock& b() const override { return b_; }
+  [[nodiscard]] const problem::SparseBlock& c() const override { return c_; }
   void load(double angle, Eigen::VectorXd& load) override;
   void films(const Eigen::VectorXd& inputs, const double* own, const double* rates, bool tangents,
              problem::Films& films) override;
@@ -37,7 +37,7 @@ private:
   void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::VectorXd& out);
 
   RotorSystem& system_;
-  Eigen::MatrixXd l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
+  problem::SparseBlock l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
   double l0_speed_ = -1;
   std::vector<problem::OwnStates> own_;
   // Work space.

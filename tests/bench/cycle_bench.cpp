@@ -1,6 +1,8 @@
 // Cost of one Newton iteration of the main job's cycle: the Guyan-reduced train (104 states), G2.5 at 3600 rpm, 60
-// intervals of degree 2, films of 60 x 16 cells; with its parts, and against dense intervals and assembled MUMPS.
-// mpirun -n 1 bench_cycle; mpirun -n 2 bench_cycle. Least of several runs; --quick: few; --alone: no comparison.
+// intervals of degree 2, films of 60 x 16 cells; with its parts, against dense intervals and assembled MUMPS, and
+// against the whole shaft (1500 states) and its Craig-Bampton reduction (5 bearings, 16 modes a plane; 104 states).
+// mpirun -n 1 bench_cycle; mpirun -n 2 bench_cycle. Least of several runs; --quick: few; --alone: no comparison;
+// --shafts: whole and Craig-Bampton only.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -81,58 +83,103 @@ void parts(system::RotorSystem& s, solve::CycleProblem& p, Vec u, int runs) {
   row("multipliers (per point of a branch)", bench::least(MPI_COMM_WORLD, runs, [&] { (void)p.multipliers(); }));
 }
 
-int run(int runs, bool alone) {
+solve::NewtonOptions newton_options() {
+  solve::NewtonOptions o;
+  o.max_iterations = 40;
+  return o;
+}
+
+// The cycle from the static equilibrium, resting there at all nodes; null if Newton fails.
+core::Vector find_cycle(system::RotorSystem& s, solve::CycleProblem& p, int degree) {
+  core::Vector x = system::static_guess(s);
+  const auto newton = newton_options();
+  if (!solve::find_equilibrium(s, x.get(), newton).converged) return {};
+  const auto rest = s.gather(x.get());
+  solve::Cycle guess{p.mesh(), {}, 2 * M_PI / kSpeed, kSpeed};
+  guess.x = Eigen::Map<const Eigen::VectorXd>(rest.data(), s.size()).replicate(1, kIntervals * degree);
+  core::Vector u = p.scatter(guess), fix = core::duplicate(u.get());
+  solve::parameter_row(p, fix.get());
+  solve::NewtonResult result;
+  const auto solving =
+      bench::least(MPI_COMM_WORLD, 1, [&] { result = solve::newton(p, u.get(), fix.get(), kSpeed, newton); });
+  if (!result.converged) return {};
+  if (core::rank_of(MPI_COMM_WORLD) == 0)
+    fmt::print(
+        "{} ranks, {} states; cycle from the equilibrium: {} Newton iterations, {} linear iterations, {:.3f} s\n",
+        core::size_of(MPI_COMM_WORLD), s.size(), result.iterations, result.linear_iterations, solving.wall);
+  return u;
+}
+
+void rows(const Iteration& i) {
+  if (core::rank_of(MPI_COMM_WORLD) == 0) fmt::print("\n{:<58} {:>9} {:>9}\n", "", "wall ms", "cpu ms");
+  row("residual", i.residual);
+  row("linearise (films, condensation, transitions, small LU)", i.linearise);
+  row("solve (GMRES)", i.solve);
+  row("Newton iteration", i.whole);
+}
+
+// Newton's iteration of another shaft against the Guyan-reduced one's.
+bool against(const char* name, const rotor::Reduction& reduction, const Iteration& guyan, int runs) {
+  auto t = test::train({60, 16}, false);
+  t.rotor.reduction = reduction;
+  test::add_gen_pair(t, 2.5);
+  system::RotorSystem s(PETSC_COMM_SELF, t, kSpeed);
+  solve::CycleProblem p(MPI_COMM_WORLD, s, {}, solve::uniform_mesh(kIntervals));
+  const bool root = core::rank_of(MPI_COMM_WORLD) == 0;
+  if (root) fmt::print("\n{}\n", name);
+  const core::Vector u = find_cycle(s, p, 2);
+  if (!u) return false;
+  const Iteration i = measure(p, u.get(), runs);
+  rows(i);
+  core::Vector fix = core::duplicate(u.get());
+  solve::parameter_row(p, fix.get());
+  row("multipliers after a linearisation", bench::least(MPI_COMM_WORLD, 2, [&] {
+        p.linearise(u.get(), fix.get());
+        (void)p.multipliers();
+      }));
+  if (root) fmt::print("ratio to the Guyan-reduced shaft {:.2f}\n", i.whole.processor / guyan.whole.processor);
+  return true;
+}
+
+int run(int runs, bool alone, bool shafts) {
   auto t = test::train({60, 16}, true);
   test::add_gen_pair(t, 2.5);
   system::RotorSystem s(PETSC_COMM_SELF, t, kSpeed);
-  core::Vector x = system::static_guess(s);
-  solve::NewtonOptions newton;
-  newton.max_iterations = 40;
-  if (!solve::find_equilibrium(s, x.get(), newton).converged) return 1;
   solve::CycleOptions options;
   options.degree = 2;
-  const auto whole = s.gather(x.get());
 
   core::Vector u;
   Iteration reference;
   for (const auto& [name, structured, assembled] : {std::tuple{"low-rank intervals", true, false},
                                                     {"dense intervals", false, false},
                                                     {"assembled matrix, MUMPS", false, true}}) {
-    if (alone && !structured) break;
+    if ((alone || shafts) && !structured) break;
     options.use_structure = structured;
     options.assembled = assembled;
     solve::CycleProblem p(MPI_COMM_WORLD, s, options, solve::uniform_mesh(kIntervals));
     const bool root = core::rank_of(MPI_COMM_WORLD) == 0;
-    if (!u) {
-      solve::Cycle guess{p.mesh(), {}, 2 * M_PI / kSpeed, kSpeed};
-      guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), s.size()).replicate(1, kIntervals * options.degree);
-      u = p.scatter(guess);
-      core::Vector fix = core::duplicate(u.get());
-      solve::parameter_row(p, fix.get());
-      solve::NewtonResult result;
-      const auto solving =
-          bench::least(MPI_COMM_WORLD, 1, [&] { result = solve::newton(p, u.get(), fix.get(), kSpeed, newton); });
-      if (!result.converged) return 1;
-      if (root)
-        fmt::print("{} ranks; cycle from the equilibrium: {} Newton iterations, {} linear iterations, {:.3f} s\n",
-                   core::size_of(MPI_COMM_WORLD), result.iterations, result.linear_iterations, solving.wall);
-    }
-    if (root) fmt::print("\n{:<58} {:>9} {:>9}\n", name, "wall ms", "cpu ms");
+    if (!u) u = find_cycle(s, p, options.degree);
+    if (!u) return 1;
+    if (root) fmt::print("\n{}", name);
     const Iteration i = measure(p, u.get(), structured ? runs : std::max(runs / 8, 2));
-    row("residual", i.residual);
-    row("linearise (films, condensation, transitions, small LU)", i.linearise);
-    row("solve (GMRES)", i.solve);
-    row("Newton iteration", i.whole);
+    rows(i);
     if (structured) {
       reference = i;
       if (root) fmt::print("of these:\n");
-      parts(s, p, u.get(), runs);
+      if (!shafts) parts(s, p, u.get(), runs);
       if (root) fmt::print("iteration {:.6f} s\n", i.whole.wall);
     } else if (root) {
       fmt::print("ratio to low-rank intervals {:.2f}\n", i.whole.wall / reference.whole.wall);
     }
   }
-  return 0;
+  if (alone) return 0;
+  std::vector<int> bearings;
+  for (const auto& support : t.supports) bearings.push_back(support.node);
+  using enum rotor::Reduction::Type;
+  const bool done =
+      against("Craig-Bampton: bearings and 16 modes a plane", {craig_bampton, bearings, 16}, reference, runs) &&
+      against("the whole shaft", {none, {}, 0}, reference, runs);
+  return done ? 0 : 1;
 }
 
 }  // namespace
@@ -140,10 +187,11 @@ int run(int runs, bool alone) {
 int main(int argc, char** argv) {
   const whirl::core::Session session(argc, argv);
   int runs = 40;
-  bool alone = false;
+  bool alone = false, shafts = false;
   for (int k = 1; k < argc; ++k) {
     if (std::strcmp(argv[k], "--quick") == 0) runs = 3;
     if (std::strcmp(argv[k], "--alone") == 0) alone = true;
+    if (std::strcmp(argv[k], "--shafts") == 0) shafts = true;
   }
-  return run(runs, alone);
+  return run(runs, alone, shafts);
 }

@@ -77,10 +77,10 @@ public:
   [[nodiscard]] Index n_forces() const override { return rest_.n_forces(); }
   [[nodiscard]] Index n_inputs() const override { return rest_.n_inputs(); }
   [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return rest_.own(); }
-  [[nodiscard]] const MatrixXd& l1() override { return rest_.l1(); }
-  [[nodiscard]] const MatrixXd& l0() override { return rest_.l0(); }
-  [[nodiscard]] const MatrixXd& b() const override { return rest_.b(); }
-  [[nodiscard]] const MatrixXd& c() const override { return rest_.c(); }
+  [[nodiscard]] const problem::SparseBlock& l1() override { return rest_.l1(); }
+  [[nodiscard]] const problem::SparseBlock& l0() override { return rest_.l0(); }
+  [[nodiscard]] const problem::SparseBlock& b() const override { return rest_.b(); }
+  [[nodiscard]] const problem::SparseBlock& c() const override { return rest_.c(); }
   void load(double angle, VectorXd& load) override {
     rest_.load(angle, load);
     add_(angle, a_, load.data());

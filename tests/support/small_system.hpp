@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/problem/structure.hpp"
 #include "whirl/problem/system.hpp"
 
 namespace whirl::test {
@@ -139,15 +140,18 @@ public:
 private:
   class Told : public problem::Structure {
   public:
-    Told(const StructuredSystem& system, Blocks blocks) : system_(system), blocks_(std::move(blocks)) {}
+    Told(const StructuredSystem& system, const Blocks& blocks)
+        : system_(system), blocks_(blocks), l1_(told(blocks.l1)), b_(told(blocks.b)), c_(told(blocks.c)) {}
     [[nodiscard]] Eigen::Index size() const override { return blocks_.l1.rows(); }
     [[nodiscard]] Eigen::Index n_forces() const override { return blocks_.b.cols(); }
     [[nodiscard]] Eigen::Index n_inputs() const override { return blocks_.c.rows(); }
     [[nodiscard]] const std::vector<problem::OwnStates>& own() const override { return none_; }
-    [[nodiscard]] const Eigen::MatrixXd& l1() override { return blocks_.l1; }
-    [[nodiscard]] const Eigen::MatrixXd& l0() override { return now_ = blocks_.l0 + system_.parameter() * blocks_.l0p; }
-    [[nodiscard]] const Eigen::MatrixXd& b() const override { return blocks_.b; }
-    [[nodiscard]] const Eigen::MatrixXd& c() const override { return blocks_.c; }
+    [[nodiscard]] const problem::SparseBlock& l1() override { return l1_; }
+    [[nodiscard]] const problem::SparseBlock& l0() override {
+      return now_ = told(blocks_.l0 + system_.parameter() * blocks_.l0p);
+    }
+    [[nodiscard]] const problem::SparseBlock& b() const override { return b_; }
+    [[nodiscard]] const problem::SparseBlock& c() const override { return c_; }
     void load(double angle, Eigen::VectorXd& load) override { load = load_(angle, system_.parameter()).real(); }
     void films(const Eigen::VectorXd& inputs, const double*, const double*, bool tangents,
                problem::Films& out) override {
@@ -171,10 +175,11 @@ private:
     std::function<Eigen::VectorXcd(Eigen::VectorXcd, Complex)> forces_;
 
   private:
+    static problem::SparseBlock told(const Eigen::MatrixXd& block) { return block.sparseView(); }
     static constexpr double step = 1e-40;
     const StructuredSystem& system_;
     Blocks blocks_;
-    Eigen::MatrixXd now_;
+    problem::SparseBlock l1_, b_, c_, now_;
     std::vector<problem::OwnStates> none_;
   };
   Told structure_;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/system/brusselator.hpp"
 #include "whirl/system/rotor_system.hpp"

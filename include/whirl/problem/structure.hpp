@@ -3,9 +3,13 @@
 // their neighbours.
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <vector>
 
 namespace whirl::problem {
+
+/// Blocks are sparse, by columns and compressed: those of a whole shaft couple neighbours only.
+using SparseBlock = Eigen::SparseMatrix<double>;
 
 /// Where a derivative has an entry.
 struct Place {
@@ -46,7 +50,7 @@ struct Films {
 /// L1, L0 [n x n] are constant along a cycle, l [n] is the constant load and the forcing, f [r] the nonlinear forces
 /// (journal forces of the films) that depend on the thin inputs C x [w] (positions and velocities of the journals in
 /// their bearings) and on own states only, r, w << n. All on one rank, SI. References stay valid for the life of the
-/// system; the blocks behind them follow its parameter.
+/// system; the blocks behind them follow its parameter. Those who want them dense convert them.
 class Structure {
 public:
   virtual ~Structure() = default;
@@ -58,11 +62,11 @@ public:
   /// Films with own states, in their order; k is the sum of their counts.
   [[nodiscard]] virtual const std::vector<OwnStates>& own() const = 0;
 
-  [[nodiscard]] virtual const Eigen::MatrixXd& l1() = 0;
+  [[nodiscard]] virtual const SparseBlock& l1() = 0;
   /// L0 at the present parameter.
-  [[nodiscard]] virtual const Eigen::MatrixXd& l0() = 0;
-  [[nodiscard]] virtual const Eigen::MatrixXd& b() const = 0;
-  [[nodiscard]] virtual const Eigen::MatrixXd& c() const = 0;
+  [[nodiscard]] virtual const SparseBlock& l0() = 0;
+  [[nodiscard]] virtual const SparseBlock& b() const = 0;
+  [[nodiscard]] virtual const SparseBlock& c() const = 0;
 
   /// l(angle) [n].
   virtual void load(double angle, Eigen::VectorXd& load) = 0;

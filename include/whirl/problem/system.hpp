@@ -10,9 +10,10 @@
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/frozen.hpp"
-#include "whirl/problem/structure.hpp"
 
 namespace whirl::problem {
+
+class Structure;
 
 /// States of one body or film on this rank: local rows [begin, end) of x.
 struct Field {

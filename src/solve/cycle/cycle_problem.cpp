@@ -23,11 +23,22 @@ constexpr double two_pi = 2 * std::numbers::pi;
 // time, where the dense way carries eight at once. Measured: 1.5 times faster at 56 states, 3 to 4 times at 206.
 constexpr Index dense_below = 40;
 
+// Time modes cost in proportion to the entries of the blocks, dense transitions n^3: they meet at some 250 states of a
+// shaft, where a node sees two others.
+bool thin(problem::Structure& structure) {
+  const Index n = structure.size();
+  return n >= 250 && 20 * (structure.l1().nonZeros() + structure.l0().nonZeros()) < n * n;
+}
+
 }  // namespace
 
-CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, const problem::Structure* structure) {
+CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Structure* structure) {
   if (!structure || options.assembled) return Way::dense;
   if (!structure->own().empty()) return Way::own_states;
+  using Joining = CycleOptions::Joining;
+  if (options.points == Points::radau &&
+      (options.joining == Joining::modes || (options.joining == Joining::cheapest && thin(*structure))))
+    return Way::sparse;
   return 2 * structure->n_forces() < structure->size() ? Way::low_rank : Way::dense;
 }
 
@@ -37,19 +48,24 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
       size_(core::size_of(time)),
       system_(local),
       structure_(options.use_structure ? local.structure() : nullptr),
-      point_(local, structure_),
       options_(options),
+      way_(way_of(options, structure_)),
+      point_(local, structure_, way_ == Way::sparse),
       scheme_(make_scheme(options.degree, options.points)),
       n_(local.size()),
-      borders_(options.autonomous ? 2 : 1),
-      way_(way_of(options, structure_)) {
+      borders_(options.autonomous ? 2 : 1) {
   run_.comm = time;
   run_.n = n_;
   run_.borders = borders_;
   using Joining = CycleOptions::Joining;
   const bool sweeps = options.joining == Joining::sweeps ||
-                      (options.joining == Joining::cheapest && way_ == Way::own_states && n_ > dense_below);
-  composition_ = sweeps ? make_sweep_composition() : make_dense_composition();
+                      ((options.joining == Joining::cheapest || options.joining == Joining::one_by_one) &&
+                       way_ == Way::own_states && n_ > dense_below);
+  core::require(options.joining != Joining::modes || way_ == Way::sparse,
+                "time modes want Radau points and a machine that is linear but for thin forces");
+  composition_ = way_ == Way::sparse ? make_mode_composition()
+                 : sweeps            ? make_sweep_composition()
+                                     : make_dense_composition();
   layout(std::move(mesh));
 }
 
@@ -211,11 +227,18 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
   }
   if (way_ == Way::dense) return make_dense_interval(scheme_, h * period, std::move(jx), std::move(jxdot));
   const double rounded = std::round(h * 1e12) / 1e12;
-  auto& part = parts_[rounded];
-  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, point_.l1(), point_.l0(), point_.b(), point_.c());
-  if (way_ == Way::own_states) return make_own_interval(part, structure_->own(), point_, points);
   std::vector<MatrixXd> tangents;
-  for (const PointState* at : points) tangents.push_back(at->films.d_inputs);
+  if (way_ != Way::own_states)
+    for (const PointState* at : points) tangents.push_back(at->films.d_inputs);
+  if (way_ == Way::sparse) {
+    auto& part = sparse_parts_[rounded];
+    if (!part) part = make_sparse_part(scheme_, h * period, thin_);
+    return make_sparse_interval(part, std::move(tangents));
+  }
+  auto& part = parts_[rounded];
+  const DenseBlocks& blocks = point_.blocks();
+  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, blocks.l1, blocks.l0, blocks.b, blocks.c);
+  if (way_ == Way::own_states) return make_own_interval(part, structure_->own(), point_, points);
   return make_low_rank_interval(part, std::move(tangents));
 }
 
@@ -230,18 +253,24 @@ void CycleProblem::linearise(Vec u, Vec row) {
   run_.intervals.clear();
   run_.intervals.resize(count);
   parts_.clear();
+  sparse_parts_.clear();
+  run_.thin.reset();
   run_.columns.resize(count);
   core::agree(comm_, [&] {
     set_parameter(border);
     const double period = period_of(border);
     if (!(period > 0)) throw core::DomainError("the period is not positive");
     point_.refresh();
+    if (way_ == Way::sparse) thin_ = point_.thin_blocks();
     for (Index i = 0; i < count_; ++i) {
       const double* own = ua.data() + i * size;
       const VectorXd start = i == 0 ? before : VectorXd(Map<const VectorXd>(own - n_, n_));
       run_.intervals[static_cast<std::size_t>(i)] =
           linearise_interval(i, own, start, period, run_.columns[static_cast<std::size_t>(i)]);
     }
+    if (way_ != Way::sparse) return;
+    run_.thin = ThinRun{&thin_, &scheme_, &mesh_, period, {}};
+    for (const PointState& at : kept_) run_.thin->tangents.push_back(&at.films.d_inputs);
   });
   // The same solution is often linearised again with another row.
   if (structure_ && !known) {

@@ -31,11 +31,26 @@ MatrixXd to_dense(Mat m, Index n) {
   return out;
 }
 
+// out = diag(rows) block diag(columns)
+void scale(const problem::SparseBlock& block, const VectorXd& rows, const VectorXd& columns, MatrixXd& out) {
+  out.setZero(block.rows(), block.cols());
+  for (Index j = 0; j < block.cols(); ++j)
+    for (problem::SparseBlock::InnerIterator it(block, j); it; ++it)
+      out(it.row(), j) = rows(it.row()) * it.value() * columns(j);
+}
+
+void scale(const problem::SparseBlock& block, const VectorXd& rows, const VectorXd& columns,
+           problem::SparseBlock& out) {
+  out = block;
+  for (Index j = 0; j < out.cols(); ++j)
+    for (problem::SparseBlock::InnerIterator it(out, j); it; ++it) it.valueRef() *= rows(it.row()) * columns(j);
+}
+
 }  // namespace
 
-ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure)
-    : system_(system), structure_(structure) {
-  core::require(core::size_of(system.comm()) == 1, "a dense point needs the whole system on one rank");
+ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure, bool sparse)
+    : system_(system), structure_(structure), sparse_(sparse && structure) {
+  core::require(core::size_of(system.comm()) == 1, "a point of a cycle needs the whole system on one rank");
   x_ = core::make_vector(system.comm(), system.size(), PETSC_DETERMINE);
   xdot_ = core::duplicate(x_.get());
   f_ = core::duplicate(x_.get());
@@ -43,9 +58,6 @@ ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure)
   state_scale_ = to_eigen(x_.get());
   residual_scale_ = to_eigen(f_.get());
   if (structure_) {
-    const Index n = structure_->size();
-    b_ = residual_scale_.head(n).cwiseInverse().asDiagonal() * structure_->b();
-    c_ = structure_->c() * state_scale_.head(n).asDiagonal();
     refresh();
   } else {
     matrix_ = system.make_jacobian();
@@ -55,10 +67,18 @@ ScaledPoint::ScaledPoint(problem::System& system, problem::Structure* structure)
 void ScaledPoint::refresh() {
   if (!structure_) return;
   const Index n = structure_->size();
-  const auto rows = residual_scale_.head(n).cwiseInverse().asDiagonal();
-  const auto columns = state_scale_.head(n).asDiagonal();
-  l0_ = rows * structure_->l0() * columns;
-  l1_ = rows * structure_->l1() * columns;
+  const VectorXd rows = residual_scale_.head(n).cwiseInverse(), columns = state_scale_.head(n);
+  const VectorXd forces = VectorXd::Ones(structure_->n_forces()), inputs = VectorXd::Ones(structure_->n_inputs());
+  const auto all = [&](auto& blocks) {
+    scale(structure_->l0(), rows, columns, blocks.l0);
+    scale(structure_->l1(), rows, columns, blocks.l1);
+    scale(structure_->b(), rows, forces, blocks.b);
+    scale(structure_->c(), inputs, columns, blocks.c);
+  };
+  if (sparse_)
+    all(thin_);
+  else
+    all(dense_);
 }
 
 void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
@@ -72,14 +92,16 @@ void ScaledPoint::structured(double angle, const VectorXd& x, const VectorXd& xd
   const Index n = structure_->size(), k = own_states();
   at.value = x.cwiseProduct(state_scale_);
   at.rate = xdot.cwiseProduct(state_scale_);
-  inputs_.noalias() = c_ * x.head(n);
+  with_blocks([&](const auto& blocks) { inputs_.noalias() = blocks.c * x.head(n); });
   structure_->films(inputs_, at.value.data() + n, at.rate.data() + n, tangents, at.films);
   structure_->load(angle, load_);
   auto core = out.head(n);
-  core.noalias() = l0_ * x.head(n);
-  core.noalias() += l1_ * xdot.head(n);
-  core -= load_.cwiseQuotient(residual_scale_.head(n));
-  core.noalias() -= b_ * at.films.forces;
+  with_blocks([&](const auto& blocks) {
+    core.noalias() = blocks.l0 * x.head(n);
+    core.noalias() += blocks.l1 * xdot.head(n);
+    core -= load_.cwiseQuotient(residual_scale_.head(n));
+    core.noalias() -= blocks.b * at.films.forces;
+  });
   if (k > 0) out.tail(k) = at.films.residual.cwiseQuotient(residual_scale_.tail(k));
 }
 
@@ -102,16 +124,17 @@ void ScaledPoint::parameter_derivative(double angle, const PointState& at, Eigen
 
 void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Ref<VectorXd> out) const {
   const Index n = structure_->size();
-  out.head(n).noalias() = l1_ * v.head(n);
+  with_blocks([&](const auto& blocks) { out.head(n).noalias() = blocks.l1 * v.head(n); });
   out.tail(own_states()).setZero();
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const problem::OwnStates& film = structure_->own()[i];
     const Eigen::MatrixXd& forces = at.films.own[i].force_rates;
     const Index first = n + film.first;
     if (forces.rows() > 0)
-      out.head(n).noalias() -=
-          b_.middleCols(film.first_force, film.forces) *
-          (forces * v.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count)));
+      with_blocks([&](const auto& blocks) {
+        out.head(n) -= blocks.b.middleCols(film.first_force, film.forces) *
+                       (forces * v.segment(first, film.count).cwiseProduct(state_scale_.segment(first, film.count)));
+      });
     const std::vector<double>& values = at.films.own[i].rates;
     for (std::size_t e = 0; e < values.size(); ++e) {
       const Index row = first + film.rates[e].row, column = first + film.rates[e].column;
@@ -123,9 +146,12 @@ void ScaledPoint::times_rates(const PointState& at, const VectorXd& v, Eigen::Re
 void ScaledPoint::times(const PointState& at, const VectorXd& a, const VectorXd& b, Eigen::Ref<VectorXd> out) const {
   const Index n = structure_->size();
   times_rates(at, b, out);
-  const VectorXd inputs = c_ * a.head(n);
+  VectorXd inputs;
+  with_blocks([&](const auto& blocks) {
+    inputs = blocks.c * a.head(n);
+    out.head(n).noalias() += blocks.l0 * a.head(n);
+  });
   VectorXd forces = at.films.d_inputs * inputs;
-  out.head(n).noalias() += l0_ * a.head(n);
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const problem::OwnStates& film = structure_->own()[i];
     const problem::OwnTangents& t = at.films.own[i];
@@ -137,15 +163,18 @@ void ScaledPoint::times(const PointState& at, const VectorXd& a, const VectorXd&
       rows(film.states[e].row) += t.states[e] * s(film.states[e].column);
     out.segment(first, film.count) += rows.cwiseQuotient(residual_scale_.segment(first, film.count));
   }
-  out.head(n).noalias() -= b_ * forces;
+  with_blocks([&](const auto& blocks) { out.head(n).noalias() -= blocks.b * forces; });
 }
 
 void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const VectorXd>& y, VectorXd& by_state,
                                    VectorXd& by_rate) const {
   const Index n = structure_->size();
   by_state = by_rate = VectorXd::Zero(size());
-  by_rate.head(n) = l1_.transpose() * y.head(n);
-  const VectorXd forces = -(b_.transpose() * y.head(n));
+  VectorXd forces;
+  with_blocks([&](const auto& blocks) {
+    by_rate.head(n) = blocks.l1.transpose() * y.head(n);
+    forces = -(blocks.b.transpose() * y.head(n));
+  });
   VectorXd inputs = at.films.d_inputs.transpose() * forces;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const problem::OwnStates& film = structure_->own()[i];
@@ -162,27 +191,34 @@ void ScaledPoint::times_transposed(const PointState& at, const Eigen::Ref<const 
     by_state.segment(first, film.count) = s.cwiseProduct(state_scale_.segment(first, film.count));
     by_rate.segment(first, film.count) = r.cwiseProduct(state_scale_.segment(first, film.count));
   }
-  by_state.head(n) = l0_.transpose() * y.head(n) + c_.transpose() * inputs;
+  with_blocks([&](const auto& blocks) {
+    by_state.head(n) = blocks.l0.transpose() * y.head(n);
+    by_state.head(n) += blocks.c.transpose() * inputs;
+  });
 }
 
 void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) const {
   const Index n = structure_->size();
   jx.setZero(size(), size());
   jxdot.setZero(size(), size());
-  jx.topLeftCorner(n, n) = l0_;
-  jx.topLeftCorner(n, n).noalias() -= b_ * (at.films.d_inputs * c_);
-  jxdot.topLeftCorner(n, n) = l1_;
+  const DenseBlocks all = with_blocks([](const auto& blocks) {
+    return DenseBlocks{MatrixXd(blocks.l1), MatrixXd(blocks.l0), MatrixXd(blocks.b), MatrixXd(blocks.c)};
+  });
+  jx.topLeftCorner(n, n) = all.l0;
+  jx.topLeftCorner(n, n).noalias() -= all.b * (at.films.d_inputs * all.c);
+  jxdot.topLeftCorner(n, n) = all.l1;
   for (std::size_t i = 0; i < structure_->own().size(); ++i) {
     const problem::OwnStates& film = structure_->own()[i];
     const problem::OwnTangents& t = at.films.own[i];
     const Index first = n + film.first;
     const auto rows = residual_scale_.segment(first, film.count).cwiseInverse().asDiagonal();
     jx.block(first, 0, film.count, n).noalias() =
-        rows * (t.inputs.transpose() * c_.middleRows(film.first_input, film.inputs));
-    jx.block(0, first, n, film.count).noalias() =
-        -b_.middleCols(film.first_force, film.forces) * t.forces * state_scale_.segment(first, film.count).asDiagonal();
+        rows * (t.inputs.transpose() * all.c.middleRows(film.first_input, film.inputs));
+    jx.block(0, first, n, film.count).noalias() = -all.b.middleCols(film.first_force, film.forces) * t.forces *
+                                                  state_scale_.segment(first, film.count).asDiagonal();
     if (t.force_rates.rows() > 0)
-      jxdot.block(0, first, n, film.count).noalias() = -b_.middleCols(film.first_force, film.forces) * t.force_rates *
+      jxdot.block(0, first, n, film.count).noalias() = -all.b.middleCols(film.first_force, film.forces) *
+                                                       t.force_rates *
                                                        state_scale_.segment(first, film.count).asDiagonal();
     const auto add = [&](const std::vector<problem::Place>& places, const std::vector<double>& values, MatrixXd& out) {
       for (std::size_t e = 0; e < places.size(); ++e) {

@@ -38,6 +38,8 @@ CycleOptions of_degree_one(CycleOptions options) {
   options.degree = 1;
   options.points = Points::radau;
   options.mesh_tolerance = 0;
+  // Intervals are transitions of their own kind, which time modes know nothing of.
+  if (options.joining == CycleOptions::Joining::cheapest) options.joining = CycleOptions::Joining::one_by_one;
   return options;
 }
 

@@ -96,9 +96,9 @@ bool StructuredRate::narrow() const {
 
 void StructuredRate::refresh() {
   point_.refresh();
-  mass_ = point_.l1().partialPivLu().inverse();
-  lead_ = mass_ * point_.b();
-  linear_ = -mass_ * point_.l0();
+  mass_ = point_.blocks().l1.partialPivLu().inverse();
+  lead_ = mass_ * point_.blocks().b;
+  linear_ = -mass_ * point_.blocks().l0;
 }
 
 // What depends on R, which is the same at all points but for changes of the parameter.
@@ -135,7 +135,7 @@ void StructuredRate::evaluate(double angle, const VectorXd& z, VectorXd& rate, R
   rate.tail(size() - n_) = inverse_.cwiseProduct(f_.tail(size() - n_)).cwiseProduct(rows.tail(size() - n_));
 
   if (a.size() != values_) a.setZero(values_);
-  inputs_.noalias() = at_.films.d_inputs.lazyProduct(point_.c());
+  inputs_.noalias() = at_.films.d_inputs.lazyProduct(point_.blocks().c);
   Map<MatrixXd>(a.data(), n_, n_) = linear_;
   Map<MatrixXd>(a.data(), n_, n_).noalias() += lead_.lazyProduct(inputs_);
   const double* factor = factors_.data();
@@ -194,7 +194,7 @@ void StructuredRate::times(const RateMatrix& a, const double* v, double* y) cons
     for (Index e = 0; e < film.at.inputs; ++e) {
       if (a(film.seen + e) == 0) continue;
       columns[seen] = a.data() + film.inputs + e * stride;
-      by[seen++] = point_.c().row(film.at.first_input + e).lazyProduct(x)(0);
+      by[seen++] = point_.blocks().c.row(film.at.first_input + e).lazyProduct(x)(0);
     }
     for (Index k = 0; k < stride; k += width) {
       Pack sum = Pack::Zero();

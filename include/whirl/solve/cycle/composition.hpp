@@ -6,11 +6,23 @@
 #include <Eigen/Core>
 #include <complex>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "whirl/solve/cycle/interval.hpp"
+#include "whirl/solve/cycle/thin_blocks.hpp"
 
 namespace whirl::solve {
+
+/// What a run is made of where its system is linear but for thin forces, to those who do not want it interval by
+/// interval. The blocks belong to the problem.
+struct ThinRun {
+  const ThinBlocks* blocks;
+  const Scheme* scheme;
+  const std::vector<double>* mesh;               ///< of the whole cycle
+  double period;                                 ///< s
+  std::vector<const Eigen::MatrixXd*> tangents;  ///< df/dw [r x w] at this rank's points
+};
 
 /// The linearised equations of a cycle, this rank's run of intervals; ranks follow one another around the cycle.
 ///
@@ -22,6 +34,7 @@ struct Run {
   std::vector<std::unique_ptr<Interval>> intervals;  ///< this rank's
   std::vector<Eigen::MatrixXd> columns, rows;        ///< [mn x nb], [nb x mn]
   Eigen::MatrixXd corner;                            ///< [nb x nb]
+  std::optional<ThinRun> thin;
 
   /// Carries states [n x k] over this rank's intervals; added += rows X [nb x k].
   void carry(Eigen::MatrixXd& state, Eigen::MatrixXd& added) const;
@@ -76,6 +89,9 @@ public:
 
 /// Multiplies the maps of all intervals into one dense matrix; time-parallel. For up to some hundred states.
 [[nodiscard]] std::unique_ptr<Composition> make_dense_composition();
+/// Takes the equations apart by modes in time and solves for the changes of the thin forces; wants Run::thin. For
+/// machines of many states with sparse blocks.
+[[nodiscard]] std::unique_ptr<Composition> make_mode_composition();
 /// Never forms the monodromy matrix M: sweeps over the intervals give its products.
 [[nodiscard]] std::unique_ptr<Composition> make_sweep_composition();
 

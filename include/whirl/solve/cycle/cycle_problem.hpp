@@ -25,9 +25,10 @@ struct CycleOptions {
   double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
   bool use_structure = true;   ///< condense with what the system tells of its structure
-  /// How intervals are joined: by one dense matrix of all states, by sweeps of single states over all intervals, or by
-  /// whichever is thought to cost less.
-  enum class Joining { cheapest, dense, sweeps } joining = Joining::cheapest;
+  /// How intervals are joined: by one dense matrix of all states, by sweeps of single states over all intervals, by
+  /// time modes (Radau points, no own states of films), or by whichever is thought to cost less: of all, or of the
+  /// first two, which take intervals of any kind.
+  enum class Joining { cheapest, dense, sweeps, modes, one_by_one } joining = Joining::cheapest;
   bool assembled =
       false;  ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
   double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
@@ -159,18 +160,18 @@ private:
   [[nodiscard]] static double largest(const Path& path, MPI_Comm comm);
 
   /// How an interval is condensed.
-  enum class Way { dense, low_rank, own_states };
-  [[nodiscard]] static Way way_of(const CycleOptions& options, const problem::Structure* structure);
+  enum class Way { dense, low_rank, own_states, sparse };
+  [[nodiscard]] static Way way_of(const CycleOptions& options, problem::Structure* structure);
 
   MPI_Comm comm_;
   int rank_, size_;
   problem::System& system_;
   problem::Structure* structure_;
-  ScaledPoint point_;
   CycleOptions options_;
+  Way way_;
+  ScaledPoint point_;
   Scheme scheme_;
   Eigen::Index n_, borders_;
-  Way way_;
   double period_scale_ = 0;
 
   std::vector<double> mesh_;
@@ -187,6 +188,8 @@ private:
 
   // The linearisation: linear parts by length, intervals, border columns and added rows, and how they are joined.
   std::map<double, std::shared_ptr<const LinearPart>> parts_;
+  ThinBlocks thin_;
+  std::map<double, std::shared_ptr<const SparsePart>> sparse_parts_;
   Run run_;
   std::unique_ptr<Composition> composition_;
   AssembledCycle assembled_;

@@ -44,6 +44,14 @@ public:
 [[nodiscard]] std::unique_ptr<Interval> make_low_rank_interval(std::shared_ptr<const LinearPart> part,
                                                                std::vector<Eigen::MatrixXd> tangents);
 
+/// What intervals of one length share where the blocks are sparse. Keeps a reference to the scheme and to the blocks.
+class SparsePart;
+[[nodiscard]] std::shared_ptr<const SparsePart> make_sparse_part(const Scheme& scheme, double length,
+                                                                 const ThinBlocks& blocks);
+/// Low-rank interval of such a part, O(n) to solve; nothing is factorised before the first solution.
+[[nodiscard]] std::unique_ptr<Interval> make_sparse_interval(std::shared_ptr<const SparsePart> part,
+                                                             std::vector<Eigen::MatrixXd> tangents);
+
 /// Interval of a system with films that have own states behind those of `part`, from what is known at its points; O(n)
 /// to factorise, to solve and to carry.
 [[nodiscard]] std::unique_ptr<Interval> make_own_interval(std::shared_ptr<const LinearPart> part,

@@ -1,9 +1,11 @@
 #pragma once
-// F and its derivatives at one point of a cycle, scaled and dense, for a system that lives on one rank.
+// F and its derivatives at one point of a cycle, scaled, for a system that lives on one rank.
 
 #include <Eigen/Core>
 
+#include "whirl/problem/structure.hpp"
 #include "whirl/problem/system.hpp"
+#include "whirl/solve/cycle/thin_blocks.hpp"
 
 namespace whirl::solve {
 
@@ -17,8 +19,9 @@ struct PointState {
 /// which spares its sparse matrices. Nothing here communicates.
 class ScaledPoint {
 public:
-  /// `system` lives on a communicator of size 1 and outlives this; `structure` may be null.
-  ScaledPoint(problem::System& system, problem::Structure* structure);
+  /// `system` lives on a communicator of size 1 and outlives this; `structure` may be null. With `sparse` the blocks of
+  /// the structure stay sparse; small machines are quicker with dense ones.
+  ScaledPoint(problem::System& system, problem::Structure* structure, bool sparse = false);
 
   [[nodiscard]] Eigen::Index size() const { return state_scale_.size(); }
   /// Own states of films as the structure tells them; they stand behind all others.
@@ -26,10 +29,8 @@ public:
   [[nodiscard]] const Eigen::VectorXd& state_scale() const { return state_scale_; }
   [[nodiscard]] const Eigen::VectorXd& residual_scale() const { return residual_scale_; }
   /// Scaled blocks of the structure at the last refresh().
-  [[nodiscard]] const Eigen::MatrixXd& l1() const { return l1_; }
-  [[nodiscard]] const Eigen::MatrixXd& l0() const { return l0_; }
-  [[nodiscard]] const Eigen::MatrixXd& b() const { return b_; }
-  [[nodiscard]] const Eigen::MatrixXd& c() const { return c_; }
+  [[nodiscard]] const DenseBlocks& blocks() const { return dense_; }     ///< not with `sparse`
+  [[nodiscard]] const ThinBlocks& thin_blocks() const { return thin_; }  ///< with `sparse` only
 
   /// To be called after each change of the system's parameter.
   void refresh();
@@ -60,13 +61,20 @@ private:
   void put(const Eigen::VectorXd& x, const Eigen::VectorXd& xdot);
   void structured(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, bool tangents,
                   Eigen::Ref<Eigen::VectorXd> out, PointState& at);
+  // Work on the blocks as they are kept.
+  template <class Work>
+  auto with_blocks(Work&& work) const {
+    return sparse_ ? work(thin_) : work(dense_);
+  }
 
   problem::System& system_;
   problem::Structure* structure_;
+  bool sparse_;
   Eigen::VectorXd state_scale_, residual_scale_;
   Eigen::VectorXd load_, inputs_, d_parameter_;  // work space
   PointState point_;
-  Eigen::MatrixXd l1_, b_, c_, l0_;
+  DenseBlocks dense_;
+  ThinBlocks thin_;
   core::Vector x_, xdot_, f_;
   core::Matrix matrix_;
 };

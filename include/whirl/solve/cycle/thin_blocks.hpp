@@ -1,0 +1,17 @@
+#pragma once
+// Blocks of a machine that is linear but for thin forces, as matrices of one kind.
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+namespace whirl::solve {
+
+/// L1, L0 [n x n], B [n x r], C [w x n] of F = L1 xdot + L0 x - l - B f(C x).
+template <class Matrix>
+struct LinearBlocks {
+  Matrix l1, l0, b, c;
+};
+using DenseBlocks = LinearBlocks<Eigen::MatrixXd>;
+using ThinBlocks = LinearBlocks<Eigen::SparseMatrix<double>>;
+
+}  // namespace whirl::solve

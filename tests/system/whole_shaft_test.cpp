@@ -1,0 +1,95 @@
+// Limit cycles of shafts that are not reduced, by time modes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/train_system.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+using namespace whirl;
+using Joining = solve::CycleOptions::Joining;
+
+namespace {
+
+struct Answer {
+  solve::NewtonResult newton;
+  solve::Cycle cycle;
+  std::vector<double> y;  // peak to peak of each bearing
+  std::vector<std::complex<double>> multipliers;
+};
+
+Answer cycle_of(MPI_Comm comm, const system::Train& t, double speed, Joining joining, int intervals) {
+  system::RotorSystem s(PETSC_COMM_SELF, t, speed);
+  core::Vector x = system::static_guess(s);
+  solve::NewtonOptions newton;
+  newton.max_iterations = 40;
+  EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged);
+  solve::CycleOptions o;
+  o.joining = joining;
+  solve::CycleProblem p(comm, s, o, solve::uniform_mesh(intervals));
+  const auto whole = s.gather(x.get());
+  const solve::Cycle guess{p.mesh(),
+                           Eigen::Map<const Eigen::VectorXd>(whole.data(), s.size()).replicate(1, intervals * o.degree),
+                           2 * M_PI / speed, speed};
+  core::Vector u = p.scatter(guess), row = core::duplicate(u.get());
+  solve::parameter_row(p, row.get());
+  Answer a;
+  a.newton = solve::newton(p, u.get(), row.get(), speed, newton);
+  EXPECT_TRUE(a.newton.converged) << a.newton.reason << " " << a.newton.residual;
+  p.linearise(u.get(), row.get());
+  a.multipliers = p.multipliers();
+  a.cycle = p.gather(u.get());
+  for (std::size_t b = 0; b < t.supports.size(); ++b) {
+    double low = 1e9, high = -1e9;
+    for (int k = 0; k < 720; ++k) {
+      const double at = s.journals(a.cycle.at(p.scheme(), k / 720.0).data())[b].position[1];
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    a.y.push_back(high - low);
+  }
+  return a;
+}
+
+// The HP rotor and what hangs beyond its second bearing: 53 nodes, 432 states.
+system::Train short_train() {
+  system::Train t = test::train({30, 8}, false);
+  t.rotor.segments.resize(52);
+  t.supports.resize(2);
+  t.unbalance = {{25, 0.02, 0}, {35, 0.02, 1}};
+  return t;
+}
+
+}  // namespace
+
+// Every multiplier that the search returns is one of the dense matrix, and none of the largest is missing.
+TEST(WholeShaft, TimeModesAndDenseTransitionsFindTheSameCycle) {
+  const system::Train t = short_train();
+  constexpr double speed = 350;
+  constexpr int intervals = 12;
+  const Answer modes = cycle_of(MPI_COMM_WORLD, t, speed, Joining::cheapest, intervals),
+               dense = cycle_of(MPI_COMM_WORLD, t, speed, Joining::dense, intervals);
+  EXPECT_EQ(modes.newton.iterations, dense.newton.iterations);
+  EXPECT_LE((modes.cycle.x - dense.cycle.x).cwiseAbs().maxCoeff(), 1e-8 * dense.cycle.x.cwiseAbs().maxCoeff());
+  EXPECT_EQ(dense.multipliers.size(), 432U);
+  ASSERT_GE(modes.multipliers.size(), 8U);
+  ASSERT_LE(modes.multipliers.size(), 40U);
+  for (std::size_t k = 0; k < modes.multipliers.size(); ++k)
+    EXPECT_NEAR(std::abs(modes.multipliers[k]), std::abs(dense.multipliers[k]), 1e-6) << k;
+}
+
+// The whole train at 3600 rpm: 740 freedoms of the shaft, 1500 states. Reference values: issue D.
+TEST(WholeShaft, TrainAtServiceSpeed) {
+  auto t = test::train({60, 16}, false);
+  test::add_gen_pair(t, 2.5);
+  const Answer a = cycle_of(MPI_COMM_WORLD, t, 120 * M_PI, Joining::cheapest, 60);
+  EXPECT_LE(a.newton.iterations, 6);
+  EXPECT_LE(a.newton.linear_iterations, 3 * a.newton.iterations);
+  const double y[] = {26.71e-6, 32.53e-6, 19.86e-6, 3.348e-6, 25.72e-6};
+  for (std::size_t b = 0; b < 5; ++b) EXPECT_NEAR(a.y[b], y[b], 0.01 * y[b]) << b;
+}
