@@ -31,7 +31,10 @@ double memory_of_equilibria(const system::Machine& machine) {
 
 double memory_of_cycles(const system::Machine& machine, double intervals, double stages) {
   const double n = n_states(machine);
-  return 8 * intervals * (400 + 30 * (stages + 1) * n + n * n);
+  // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
+  const bool whole = system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
+                     machine.rotor.reduction.type == rotor::Reduction::Type::none && n >= 250;
+  return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
 }
 
 }  // namespace whirl::study

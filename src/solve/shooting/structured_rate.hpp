@@ -50,7 +50,7 @@ public:
   [[nodiscard]] const std::vector<RateFilm>& films() const { return films_; }
   /// Q [n x r] and C [w x n], scaled.
   [[nodiscard]] const Eigen::MatrixXd& lead() const { return lead_; }
-  [[nodiscard]] const Eigen::MatrixXd& inputs() const { return point_.c(); }
+  [[nodiscard]] const Eigen::MatrixXd& inputs() const { return point_.blocks().c; }
   /// True if films have neighbours so few that implicit stages are solved in bands.
   [[nodiscard]] bool narrow() const;
   /// Work space [n + k, columns] for whoever multiplies.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "study/bars/reduction_error.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/equilibrium/hopf_cycles.hpp"
@@ -142,6 +143,14 @@ std::vector<double> birth_here(const EquilibriumEvent& at, double omega, int har
   return out;
 }
 
+// The critical eigenvalue of the whole shaft at the Hopf point of the reduced one, carried to zero by its slope.
+void put_reduction_error(io::Bifurcation& b, const EquilibriumEvent& at, double omega) {
+  const auto* rotor = dynamic_cast<const system::RotorSystem*>(&at.system);
+  if (!rotor || at.found.event != solve::Event::hopf || at.found.sensitivity == 0) return;
+  const auto errors = reduction_errors(*rotor, at.x, {{0, omega}});
+  if (!errors.empty()) b.more["reduction_error"] = -errors[0].real() / at.found.sensitivity;
+}
+
 // Cycles at finite amplitudes reach over the kinks of a force that is smooth by pieces only.
 void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega) {
   const std::vector<double> found = kept(at, "cycles", [&] { return birth_here(at, omega, few_harmonics, 0); });
@@ -234,6 +243,7 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   bar.location = at.found.bracket + at.newton.tolerance * std::abs(at.found.parameter);
   b.uncertainty = bar.total();
   for (const auto& [name, value] : bar.parts(false)) b.more[name] = value;
+  put_reduction_error(b, at, omega);
   if (hopf) b.more["uncertainty_whirl_frequency_rad_s"] = bars[frequency].total() + at.newton.tolerance * omega;
   const double error = std::isnan(doubt) ? doubt : std::max(bars[coefficient].total(), doubt);
   if (hopf)

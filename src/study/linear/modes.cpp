@@ -16,6 +16,7 @@
 #include "study/groups.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
+#include "study/linear/mode_reduction.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -254,7 +255,7 @@ StudyResult Modes::run(Context& context) {
   const ModeBars bars(context, groups, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit));
   });
-
+  ModeReduction reduction(system, walker, sampled);
   const std::vector<double> mass = rotor::node_masses(system.train().rotor);
   std::vector<double> speed_column, frequency, real, decrement, factor, whirl_column, forward_column;
   std::vector<std::int64_t> id_column;
@@ -278,12 +279,11 @@ StudyResult Modes::run(Context& context) {
                                             : m.lambda.real() > 0 ? StabilityClass::unstable
                                                                   : StabilityClass::stable);
       stability_column.emplace_back(stability);
-      summary.modes.push_back(
-          {deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense, unit, {}, stability});
-      summary.modes.back().more = bars.named(m.id, speed);
+      summary.modes.push_back({deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense,
+                               unit, bars.named(m.id, speed), stability});
+      reduction.put(summary, speed, k);
     }
   }
-
   // Damped frequency meets the speed of the shaft between two speeds.
   struct Crossing {
     double s0, s1, f0, f1;

@@ -1,0 +1,41 @@
+#include "study/bars/reduction_error.hpp"
+
+#include <limits>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/solve/newton/nearest_eigenvalues.hpp"
+
+namespace whirl::study {
+
+std::vector<std::complex<double>> reduction_errors(const system::RotorSystem& system, Vec x,
+                                                   const std::vector<std::complex<double>>& values) {
+  system::Train train = system.train();
+  if (train.rotor.type == rotor::Options::Type::rigid || train.rotor.reduction.type == rotor::Reduction::Type::none ||
+      system.own_states() > 0 || values.empty())
+    return {};
+  const std::vector<double> state = system.gather(x);
+  std::vector<double> numbers(2 * values.size(), std::numeric_limits<double>::quiet_NaN());
+  try {
+    system::RotorSystem reduced(PETSC_COMM_SELF, train, system.speed());
+    train.rotor.reduction = {};
+    system::RotorSystem whole(PETSC_COMM_SELF, train, system.speed());
+    problem::Films films;
+    reduced.structure()->films(
+        reduced.structure()->c() * Eigen::Map<const Eigen::VectorXd>(state.data(), reduced.size()), nullptr, nullptr,
+        true, films);
+    const Eigen::Map<const Eigen::ArrayXcd> starts(values.data(), static_cast<Eigen::Index>(values.size()));
+    const Eigen::ArrayXcd errors = starts - solve::nearest_eigenvalues(*whole.structure(), films.d_inputs, starts);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      numbers[2 * k] = errors(static_cast<Eigen::Index>(k)).real();
+      numbers[2 * k + 1] = errors(static_cast<Eigen::Index>(k)).imag();
+    }
+  } catch (const core::NotConverged&) {
+  }
+  core::share(system.comm(), numbers.data(), numbers.size());
+  std::vector<std::complex<double>> out;
+  for (std::size_t k = 0; k < values.size(); ++k) out.emplace_back(numbers[2 * k], numbers[2 * k + 1]);
+  return out;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,18 @@
+#pragma once
+// What the reduction of a shaft does to eigenvalues.
+
+#include <complex>
+#include <vector>
+
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+/// For eigenvalues [rad/s] of the reduced machine linearised at the equilibrium x: what they are too large by, the
+/// nearest eigenvalues of the whole shaft in the same films subtracted. The equilibrium is that of both, since static
+/// condensation is exact. Not a number where that search fails; empty if the shaft is not reduced or films have own
+/// states. The same on every rank. Collective.
+[[nodiscard]] std::vector<std::complex<double>> reduction_errors(const system::RotorSystem& system, Vec x,
+                                                                 const std::vector<std::complex<double>>& values);
+
+}  // namespace whirl::study

@@ -1,0 +1,29 @@
+#include "study/linear/mode_reduction.hpp"
+
+#include <cmath>
+
+#include "study/bars/reduction_error.hpp"
+
+namespace whirl::study {
+
+ModeReduction::ModeReduction(const system::RotorSystem& system, Walker& walker,
+                             const std::vector<SampledModes>& sampled) {
+  for (const SampledModes& at : sampled) {
+    std::vector<std::complex<double>> values;
+    for (const spectral::ModePoint& m : at.modes) values.push_back(m.lambda);
+    auto errors = reduction_errors(system, walker.at(at.speed), values);
+    if (!errors.empty()) of_[at.speed] = std::move(errors);
+  }
+}
+
+void ModeReduction::put(io::StudySummary& summary, double speed, std::size_t k) {
+  const auto found = of_.find(speed);
+  if (found == of_.end()) return;
+  const std::complex<double> error = found->second[k];
+  summary.modes.back().more["real_reduction_error"] = error.real();
+  summary.modes.back().more["imag_reduction_error"] = error.imag();
+  if (!(std::abs(error) <= largest_)) largest_ = std::abs(error);
+  summary.set("reduction.largest_error", largest_, "rad/s");
+}
+
+}  // namespace whirl::study
