@@ -52,7 +52,7 @@ void fill(Vec v, const std::vector<double>& all) {
   check(VecGetOwnershipRange(v, &begin, nullptr));
   check(VecGetSize(v, &size));
   if (static_cast<std::size_t>(size) != all.size())
-    throw Error("the checkpoint is of a problem of another size: compute the study again");
+    throw Error("numbers kept of a problem of another size: compute the study again");
   const WriteArray a(v);
   std::copy_n(all.begin() + begin, a.size(), a.data());
 }

@@ -13,8 +13,9 @@ using test::Column;
 
 namespace {
 
-struct Kill : std::runtime_error {
-  Kill() : std::runtime_error("killed") {}
+// On all ranks at once.
+struct Kill : core::Error {
+  Kill() : core::Error("killed") { mark_agreed(); }
 };
 
 core::Vector copy(Vec v) {

@@ -34,7 +34,7 @@ using JournalState = PlaceState;
 ///
 /// in this order, so that no diagonal entry of dF/dx is zero. alpha is the shaft's angular acceleration, whose torque
 /// follows the bent axis and adds no moment of its own. f_film acts on the journal and with the opposite sign on
-/// the pedestal. Rows follow the rotor's distribution; pedestals are on the last rank. Film i is evaluated on rank i
+/// the pedestal. Rows follow the rotor's distribution; pedestals are on its last rank. Film i is evaluated on rank i
 /// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
 /// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks in whole
 /// lines; the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14,

@@ -95,6 +95,7 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
   const double dp = b.point.parameter - a.point.parameter;
   found.sensitivity = dp != 0 ? (f1 - f0) / dp : 0;
   found.bracket = std::abs(dp);
+  found.parameter = b.point.parameter;
   at.u = copy(b.u.get());
   at.tangent = copy(b.tangent.get());
   at.point = b.point;

@@ -146,15 +146,31 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
 
 void EquilibriumProblem::factorise() {
   if (factorised_) return;
-  factorised_ = true;
-  if (std::vector<problem::Field> parts = system_.fields(); parts.size() > 1) {
+  if (std::vector<problem::Field> parts = system_.fields(); PortElimination::serves(parts)) {
     if (!ports_) ports_ = std::make_unique<PortElimination>(comm(), std::move(parts));
     ports_->factorise(bordered_.get());
+    factorised_ = true;
     return;
   }
   if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
   check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
   check(KSPSetUp(solver_.get()));
+  factorised_ = true;
+}
+
+// A singular matrix gives infinite answers, as those of MUMPS alone, which Newton's method and GMRES recognise.
+void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
+  try {
+    factorise();
+    if (!ports_)
+      check(transposed ? KSPSolveTranspose(solver_.get(), rhs, x) : KSPSolve(solver_.get(), rhs, x));
+    else if (transposed)
+      ports_->solve_transposed(rhs, x);
+    else
+      ports_->solve(rhs, x);
+  } catch (const core::NotConverged&) {
+    check(VecSetInf(x));
+  }
 }
 
 void EquilibriumProblem::multiply(Vec v, Vec y) {
@@ -162,11 +178,7 @@ void EquilibriumProblem::multiply(Vec v, Vec y) {
 }
 
 void EquilibriumProblem::solve(Vec rhs, Vec x) {
-  factorise();
-  if (ports_)
-    ports_->solve(rhs, x);
-  else
-    check(KSPSolve(solver_.get(), rhs, x));
+  solve(false, rhs, x);
 }
 
 NewtonResult find_equilibrium(problem::System& system, Vec x, const NewtonOptions& options) {

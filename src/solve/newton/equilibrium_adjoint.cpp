@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "solve/newton/port_elimination.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
 namespace whirl::solve {
@@ -12,11 +11,7 @@ namespace whirl::solve {
 using core::check;
 
 void EquilibriumProblem::solve_transposed(Vec rhs, Vec x) {
-  factorise();
-  if (ports_)
-    ports_->solve_transposed(rhs, x);
-  else
-    check(KSPSolveTranspose(solver_.get(), rhs, x));
+  solve(true, rhs, x);
 }
 
 void EquilibriumProblem::curvature(Vec u, Vec v, Vec w, Vec out) {

@@ -158,10 +158,7 @@ Mat preconditioned(KSP ksp, SolveContext& c, Mat shell, Vec like) {
   check(KSPGetPC(ksp, &pc));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &own));
   if (own) return shell;
-  try {
-    if (!c.problem.matrix() && c.row) c.problem.linearise(like, c.row);  // which makes it
-  } catch (const core::DomainError&) {                                   // NOLINT: the solve says so again
-  }
+  if (!c.problem.matrix() && c.row) c.problem.linearise(like, c.row);  // which makes it
   Mat matrix = c.problem.matrix();
   if (!matrix) {
     use_own_solve(pc, c);
@@ -306,7 +303,14 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
 NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<double> earlier) {
   Objects& o = objects(u);
   o.context.row = row;
-  if (!o.snes) o.make_nonlinear(options_, u);
+  try {
+    if (!o.snes) o.make_nonlinear(options_, u);
+  } catch (const core::DomainError& error) {  // in the linearisation for a preconditioner that was asked for
+    objects_.reset();
+    NewtonResult outside;
+    outside.reason = std::string(text_of(SNES_DIVERGED_FUNCTION_DOMAIN)) + ": " + error.what();
+    return outside;
+  }
   o.context.offset = offset;
   o.context.gate = core::Gate(problem_.comm());
   o.context.journal = options_.journal;
@@ -322,6 +326,7 @@ NewtonResult Newton::solve_from(Vec u, Vec row, double offset, std::vector<doubl
   if (before == 0) (void)problem_.settle(u);
   const PetscErrorCode code = SNESSolve(snes, nullptr, u);
   allow(most);
+  o.context.row = nullptr;
   o.context.gate.rethrow(code);
 
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;

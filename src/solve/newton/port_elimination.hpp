@@ -20,10 +20,15 @@ namespace whirl::solve {
 /// A part sees few unknowns of the hub, its ports, and the border column: G has few columns. F is held as F^T, spread
 /// like the parts, so that no rank takes a whole film. Columns of G that no part sees both of share one right-hand
 /// side. A_pp is solved by a KSP with prefix "parts_" (MUMPS, all parts at once), what is left on the hub by one with
-/// prefix "hub_" (MUMPS). A_pp has to be regular: films at given motions are. All members are collective on the
+/// prefix "hub_" (MUMPS). A_pp has to be regular: films at given motions are. factorise() and the solves throw
+/// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the
 /// communicator of the matrix.
 class PortElimination {
 public:
+  /// Whether there are parts, and no more of them than this keeps apart (63).
+  [[nodiscard]] static bool serves(const std::vector<problem::Field>& fields) {
+    return fields.size() > 1 && fields.size() <= 64;
+  }
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
   PortElimination(MPI_Comm comm, std::vector<problem::Field> fields);
 

@@ -109,7 +109,7 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
   }
   check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));
-  if (std::vector<problem::Field> fields = system_.fields(); fields.size() > 1) {
+  if (std::vector<problem::Field> fields = system_.fields(); PortElimination::serves(fields)) {
     for (problem::Field& f : fields) f = {f.name, 2 * f.begin, 2 * f.end};
     if (!ports_) ports_ = std::make_unique<PortElimination>(system_.comm(), std::move(fields));
     ports_->factorise(matrix_.get());

@@ -66,7 +66,9 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   const bool saves = newton_.journal != nullptr;
   if (saves) (void)round(u);
   if (autonomous()) renew_phase(cycle, u, tangent);
-  if (!saves) return;
+  // Of a branch that has returned there is nothing to go on with.
+  returned_ = may_return() && returned(problem_->orbit(u));
+  if (!saves || returned_) return;
   const solve::Cycle direction = round(tangent);
   if (!pieces_->state_due()) return;
   io::Group state;

@@ -206,7 +206,6 @@ StudyResult CycleFollower::run() {
   std::size_t suspicions = context_.results.summary().suspected.size();  // up to the last point
   callbacks.checkpoint = [this, &suspicions](const solve::Settled& at, Vec v, Vec t) {
     save(at, v, t);
-    returned_ = may_return() && returned(problem_->orbit(v));
     if (!returned_) suspicions = context_.results.summary().suspected.size();
     return !returned_;
   };

@@ -50,6 +50,7 @@ public:
 private:
   void prepare(Vec u);
   void factorise();
+  void solve(bool transposed, Vec rhs, Vec x);
   problem::System& system_;
   double parameter_scale_;
   core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
