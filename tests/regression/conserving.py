@@ -35,8 +35,7 @@ def whole(h):
             reference = value(without, head + what)
             h.close(f"{name}: {what} as without states", value(with_states, head + what), reference,
                     within * max(abs(reference), 1 if what.startswith("ecc") else 0))
-    run = h.run(deck(h), "deck", [coarse, "studies.1.equilibrium_branch." + NEAR, "studies.2.cycle_branch.intervals=16",
-                                  "studies.2.cycle_branch.degree=2", "studies.2.cycle_branch.max_points=1",
+    run = h.run(deck(h), "deck", [coarse, "studies.1.equilibrium_branch." + NEAR, "studies.2.cycle_branch.max_points=1",
                                   "studies.3.motion.revolutions=2"])
     h.true("the branch reaches its end", run["balanced"]["status"] == "completed", run["balanced"]["status"])
     h.true("no bifurcation there", not run["balanced"]["bifurcations"])
