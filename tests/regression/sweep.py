@@ -153,6 +153,29 @@ def reduction(h):
     h.true("the linear one is near", abs(linear - cycle / 2) < 0.05 * linear)
 
 
+def reductions(h):
+    """Craig-Bampton against the whole shaft: threshold, its stated error, modes, and the cycle at 3600 rpm. Reference: issue D."""
+    with open(h.source / "tests/reference/turbine_train/whole_shaft.json", encoding="utf-8") as file:
+        peak_to_peak, threshold = (r["value"] for r in json.load(file)["records"])
+    found = h.run("reductions.yaml", "reductions", ["studies.4.sweep.of=[modes, G2.5]"])
+    hopf = [b for b in found["threshold"]["bifurcations"] if b["type"] == "hopf"][0]
+    error = hopf.get("reduction_error")
+    h.close("threshold, Craig-Bampton [rpm]", hopf["value"], threshold, 1)
+    h.close("threshold, its stated error taken off [rpm]", hopf["value"] - error, threshold, 0.1)
+    whole = {s["name"]: s for s in next(v for v in found["shafts"]["variants"] if v["name"] == "whole")["studies"]}
+    guyan = {s["name"]: s for s in next(v for v in found["shafts"]["variants"] if v["name"] == "guyan")["studies"]}
+    for study, shaft in ((found["G2.5"], "Craig-Bampton"), (whole["G2.5"], "whole")):
+        for b, wanted in enumerate(peak_to_peak, 1):
+            h.close(f"{shaft}, G2.5, peak to peak y of B{b} [m]", value(study, f"at.3600.peak_to_peak.B{b}.y"), wanted, 0.01 * wanted)
+    for mine, theirs in zip(found["modes"]["modes"], whole["modes"]["modes"]):
+        for part in ("real", "imag"):
+            h.close(f"mode at {theirs['imag']:.4g} rad/s, {part} without its stated error", mine[part] - mine[f"{part}_reduction_error"],
+                    theirs[part], 1e-3)
+    errors = [value(s["modes"], "reduction.largest_error") for s in (found, guyan)]
+    h.true("Craig-Bampton's modes err less than Guyan's", 0 < errors[0] < 0.1 * errors[1], str(errors))
+    h.true("the whole shaft has no such error", value(whole["modes"], "reduction.largest_error") is None)
+
+
 def unbalance_cases(h):
     """Cases differ as their planes do: the linear response is a sum over planes, and small cycles are linear."""
     short = ["studies.1.unbalance_response.points=10", "studies.1.unbalance_response.refine=false",
@@ -242,6 +265,6 @@ def whirl(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"variants": variants, "ranks": ranks, "resume": resume, "failed": failed, "films": films, "reduction": reduction,
+    {"variants": variants, "ranks": ranks, "resume": resume, "failed": failed, "films": films, "reduction": reduction, "reductions": reductions,
      "unbalance_cases": unbalance_cases, "design": design, "clearances": clearances, "whirl": whirl, "design_whole": lambda h: design(h, whole=True)}[sys.argv[3]](harness)
     harness.finish()
