@@ -7,9 +7,9 @@
 
 #include "support/train_system.hpp"
 #include "whirl/problem/structure.hpp"
+#include "whirl/solve/bifurcation/nearest_eigenvalues.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/solve/newton/nearest_eigenvalues.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 #include "whirl/system/start.hpp"

@@ -4,7 +4,7 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/solve/newton/nearest_eigenvalues.hpp"
+#include "whirl/solve/bifurcation/nearest_eigenvalues.hpp"
 
 namespace whirl::study {
 

@@ -1,4 +1,4 @@
-#include "whirl/solve/newton/nearest_eigenvalues.hpp"
+#include "whirl/solve/bifurcation/nearest_eigenvalues.hpp"
 
 #include "solve/cycle/pencil.hpp"
 #include "whirl/core/error.hpp"
