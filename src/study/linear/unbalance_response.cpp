@@ -30,7 +30,7 @@ namespace {
 using Complex = std::complex<double>;
 
 // x = Re(z exp(i angle)) of one place.
-struct Motion {
+struct NodeMotion {
   Complex x, y;
 
   // z = x + i y is the sum of a forward circle |f| and a backward circle |g|.
@@ -42,14 +42,14 @@ struct Motion {
 
 struct Response {
   double speed = 0;
-  std::vector<Motion> nodes, bearings;
+  std::vector<NodeMotion> nodes, bearings;
   std::vector<double> films;  // smallest thickness that the linear motion leaves each bearing [m]
 };
 
 std::vector<double> pack(const Response& r) {
   std::vector<double> flat{r.speed};
   for (const auto* place : {&r.nodes, &r.bearings})
-    for (const Motion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
+    for (const NodeMotion& m : *place) flat.insert(flat.end(), {m.x.real(), m.x.imag(), m.y.real(), m.y.imag()});
   flat.insert(flat.end(), r.films.begin(), r.films.end());
   return flat;
 }
@@ -67,7 +67,7 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
 
 // The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
 // gives way; there the motion counts against the clearance.
-double film_left(const system::Support& s, const std::array<double, 2>& at, const Motion& m) {
+double film_left(const system::Support& s, const std::array<double, 2>& at, const NodeMotion& m) {
   if (s.film.kind == film::Options::Kind::linear) return std::numeric_limits<double>::infinity();
   if (film::has_liner(s.film.kind)) return s.geometry.clearance - m.semi_major();
   double least = std::numeric_limits<double>::infinity();
@@ -158,12 +158,12 @@ void put_operating(const Context& context, const std::vector<int>& nodes, const 
     summary.set(fmt::format("operating.node.{}.semi_major", nodes[k]), r.nodes[k].semi_major(), "m");
 }
 
-void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<Motion> Response::*place,
+void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<NodeMotion> Response::*place,
                 const std::string& text) {
   const io::Shape shape{curve.size(), (curve.front().*place).size()};
   std::map<std::string, std::vector<double>> column;
   for (const Response& r : curve)
-    for (const Motion& m : r.*place) {
+    for (const NodeMotion& m : r.*place) {
       column["x_amplitude"].push_back(std::abs(m.x));
       column["x_phase"].push_back(std::arg(m.x));
       column["y_amplitude"].push_back(std::abs(m.y));
@@ -345,7 +345,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
                       }
                       for (const Response& r : all) {
                         out.height.emplace_back();
-                        for (const Motion& m : r.nodes) out.height.back().push_back(m.semi_major());
+                        for (const NodeMotion& m : r.nodes) out.height.back().push_back(m.semi_major());
                       }
                       return out;
                     });
