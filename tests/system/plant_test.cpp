@@ -45,7 +45,7 @@ system::Train rotor_in(film::Options::Kind kind, double liner_damping = 0) {
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
   s.film.kind = kind;
   s.film.cells = {16, 4};
-  if (film::has_states(kind)) {
+  if (film::has_states(s.film)) {
     s.film.compliance = 0.1;
     s.film.liner_damping = liner_damping;
     s.film.reference_speed = 160;

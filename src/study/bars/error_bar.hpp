@@ -3,11 +3,15 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace whirl::study {
+
+/// What is not known, of numbers and bars.
+inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Directions in which a discretisation has a mesh: around and along a bearing, and in time.
 enum class Axis { around, along, time };

@@ -21,8 +21,6 @@ namespace {
 
 using core::check;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
 enum Number : std::size_t { place, frequency, coefficient, numbers };
 
 constexpr int few_harmonics = 3, more_harmonics = 5;  // of the cycles that decide on a criticality

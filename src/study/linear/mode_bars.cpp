@@ -13,7 +13,6 @@
 namespace whirl::study {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_speeds = 5;
 
 void append(std::vector<double>& out, std::complex<double> lambda) {

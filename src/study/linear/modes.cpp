@@ -119,8 +119,8 @@ struct Station {
   std::vector<ShaftMode> modes;
 };
 
-constexpr std::size_t beyond = 8;  // modes above those asked for, from which some come down on the way
-constexpr int most_halvings = 4;   // of the way between two speeds asked for
+constexpr std::size_t beyond = 8;    // modes above those asked for, from which some come down on the way
+constexpr int most_refinements = 4;  // of the way between two speeds asked for
 
 std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes) {
   std::vector<spectral::ModePoint> points;
@@ -136,7 +136,7 @@ void follow(std::vector<Station>& stations, std::size_t count,
   std::vector<double> widths;
   for (std::size_t i = 1; i < stations.size(); ++i) widths.push_back(stations[i].speed - stations[i - 1].speed);
   const double least =
-      widths.empty() ? 0 : *std::max_element(widths.begin(), widths.end()) / std::pow(2.0, most_halvings + 0.5);
+      widths.empty() ? 0 : *std::max_element(widths.begin(), widths.end()) / std::pow(2.0, most_refinements + 0.5);
   for (;;) {
     std::vector<double> between;
     for (std::size_t i = 1; i < stations.size(); ++i) {

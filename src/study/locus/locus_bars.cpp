@@ -22,7 +22,6 @@ namespace {
 
 using core::check;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_bars = 3, most_bars = 10;  // of a curve
 constexpr double approach = 2;  // from another mesh a point costs about twice as many iterations as the next one does
 constexpr int most_secants = 10;
