@@ -8,12 +8,16 @@
 
 namespace whirl::study {
 
+bool has_reduction_errors(const system::RotorSystem& system) {
+  const rotor::Options& rotor = system.train().rotor;
+  return rotor.type != rotor::Options::Type::rigid && rotor.reduction.type != rotor::Reduction::Type::none &&
+         system.own_states() == 0;
+}
+
 std::vector<std::complex<double>> reduction_errors(const system::RotorSystem& system, Vec x,
                                                    const std::vector<std::complex<double>>& values) {
+  if (!has_reduction_errors(system) || values.empty()) return {};
   system::Train train = system.train();
-  if (train.rotor.type == rotor::Options::Type::rigid || train.rotor.reduction.type == rotor::Reduction::Type::none ||
-      system.own_states() > 0 || values.empty())
-    return {};
   const std::vector<double> state = system.gather(x);
   std::vector<double> numbers(2 * values.size(), std::numeric_limits<double>::quiet_NaN());
   try {

@@ -8,7 +8,9 @@ namespace whirl::study {
 
 ModeReduction::ModeReduction(const system::RotorSystem& system, Walker& walker,
                              const std::vector<SampledModes>& sampled) {
+  if (!has_reduction_errors(system)) return;
   for (const SampledModes& at : sampled) {
+    if (at.speed <= 0) continue;  // systems turn
     std::vector<std::complex<double>> values;
     for (const spectral::ModePoint& m : at.modes) values.push_back(m.lambda);
     auto errors = reduction_errors(system, walker.at(at.speed), values);
