@@ -19,7 +19,7 @@ std::string text_of(const io::StudySummary& s) {
                         with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ",
                         b.criticality, beyond ? fmt::format(", {:.0f} others unstable", others->second) : "",
                         meaning(b).empty() ? "" : ": " + meaning(b));
-    if (const auto error = b.more.find("reduction_error"); error != b.more.end())
+    if (const auto error = b.more.find("reduction_error"); error != b.more.end() && std::isfinite(error->second))
       text += fmt::format("    estimated error of the shaft's reduction: {:+.2g} {}\n", error->second, b.unit);
   }
   for (const io::CodimensionTwo& c : s.codimension_two) {

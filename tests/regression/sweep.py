@@ -154,7 +154,7 @@ def reduction(h):
 
 
 def reductions(h):
-    """Craig-Bampton against the whole shaft: threshold, its stated error, modes, and the cycle at 3600 rpm. Reference: issue D."""
+    """Craig-Bampton against the whole shaft: threshold, its stated error, modes, and the cycle at 3600 rpm. Independent reference values: tests/reference/turbine_train/whole_shaft.json."""
     with open(h.source / "tests/reference/turbine_train/whole_shaft.json", encoding="utf-8") as file:
         peak_to_peak, threshold = (r["value"] for r in json.load(file)["records"])
     found = h.run("reductions.yaml", "reductions", ["studies.4.sweep.of=[modes, G2.5]"])

@@ -85,7 +85,8 @@ TEST(WholeShaft, TimeModesAndDenseTransitionsFindTheSameCycle) {
     EXPECT_NEAR(std::abs(modes.multipliers[k]), std::abs(dense.multipliers[k]), 1e-7) << k;
 }
 
-// The whole train at 3600 rpm: 740 freedoms of the shaft, 1500 states. Reference values: issue D.
+// The whole train at 3600 rpm: 740 freedoms of the shaft, 1500 states. Reference values:
+// tests/reference/turbine_train/whole_shaft.json.
 TEST(WholeShaft, TrainAtServiceSpeed) {
   auto t = test::train({60, 16}, false);
   test::add_gen_pair(t, 2.5);

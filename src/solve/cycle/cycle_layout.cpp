@@ -89,7 +89,8 @@ void CycleProblem::set_phase_reference(const Cycle& reference) {
 }
 
 bool CycleProblem::adapt(core::Vector& u, core::Vector& tangent) {
-  if (options_.mesh_tolerance <= 0) return false;
+  // Modes in time want intervals of like lengths: whole shafts keep their mesh, and bars tell what it does.
+  if (options_.mesh_tolerance <= 0 || way_ == Way::sparse) return false;
   const Cycle cycle = gather(u.get()), direction = gather(tangent.get());
   double longest = 0;
   for (Index i = 0; i < cycle.intervals(); ++i) longest = std::max(longest, interval_length(i - first_));

@@ -20,8 +20,9 @@ Composition& ModeComposition::sweeps() {
 void ModeComposition::set_up() {
   rank_ = core::rank_of(run_->comm);
   size_ = core::size_of(run_->comm);
-  mesh_ = *run_->thin->mesh;
-  const Index m = run_->thin->scheme->degree, intervals = static_cast<Index>(mesh_.size()) - 1;
+  const std::vector<double>& mesh = *run_->thin->mesh;
+  core::agree(run_->comm, [&] { modes_ = cycle_modes(*run_->thin->scheme, mesh, size_); });
+  const Index m = run_->thin->scheme->degree, intervals = static_cast<Index>(mesh.size()) - 1;
   points_ = m * intervals;
   counts_.resize(static_cast<std::size_t>(size_));
   first_ = 0;
@@ -31,7 +32,6 @@ void ModeComposition::set_up() {
     if (p < rank_) first_ += count;
   }
   local_ = counts_[static_cast<std::size_t>(rank_)];
-  modes_ = cycle_modes(*run_->thin->scheme, mesh_, size_);
 
   const auto size = static_cast<PetscInt>(points_ * run_->thin->blocks->b.cols() + run_->borders);
   right_ = core::make_vector(PETSC_COMM_SELF, size, size);
@@ -53,6 +53,16 @@ void ModeComposition::set_up() {
   // Its error is made good by the iteration around this composition.
   check(KSPSetTolerances(solver_.get(), 1e-10, 1e-300, PETSC_DEFAULT, most));
   check(KSPSetFromOptions(solver_.get()));
+  mesh_ = mesh;
+}
+
+std::vector<double> ModeComposition::warm_start() {
+  return sweeps_ ? sweeps_->warm_start() : std::vector<double>{};
+}
+
+void ModeComposition::take_warm_start(const std::vector<double>& warm) {
+  if (!sweeps_) sweeps_ = make_sweep_composition();
+  sweeps_->take_warm_start(warm);
 }
 
 void ModeComposition::compose(const Run& run) {

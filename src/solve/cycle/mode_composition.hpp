@@ -17,9 +17,10 @@ namespace whirl::solve {
 ///
 ///     W X - B (S - S_0) C X + columns d = y,     W = V x (L0 - B S_0 C) + D x L1,     rows X + corner d = y_c.
 ///
-/// W has constant coefficients, so that time modes take it apart into sparse matrices of the size of the states, on any
-/// mesh. H = V C W^-1 B, from forces to inputs, is the receptance C (L0 - B S_0 C + lambda_k L1)^-1 B of each mode.
-/// Unknown are the changes f = (S - S_0) C X of the forces at all points and the border:
+/// W has constant coefficients, so that time modes take it apart into sparse matrices of the size of the states, on
+/// meshes whose intervals do not differ much; compose() throws core::NotConverged on others. H = V C W^-1 B, from
+/// forces to inputs, is the receptance C (L0 - B S_0 C + lambda_k L1)^-1 B of each mode. Unknown are the changes f = (S
+/// - S_0) C X of the forces at all points and the border:
 ///
 ///     [ I - (S - S_0) H   (S - S_0) C W^-1 columns     ] [ f ]   [ (S - S_0) C W^-1 y ]
 ///     [ rows W^-1 B       corner - rows W^-1 columns   ] [ d ] = [ y_c - rows W^-1 y  ]
@@ -39,6 +40,8 @@ public:
   Eigen::MatrixXd times_transposed(const Eigen::MatrixXd& w) override { return sweeps().times_transposed(w); }
   void dominant(Eigen::MatrixXd& v, Eigen::MatrixXd& image) override { sweeps().dominant(v, image); }
   Eigen::VectorXd entering(const Eigen::VectorXd& v) override { return sweeps().entering(v); }
+  std::vector<double> warm_start() override;
+  void take_warm_start(const std::vector<double>& warm) override;
 
 private:
   /// S - S_0 of one force and one input at all points.

@@ -50,7 +50,10 @@ TimeModes time_modes(const MatrixXd& value, const MatrixXd& slope, int shares, I
   Eigen::VectorXcd values;
   MatrixXcd z;
   eigenpairs(lu.solve(slope), values, z);
-  const MatrixXcd into = z.partialPivLu().solve(lu.inverse().cast<std::complex<double>>()),
+  const Eigen::PartialPivLU<MatrixXcd> basis(z);
+  // Intervals of very different lengths have modes that are no basis for practical purposes.
+  if (basis.rcond() < 1e-9) throw core::NotConverged("the modes in time of this mesh are no basis");
+  const MatrixXcd into = basis.solve(lu.inverse().cast<std::complex<double>>()),
                   seen = value.cast<std::complex<double>>() * z;
   std::vector<Index> kept;
   for (Index k = 0; k < points; ++k)

@@ -1,8 +1,10 @@
 #include "study/linear/mode_reduction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/bars/reduction_error.hpp"
+#include "study/bars/summary_bars.hpp"
 
 namespace whirl::study {
 
@@ -13,7 +15,7 @@ ModeReduction::ModeReduction(const system::RotorSystem& system, Walker& walker,
     if (at.speed <= 0) continue;  // systems turn
     std::vector<std::complex<double>> values;
     for (const spectral::ModePoint& m : at.modes) values.push_back(m.lambda);
-    auto errors = reduction_errors(system, walker.at(at.speed), values);
+    auto errors = answer_of([&] { return reduction_errors(system, walker.at(at.speed), values); });
     if (!errors.empty()) of_[at.speed] = std::move(errors);
   }
 }
@@ -24,7 +26,8 @@ void ModeReduction::put(io::StudySummary& summary, double speed, std::size_t k) 
   const std::complex<double> error = found->second[k];
   summary.modes.back().more["real_reduction_error"] = error.real();
   summary.modes.back().more["imag_reduction_error"] = error.imag();
-  if (!(std::abs(error) <= largest_)) largest_ = std::abs(error);
+  if (!std::isnan(largest_))
+    largest_ = std::isfinite(std::abs(error)) ? std::max(largest_, std::abs(error)) : std::abs(error);
   summary.set("reduction.largest_error", largest_, "rad/s");
 }
 

@@ -17,7 +17,8 @@ public:
   /// The modes at some speeds, whose equilibria the walker finds again. Collective.
   ModeReduction(const system::RotorSystem& system, Walker& walker, const std::vector<SampledModes>& sampled);
   /// "real_reduction_error" and "imag_reduction_error" [rad/s] of the mode that was added last, number k at its speed,
-  /// and "reduction.largest_error" [rad/s], the largest modulus so far.
+  /// and "reduction.largest_error" [rad/s], the largest modulus so far, not a number once
+  /// an error is unknown.
   void put(io::StudySummary& summary, double speed, std::size_t k);
 
 private:
