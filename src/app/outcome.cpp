@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "highlights.hpp"
 
 namespace whirl::app {
