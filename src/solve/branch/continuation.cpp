@@ -53,8 +53,8 @@ bool Follower::on_course(const State& from, const State& to) const {
   const double forward = to.point.step >= 0 ? 1 : -1;
   const double product = forward * inner(problem_, from.tangent.get(), chord.get()),
                length = inner(problem_, chord.get(), chord.get());
-  // Steps of the parameter come to a fold with tangents that have turned away from the chord.
-  const double behind = natural_from(from) ? std::numbers::pi : 1.5 * options_.beta_1;
+  // Steps of the parameter come to a fold with tangents that have turned away from the chord, and look behind it.
+  const double behind = options_.kind == Continuation::natural ? std::numbers::pi : 1.5 * options_.beta_1;
   return within(product, 1, length, options_.beta_1) &&
          within(forward * inner(problem_, to.tangent.get(), chord.get()), 1, length, behind) &&
          within(product - forward * weight * tp * dp, 1 - weight * tp * tp, length - weight * dp * dp, options_.beta_2);

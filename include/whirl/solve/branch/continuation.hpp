@@ -29,8 +29,8 @@ struct ContinuationOptions {
   /// Where a branch that turned back ends; beyond `from` by a step if absent.
   std::optional<double> back;
   int adapt_every = 5;  ///< accepted points between adaptations of the discretisation; 0 never
-  /// A step is halved if the chord to the new point deviates from the predictor or from the tangent there by more than
-  /// beta_1, or the two from each other by more than 2 beta_1 (the same on an arc of constant curvature): beyond that a
+  /// A step is halved if the chord to the new point deviates from the predictor by more than beta_1 or, of arclength,
+  /// from the tangent there by more than 1.5 beta_1, or the two from each other by more than 2 beta_1: beyond that a
   /// sharp bend is cut or the branch followed backwards. beta_2 bounds the deviation of the chord in the states alone,
   /// without the parameter; pi: any. [rad]. Source: Fey (1992); van de Vrande (2001), Sec. 3.3.
   double beta_1 = std::numbers::pi / 6, beta_2 = std::numbers::pi;
