@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <algorithm>
+
 #include "solve/branch/follower.hpp"
 #include "whirl/core/error.hpp"
 
@@ -45,6 +47,7 @@ bool Follower::turns_back(const State& here) {
     turned = rounded(from.point.slope * to.point.slope) < 0;
     if (turned && questions_.events) folds(from, to, 0);
     from = std::move(to);
+    ds = std::min(2 * ds, options_.max_step);
   }
   kind_ = Continuation::natural;
   return turned;
