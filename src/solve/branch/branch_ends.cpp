@@ -1,9 +1,8 @@
 // Where a branch ends before the end of its range: at a limit of its solutions, and at folds that are not passed.
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <algorithm>
 
 #include "solve/branch/follower.hpp"
 #include "whirl/core/error.hpp"
