@@ -31,7 +31,7 @@ bool Follower::end_at_limit(const State& a, State& b, BranchEnd& end) {
 bool Follower::turns_back(const State& here) {
   if (kind_ != Continuation::natural) return false;
   // The last point stands on the fold, a hair behind it, which the step to it has found.
-  if (rounded(direction_ * here.point.slope) < 0) return true;
+  if (memory_.before.u && rounded(memory_.before.point.slope * here.point.slope) < 0) return true;
   kind_ = Continuation::arclength;
   bool turned = false;
   State from{copy(here.u.get()), copy(here.tangent.get()), here.point};
