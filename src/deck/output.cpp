@@ -54,7 +54,7 @@ bool is_plain(const std::string& s) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/' ||
            c == '.';
   };
-  if (s.empty() || s.back() == ' ' || s == "null" || s == "~") return false;
+  if (s.empty() || s.back() == ' ' || s == "null" || s == "Null" || s == "NULL" || s == "~") return false;
   if (!alnum(s[0]) && !((s[0] == '-' || s[0] == '+') && s.size() > 1 && alnum(s[1]))) return false;
   return std::all_of(s.begin(), s.end(), [&](char c) {
     return alnum(c) || c == ' ' || c == '-' || c == '+' || c == '^' || c == '*' || c == '(' || c == ')' || c == '%';
