@@ -33,6 +33,25 @@ Vector make_vector(MPI_Comm comm, PetscInt local, PetscInt global) {
   return v;
 }
 
+double norm(Vec v) {
+  double value = 0;
+  check(VecNorm(v, NORM_2, &value));
+  return value;
+}
+
+Matrix make_matrix(MPI_Comm comm, PetscInt local, std::vector<PetscInt> row_entries) {
+  row_entries.resize(std::max<std::size_t>(row_entries.size(), 1));  // PETSc wants an address
+  std::vector<PetscInt> here = row_entries;
+  for (PetscInt& k : here) k = std::min(k, local);
+  Matrix m;
+  check(MatCreate(comm, m.put()));
+  check(MatSetSizes(m.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetType(m.get(), MATAIJ));
+  check(MatSeqAIJSetPreallocation(m.get(), 0, row_entries.data()));
+  check(MatMPIAIJSetPreallocation(m.get(), 0, here.data(), 0, row_entries.data()));
+  return m;
+}
+
 std::vector<double> gather(Vec v) {
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(v));
   const int size = size_of(comm);

@@ -1,5 +1,7 @@
 #include "cost.hpp"
 
+#include <algorithm>
+
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::study {
@@ -29,10 +31,12 @@ double memory_of_equilibria(const system::Machine& machine) {
   return 3000 * n_states(machine);
 }
 
-double memory_of_cycles(const system::Machine& machine, double intervals, double stages) {
+double memory_of_cycles(const system::Machine& machine, double intervals, double stages, bool radau) {
   const double n = n_states(machine);
+  const bool own = system::is_rotor(machine) && std::any_of(machine.bearings.begin(), machine.bearings.end(),
+                                                            [](const auto& b) { return film::has_states(b.film); });
   // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
-  const bool whole = system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
+  const bool whole = radau && !own && system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
                      machine.rotor.reduction.type == rotor::Reduction::Type::none && n >= 250;
   return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
 }

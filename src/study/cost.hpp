@@ -12,7 +12,8 @@ namespace whirl::study {
 /// A branch of equilibria, or anything that factorises one sparse Jacobian [byte].
 [[nodiscard]] double memory_of_equilibria(const system::Machine& machine);
 
-/// Cycles on `intervals` intervals of `stages` time points each, condensed to one dense block an interval [byte].
-[[nodiscard]] double memory_of_cycles(const system::Machine& machine, double intervals, double stages);
+/// Cycles on `intervals` intervals of `stages` time points each, condensed to one dense block an interval; with `radau`
+/// (collocation at Radau points) those of a whole shaft are solved by modes in time, without blocks [byte].
+[[nodiscard]] double memory_of_cycles(const system::Machine& machine, double intervals, double stages, bool radau);
 
 }  // namespace whirl::study

@@ -19,19 +19,14 @@ core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
                             const std::vector<std::pair<PetscInt, double>>& diagonal) {
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(m, &begin, &end));
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local, 1)), 1);
+  std::vector<PetscInt> count(static_cast<std::size_t>(local), 1);
   for (PetscInt i = begin; i < end; ++i) {
     PetscInt k = 0;
     check(MatGetRow(m, i, &k, nullptr, nullptr));
     count[static_cast<std::size_t>(i - begin)] = k;
     check(MatRestoreRow(m, i, &k, nullptr, nullptr));
   }
-  core::Matrix out;
-  check(MatCreate(PetscObjectComm(reinterpret_cast<PetscObject>(m)), out.put()));
-  check(MatSetSizes(out.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetType(out.get(), MATAIJ));
-  check(MatSeqAIJSetPreallocation(out.get(), 0, count.data()));
-  check(MatMPIAIJSetPreallocation(out.get(), 0, count.data(), 0, count.data()));
+  core::Matrix out = core::make_matrix(PetscObjectComm(reinterpret_cast<PetscObject>(m)), local, std::move(count));
   for (PetscInt i = begin; i < end; ++i) {
     PetscInt k = 0;
     const PetscInt* columns = nullptr;
@@ -255,18 +250,11 @@ void RotorSystem::make_constant_parts() {
     }
     count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, size());
   }
-  std::vector<PetscInt> local = count;
-  for (auto& k : local) k = std::min(k, local_rows);
   std::vector<PetscInt> columns_to;
   std::vector<PetscScalar> scaled;
   // Every part sets every entry, if need be to zero.
   const auto make = [&](double at_rest, double gyroscopic, double rates) {
-    core::Matrix j;
-    check(MatCreate(comm_, j.put()));
-    check(MatSetSizes(j.get(), local_rows, local_rows, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(j.get(), MATAIJ));
-    check(MatSeqAIJSetPreallocation(j.get(), 0, count.data()));
-    check(MatMPIAIJSetPreallocation(j.get(), 0, local.data(), 0, count.data()));
+    core::Matrix j = core::make_matrix(comm_, local_rows, count);
     const auto add = [&](Mat m, PetscInt rate, double factor) {
       for (PetscInt i = begin_; i < end_; ++i) {
         PetscInt k = 0;

@@ -111,6 +111,12 @@ private:
 /// A vector of `local` entries on this rank (PETSC_DECIDE to let PETSc split `global`), all zero. Collective on `comm`.
 [[nodiscard]] Vector make_vector(MPI_Comm comm, PetscInt local, PetscInt global);
 
+/// Euclidean norm. Collective.
+[[nodiscard]] double norm(Vec v);
+/// A square AIJ matrix with `local` rows and columns on this rank and room for row_entries[i] in row i [local or more].
+/// Collective on `comm`.
+[[nodiscard]] Matrix make_matrix(MPI_Comm comm, PetscInt local, std::vector<PetscInt> row_entries);
+
 /// All entries of a distributed vector on every rank, in natural order. Collective.
 [[nodiscard]] std::vector<double> gather(Vec v);
 /// The other way: this rank's part of `all` into v. Throws core::Error if v is of another size.

@@ -358,9 +358,7 @@ std::optional<Refined> refine_here(CycleProblem& problem, const LocatedEvent& ev
 std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, Vec u, Vec tangent,
                               const NewtonOptions& options) {
   if (!options.journal) return refine_here(problem, event, u, tangent, options);
-  double norm = 0;
-  check(VecNorm(u, NORM_2, &norm));
-  const std::vector<double> question{norm, static_cast<double>(event.event), event.critical.real(),
+  const std::vector<double> question{core::norm(u), static_cast<double>(event.event), event.critical.real(),
                                      event.critical.imag()};
   const auto answer = options.journal->ask("refine", question, [&](const Journal::Answer&) {
     const auto r = refine_here(problem, event, u, tangent, options);

@@ -50,17 +50,12 @@ const double* unpack(const Journal::Answer& answer, State& s, std::vector<double
   return at;
 }
 
-double norm_of(Vec u) {
-  double norm = 0;
-  check(VecNorm(u, NORM_2, &norm));
-  return norm;
-}
-
 }  // namespace
 
 void Follower::inspect(State& s, Vec along) {
   if (Journal* journal = options_.newton.journal) {
-    const std::vector<double> question{norm_of(s.u.get()), last_entry(problem_.comm(), s.u.get()), along ? 1.0 : 0.0};
+    const std::vector<double> question{core::norm(s.u.get()), last_entry(problem_.comm(), s.u.get()),
+                                       along ? 1.0 : 0.0};
     const auto found = journal->ask("look", question, [&](const Journal::Answer&) {
       look_at(s, along);
       return pack(s, memory_.warm);
@@ -78,7 +73,7 @@ bool Follower::locate(const State& a, const State& b, const Test& test, double t
                       State& at) {
   Journal* journal = options_.newton.journal;
   if (!journal) return search(a, b, test, tolerance, found, at);
-  const std::vector<double> question{norm_of(a.u.get()), norm_of(b.u.get()), b.point.step, tolerance};
+  const std::vector<double> question{core::norm(a.u.get()), core::norm(b.u.get()), b.point.step, tolerance};
   const auto answer = journal->ask("locate", question, [&](const Journal::Answer&) {
     const bool done = search(a, b, test, tolerance, found, at);
     Journal::Answer out = pack(at, memory_.warm);

@@ -258,18 +258,21 @@ void Pencil::factorise() {
   }
 }
 
+const double* Pencil::times_lambda(const double* v, Eigen::ArrayXd& product) const {
+  const Index lanes = lanes_, count = product.size() / 2;
+  for (Index c = 0; c < count; c += lanes)
+    for (Index k = 0; k < lanes; ++k) {
+      const double re = lambda_[k], im = lambda_[lanes + k], vr = v[c + k], vi = v[count + c + k];
+      product[c + k] = re * vr - im * vi;
+      product[count + c + k] = re * vi + im * vr;
+    }
+  return product.data();
+}
+
 void Pencil::solve(MatrixXd& x, Index columns) const {
   const Index lanes = lanes_, count = lanes * columns;
   Eigen::ArrayXd turned(2 * count);
-  const auto by_lambda = [&](const double* v) {
-    for (Index c = 0; c < count; c += lanes)
-      for (Index k = 0; k < lanes; ++k) {
-        const double re = lambda_[k], im = lambda_[lanes + k], vr = v[c + k], vi = v[count + c + k];
-        turned[c + k] = re * vr - im * vi;
-        turned[count + c + k] = re * vi + im * vr;
-      }
-    return turned.data();
-  };
+  const auto by_lambda = [&](const double* v) { return times_lambda(v, turned); };
   MatrixXd z(2 * count, kept_);
   for (Index p = 0; p < kept_; ++p) z.col(p) = x.col(row_[static_cast<std::size_t>(p)]);
   // Eliminated states at rest: x_b = y_i/beta.
@@ -313,15 +316,7 @@ void Pencil::solve(MatrixXd& x, Index columns) const {
 void Pencil::solve_adjoint(MatrixXd& x, Index columns) const {
   const Index lanes = lanes_, count = lanes * columns;
   Eigen::ArrayXd turned(2 * count);
-  const auto by_lambda = [&](const double* v) {
-    for (Index c = 0; c < count; c += lanes)
-      for (Index k = 0; k < lanes; ++k) {
-        const double re = lambda_[k], im = lambda_[lanes + k], vr = v[c + k], vi = v[count + c + k];
-        turned[c + k] = re * vr - im * vi;
-        turned[count + c + k] = re * vi + im * vr;
-      }
-    return turned.data();
-  };
+  const auto by_lambda = [&](const double* v) { return times_lambda(v, turned); };
   x.bottomRows(count) *= -1;
   MatrixXd z(2 * count, kept_);
   for (Index p = 0; p < kept_; ++p) z.col(p) = x.col(state_[static_cast<std::size_t>(p)]);

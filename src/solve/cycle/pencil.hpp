@@ -57,6 +57,8 @@ private:
   void find_slots(const Matrix& pattern);
   void fill(const Matrix& l1, const Matrix& l0);
   void factorise();
+  // product = lambda v, both [2 lanes columns] as solve() has them; returns its data.
+  const double* times_lambda(const double* v, Eigen::ArrayXd& product) const;
   [[nodiscard]] bool same_pattern(const Matrix& l1, const Matrix& l0) const;
   [[nodiscard]] double* at(Eigen::Index slot) { return lu_.data() + slot * 2 * lanes_; }
   [[nodiscard]] const double* at(Eigen::Index slot) const { return lu_.data() + slot * 2 * lanes_; }

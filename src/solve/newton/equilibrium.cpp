@@ -80,29 +80,27 @@ Mat EquilibriumProblem::matrix() {
   check(MatGetOwnershipRange(jacobian_.get(), &begin, &end));
   const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
   const PetscInt n = system_.size(), rows = end - begin + (last ? 1 : 0);
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(rows, 1)), n + 1);
+  std::vector<PetscInt> count(static_cast<std::size_t>(rows), n + 1);
   for (PetscInt i = begin; i < end; ++i) {
     PetscInt k = 0;
     check(MatGetRow(jacobian_.get(), i, &k, nullptr, nullptr));
     count[static_cast<std::size_t>(i - begin)] = k + 1;
     check(MatRestoreRow(jacobian_.get(), i, &k, nullptr, nullptr));
   }
-  std::vector<PetscInt> local = count;
-  for (auto& k : local) k = std::min(k, rows);
-  check(MatCreate(comm(), bordered_.put()));
-  check(MatSetSizes(bordered_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetType(bordered_.get(), MATAIJ));
-  check(MatSeqAIJSetPreallocation(bordered_.get(), 0, count.data()));
-  check(MatMPIAIJSetPreallocation(bordered_.get(), 0, local.data(), 0, count.data()));
+  bordered_ = core::make_matrix(comm(), rows, std::move(count));
   return bordered_.get();
 }
 
+bool EquilibriumProblem::settles() const {
+  const auto* const system = dynamic_cast<problem::Settles*>(&system_);
+  return system != nullptr && system->settles();
+}
+
 bool EquilibriumProblem::settle(Vec u) {
-  auto* const settles = dynamic_cast<problem::Settles*>(&system_);
-  if (settles == nullptr || !settles->settles()) return false;
+  if (!settles()) return false;
   try {
     prepare(u);
-    settles->settle(x_.get());
+    dynamic_cast<problem::Settles&>(system_).settle(x_.get());
   } catch (const core::DomainError&) {
     return false;
   } catch (const core::NotConverged&) {

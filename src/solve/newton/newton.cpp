@@ -248,7 +248,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
-  check(SNESLineSearchSetPreCheck(search, settle_step, &context));
+  if (context.problem.settles()) check(SNESLineSearchSetPreCheck(search, settle_step, &context));
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));
   // Digits below Newton's own tolerance are of no use.
@@ -285,16 +285,15 @@ Newton::Objects& Newton::objects(Vec like) {
 
 NewtonResult Newton::solve(Vec u, Vec row, double offset) {
   if (!options_.journal) return solve_from(u, row, offset, {});
-  double norm = 0;
-  check(VecNorm(u, NORM_2, &norm));
-  const Journal::Answer found = options_.journal->ask("newton", {norm, offset}, [&](const Journal::Answer& so_far) {
-    std::vector<double> earlier;
-    if (!so_far.numbers.empty()) earlier = take_unknowns(so_far.numbers, u);
-    const NewtonResult r = solve_from(u, row, offset, std::move(earlier));
-    std::vector<double> facts{r.converged ? 1.0 : 0.0, static_cast<double>(r.iterations), static_cast<double>(r.effort),
-                              static_cast<double>(r.linear_iterations), r.residual};
-    return Journal::Answer{with_unknowns(std::move(facts), u), r.reason};
-  });
+  const Journal::Answer found =
+      options_.journal->ask("newton", {core::norm(u), offset}, [&](const Journal::Answer& so_far) {
+        std::vector<double> earlier;
+        if (!so_far.numbers.empty()) earlier = take_unknowns(so_far.numbers, u);
+        const NewtonResult r = solve_from(u, row, offset, std::move(earlier));
+        std::vector<double> facts{r.converged ? 1.0 : 0.0, static_cast<double>(r.iterations),
+                                  static_cast<double>(r.effort), static_cast<double>(r.linear_iterations), r.residual};
+        return Journal::Answer{with_unknowns(std::move(facts), u), r.reason};
+      });
   const std::vector<double> facts = take_unknowns(found.numbers, u);
   return {facts[0] != 0, static_cast<int>(facts[1]), static_cast<int>(facts[2]), static_cast<int>(facts[3]), facts[4],
           found.text};

@@ -74,18 +74,18 @@ void PortElimination::make_layout(Mat a) {
   set(hub, hub_rows_);
   set(parts, part_rows_);
   core::Vector whole = core::make_vector(comm_, local, PETSC_DETERMINE);
-  part_ = core::make_vector(comm_, static_cast<PetscInt>(parts.size()), PETSC_DETERMINE);
-  part_answer_ = core::duplicate(part_.get());
-  hub_part_ = core::make_vector(comm_, static_cast<PetscInt>(hub.size()), PETSC_DETERMINE);
-  hub_answer_ = core::duplicate(hub_part_.get());
-  check(VecScatterCreate(whole.get(), part_rows_.get(), part_.get(), nullptr, part_scatter_.put()));
-  check(VecScatterCreate(whole.get(), hub_rows_.get(), hub_part_.get(), nullptr, hub_scatter_.put()));
+  part_rhs_ = core::make_vector(comm_, static_cast<PetscInt>(parts.size()), PETSC_DETERMINE);
+  part_answer_ = core::duplicate(part_rhs_.get());
+  hub_rhs_ = core::make_vector(comm_, static_cast<PetscInt>(hub.size()), PETSC_DETERMINE);
+  hub_answer_ = core::duplicate(hub_rhs_.get());
+  check(VecScatterCreate(whole.get(), part_rows_.get(), part_rhs_.get(), nullptr, part_scatter_.put()));
+  check(VecScatterCreate(whole.get(), hub_rows_.get(), hub_rhs_.get(), nullptr, hub_scatter_.put()));
 }
 
 // Ports get the colours of a map: those that share a part differ.
 void PortElimination::find_ports() {
   PetscInt n_hub = 0;
-  check(VecGetSize(hub_part_.get(), &n_hub));
+  check(VecGetSize(hub_rhs_.get(), &n_hub));
   std::vector<std::uint64_t> seen(static_cast<std::size_t>(n_hub), 0);
   for_rows(to_parts_.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar*, PetscInt count) {
     for (PetscInt k = 0; k < count; ++k) seen[static_cast<std::size_t>(columns[k])] |= std::uint64_t{1} << part_of(i);
@@ -179,18 +179,12 @@ void PortElimination::form_hub() {
   if (!schur_) {
     PetscInt local = 0;
     check(MatGetLocalSize(hub_.get(), &local, nullptr));
-    std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local, 1)), 0);
+    std::vector<PetscInt> count(static_cast<std::size_t>(local), 0);
     for_rows(hub_.get(), [&](PetscInt i, const PetscInt*, const PetscScalar*, PetscInt k) {
       const bool couples = std::binary_search(coupled_.begin(), coupled_.end(), first + i);
       count[static_cast<std::size_t>(i)] = k + (couples ? static_cast<PetscInt>(n_ports) : 0);
     });
-    std::vector<PetscInt> here = count;
-    for (PetscInt& k : here) k = std::min(k, local);
-    check(MatCreate(comm_, schur_.put()));
-    check(MatSetSizes(schur_.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(schur_.get(), MATAIJ));
-    check(MatSeqAIJSetPreallocation(schur_.get(), 0, count.data()));
-    check(MatMPIAIJSetPreallocation(schur_.get(), 0, here.data(), 0, count.data()));
+    schur_ = core::make_matrix(comm_, local, std::move(count));
   }
   check(MatZeroEntries(schur_.get()));
   std::vector<PetscScalar> row(static_cast<std::size_t>(n_ports));
@@ -232,10 +226,10 @@ void PortElimination::factorise(Mat a) {
 }
 
 void PortElimination::take(Vec whole) {
-  check(VecScatterBegin(part_scatter_.get(), whole, part_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(part_scatter_.get(), whole, part_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterBegin(hub_scatter_.get(), whole, hub_part_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(hub_scatter_.get(), whole, hub_part_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterBegin(part_scatter_.get(), whole, part_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(part_scatter_.get(), whole, part_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterBegin(hub_scatter_.get(), whole, hub_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(hub_scatter_.get(), whole, hub_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
 }
 
 void PortElimination::give(Vec whole) {
@@ -258,22 +252,22 @@ VectorXd PortElimination::hub_values(const std::vector<PetscInt>& rows) const {
 
 void PortElimination::take_from_hub(const std::vector<PetscInt>& rows, VectorXd shares) const {
   MPI_Allreduce(MPI_IN_PLACE, shares.data(), static_cast<int>(shares.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  const core::WriteArray a(hub_part_.get());
+  const core::WriteArray a(hub_rhs_.get());
   PetscInt first = 0;
-  check(VecGetOwnershipRange(hub_part_.get(), &first, nullptr));
+  check(VecGetOwnershipRange(hub_rhs_.get(), &first, nullptr));
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (rows[k] >= first && rows[k] < first + a.size()) a[rows[k] - first] -= shares(static_cast<Index>(k));
 }
 
 void PortElimination::solve(Vec rhs, Vec x) {
   take(rhs);
-  check(KSPSolve(part_solver_.get(), part_.get(), part_answer_.get()));
+  check(KSPSolve(part_solver_.get(), part_rhs_.get(), part_answer_.get()));
   require_answer(part_solver_.get());
   {
     const core::ReadArray y(part_answer_.get());
     take_from_hub(coupled_, from_parts_.transpose() * Eigen::Map<const VectorXd>(y.data(), y.size()));
   }
-  check(KSPSolve(hub_solver_.get(), hub_part_.get(), hub_answer_.get()));
+  check(KSPSolve(hub_solver_.get(), hub_rhs_.get(), hub_answer_.get()));
   require_answer(hub_solver_.get());
   const VectorXd at_ports = hub_values(ports_);
   {
@@ -291,21 +285,21 @@ void PortElimination::solve_transposed(Vec rhs, Vec x) {
   take(rhs);
   VectorXd seen = VectorXd::Zero(static_cast<Index>(ports_.size()));
   {
-    const core::ReadArray a(part_.get());
+    const core::ReadArray a(part_rhs_.get());
     const Eigen::Map<const VectorXd> b(a.data(), a.size());
     for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
       seen(port) += x_.col(colour).segment(first, rows).dot(b.segment(first, rows));
     });
   }
   take_from_hub(ports_, seen);
-  check(KSPSolveTranspose(hub_solver_.get(), hub_part_.get(), hub_answer_.get()));
+  check(KSPSolveTranspose(hub_solver_.get(), hub_rhs_.get(), hub_answer_.get()));
   require_answer(hub_solver_.get());
   const VectorXd forces = hub_values(coupled_);
   {
-    const core::WriteArray a(part_.get());
+    const core::WriteArray a(part_rhs_.get());
     Eigen::Map<VectorXd>(a.data(), a.size()) -= from_parts_ * forces;
   }
-  check(KSPSolveTranspose(part_solver_.get(), part_.get(), part_answer_.get()));
+  check(KSPSolveTranspose(part_solver_.get(), part_rhs_.get(), part_answer_.get()));
   require_answer(part_solver_.get());
   give(x);
 }

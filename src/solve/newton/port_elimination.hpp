@@ -18,11 +18,11 @@ namespace whirl::solve {
 ///     [ F     A_h ] [ x_h ] = [ b_h ]     (A_h - F X) x_h = b_h - F A_pp^-1 b_p,   x_p = A_pp^-1 b_p - X x_h
 ///
 /// A part sees few unknowns of the hub, its ports, and the border column: G has few columns. F is held as F^T, spread
-/// like the parts, so that no rank takes a whole film. Columns of G that no part sees both of share one right-hand
-/// side. A_pp is solved by a KSP with prefix "parts_" (MUMPS, all parts at once), what is left on the hub by one with
-/// prefix "hub_" (MUMPS). A_pp has to be regular: films at given motions are. factorise() and the solves throw
-/// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the
-/// communicator of the matrix.
+/// like the parts, so that products with it are local; the assembled matrix has the rows of F on the hub's rank.
+/// Columns of G that no part sees both of share one right-hand side. A_pp is solved by a KSP with prefix "parts_"
+/// (MUMPS, all parts at once), what is left on the hub by one with prefix "hub_" (MUMPS). A_pp has to be regular: films
+/// at given motions are. factorise() and the solves throw core::NotConverged, on all ranks, if a matrix is singular.
+/// All members are collective on the communicator of the matrix.
 class PortElimination {
 public:
   /// Whether there are parts, and no more of them than this keeps apart (63).
@@ -44,12 +44,12 @@ private:
   void form_hub();
   /// The part of a local row of the parts.
   [[nodiscard]] std::size_t part_of(PetscInt row) const;
-  /// Between a vector and its entries of parts and hub: into part_, hub_part_; from part_answer_, hub_answer_.
+  /// Between a vector and its entries of parts and hub: into part_rhs_, hub_rhs_; from part_answer_, hub_answer_.
   void take(Vec whole);
   void give(Vec whole);
   /// Entries of hub_answer_, on every rank.
   [[nodiscard]] Eigen::VectorXd hub_values(const std::vector<PetscInt>& rows) const;
-  /// hub_part_ -= the sum over the ranks of their shares.
+  /// hub_rhs_ -= the sum over the ranks of their shares.
   void take_from_hub(const std::vector<PetscInt>& rows, Eigen::VectorXd shares) const;
   template <class F>
   void for_ports(F&& f) const;
@@ -58,7 +58,7 @@ private:
   std::vector<problem::Field> fields_;
   core::IndexSet hub_rows_, part_rows_;
   core::Matrix parts_, to_parts_, to_hub_, hub_, schur_;  // A_pp, G, F, A_h, A_h - F X
-  core::Vector part_, part_answer_, hub_part_, hub_answer_;
+  core::Vector part_rhs_, part_answer_, hub_rhs_, hub_answer_;
   core::Scatter part_scatter_, hub_scatter_;
   core::LinearSolver part_solver_, hub_solver_;
   std::vector<PetscInt> ports_, coupled_;  // hub unknowns that parts see; hub rows that see parts: numbers in the hub

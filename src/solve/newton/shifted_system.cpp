@@ -39,7 +39,7 @@ void ShiftedSystem::make_matrix() {
   check(MatGetOwnershipRange(jx_.get(), &begin, &end));
   const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
   const PetscInt n = system_.size(), rows = 2 * (end - begin) + (last && bordered_ ? 2 : 0);
-  std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(rows, 1)), 2 * n + 2);
+  std::vector<PetscInt> count(static_cast<std::size_t>(rows), 2 * n + 2);
   for (PetscInt i = begin; i < end; ++i) {
     PetscInt k = 0;
     check(MatGetRow(jx_.get(), i, &k, nullptr, nullptr));
@@ -47,13 +47,7 @@ void ShiftedSystem::make_matrix() {
       count[static_cast<std::size_t>(2 * (i - begin) + part)] = 2 * k + (bordered_ ? 2 : 0);
     check(MatRestoreRow(jx_.get(), i, &k, nullptr, nullptr));
   }
-  std::vector<PetscInt> local = count;
-  for (auto& k : local) k = std::min(k, rows);
-  check(MatCreate(system_.comm(), matrix_.put()));
-  check(MatSetSizes(matrix_.get(), rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetType(matrix_.get(), MATAIJ));
-  check(MatSeqAIJSetPreallocation(matrix_.get(), 0, count.data()));
-  check(MatMPIAIJSetPreallocation(matrix_.get(), 0, local.data(), 0, count.data()));
+  matrix_ = core::make_matrix(system_.comm(), rows, std::move(count));
 }
 
 void ShiftedSystem::factorise(double omega, const ComplexVector& b, const ComplexVector& c) {

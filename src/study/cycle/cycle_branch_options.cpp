@@ -82,7 +82,9 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   d.add("degree", &O::degree, deck::in(1, 7), "degree of the polynomials in time").only(&O::method, {collocation});
   d.add("points", &O::points, "collocation points").only(&O::method, {collocation});
   d.add("adapt_mesh", &O::adapt_mesh,
-        "split and merge intervals of the time mesh as the cycle changes along the branch")
+        "split and merge intervals of the time mesh as the cycle changes along the branch; at Radau points a shaft "
+        "that is "
+        "not reduced keeps the mesh it begins with")
       .only(&O::method, {collocation});
   d.add("adapt_every", &O::adapt_every, deck::positive, "points of the branch between adaptations of the time mesh")
       .only(&O::method, {collocation});
@@ -127,11 +129,13 @@ double CycleBranch::memory(const system::Machine& machine) const {
   const CycleBranchOptions& o = options;
   const double intervals = o.method == shooting ? 1 : o.intervals, steps = o.method == collocation ? 1 : steps_of(o);
   const double stages = o.method == collocation ? o.degree : 1;
+  const bool radau = o.method == collocation && o.points == CycleBranchOptions::Points::radau;
   // Newton-Picard never forms a dense block; the bound of a sparse one holds for it.
   if (o.method == newton_picard) return memory_of_equilibria(machine) * (1 + intervals / 100);
   const double stored = std::min(o.orbits, o.max_points) * 8 * intervals * stages * n_states(machine);
   // Flips are followed on twice the intervals.
-  return memory_of_cycles(machine, intervals, stages) * (o.follow_flips ? 2 : 1) + stored + 64 * intervals * steps;
+  return memory_of_cycles(machine, intervals, stages, radau) * (o.follow_flips ? 2 : 1) + stored +
+         64 * intervals * steps;
 }
 
 void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {

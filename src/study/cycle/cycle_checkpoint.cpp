@@ -44,9 +44,7 @@ void CycleFollower::renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent) {
     core::check(VecScale(tangent, 1 / std::sqrt(solve::inner(*problem_, tangent, tangent))));
   };
   try {
-    double norm = 0;
-    core::check(VecNorm(u, NORM_2, &norm));
-    const auto renewed = solve::Journal::ask(newton_.journal, "phase", {norm}, [&](const auto&) {
+    const auto renewed = solve::Journal::ask(newton_.journal, "phase", {core::norm(u)}, [&](const auto&) {
       renew();
       return solve::Journal::Answer{core::gather(tangent), {}};
     });

@@ -53,9 +53,7 @@ void CycleFollower::correct(Vec u, Vec row, double offset, const solve::NewtonOp
 
 // What a secant reads off the cycle u, once; with a warm start for the next ones.
 std::vector<double> CycleFollower::read_off(Vec u, Vec row, const std::function<std::vector<double>()>& work) {
-  double norm = 0;
-  check(VecNorm(u, NORM_2, &norm));
-  auto all = solve::Journal::ask(newton_.journal, "secant", {norm}, [&](const auto&) {
+  auto all = solve::Journal::ask(newton_.journal, "secant", {core::norm(u)}, [&](const auto&) {
                problem_->linearise(u, row);
                std::vector<double> found = work();
                const std::vector<double> warm = problem_->warm_start();

@@ -28,6 +28,7 @@ public:
   [[nodiscard]] core::Vector make_unknown() const override;
   [[nodiscard]] Vec weights() const override { return weights_.get(); }
   [[nodiscard]] double parameter_scale() const override { return parameter_scale_; }
+  [[nodiscard]] bool settles() const override;
   void residual(Vec u, Vec r) override;
   bool settle(Vec u) override;
   void linearise(Vec u, Vec row) override;

@@ -49,6 +49,8 @@ public:
   /// The unknowns in parts, in local rows, for field splits; those that are in none are the part "border".
   [[nodiscard]] virtual std::vector<problem::Field> fields() const { return {}; }
 
+  /// Whether settle() may find better points. Not collective.
+  [[nodiscard]] virtual bool settles() const { return false; }
   /// Moves u, which Newton's method is about to try, to a better point by equations of its own; false if there is none
   /// (u is then as it was). Collective.
   virtual bool settle(Vec /*u*/) { return false; }

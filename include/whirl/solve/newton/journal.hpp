@@ -12,7 +12,8 @@ namespace whirl::solve {
 /// The repetition of an interrupted computation asks the same questions again, up to rounding, and is given the answers
 /// that were found. The first question that is another one ends that: the rest of what was found is forgotten. A
 /// question may ask others on its way, whose answers are of no use any more once it is answered itself. NotConverged
-/// and DomainError are answers too. Nothing here communicates: every rank asks alike and holds the same.
+/// and DomainError are answers too. Every rank asks alike and holds the same; nothing here communicates but
+/// `due` and `changed`.
 class Journal {
 public:
   struct Answer {
