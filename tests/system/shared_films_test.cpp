@@ -118,3 +118,20 @@ TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
     for (const auto* other : {&elimination, &by_fields, &by_mumps}) EXPECT_NEAR((*other)[b], alone[b], 1e-12) << b;
   }
 }
+
+// Which nodes are full changes along every step from the guess: between settled points films are far out of balance.
+TEST(ContentFilms, TrainComesToRestInFewSteps) {
+  for (const std::array<int, 2> cells : {std::array{30, 8}, {60, 16}}) {
+    system::Train t = test::train(cells, true);
+    for (system::Support& s : t.supports) {
+      s.film.cavitation = film::Options::Cavitation::mass_conserving;
+      s.film.states = film::Options::States::dynamic;
+    }
+    system::RotorSystem s(MPI_COMM_WORLD, t, 377);
+    core::Vector x = s.guess();
+    solve::NewtonOptions newton;
+    newton.max_iterations = 10;
+    const auto result = solve::find_equilibrium(s, x.get(), newton);
+    EXPECT_TRUE(result.converged) << cells[0] << ": " << result.reason;
+  }
+}
