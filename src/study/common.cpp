@@ -10,7 +10,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/solve/newton/machine_modes.hpp"
 
 namespace whirl::study {
 
@@ -81,7 +81,8 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   std::vector<std::complex<double>> values;
   std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
   int neutral = 0;
-  for (const auto& mode : spectral::modes(system, x, options)) {
+  const solve::MachineModes found = solve::machine_modes(system, x, options);
+  for (const auto& mode : found.modes) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
     if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
@@ -92,7 +93,17 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
     return v.real() - (at == rounding.end() ? 0 : at->second);
   });
   s.neutral = neutral;
+  s.missed = found.doubt.empty() ? found.missed : -1;
   return s;
+}
+
+void MissedModes::warn(io::StudySummary& summary) const {
+  if (most_ > 0)
+    summary.warnings.push_back(fmt::format(
+        "up to {} eigenvalues that the count finds in the region were missed: stability may be wrong", most_));
+  if (unsure_)
+    summary.warnings.emplace_back("how many eigenvalues there are could not be counted for sure: some may be missed");
+  if (most_ > 0) summary.set("missed_eigenvalues", most_, "1");
 }
 
 std::vector<std::string> names_of_bearings(const system::Machine& machine) {

@@ -1,6 +1,7 @@
 #pragma once
 // What the studies share.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,21 @@ private:
 
 /// Eigenvalues of the system at x, as stability facts with distance Re(lambda).
 [[nodiscard]] solve::Stability equilibrium_stability(system::Plant& system, Vec x);
+
+/// What searches for eigenvalues missed (solve::Stability::missed), for the summary.
+class MissedModes {
+public:
+  void add(int missed) {
+    most_ = std::max(most_, missed);
+    unsure_ = unsure_ || missed < 0;
+  }
+  /// Adds a warning, and the value "missed_eigenvalues" where some are known to be missing.
+  void warn(io::StudySummary& summary) const;
+
+private:
+  int most_ = 0;
+  bool unsure_ = false;
+};
 
 /// Names and clearances of the bearings, into `group`/bearings.
 void put_bearings(io::Group& group, const system::Machine& machine);
