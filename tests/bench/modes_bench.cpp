@@ -1,5 +1,5 @@
-// The least stable eigenvalues of the reduced train in cylindrical bores with soft liners, over the mesh of the films: by
-// their transfer functions against the whole pencil.
+// The least stable eigenvalues of the reduced train in cylindrical bores with soft liners, over the mesh of the films:
+// by their transfer functions against the whole pencil.
 //
 //     mpirun -n N bench_modes [CELLS_AROUND...]      cells along are a fifth
 #include <fmt/core.h>
@@ -74,8 +74,8 @@ void row(int around) {
   }
   if (core::rank_of(PETSC_COMM_WORLD) == 0)
     fmt::print("{:4} x {:3} {:8} {:9.2f} {:9.2f} {:6.1f} {:6} {:6} {:6} {:6} {:9.1e}\n", around, around / 5, s.size(),
-               by_pencil.processor, by_transfer.processor, by_transfer.processor / by_pencil.processor, found.counted, found.missed,
-               found.poles, found.solves, apart);
+               by_pencil.processor, by_transfer.processor, by_transfer.processor / by_pencil.processor, found.counted,
+               found.missed, found.poles, found.solves, apart);
 }
 
 }  // namespace

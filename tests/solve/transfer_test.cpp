@@ -4,8 +4,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "solve/newton/rational_fit.hpp"
 #include "support/small_system.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
@@ -108,6 +110,38 @@ TEST(TransferFunction, IsTheDenseSchurComplement) {
     const VectorXcd rows = whole * Eigen::Map<const VectorXcd>(state.data(), n);
     EXPECT_LT(rows.tail(n - n_hub).norm(), 1e-12 * whole.norm());
     EXPECT_LT((rows.head(n_hub) - expected * z).norm(), 1e-12 * whole.norm());
+  }
+}
+
+// Functions with three pairs of poles in common are found exactly, and so is their derivative.
+TEST(RationalFit, FindsARationalFunction) {
+  const std::array<Complex, 3> pole{Complex(-0.3, 1), Complex(-1, 0.4), Complex(-0.1, 2.2)};
+  constexpr int entries = 20;  // more than enter the choice of weights
+  const auto f = [&](Complex z, bool slope) {
+    VectorXcd out(entries);
+    for (int e = 0; e < entries; ++e) {
+      out(e) = slope ? 0.1 : 0.5 * e + 0.1 * z;
+      for (std::size_t k = 0; k < pole.size(); ++k)
+        for (const bool conjugate : {false, true}) {
+          const Complex p = conjugate ? std::conj(pole[k]) : pole[k],
+                        r(std::sin(e + 2.0 * static_cast<double>(k)), 0.3 * e);
+          out(e) += (conjugate ? std::conj(r) : r) / (z - p) * (slope ? -1.0 / (z - p) : Complex(1));
+        }
+    }
+    return out;
+  };
+  std::vector<Complex> points;
+  MatrixXcd values(entries, 17);
+  for (int k = 0; k < 17; ++k) {
+    points.push_back(std::polar(3.0, 3.14159265358979 * k / 16));
+    if (k == 0 || k == 16) points.back() = points.back().real();
+    values.col(k) = f(points.back(), false);
+  }
+  const solve::RationalFit fit(points, values, 1e-12);
+  EXPECT_NEAR(fit.magnitude(), values.colwise().norm().maxCoeff(), 1e-12);
+  for (const Complex z : {Complex(0.3, 0.7), Complex(2, -1), Complex(-0.5, 0), points[3]}) {
+    EXPECT_LT((fit.value(z) - f(z, false)).norm(), 1e-9 * f(z, false).norm()) << z;
+    EXPECT_LT((fit.slope(z) - f(z, true)).norm(), 1e-6 * f(z, true).norm()) << z;
   }
 }
 

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "support/train_system.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -107,9 +105,6 @@ void expect_the_whole_pencils(system::RotorSystem& s, const solve::TransferOptio
     }
   EXPECT_GE(static_cast<int>(expected.size()), at_least);
   const auto found = solve::transfer_modes(s, x.get(), o);
-  if (std::getenv("SHOW"))
-    std::printf("f %g d %g: counted %d poles %d solves %d fit %.1e missed %d expected %d %s\n", o.frequency, o.decay,
-                found.counted, found.poles, found.solves, found.fit, found.missed, number, found.doubt.c_str());
   EXPECT_EQ(found.doubt, "");
   EXPECT_EQ(found.counted, number);
   EXPECT_EQ(found.missed, 0);
