@@ -15,6 +15,11 @@
 
 namespace whirl::study {
 
+/// Stiffness and damping of every film about the equilibrium x [size()] at the frequency `omega` [rad/s]: its tangents,
+/// or with own states minus its transfer function from the motion of the journal to the force. Collective.
+[[nodiscard]] std::vector<film::Coefficients> film_coefficients(system::RotorSystem& system,
+                                                                const std::vector<double>& x, double omega);
+
 /// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is
 /// approached by halved steps.
 class Walker {

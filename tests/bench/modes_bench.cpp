@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 
 #include "bench/timing.hpp"
@@ -46,9 +47,17 @@ std::vector<spectral::Complex> least_stable(const std::vector<spectral::Mode>& m
   return out;
 }
 
-void row(int around) {
-  system::RotorSystem s(PETSC_COMM_WORLD, on_liners(around), 377);
+// A mesh and the equilibrium on it, from which that on the next one is found.
+struct Rest {
+  std::unique_ptr<system::RotorSystem> system;
+  std::vector<double> x;
+};
+
+void row(int around, Rest& last) {
+  auto made = std::make_unique<system::RotorSystem>(PETSC_COMM_WORLD, on_liners(around), 377);
+  system::RotorSystem& s = *made;
   core::Vector x = s.guess();
+  if (last.system) core::fill(x.get(), s.resampled(*last.system, last.x.data()));
   solve::NewtonOptions newton;
   newton.max_iterations = 40;
   core::require(solve::find_equilibrium(s, x.get(), newton).converged, "equilibrium");
@@ -88,5 +97,6 @@ int main(int argc, char** argv) {
   std::vector<int> meshes;
   for (int k = 1; k < argc && argv[k][0] != '-'; ++k) meshes.push_back(std::stoi(argv[k]));
   if (meshes.empty()) meshes = {30, 60, 120};
-  for (const int around : meshes) row(around);
+  Rest rest;
+  for (const int around : meshes) row(around, rest);
 }

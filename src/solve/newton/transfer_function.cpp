@@ -272,6 +272,29 @@ TransferFunction::Sparse TransferFunction::matrix(Complex lambda, const Blocks& 
   return out;
 }
 
+// The part adds -H to the hub's derivatives.
+MatrixXcd TransferFunction::from_motion(std::size_t i, const Block& part, Complex lambda,
+                                        const std::vector<PetscInt>& positions, const std::vector<PetscInt>& rates,
+                                        const std::vector<PetscInt>& forces) const {
+  const auto at = [](const std::vector<PetscInt>& all, PetscInt one) {
+    const auto place = std::lower_bound(all.begin(), all.end(), one);
+    return place != all.end() && *place == one ? place - all.begin() : -1;
+  };
+  MatrixXcd out = MatrixXcd::Zero(static_cast<Index>(forces.size()), static_cast<Index>(positions.size()));
+  for (std::size_t r = 0; r < forces.size(); ++r)
+    for (std::size_t c = 0; c < positions.size(); ++c)
+      for (const bool rate : {false, true}) {
+        const PetscInt state = rate ? rates[c] : positions[c];
+        const Index row = at(ports_[i].forces, forces[r]), column = at(ports_[i].seen, state);
+        if (row < 0 || column < 0) continue;
+        const double si =
+            hub_row_scale_[static_cast<std::size_t>(forces[r])] / hub_scale_[static_cast<std::size_t>(state)];
+        out(static_cast<Index>(r), static_cast<Index>(c)) -=
+            part.value(row, column) * si * (rate ? lambda : Complex(1));
+      }
+  return out;
+}
+
 std::vector<Complex> TransferFunction::whole(const std::vector<Complex>& local) const {
   std::vector<double> all[2];
   for (const bool real : {true, false}) {

@@ -59,6 +59,11 @@ public:
   [[nodiscard]] Blocks evaluate(Complex lambda, bool slopes);
   /// T(lambda), or with `slope` dT/dlambda, from what evaluate() gave there [hub x hub]. Not collective.
   [[nodiscard]] Sparse matrix(Complex lambda, const Blocks& parts, bool slope) const;
+  /// What part i does at lambda to rows `forces` of the hub where its states `positions` move with rates `rates`, in
+  /// SI: dF/d(position) + lambda dF/d(rate) [forces x positions], from what evaluate() gave there. Not collective.
+  [[nodiscard]] Eigen::MatrixXcd from_motion(std::size_t i, const Block& part, Complex lambda,
+                                             const std::vector<PetscInt>& positions, const std::vector<PetscInt>& rates,
+                                             const std::vector<PetscInt>& forces) const;
   /// The whole state that belongs to the motion z of the hub [hub], scaled, on every rank: exact where evaluate() was
   /// called last, or in first order a step `ahead` of there if it gave slopes.
   [[nodiscard]] std::vector<Complex> state(const Eigen::VectorXcd& z, Complex ahead = 0) const;
@@ -72,9 +77,6 @@ public:
   /// Number of states of part i over all ranks. Not collective.
   [[nodiscard]] PetscInt states(std::size_t i) const;
   [[nodiscard]] MPI_Comm comm() const { return system_.comm(); }
-  /// SI per scaled unit of the states of the hub, in order, whole on every rank.
-  [[nodiscard]] const std::vector<double>& hub_scale() const { return hub_scale_; }
-  [[nodiscard]] const std::vector<double>& hub_row_scale() const { return hub_row_scale_; }
 
 private:
   struct Part;
