@@ -16,10 +16,12 @@ namespace whirl::solve {
 namespace {
 
 using Complex = std::complex<double>;
-using Blocks = TransferFunction::Blocks;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
+
+// What a real part may owe to the solves, relative to the eigenvalue.
+constexpr double accuracy = 1e-11;
 
 // Whether `z` is one of these or a combination.
 bool in_span(const std::vector<VectorXcd>& found, const VectorXcd& z) {
@@ -36,7 +38,7 @@ spectral::Mode mode_of(Complex lambda, std::vector<Complex> state, const std::ve
   for (const Complex& v : state)
     if (std::abs(v) > std::abs(largest)) largest = v;
   for (std::size_t k = 0; k < state.size(); ++k) state[k] *= scale[k] / largest;
-  return {lambda, std::move(state), 1e-12 * std::abs(lambda)};
+  return {lambda, std::move(state), accuracy * std::abs(lambda)};
 }
 
 }  // namespace
@@ -59,7 +61,7 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
         ++out.poles;
         if (!pole.silent || pole.value.imag() < 0) continue;
         out.modes.push_back(options.shapes ? mode_of(pole.value, machine.state(i, pole.shape), scale)
-                                           : spectral::Mode{pole.value, {}, 1e-12 * std::abs(pole.value)});
+                                           : spectral::Mode{pole.value, {}, accuracy * std::abs(pole.value)});
       }
     } catch (const core::NotConverged& e) {
       out.doubt = e.what();
@@ -70,15 +72,15 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
 
   // What the leader asks of all: H at a place, or the whole state of a motion.
   struct Order {
-    double real = 0, imag = 0, ahead_real = 0, ahead_imag = 0, shape = 0;
+    double real = 0, imag = 0, ahead_real = 0, ahead_imag = 0, slopes = 0, shape = 0;
   } order;
-  Blocks h;
+  TransferFunction::Blocks h;
   VectorXcd motion(machine.hub());
   std::vector<Complex> state;
   const auto part = [&] {
-    core::share(system.comm(), &order.real, 5);
+    core::share(system.comm(), &order.real, 6);
     if (order.shape == 0) {
-      h = machine.evaluate({order.real, order.imag}, true);
+      h = machine.evaluate({order.real, order.imag}, order.slopes != 0);
       return;
     }
     core::share(system.comm(), reinterpret_cast<double*>(motion.data()), 2 * static_cast<std::size_t>(motion.size()));
@@ -86,8 +88,8 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
   };
   std::vector<spectral::Mode> modes;
   const auto work = [&](const std::function<void()>& together) {
-    TransferSearch search(machine, options, [&](Complex lambda) {
-      order = {lambda.real(), lambda.imag(), 0, 0, 0};
+    TransferSearch search(machine, options, [&](Complex lambda, bool slopes) {
+      order = {lambda.real(), lambda.imag(), 0, 0, slopes ? 1.0 : 0.0, 0};
       ++out.solves;
       together();
       return h;
@@ -101,8 +103,17 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
       out.counted = *winding + out.poles;
     }
     const int wanted = winding ? std::max(0, out.counted - silent) : 20;
-    std::vector<Root> roots;  // on the fit
+    std::vector<Root> fitted, roots;  // of the fit, of the machine
     const auto near = [&](Complex a, Complex b) { return std::abs(a - b) <= 1e-8 * ellipse.size(); };
+    // A multiple eigenvalue has as many independent motions.
+    const auto is_new = [&](std::vector<Root>& known, const Root& r) {
+      std::vector<VectorXcd> same;
+      for (const Root& k : known)
+        if (near(k.lambda, r.lambda)) same.push_back(k.motion);
+      if (in_span(same, r.motion)) return false;
+      known.push_back(r);
+      return true;
+    };
     const auto try_all = [&](std::vector<Root> candidates) {
       for (Root& r : candidates) {
         if (!search.refine_on_fit(r)) continue;
@@ -112,21 +123,17 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
           r.motion.cwiseAbs().maxCoeff(&largest);
           r = {r.lambda.real(), (r.motion / r.motion(largest)).real().cast<Complex>().normalized()};
         }
-        std::vector<VectorXcd> same;
-        for (const Root& known : roots)
-          if (near(known.lambda, r.lambda)) same.push_back(known.motion);
-        if (in_span(same, r.motion)) continue;
-        roots.push_back(r);
+        if (!is_new(fitted, r)) continue;
         const auto ahead = search.refine(r);
         if (!ahead || ellipse.level(r.lambda) > 1) continue;
         if (std::abs(r.lambda.imag()) <= 1e-13 * ellipse.size()) r.lambda = r.lambda.real();
-        if (r.lambda.imag() < 0) continue;
+        if (r.lambda.imag() < 0 || !is_new(roots, r)) continue;
         found += number(r.lambda);
         if (!options.shapes) {
-          modes.push_back({r.lambda, {}, 1e-12 * std::abs(r.lambda)});
+          modes.push_back({r.lambda, {}, accuracy * std::abs(r.lambda)});
           continue;
         }
-        order = {0, 0, ahead->real(), ahead->imag(), 1};
+        order = {0, 0, ahead->real(), ahead->imag(), 0, 1};
         motion = r.motion;
         together();
         modes.push_back(mode_of(r.lambda, state, scale));

@@ -7,7 +7,6 @@
 namespace whirl::solve {
 
 using Complex = std::complex<double>;
-using Blocks = TransferFunction::Blocks;
 using Sparse = TransferFunction::Sparse;
 using Eigen::Index;
 using Eigen::MatrixXcd;
@@ -55,7 +54,7 @@ VectorXcd TransferSearch::joined(const Blocks& h) const {
   return out;
 }
 
-Blocks TransferSearch::split(const VectorXcd& values, bool slope) const {
+TransferFunction::Blocks TransferSearch::split(const VectorXcd& values, bool slope) const {
   Blocks out;
   Index at = 0;
   for (const auto& p : machine_.ports()) {
@@ -72,7 +71,7 @@ double TransferSearch::sample() {
   std::vector<VectorXcd> samples;
   const auto add = [&](double angle) {
     const auto place = std::lower_bound(angles.begin(), angles.end(), angle) - angles.begin();
-    VectorXcd h = joined(solve_(ellipse_.at(angle)));
+    VectorXcd h = joined(solve_(ellipse_.at(angle), false));
     angles.insert(angles.begin() + place, angle);
     samples.insert(samples.begin() + place, std::move(h));
     return place;
@@ -226,7 +225,7 @@ bool TransferSearch::refine_on_fit(Root& root) const {
 
 std::optional<Complex> TransferSearch::refine(Root& root) {
   for (int k = 0; k < 8; ++k) {
-    const Blocks h = solve_(root.lambda);
+    const Blocks h = solve_(root.lambda, true);
     const auto d = step(machine_.matrix(root.lambda, h, false), machine_.matrix(root.lambda, h, true), root.motion);
     if (!d || std::abs(*d) > 0.1 * ellipse_.size()) return std::nullopt;
     root.lambda += *d;

@@ -24,9 +24,6 @@ struct Ellipse {
   [[nodiscard]] std::complex<double> at(double angle) const {
     return {centre + along * std::cos(angle), angle == std::numbers::pi ? 0 : across * std::sin(angle)};
   }
-  [[nodiscard]] std::complex<double> slope(double angle) const {
-    return {-along * std::sin(angle), across * std::cos(angle)};
-  }
   /// Below one inside.
   [[nodiscard]] double level(std::complex<double> z) const {
     return std::hypot((z.real() - centre) / along, z.imag() / across);
@@ -56,12 +53,12 @@ struct Root {
   Eigen::VectorXcd motion;
 };
 
-/// What one rank decides; `solve` asks all ranks for H and its slope. Both references have to live on.
+/// What one rank decides; `solve` asks all ranks for H, and its slope if it is wanted. Both references have to live on.
 class TransferSearch {
 public:
   using Complex = std::complex<double>;
   using Blocks = TransferFunction::Blocks;
-  using Solve = std::function<Blocks(Complex)>;
+  using Solve = std::function<Blocks(Complex, bool slopes)>;
   TransferSearch(const TransferFunction& machine, const TransferOptions& options, Solve solve)
       : machine_(machine), options_(options), ellipse_(options), solve_(std::move(solve)) {}
 
