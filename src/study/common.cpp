@@ -11,11 +11,46 @@
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/solve/newton/machine_modes.hpp"
+#include "whirl/solve/newton/transfer_function.hpp"
 
 namespace whirl::study {
 
 using core::check;
+
+std::vector<film::Coefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
+                                                  double omega) {
+  const std::vector<film::Response> films = system.film_responses(x.data(), film::Need::tangents);
+  std::vector<film::Coefficients> out(films.size());
+  for (std::size_t b = 0; b < films.size(); ++b)
+    for (std::size_t d = 0; d < 2; ++d)
+      for (std::size_t e = 0; e < 2; ++e) {
+        out[b].stiffness[2 * d + e] = -films[b].d_position[d][e];
+        out[b].damping[2 * d + e] = -films[b].d_velocity[d][e];
+      }
+  if (system.own_states() == 0) return out;
+  if (!(omega > 0)) throw core::InputError("the frequency of stiffness and damping must be positive");
+  const core::Vector at = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  core::fill(at.get(), x);
+  solve::TransferFunction transfer(system);
+  transfer.linearise(at.get());
+  const auto blocks = transfer.evaluate({0, omega}, false);
+  std::size_t part = 0;
+  for (std::size_t b = 0; b < films.size(); ++b) {
+    if (!film::has_states(system.train().supports[b].film)) continue;
+    const auto bearing = static_cast<int>(b);
+    const std::vector<PetscInt> position{2 * system.journal(bearing, 0), 2 * system.journal(bearing, 1)};
+    const Eigen::MatrixXcd k =
+        transfer.from_motion(part, blocks[part], {0, omega}, position, {position[0] + 1, position[1] + 1}, position);
+    for (Eigen::Index d = 0; d < 2; ++d)
+      for (Eigen::Index e = 0; e < 2; ++e) {
+        out[b].stiffness[static_cast<std::size_t>(2 * d + e)] += k(d, e).real();
+        out[b].damping[static_cast<std::size_t>(2 * d + e)] += k(d, e).imag() / omega;
+      }
+    ++part;
+  }
+  return out;
+}
 
 bool Walker::attempt(double speed) {
   system_.set_parameter(speed);
@@ -82,7 +117,8 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
   std::vector<std::complex<double>> values;
   std::map<double, double> rounding;  // by real part: that of the values that are nearly undamped
   int neutral = 0;
-  for (const auto& mode : spectral::modes(system, x, options)) {
+  const solve::MachineModes found = solve::machine_modes(system, x, options);
+  for (const auto& mode : found.modes) {
     values.push_back(mode.lambda);
     if (mode.lambda.imag() != 0) values.push_back(std::conj(mode.lambda));
     if (mode.rounding > 0) rounding[mode.lambda.real()] = mode.rounding;
@@ -93,7 +129,17 @@ solve::Stability equilibrium_stability(system::Plant& system, Vec x) {
     return v.real() - (at == rounding.end() ? 0 : at->second);
   });
   s.neutral = neutral;
+  s.missed = found.doubt.empty() ? found.missed : -1;
   return s;
+}
+
+void MissedModes::warn(io::StudySummary& summary) const {
+  if (most_ > 0)
+    summary.warnings.push_back(fmt::format(
+        "up to {} eigenvalues that the count finds in the region were missed: stability may be wrong", most_));
+  if (unsure_)
+    summary.warnings.emplace_back("how many eigenvalues there are could not be counted for sure: some may be missed");
+  if (most_ > 0) summary.set("missed_eigenvalues", most_, "1");
 }
 
 std::vector<std::string> names_of_bearings(const system::Machine& machine) {

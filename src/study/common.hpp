@@ -1,6 +1,7 @@
 #pragma once
 // What the studies share.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,11 @@
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
+
+/// Stiffness and damping of every film about the equilibrium x [size()] at the frequency `omega` [rad/s]: its tangents,
+/// or with own states minus its transfer function from the motion of the journal to the force. Collective.
+[[nodiscard]] std::vector<film::Coefficients> film_coefficients(system::RotorSystem& system,
+                                                                const std::vector<double>& x, double omega);
 
 /// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is
 /// approached by halved steps.
@@ -34,6 +40,21 @@ private:
 
 /// Eigenvalues of the system at x, as stability facts with distance Re(lambda).
 [[nodiscard]] solve::Stability equilibrium_stability(system::Plant& system, Vec x);
+
+/// What searches for eigenvalues missed (solve::Stability::missed), for the summary.
+class MissedModes {
+public:
+  void add(int missed) {
+    most_ = std::max(most_, missed);
+    unsure_ = unsure_ || missed < 0;
+  }
+  /// Adds a warning, and the value "missed_eigenvalues" where some are known to be missing.
+  void warn(io::StudySummary& summary) const;
+
+private:
+  int most_ = 0;
+  bool unsure_ = false;
+};
 
 /// Names and clearances of the bearings, into `group`/bearings.
 void put_bearings(io::Group& group, const system::Machine& machine);

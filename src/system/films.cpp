@@ -215,23 +215,6 @@ std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   return bearing.states->fields(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
 }
 
-film::Coefficients RotorSystem::film_coefficients(int b, const double* x, double omega) {
-  const auto i = static_cast<std::size_t>(b);
-  const Bearing& bearing = bearings_[i];
-  const film::Motion at = motion(journals(x)[i]);
-  if (bearing.states)
-    return film::coefficients(*bearing.states, at, {x + 2 * n_ + bearing.first, bearing.states->states()}, omega);
-  film::Response response;
-  bearing.film->evaluate(at, film::Need::tangents, response);
-  film::Coefficients out;
-  for (std::size_t d = 0; d < 2; ++d)
-    for (std::size_t e = 0; e < 2; ++e) {
-      out.stiffness[2 * d + e] = -response.d_position[d][e];
-      out.damping[2 * d + e] = -response.d_velocity[d][e];
-    }
-  return out;
-}
-
 bool RotorSystem::settles() const {
   return std::any_of(bearings_.begin(), bearings_.end(),
                      [](const Bearing& b) { return b.states && b.states->whole_steps(); });

@@ -71,6 +71,31 @@ TEST(Modes, DenseAndKrylovFindTheChainsFrequencies) {
   }
 }
 
+// By LAPACK, and by Krylov-Schur, which has to ask three times until it has found one beyond the radius.
+TEST(Modes, WithinARadiusNoneIsMissing) {
+  for (const int masses : {20, 320}) {
+    test::SmallSystem s(MPI_COMM_WORLD, 2 * masses, 0, 1, Chain{masses});
+    const core::Vector x = s.vector(Eigen::VectorXd::Zero(2 * masses));
+    core::Matrix a = s.make_jacobian(), b = s.make_jacobian();
+    s.jacobian(0, x.get(), x.get(), 1, 0, a.get());
+    s.jacobian(0, x.get(), x.get(), 0, 1, b.get());
+    const auto exact = [&](int k) { return 2 * std::sin(k * std::numbers::pi / (2 * (masses + 1))); };
+    const int pairs = 12;
+    const double target = -0.01, radius = std::hypot(target, 0.5 * (exact(pairs) + exact(pairs + 1)));
+    const auto found = spectral::modes_within(a.get(), b.get(), target, radius);
+    ASSERT_EQ(found.size(), 2U * pairs) << masses;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_NEAR(std::abs(found[k].lambda.imag()), exact(static_cast<int>(k) / 2 + 1), 1e-9);
+      EXPECT_NEAR(found[k].lambda.real(), 0, 1e-9);
+      double size = 0;
+      for (const Complex& v : found[k].shape) size += std::norm(v);
+      MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+      EXPECT_NEAR(size, 1, 1e-12);
+      EXPECT_EQ(static_cast<PetscInt>(found[k].shape.size()), s.local_size());
+    }
+  }
+}
+
 TEST(Modes, ScalesDoNotMatterAndShapesAreInSi) {
   test::SmallSystem s(MPI_COMM_WORLD, 4, 0, 1, Chain{2, 0.1});
   s.set_scales(Eigen::Vector4d(1e-6, 1e-3, 2, 1e4), Eigen::Vector4d(1e3, 10, 1e-5, 1));

@@ -302,7 +302,12 @@ TEST(CompliantRotor, CoefficientsAtTheWhirlFrequencyGiveTheHopfPoint) {
     const double scale = t.supports[0].film.reference_speed, guess = kind == Kind::compliant_short ? 2.7326 : 0.4984;
     system::RotorSystem s(MPI_COMM_WORLD, t, 0.8 * guess * scale);
     const Hopf h = hopf(s, scale, 0.95 * guess, 1.05 * guess);
-    const auto c = s.film_coefficients(0, h.state.data(), h.frequency);
+    const auto film = film::make_state_model(t.supports[0].geometry, t.supports[0].film, t.supports[0].lubricant);
+    film::Motion motion;
+    motion.speed = s.speed();
+    for (std::size_t d = 0; d < 2; ++d) motion.position[d] = s.journals(h.state.data())[0].position[d];
+    const auto first = h.state.end() - static_cast<std::ptrdiff_t>(film->states());
+    const auto c = film::coefficients(*film, motion, {&*first, film->states()}, h.frequency);
     using Complex = std::complex<double>;
     const auto entry = [&](std::size_t k) { return c.stiffness[k] + Complex(0, h.frequency * c.damping[k]); };
     const double inertia = t.rotor.mass * h.frequency * h.frequency;

@@ -39,6 +39,18 @@ struct EigenOptions {
 /// Collective; throws core::NotConverged.
 [[nodiscard]] std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options);
 
+/// An eigenvalue [1/s] with this rank's rows of its right eigenvector, of length one over all ranks.
+struct LocalMode {
+  Complex lambda;
+  std::vector<Complex> shape;
+};
+
+/// All lambda with (a + lambda b) u = 0 within `radius` of the real `target`, both of each complex pair, the nearest
+/// first. Up to EigenOptions::dense_below rows by LAPACK, larger ones by Krylov-Schur, which looks on until it has
+/// found one beyond the radius. Collective on the matrices' communicator; throws core::NotConverged, also where there
+/// are more than 400.
+[[nodiscard]] std::vector<LocalMode> modes_within(Mat a, Mat b, double target, double radius);
+
 /// All eigenvalues of a dense matrix, by SLEPc's LAPACK solver, on this rank alone; sorted by falling modulus.
 [[nodiscard]] std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix);
 

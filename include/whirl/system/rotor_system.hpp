@@ -112,9 +112,6 @@ public:
   /// Report quantities and fields of film b at a whole state [size()]. Not collective.
   [[nodiscard]] film::Summary film_summary(int b, const double* x);
   [[nodiscard]] std::vector<film::Field> film_fields(int b, const double* x);
-  /// Stiffness and damping of film b about an equilibrium: its tangents, or with own states those at the frequency
-  /// `omega` [rad/s]. Not collective.
-  [[nodiscard]] film::Coefficients film_coefficients(int b, const double* x, double omega);
   /// Gives every film the own states at which it rests with the journals where x has them. Collective.
   void relax_films(Vec x);
   /// Films that are linear but for the set of their full nodes settle.

@@ -20,7 +20,8 @@ Journal::Answer pack(const State& s, const std::vector<double>& warm) {
                           static_cast<double>(warm.size()),
                           static_cast<double>(all.neutral),
                           s.point.step,
-                          static_cast<double>(s.point.newton_iterations)};
+                          static_cast<double>(s.point.newton_iterations),
+                          static_cast<double>(all.missed)};
   for (const auto& v : all.values) out.insert(out.end(), {v.real(), v.imag()});
   for (const auto& list : {all.distance, s.point.monitors, warm, core::gather(s.tangent.get())})
     out.insert(out.end(), list.begin(), list.end());
@@ -34,7 +35,7 @@ const double* unpack(const Journal::Answer& answer, State& s, std::vector<double
     const double* begin = std::exchange(at, at + static_cast<std::ptrdiff_t>(n));
     return std::vector<double>(begin, at);
   };
-  const std::vector<double> counts = next(7), values = next(2 * counts[0]);
+  const std::vector<double> counts = next(8), values = next(2 * counts[0]);
   s.point.stability = {};
   for (std::size_t k = 0; k < values.size(); k += 2) s.point.stability.values.emplace_back(values[k], values[k + 1]);
   s.point.stability.distance = next(counts[1]);
@@ -43,6 +44,7 @@ const double* unpack(const Journal::Answer& answer, State& s, std::vector<double
   s.point.stability.neutral = static_cast<int>(counts[4]);
   s.point.step = counts[5];
   s.point.newton_iterations = static_cast<int>(counts[6]);
+  s.point.stability.missed = static_cast<int>(counts[7]);
   s.tangent = core::duplicate(s.u.get());
   PetscInt size = 0;
   check(VecGetSize(s.u.get(), &size));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solve/newton/thin.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 
@@ -13,27 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-// Calls f(local row, columns, values, count) for all rows of this rank.
-template <class F>
-void for_rows(Mat m, F&& f) {
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(m, &begin, &end));
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &count, &columns, &values));
-    f(i - begin, columns, values, count);
-    check(MatRestoreRow(m, i, &count, &columns, &values));
-  }
-}
-
-PetscInt first_row(Mat m) {
-  PetscInt begin = 0;
-  check(MatGetOwnershipRange(m, &begin, nullptr));
-  return begin;
-}
 
 // Fails like a factorisation whose answer is of no use.
 void require_answer(KSP ksp) {
@@ -159,14 +139,11 @@ void PortElimination::for_ports(F&& f) const {
 void PortElimination::form_hub() {
   core::Matrix transposed;
   check(MatTranspose(to_hub_.get(), MAT_INITIAL_MATRIX, transposed.put()));
+  from_parts_ = thin(transposed.get(), coupled_);
   const auto place = [&](PetscInt row) {  // among the coupled rows, or their number
     const auto at = std::lower_bound(coupled_.begin(), coupled_.end(), row);
     return at != coupled_.end() && *at == row ? at - coupled_.begin() : static_cast<Index>(coupled_.size());
   };
-  from_parts_.setZero(x_.rows(), static_cast<Index>(coupled_.size()));
-  for_rows(transposed.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
-    for (PetscInt k = 0; k < count; ++k) from_parts_(i, place(columns[k])) = values[k];
-  });
   const auto n_coupled = static_cast<Index>(coupled_.size()), n_ports = static_cast<Index>(ports_.size());
   MatrixXd product = MatrixXd::Zero(n_coupled, n_ports);
   for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {

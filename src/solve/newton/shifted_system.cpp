@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solve/newton/port_elimination.hpp"
+#include "solve/newton/real_form.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 
@@ -35,19 +36,8 @@ void ShiftedSystem::linearise(Vec x) {
 }
 
 void ShiftedSystem::make_matrix() {
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(jx_.get(), &begin, &end));
   const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
-  const PetscInt n = system_.size(), rows = 2 * (end - begin) + (last && bordered_ ? 2 : 0);
-  std::vector<PetscInt> count(static_cast<std::size_t>(rows), 2 * n + 2);
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    check(MatGetRow(jx_.get(), i, &k, nullptr, nullptr));
-    for (PetscInt part = 0; part < 2; ++part)
-      count[static_cast<std::size_t>(2 * (i - begin) + part)] = 2 * k + (bordered_ ? 2 : 0);
-    check(MatRestoreRow(jx_.get(), i, &k, nullptr, nullptr));
-  }
-  matrix_ = core::make_matrix(system_.comm(), rows, std::move(count));
+  matrix_ = make_real_form(jx_.get(), bordered_ ? 1 : 0, last && bordered_ ? 1 : 0, system_.size() + 1);
 }
 
 void ShiftedSystem::factorise(double omega, const ComplexVector& b, const ComplexVector& c) {
@@ -57,49 +47,16 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
     ports_.reset();
     solver_.reset();
   }
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(jx_.get(), &begin, &end));
   const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
   const PetscInt n = system_.size();
-  std::vector<PetscInt> to;
-  std::vector<PetscScalar> upper, lower;
-  const auto put = [&](PetscInt row) {
-    for (PetscInt part = 0; part < 2; ++part) {
-      const PetscInt r = 2 * row + part;
-      check(MatSetValues(matrix_.get(), 1, &r, static_cast<PetscInt>(to.size()), to.data(),
-                         (part == 0 ? upper : lower).data(), INSERT_VALUES));
-    }
-  };
-  const auto add = [&](PetscInt column, Complex z) {
-    for (PetscInt part = 0; part < 2; ++part) to.push_back(2 * column + part);
-    upper.insert(upper.end(), {z.real(), -z.imag()});
-    lower.insert(lower.end(), {z.imag(), z.real()});
-  };
-  const auto clear = [&] {
-    to.clear();
-    upper.clear();
-    lower.clear();
-  };
-  for (PetscInt i = begin; i < end; ++i) {
-    // Both Jacobians have the same pattern, so that their rows run in step.
-    PetscInt k = 0, kd = 0;
-    const PetscInt *columns = nullptr, *columns_d = nullptr;
-    const PetscScalar *a = nullptr, *d = nullptr;
-    check(MatGetRow(jx_.get(), i, &k, &columns, &a));
-    check(MatGetRow(jd_.get(), i, &kd, &columns_d, &d));
-    core::require(k == kd, "dF/dx and dF/d(dx/dt) have one pattern");
-    clear();
-    for (PetscInt e = 0; e < k; ++e) add(columns[e], {a[e], omega * d[e]});
-    check(MatRestoreRow(jx_.get(), i, &k, &columns, &a));
-    check(MatRestoreRow(jd_.get(), i, &kd, &columns_d, &d));
-    if (bordered_) add(n, b[static_cast<std::size_t>(i)]);
-    put(i);
-  }
+  put_pencil(jx_.get(), jd_.get(), Complex(0, omega), matrix_.get(), [&](PetscInt i, RealRow& row) {
+    if (bordered_) row.add(n, b[static_cast<std::size_t>(i)]);
+  });
   if (last && bordered_) {
-    clear();
-    for (PetscInt i = 0; i < n; ++i) add(i, std::conj(c[static_cast<std::size_t>(i)]));
-    add(n, 0);
-    put(n);
+    RealRow row;
+    for (PetscInt i = 0; i < n; ++i) row.add(i, std::conj(c[static_cast<std::size_t>(i)]));
+    row.add(n, 0);
+    row.put(matrix_.get(), n);
   }
   check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));

@@ -268,6 +268,7 @@ void write_stability(io::Group& group, const solve::Stability& stability) {
   group.put("imag", im, "1", "their imaginary parts");
   group.put("distance", stability.distance, "1", "from the border of stability");
   group.set("neutral", stability.neutral);
+  group.set("missed", stability.missed);
 }
 
 solve::Stability read_stability(const io::Group& group) {
@@ -276,6 +277,7 @@ solve::Stability read_stability(const io::Group& group) {
   for (std::size_t k = 0; k < re.size(); ++k) s.values.emplace_back(re[k], im[k]);
   s.distance = group.reals("distance");
   s.neutral = static_cast<int>(group.integer("neutral"));
+  s.missed = static_cast<int>(group.integer("missed"));
   return s;
 }
 

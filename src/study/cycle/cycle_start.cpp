@@ -12,7 +12,7 @@
 #include "study/make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/solve/newton/machine_modes.hpp"
 
 namespace whirl::study {
 namespace {
@@ -95,7 +95,7 @@ solve::Restart CycleFollower::start_at_hopf() {
   }
 
   system_->set_parameter(parameter);
-  const auto modes = spectral::modes(*system_, at_hopf.get(), {});
+  const auto modes = solve::machine_modes(*system_, at_hopf.get(), {}).modes;
   const spectral::Mode* critical = nullptr;
   for (const auto& m : modes)
     if (m.lambda.imag() > 0 && (!critical || std::abs(m.lambda.real()) < std::abs(critical->lambda.real())))

@@ -120,6 +120,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   BranchVerdict verdict;
   const FilmLimit films(places);
   MarginSlope margins;
+  MissedModes missed;
   auto& results = context.results;
   put_groups(results.summary(), system->groups());
   solve::BranchCallbacks callbacks;
@@ -145,6 +146,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     const auto& s = point.stability;
     margins.add(point.parameter, films.margin(system->film_thickness(whole.data())));
     verdict.add(class_of(s));
+    missed.add(s.missed);
     std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
     if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
     table.append({{point.parameter},
@@ -239,6 +241,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   if (end.limited)
     put_contact(results.summary(), end.parameter, unit, end.bracket, margins.value(), law_of(context.machine),
                 margins_there(context, options, *system, at_limit, end.parameter * scale, continuation.newton));
+  missed.warn(results.summary());
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);
 }

@@ -52,6 +52,8 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
   const std::vector<double> thickness = system.film_thickness(x.data());
+  // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
+  const std::vector<film::Coefficients> coefficients = film_coefficients(system, x, system.speed());
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
@@ -78,10 +80,7 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
       summary.set(head + "power_loss", report.power_loss, "W");
       total_loss += report.power_loss;
     }
-    // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
-    film::Coefficients tangents;
-    core::agree(context.comm,
-                [&] { tangents = system.film_coefficients(static_cast<int>(b), x.data(), system.speed()); });
+    const film::Coefficients& tangents = coefficients[b];
     for (std::size_t d = 0; d < 2; ++d)
       for (std::size_t e = 0; e < 2; ++e) {
         summary.set(head + "K." + axis[d] + axis[e], tangents.stiffness[2 * d + e], "N/m");

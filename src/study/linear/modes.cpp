@@ -17,12 +17,12 @@
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
 #include "study/linear/mode_reduction.hpp"
+#include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
 #include "whirl/rotor/shaft.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/follow.hpp"
 #include "whirl/spectral/whirl.hpp"
 
@@ -30,87 +30,6 @@ namespace whirl::study {
 namespace {
 
 using Complex = std::complex<double>;
-
-// A mode with its shape along the shaft.
-struct ShaftMode {
-  Complex lambda;
-  std::vector<Complex> x, y, slope_x, slope_y;  // per node
-  bool undamped = false;                        // its real part is rounding
-  int id = -1;                                  // the same for the same mode at other speeds
-
-  [[nodiscard]] std::vector<Complex> both() const {
-    std::vector<Complex> all = x;
-    all.insert(all.end(), y.begin(), y.end());
-    return all;
-  }
-  [[nodiscard]] std::array<std::vector<Complex>*, 4> columns() { return {&x, &y, &slope_x, &slope_y}; }
-};
-
-std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency) {
-  spectral::EigenOptions options;
-  options.count = 2 * count + 40;
-  options.rounding = true;
-  std::vector<ShaftMode> out;
-  for (const auto& mode : spectral::modes(system, equilibrium, options)) {
-    // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
-    if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
-    if (static_cast<int>(out.size()) == count) break;
-    std::vector<double> part[2];
-    for (int k = 0; k < 2; ++k) {
-      std::vector<double> state(mode.shape.size());
-      for (std::size_t i = 0; i < state.size(); ++i) state[i] = k == 0 ? mode.shape[i].real() : mode.shape[i].imag();
-      part[k] = system.shaft(state.data(), 0, false);
-    }
-    ShaftMode m;
-    m.undamped = mode.neutral();
-    m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
-    Complex largest = 0;
-    for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
-      for (std::size_t k = 0; k < 4; ++k) m.columns()[k]->emplace_back(part[0][i + k], part[1][i + k]);
-      for (const Complex& v : {m.x.back(), m.y.back()})
-        if (std::abs(v) > std::abs(largest)) largest = v;
-    }
-    if (largest != 0.0)
-      for (auto* column : m.columns())
-        for (Complex& v : *column) v /= largest;
-    out.push_back(std::move(m));
-  }
-  return out;
-}
-
-// Modes of one speed as numbers, to send them between ranks.
-std::vector<double> pack(std::vector<ShaftMode> modes) {
-  std::vector<double> flat{static_cast<double>(modes.size()),
-                           modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
-  const auto put = [&](Complex v) {
-    flat.push_back(v.real());
-    flat.push_back(v.imag());
-  };
-  for (ShaftMode& m : modes) {
-    put(m.lambda);
-    put(m.undamped ? 1.0 : 0.0);
-    for (const auto* column : m.columns())
-      for (const Complex& v : *column) put(v);
-  }
-  return flat;
-}
-
-std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
-  const auto count = static_cast<std::size_t>(flat[0]), nodes = static_cast<std::size_t>(flat[1]);
-  std::vector<ShaftMode> modes(count);
-  std::size_t at = 2;
-  const auto take = [&] {
-    at += 2;
-    return Complex(flat[at - 2], flat[at - 1]);
-  };
-  for (ShaftMode& m : modes) {
-    m.lambda = take();
-    m.undamped = take().real() > 0;
-    for (auto* column : m.columns())
-      for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
-  }
-  return modes;
-}
 
 // The modes at one speed, those of lowest frequency first.
 struct Station {
@@ -211,10 +130,14 @@ StudyResult Modes::run(Context& context) {
   std::size_t ready = 0, wanted = 0;
   int rounds = 0;
   Pieces pieces(results, context.resume);
+  MissedModes missed;
   const auto modes_at = [&](const std::vector<double>& list) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
-      auto modes = pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit));
+      int missed_here = 0;
+      auto modes =
+          pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit, missed_here));
+      modes.push_back(missed_here);
       ready += static_cast<std::size_t>(layout.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
@@ -224,7 +147,10 @@ StudyResult Modes::run(Context& context) {
                                    rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
     std::vector<std::vector<ShaftMode>> out;
-    for (const auto& p : packed) out.push_back(unpack(p));
+    for (const auto& p : packed) {
+      out.push_back(unpack(p));
+      missed.add(static_cast<int>(p.back()));
+    }
     return out;
   };
 
@@ -253,7 +179,8 @@ StudyResult Modes::run(Context& context) {
     for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
-    return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit));
+    int of_other_mesh = 0;
+    return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit, of_other_mesh));
   });
   ModeReduction reduction(system, walker, sampled);
   const std::vector<double> mass = rotor::node_masses(system.train().rotor);
@@ -302,7 +229,10 @@ StudyResult Modes::run(Context& context) {
     Crossing c = crossings[i];
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
-      const auto there = shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit);
+      int missed_there = 0;
+      const auto there =
+          shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit, missed_there);
+      missed.add(missed_there);
       const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
       const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
       if (found == pairs.before.end()) break;
@@ -393,6 +323,7 @@ StudyResult Modes::run(Context& context) {
   shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
   shapes.put("log_decrement", at_decrement, "1", "of the shapes");
   shapes.put("whirl", at_sense, "sense of whirl by the kinetic energy of the shaft's nodes");
+  missed.warn(summary);
   summary.points = static_cast<long>(speeds.size());
   return results.finish("completed", true);
 }

@@ -45,6 +45,7 @@ struct Stability {
   std::vector<std::complex<double>> values;
   std::vector<double> distance;
   int neutral = 0;  ///< values on the border as far as rounding can tell; none of them counts as unstable
+  int missed = 0;   ///< eigenvalues that a count found and the search did not; -1 if the count itself is not sure
 
   [[nodiscard]] int unstable() const {
     int n = 0;

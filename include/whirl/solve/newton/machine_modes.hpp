@@ -1,0 +1,36 @@
+#pragma once
+// The eigenvalues of a machine, by whichever way suits its films.
+
+#include <string>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::solve {
+
+struct MachineModes {
+  std::vector<spectral::Mode> modes;  ///< as of spectral::modes
+  int missed = 0;  ///< eigenvalues that are there but not among the modes: only the count of transfer functions tells
+  std::string doubt;  ///< why that count is not sure; empty if it is, or if nothing was counted
+  bool transfer = false;
+};
+
+/// What transfer functions look for.
+struct Region {
+  double frequency = 0;  ///< [rad/s] up to which vibration matters; zero: as the speed and `at_least` ask
+  int at_least = 2;      ///< eigenvalues, both of each pair, without a frequency
+};
+
+/// Modes at the equilibrium x. PETSc option -modes_by chooses:
+///
+/// | whole | spectral::modes on the whole pencil: all of a small one, those nearest to zero of a large one |
+/// | transfer | transfer_modes() in a region |
+///
+/// `whole` unless it is given; a system without parts or at rest has no other way. Regions reach half as far to the
+/// left as they are high. Without a frequency the first one reaches to twice the speed, and it grows by half, at most
+/// five times, until it holds enough. Collective; throws core::NotConverged, core::InputError on another word.
+[[nodiscard]] MachineModes machine_modes(problem::System& system, Vec x, const spectral::EigenOptions& options,
+                                         const Region& wanted = {});
+
+}  // namespace whirl::solve

@@ -1,0 +1,46 @@
+#include "whirl/solve/newton/machine_modes.hpp"
+
+#include <petscsys.h>
+
+#include <array>
+#include <cmath>
+
+#include "whirl/core/error.hpp"
+#include "whirl/solve/newton/transfer_modes.hpp"
+
+namespace whirl::solve {
+
+namespace {
+
+bool by_transfer(const problem::System& system) {
+  std::array<char, 16> word{};
+  PetscBool given = PETSC_FALSE;
+  core::check(PetscOptionsGetString(nullptr, nullptr, "-modes_by", word.data(), word.size(), &given));
+  const std::string_view way = given ? word.data() : "whole";
+  if (way != "whole" && way != "transfer") throw core::InputError("-modes_by is 'whole' or 'transfer'");
+  return way == "transfer" && system.fields().size() > 1;
+}
+
+constexpr int most_regions = 6;
+
+}  // namespace
+
+MachineModes machine_modes(problem::System& system, Vec x, const spectral::EigenOptions& options,
+                           const Region& wanted) {
+  // A region is nearly as wide at the axis as it is high.
+  const bool given = wanted.frequency > 0;
+  TransferOptions region;
+  region.frequency = given ? wanted.frequency / 0.94 : 2 * std::abs(system.speed());
+  if (!by_transfer(system) || region.frequency == 0) return {spectral::modes(system, x, options), 0, {}, false};
+  region.shapes = options.shapes;
+  TransferModes found;
+  for (int k = 0; k < most_regions; ++k) {
+    region.decay = region.frequency / 2;
+    found = transfer_modes(system, x, region);
+    if (given || found.counted >= wanted.at_least) break;
+    region.frequency *= 1.5;
+  }
+  return {std::move(found.modes), found.missed, std::move(found.doubt), true};
+}
+
+}  // namespace whirl::solve

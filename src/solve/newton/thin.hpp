@@ -1,0 +1,35 @@
+#pragma once
+// Rows of assembled matrices, and the few columns of a coupling.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "whirl/core/petsc.hpp"
+
+namespace whirl::solve {
+
+/// Calls f(local row, columns, values, count) for all rows of this rank.
+template <class F>
+void for_rows(Mat m, F&& f) {
+  PetscInt begin = 0, end = 0;
+  core::check(MatGetOwnershipRange(m, &begin, &end));
+  for (PetscInt i = begin; i < end; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    core::check(MatGetRow(m, i, &count, &columns, &values));
+    f(i - begin, columns, values, count);
+    core::check(MatRestoreRow(m, i, &count, &columns, &values));
+  }
+}
+
+/// Number of the first row of this rank.
+[[nodiscard]] PetscInt first_row(Mat m);
+
+/// Columns that have an entry on any rank, in rising order, the same on all ranks. Collective.
+[[nodiscard]] std::vector<PetscInt> used_columns(Mat m);
+
+/// Those columns of the rows of this rank [local x columns]; `columns` rise and hold all that have an entry.
+[[nodiscard]] Eigen::MatrixXd thin(Mat m, const std::vector<PetscInt>& columns);
+
+}  // namespace whirl::solve

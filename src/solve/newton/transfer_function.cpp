@@ -1,0 +1,355 @@
+#include "whirl/solve/newton/transfer_function.hpp"
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "solve/newton/real_form.hpp"
+#include "solve/newton/thin.hpp"
+#include "whirl/core/direct_solver.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+
+namespace {
+
+// Parts up to this size keep their factors from one frequency to the next, and with them the analysis of the pattern.
+constexpr PetscInt kept_up_to = 20000;
+
+core::Matrix block(Mat a, IS rows, IS columns) {
+  core::Matrix m;
+  check(MatCreateSubMatrix(a, rows, columns, MAT_INITIAL_MATRIX, m.put()));
+  return m;
+}
+
+core::Matrix transpose(const core::Matrix& m) {
+  core::Matrix t;
+  check(MatTranspose(m.get(), MAT_INITIAL_MATRIX, t.put()));
+  return t;
+}
+
+// All rows of a small distributed matrix on every rank.
+Eigen::SparseMatrix<double> gather_matrix(Mat m) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(m));
+  PetscInt n = 0;
+  check(MatGetSize(m, &n, nullptr));
+  std::vector<double> mine;  // row, column, value
+  const PetscInt first = first_row(m);
+  for_rows(m, [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
+    for (PetscInt k = 0; k < count; ++k)
+      mine.insert(mine.end(), {static_cast<double>(first + i), static_cast<double>(columns[k]), values[k]});
+  });
+  const auto size = static_cast<std::size_t>(core::size_of(comm));
+  const int here = static_cast<int>(mine.size());
+  std::vector<int> counts(size), begins(size);
+  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
+  std::vector<double> all(static_cast<std::size_t>(begins.back() + counts.back()));
+  MPI_Allgatherv(mine.data(), here, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE, comm);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < all.size(); k += 3)
+    entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
+  Eigen::SparseMatrix<double> out(n, n);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+// `to` holds complex columns in real form: reals and imaginary parts of the rows in turn.
+template <class F>
+void with_columns(Mat m, F&& use) {
+  PetscScalar* a = nullptr;
+  PetscInt stride = 0, local = 0, columns = 0;
+  check(MatGetLocalSize(m, &local, nullptr));
+  check(MatGetSize(m, nullptr, &columns));
+  check(MatDenseGetArray(m, &a));
+  check(MatDenseGetLDA(m, &stride));
+  // A column of pairs is a column of complex numbers; the stride is even or there is one column.
+  for (PetscInt k = 0; k < columns; ++k)
+    use(k, Eigen::Map<VectorXcd>(reinterpret_cast<Complex*>(a + k * stride), local / 2));
+  check(MatDenseRestoreArray(m, &a));
+}
+
+}  // namespace
+
+struct TransferFunction::Part {
+  core::IndexSet rows;
+  PetscInt first = 0, count = 0;      // its local rows
+  core::Matrix a, b;                  // A_i = a + lambda b
+  MatrixXd g0, g1, f0, f1;            // G_i and F_i^T likewise [local x ports], [local x forces]
+  core::Matrix real, right, answers;  // A_i in real form, and its columns
+  core::LinearSolver solver;
+  MatrixXcd x, dx;  // A_i^-1 G_i where it was evaluated last [local x ports], and its derivative
+
+  // out = A_i^-1 right, for all columns.
+  void solve(const MatrixXcd& columns, MatrixXcd& out) {
+    with_columns(right.get(), [&](PetscInt k, auto to) { to = columns.col(k); });
+    check(KSPMatSolve(solver.get(), right.get(), answers.get()));
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    check(KSPGetConvergedReason(solver.get(), &reason));
+    if (reason < 0) throw core::NotConverged("the equations of a film are singular at this frequency");
+    out.resize(columns.rows(), columns.cols());
+    with_columns(answers.get(), [&](PetscInt k, auto from) { out.col(k) = from; });
+  }
+
+  // b times complex columns.
+  [[nodiscard]] MatrixXcd rates_times(const MatrixXcd& columns) const {
+    core::Vector in, out;
+    check(MatCreateVecs(b.get(), in.put(), out.put()));
+    MatrixXcd product(columns.rows(), columns.cols());
+    for (Index k = 0; k < columns.cols(); ++k)
+      for (const bool real_part : {true, false}) {
+        {
+          const core::WriteArray v(in.get());
+          for (Index i = 0; i < columns.rows(); ++i)
+            v[static_cast<PetscInt>(i)] = real_part ? columns(i, k).real() : columns(i, k).imag();
+        }
+        check(MatMult(b.get(), in.get(), out.get()));
+        const core::ReadArray v(out.get());
+        for (Index i = 0; i < columns.rows(); ++i) {
+          const double value = v[static_cast<PetscInt>(i)];
+          product(i, k) = real_part ? Complex(value, 0) : Complex(product(i, k).real(), value);
+        }
+      }
+    return product;
+  }
+};
+
+TransferFunction::TransferFunction(problem::System& system) : system_(system) {
+  core::require(system.fields().size() > 1, "a transfer function needs parts");
+  rest_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  state_scale_ = core::duplicate(rest_.get());
+  row_scale_ = core::duplicate(rest_.get());
+  jx_ = system.make_jacobian();
+  jd_ = system.make_jacobian();
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(rest_.get(), &begin, nullptr));
+  std::vector<bool> taken(static_cast<std::size_t>(system.local_size()), false);
+  const auto set = [&](const std::vector<PetscInt>& rows, core::IndexSet& is) {
+    check(ISCreateGeneral(system.comm(), static_cast<PetscInt>(rows.size()), rows.data(), PETSC_COPY_VALUES, is.put()));
+  };
+  const std::vector<problem::Field> fields = system.fields();
+  for (std::size_t f = 1; f < fields.size(); ++f) {
+    auto part = std::make_unique<Part>();
+    std::vector<PetscInt> rows;
+    for (PetscInt i = fields[f].begin; i < fields[f].end; ++i) {
+      rows.push_back(begin + i);
+      taken[static_cast<std::size_t>(i)] = true;
+    }
+    part->first = fields[f].begin;
+    part->count = fields[f].end - fields[f].begin;
+    set(rows, part->rows);
+    parts_.push_back(std::move(part));
+    ports_.push_back({fields[f].name, {}, {}});
+  }
+  std::vector<PetscInt> rows;
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (!taken[i]) rows.push_back(begin + static_cast<PetscInt>(i));
+  set(rows, hub_rows_);
+  core::IndexSet all;
+  check(ISAllGather(hub_rows_.get(), all.put()));
+  check(ISGetSize(all.get(), &hub_));
+  const PetscInt* numbers = nullptr;
+  check(ISGetIndices(all.get(), &numbers));
+  hub_numbers_.assign(numbers, numbers + hub_);
+  check(ISRestoreIndices(all.get(), &numbers));
+}
+
+TransferFunction::~TransferFunction() = default;
+
+PetscInt TransferFunction::states(std::size_t i) const {
+  PetscInt n = 0;
+  check(ISGetSize(parts_[i]->rows.get(), &n));
+  return n;
+}
+
+void TransferFunction::linearise(Vec x) {
+  system_.scales(state_scale_.get(), row_scale_.get());
+  const auto at_hub = [&](Vec v) {
+    core::Vector part;
+    std::vector<double> out(static_cast<std::size_t>(hub_), 0);
+    const core::ReadArray a(v);
+    PetscInt begin = 0;
+    check(VecGetOwnershipRange(v, &begin, nullptr));
+    for (std::size_t k = 0; k < out.size(); ++k)
+      if (const PetscInt i = hub_numbers_[k] - begin; i >= 0 && i < a.size()) out[k] = a[i];
+    MPI_Allreduce(MPI_IN_PLACE, out.data(), static_cast<int>(out.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
+    return out;
+  };
+  hub_scale_ = at_hub(state_scale_.get());
+  hub_row_scale_ = at_hub(row_scale_.get());
+  check(VecReciprocal(row_scale_.get()));
+  system_.jacobian(0, x, rest_.get(), 1, 0, jx_.get());
+  system_.jacobian(0, x, rest_.get(), 0, 1, jd_.get());
+  for (Mat j : {jx_.get(), jd_.get()}) check(MatDiagonalScale(j, row_scale_.get(), state_scale_.get()));
+  a_hub_ = gather_matrix(block(jx_.get(), hub_rows_.get(), hub_rows_.get()).get());
+  b_hub_ = gather_matrix(block(jd_.get(), hub_rows_.get(), hub_rows_.get()).get());
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& p = *parts_[i];
+    p.a = block(jx_.get(), p.rows.get(), p.rows.get());
+    p.b = block(jd_.get(), p.rows.get(), p.rows.get());
+    const core::Matrix g = block(jx_.get(), p.rows.get(), hub_rows_.get());
+    const core::Matrix f = transpose(block(jx_.get(), hub_rows_.get(), p.rows.get()));
+    ports_[i].seen = used_columns(g.get());
+    ports_[i].forces = used_columns(f.get());
+    p.g0 = thin(g.get(), ports_[i].seen);
+    p.f0 = thin(f.get(), ports_[i].forces);
+    p.g1 = thin(block(jd_.get(), p.rows.get(), hub_rows_.get()).get(), ports_[i].seen);
+    p.f1 = thin(transpose(block(jd_.get(), hub_rows_.get(), p.rows.get())).get(), ports_[i].forces);
+    p.x.resize(0, 0);
+    p.dx.resize(0, 0);
+  }
+}
+
+TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes) {
+  Blocks out;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& p = *parts_[i];
+    const auto columns = static_cast<PetscInt>(ports_[i].seen.size());
+    const auto forces = static_cast<Index>(ports_[i].forces.size());
+    if (!p.real) p.real = make_real_form(p.a.get());
+    if (!p.right)
+      for (core::Matrix* m : {&p.right, &p.answers})
+        check(MatCreateDense(comm(), 2 * p.count, PETSC_DECIDE, PETSC_DETERMINE, columns, nullptr, m->put()));
+    put_pencil(p.a.get(), p.b.get(), lambda, p.real.get(), [](PetscInt, RealRow&) {});
+    check(MatAssemblyBegin(p.real.get(), MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(p.real.get(), MAT_FINAL_ASSEMBLY));
+    if (!p.solver) p.solver = core::make_direct_solver(comm(), "parts_");
+    check(KSPSetOperators(p.solver.get(), p.real.get(), p.real.get()));
+
+    // X = A^-1 G, X' = A^-1 (G' - A' X), H = F X, H' = F' X + F X'.
+    p.solve(p.g0 + lambda * p.g1, p.x);
+    const MatrixXcd f = (p.f0 + lambda * p.f1).transpose();
+    Block block{f * p.x, {}};
+    if (slopes) {
+      p.solve(p.g1 - p.rates_times(p.x), p.dx);
+      block.slope = p.f1.transpose().cast<Complex>() * p.x + f * p.dx;
+    } else {
+      p.dx.resize(0, 0);
+    }
+    for (MatrixXcd* m : {&block.value, &block.slope})
+      if (m->size() > 0)
+        MPI_Allreduce(MPI_IN_PLACE, m->data(), static_cast<int>(forces * columns), MPI_C_DOUBLE_COMPLEX, MPI_SUM,
+                      comm());
+    out.push_back(std::move(block));
+    if (states(i) > kept_up_to) {
+      p.solver.reset();
+      p.real.reset();
+      p.right.reset();
+      p.answers.reset();
+    }
+  }
+  return out;
+}
+
+TransferFunction::Sparse TransferFunction::matrix(Complex lambda, const Blocks& parts, bool slope) const {
+  std::vector<Eigen::Triplet<Complex>> entries;
+  const auto add = [&](const Eigen::SparseMatrix<double>& m, Complex factor) {
+    for (int c = 0; c < m.outerSize(); ++c)
+      for (Eigen::SparseMatrix<double>::InnerIterator e(m, c); e; ++e)
+        entries.emplace_back(static_cast<int>(e.row()), c, factor * e.value());
+  };
+  // Both in either case, so that the pattern is always the same.
+  add(a_hub_, slope ? 0.0 : 1.0);
+  add(b_hub_, slope ? 1.0 : lambda);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const MatrixXcd& h = slope ? parts[i].slope : parts[i].value;
+    for (Index c = 0; c < h.cols(); ++c)
+      for (Index r = 0; r < h.rows(); ++r)
+        entries.emplace_back(static_cast<int>(ports_[i].forces[static_cast<std::size_t>(r)]),
+                             static_cast<int>(ports_[i].seen[static_cast<std::size_t>(c)]), -h(r, c));
+  }
+  Sparse out(hub_, hub_);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+// The part adds -H to the hub's derivatives.
+MatrixXcd TransferFunction::from_motion(std::size_t i, const Block& part, Complex lambda,
+                                        const std::vector<PetscInt>& positions, const std::vector<PetscInt>& rates,
+                                        const std::vector<PetscInt>& forces) const {
+  const auto at = [](const std::vector<PetscInt>& all, PetscInt one) {
+    const auto place = std::lower_bound(all.begin(), all.end(), one);
+    return place != all.end() && *place == one ? place - all.begin() : -1;
+  };
+  MatrixXcd out = MatrixXcd::Zero(static_cast<Index>(forces.size()), static_cast<Index>(positions.size()));
+  for (std::size_t r = 0; r < forces.size(); ++r)
+    for (std::size_t c = 0; c < positions.size(); ++c)
+      for (const bool rate : {false, true}) {
+        const PetscInt state = rate ? rates[c] : positions[c];
+        const Index row = at(ports_[i].forces, forces[r]), column = at(ports_[i].seen, state);
+        if (row < 0 || column < 0) continue;
+        const double si =
+            hub_row_scale_[static_cast<std::size_t>(forces[r])] / hub_scale_[static_cast<std::size_t>(state)];
+        out(static_cast<Index>(r), static_cast<Index>(c)) -=
+            part.value(row, column) * si * (rate ? lambda : Complex(1));
+      }
+  return out;
+}
+
+std::vector<Complex> TransferFunction::whole(const std::vector<Complex>& local) const {
+  std::vector<double> all[2];
+  for (const bool real : {true, false}) {
+    const core::Vector v = core::duplicate(rest_.get());
+    {
+      const core::WriteArray a(v.get());
+      for (std::size_t i = 0; i < local.size(); ++i)
+        a[static_cast<PetscInt>(i)] = real ? local[i].real() : local[i].imag();
+    }
+    all[real ? 0 : 1] = core::gather(v.get());
+  }
+  std::vector<Complex> out(all[0].size());
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = {all[0][k], all[1][k]};
+  return out;
+}
+
+std::vector<Complex> TransferFunction::state(const VectorXcd& z, Complex ahead) const {
+  std::vector<Complex> mine(static_cast<std::size_t>(system_.local_size()));
+  PetscInt begin = 0, end = 0;
+  check(VecGetOwnershipRange(rest_.get(), &begin, &end));
+  for (std::size_t k = 0; k < hub_numbers_.size(); ++k)
+    if (const PetscInt i = hub_numbers_[k]; i >= begin && i < end)
+      mine[static_cast<std::size_t>(i - begin)] = z(static_cast<Index>(k));
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Part& part = *parts_[p];
+    VectorXcd seen(static_cast<Index>(ports_[p].seen.size()));
+    for (Index k = 0; k < seen.size(); ++k) seen(k) = z(ports_[p].seen[static_cast<std::size_t>(k)]);
+    VectorXcd x = part.x * seen;
+    if (part.dx.size() > 0) x += ahead * (part.dx * seen);
+    for (PetscInt i = 0; i < part.count; ++i) mine[static_cast<std::size_t>(part.first + i)] = -x(i);
+  }
+  return whole(mine);
+}
+
+std::vector<Complex> TransferFunction::state(std::size_t i, const std::vector<Complex>& shape) const {
+  std::vector<Complex> mine(static_cast<std::size_t>(system_.local_size()));
+  std::copy(shape.begin(), shape.end(), mine.begin() + parts_[i]->first);
+  return whole(mine);
+}
+
+std::vector<TransferFunction::Pole> TransferFunction::poles(std::size_t i, double target, double radius) const {
+  const Part& p = *parts_[i];
+  std::vector<Pole> out;
+  for (const spectral::LocalMode& m : spectral::modes_within(p.a.get(), p.b.get(), target, radius)) {
+    const Eigen::Map<const VectorXcd> v(m.shape.data(), static_cast<Index>(m.shape.size()));
+    const MatrixXcd f = p.f0 + m.lambda * p.f1;
+    VectorXcd force = f.transpose() * v;
+    std::vector<double> sizes{f.squaredNorm(), v.squaredNorm()};
+    MPI_Allreduce(MPI_IN_PLACE, force.data(), static_cast<int>(force.size()), MPI_C_DOUBLE_COMPLEX, MPI_SUM, comm());
+    MPI_Allreduce(MPI_IN_PLACE, sizes.data(), 2, MPI_DOUBLE, MPI_SUM, comm());
+    Pole pole{m.lambda, force.norm() <= 1e-12 * std::sqrt(sizes[0] * sizes[1]), {}};
+    if (pole.silent) pole.shape = m.shape;
+    out.push_back(std::move(pole));
+  }
+  return out;
+}
+
+}  // namespace whirl::solve

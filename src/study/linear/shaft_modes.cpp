@@ -1,0 +1,81 @@
+#include "study/linear/shaft_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/solve/newton/machine_modes.hpp"
+
+namespace whirl::study {
+
+using Complex = std::complex<double>;
+
+std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency,
+                                   int& missed) {
+  spectral::EigenOptions options;
+  options.count = 2 * count + 40;
+  options.rounding = true;
+  std::vector<ShaftMode> out;
+  const solve::MachineModes found =
+      solve::machine_modes(system, equilibrium, options, {std::isfinite(max_frequency) ? max_frequency : 0, 2 * count});
+  missed = found.doubt.empty() ? found.missed : -1;
+  for (const auto& mode : found.modes) {
+    // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
+    if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
+    if (static_cast<int>(out.size()) == count) break;
+    std::vector<double> part[2];
+    for (int k = 0; k < 2; ++k) {
+      std::vector<double> state(mode.shape.size());
+      for (std::size_t i = 0; i < state.size(); ++i) state[i] = k == 0 ? mode.shape[i].real() : mode.shape[i].imag();
+      part[k] = system.shaft(state.data(), 0, false);
+    }
+    ShaftMode m;
+    m.undamped = mode.neutral();
+    m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
+    Complex largest = 0;
+    for (std::size_t i = 0; i + 3 < part[0].size(); i += 4) {
+      for (std::size_t k = 0; k < 4; ++k) m.columns()[k]->emplace_back(part[0][i + k], part[1][i + k]);
+      for (const Complex& v : {m.x.back(), m.y.back()})
+        if (std::abs(v) > std::abs(largest)) largest = v;
+    }
+    if (largest != 0.0)
+      for (auto* column : m.columns())
+        for (Complex& v : *column) v /= largest;
+    out.push_back(std::move(m));
+  }
+  return out;
+}
+
+std::vector<double> pack(std::vector<ShaftMode> modes) {
+  std::vector<double> flat{static_cast<double>(modes.size()),
+                           modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
+  const auto put = [&](Complex v) {
+    flat.push_back(v.real());
+    flat.push_back(v.imag());
+  };
+  for (ShaftMode& m : modes) {
+    put(m.lambda);
+    put(m.undamped ? 1.0 : 0.0);
+    for (const auto* column : m.columns())
+      for (const Complex& v : *column) put(v);
+  }
+  return flat;
+}
+
+std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
+  const auto count = static_cast<std::size_t>(flat[0]), nodes = static_cast<std::size_t>(flat[1]);
+  std::vector<ShaftMode> modes(count);
+  std::size_t at = 2;
+  const auto take = [&] {
+    at += 2;
+    return Complex(flat[at - 2], flat[at - 1]);
+  };
+  for (ShaftMode& m : modes) {
+    m.lambda = take();
+    m.undamped = take().real() > 0;
+    for (auto* column : m.columns())
+      for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
+  }
+  return modes;
+}
+
+}  // namespace whirl::study

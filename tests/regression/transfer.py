@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Runs branches of equilibria of rotors in films with states, with eigenvalues of the whole pencil and from transfer functions.
+
+transfer.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
+
+The Hopf points must be the same, on any number of ranks too, and nothing may be missed without a warning.
+"""
+import sys
+
+from harness import Harness
+
+TRANSFER = ["--", "-modes_by", "transfer"]
+
+
+def branch(where):
+    low, high = where
+    return f"studies=[{{equilibrium_branch: {{name: balanced, parameter: speed, range: {{from: {low} rad/s, to: {high} rad/s}}}}}}]"
+
+
+# Deck, range about its Hopf point [rad/s], overrides.
+CASES = {
+    "short": ("compliant_rotor/short.yaml", (400, 480), []),
+    "long": ("compliant_rotor/long.yaml", (140, 180), []),
+    "finite": ("compliant_rotor/finite.yaml", (370, 430), []),
+    "water": ("compliant_rotor/water_bearing.yaml", (400, 470), []),
+    "damped": ("compliant_rotor/short.yaml", (380, 640), ["bearings.half.film.liner_damping=0.1 ms", "bearings.half.film.cells=[40, 4]"]),
+    "conserving": ("rigid_rotor/mass_conserving.yaml", (400, 480),
+                   ["bearings.*.film.cells=[24, 4]", "bearings.*.film.grooves.1.pressure=2 kPa"]),
+}
+
+
+def compare(h, name, a, b, within):
+    h.true(f"{name}: as many points", a["points"] == b["points"], f"{a['points']} {b['points']}")
+    h.true(f"{name}: no warnings", not b.get("warnings"), str(b.get("warnings")))
+    kinds = [[e["type"] for e in s["bifurcations"]] for s in (a, b)]
+    h.true(f"{name}: a Hopf point both ways", kinds[0] == kinds[1] and "hopf" in kinds[0], str(kinds))
+    for e, f in zip(a["bifurcations"], b["bifurcations"]):
+        h.close(f"{name}: {e['type']}", f["value"], e["value"], within * e["value"])
+        h.close(f"{name}: its period", f["period_s"], e["period_s"], within * e["period_s"])
+
+
+def both_ways(h):
+    for name, (deck, where, more) in CASES.items():
+        at = h.source / "inputs" / deck
+        whole = h.run(at, f"{name}_whole", [branch(where), *more])["balanced"]
+        transfer = h.run(at, f"{name}_transfer", [branch(where), *more], flags=TRANSFER)["balanced"]
+        compare(h, name, whole, transfer, 1e-9)
+
+
+def ranks(h):
+    deck, where, more = CASES["finite"]
+    runs = [h.run(h.source / "inputs" / deck, f"ranks_{n}", [branch(where), *more], flags=TRANSFER,
+                  launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in (1, 2, 3)]
+    for n, s in enumerate(runs[1:], 2):
+        compare(h, f"{n} ranks", runs[0], s, 1e-9)
+
+
+if __name__ == "__main__":
+    harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    {"both_ways": both_ways, "ranks": ranks}[sys.argv[3]](harness)
+    harness.finish()

@@ -1,0 +1,220 @@
+// Machines on films with states: transfer functions against the films' own coefficients, eigenvalues from them against
+// the whole pencil.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/train_system.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/transfer_function.hpp"
+#include "whirl/solve/newton/transfer_modes.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/whirl.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+using namespace whirl;
+using Complex = std::complex<double>;
+using Kind = film::Options::Kind;
+
+namespace {
+
+constexpr double clearance = 25e-6, scale = 160;
+
+// Half a rotor on one bearing, L/D = 1.
+system::Train rigid(Kind kind, std::array<int, 2> cells, double compliance) {
+  system::Train t;
+  t.gravity = 0;
+  t.rotor.type = rotor::Options::Type::rigid;
+  t.rotor.mass = 0.5;
+  t.rotor.load = 0.32;
+  system::Support s;
+  s.name = "B1";
+  s.node = 1;
+  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
+  s.film.kind = kind;
+  s.film.compliance = compliance;
+  s.film.reference_speed = scale;
+  s.film.cells = cells;
+  s.lubricant = {0.001, 1000};
+  t.supports = {s};
+  return t;
+}
+
+// A liner of damped rubber, whose force depends on the rates of its states.
+system::Train damped() {
+  system::Train t = rigid(Kind::compliant_short, {40, 4}, 0.3);
+  t.supports[0].film.liner_damping = 0.3 / scale;
+  t.supports[0].film.rubber_thickness = 4 * clearance;
+  return t;
+}
+
+system::Train content() {
+  system::Train t = rigid(Kind::compliant_short, {24, 6}, 0.1);
+  system::Support& s = t.supports[0];
+  s.film = {};
+  s.film.cavitation = film::Options::Cavitation::mass_conserving;
+  s.film.states = film::Options::States::dynamic;
+  s.film.cells = {24, 6};
+  s.film.grooves = {{1.57, 0.3}};
+  return t;
+}
+
+// The reduced train in cylindrical bores of its clearances with soft liners.
+system::Train on_liners() {
+  system::Train t = test::train({12, 5}, true);
+  for (system::Support& s : t.supports) {
+    s.name = "B" + std::to_string(&s - t.supports.data() + 1);
+    s.geometry = {
+        film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
+    s.film = {};
+    s.film.kind = Kind::compliant_finite;
+    s.film.compliance = 0.05;
+    s.film.reference_speed = 377;
+    s.film.cells = {12, 5};
+  }
+  return t;
+}
+
+core::Vector rest(system::RotorSystem& s) {
+  core::Vector x = system::static_guess(s);
+  solve::NewtonOptions o;
+  o.max_iterations = 60;
+  const auto r = solve::find_equilibrium(s, x.get(), o);
+  EXPECT_TRUE(r.converged) << r.reason;
+  return x;
+}
+
+// Of a film by itself, by elimination of its states on one rank.
+film::Coefficients coefficients_alone(const system::RotorSystem& s, int b, const std::vector<double>& x, double omega) {
+  std::vector<std::unique_ptr<film::StateModel>> films;
+  auto begin = x.end() - s.own_states();
+  for (const system::Support& at : s.train().supports) {
+    films.push_back(film::make_state_model(at.geometry, at.film, at.lubricant));
+    if (&at - s.train().supports.data() < b) begin += static_cast<std::ptrdiff_t>(films.back()->states());
+  }
+  const system::JournalState journal = s.journals(x.data())[static_cast<std::size_t>(b)];
+  film::Motion motion;
+  for (std::size_t d = 0; d < 2; ++d) motion.position[d] = journal.position[d];
+  motion.speed = s.speed();
+  film::StateModel& film = *films[static_cast<std::size_t>(b)];
+  return film::coefficients(film, motion, {&*begin, film.states()}, omega);
+}
+
+bool within(Complex z, const solve::TransferOptions& o) {
+  const double centre = (o.frequency - o.decay) / 2, along = (o.frequency + o.decay) / 2;
+  return std::hypot((z.real() - centre) / along, z.imag() / o.frequency) < 1;
+}
+
+// All eigenvalues in the region, found both ways.
+void expect_the_whole_pencils(system::RotorSystem& s, const solve::TransferOptions& o, int at_least, double accuracy) {
+  const core::Vector x = rest(s);
+  spectral::EigenOptions all;
+  all.dense_below = s.size();
+  std::vector<spectral::Mode> expected;
+  int number = 0;
+  for (auto& m : spectral::modes(s, x.get(), all))
+    if (within(m.lambda, o)) {
+      number += m.lambda.imag() != 0 ? 2 : 1;
+      expected.push_back(std::move(m));
+    }
+  EXPECT_GE(static_cast<int>(expected.size()), at_least);
+  const auto found = solve::transfer_modes(s, x.get(), o);
+  EXPECT_EQ(found.doubt, "");
+  EXPECT_EQ(found.counted, number);
+  EXPECT_EQ(found.missed, 0);
+  ASSERT_EQ(found.modes.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_LT(std::abs(found.modes[k].lambda - expected[k].lambda), accuracy * o.frequency) << expected[k].lambda;
+    EXPECT_NEAR(spectral::mac(found.modes[k].shape, expected[k].shape), 1, 1e-6) << expected[k].lambda;
+  }
+}
+
+}  // namespace
+
+// From the motion of the journal to minus the force on it, with what a film does at constant states.
+TEST(TransferFunction, HoldsTheCoefficientsOfItsFilms) {
+  for (const auto& train : {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), on_liners()}) {
+    system::RotorSystem s(MPI_COMM_WORLD, train, train.supports.size() > 1 ? 377 : 2 * scale);
+    const core::Vector x = rest(s);
+    solve::TransferFunction transfer(s);
+    transfer.linearise(x.get());
+    const auto whole = s.gather(x.get());
+    const auto direct = s.film_responses(whole.data(), film::Need::tangents);
+    const double omega = 0.47 * s.speed();
+    const auto h = transfer.evaluate({0, omega}, false);
+    for (int b = 0; b < s.n_bearings(); ++b) {
+      const auto expected = coefficients_alone(s, b, whole, omega);
+      const auto& film = direct[static_cast<std::size_t>(b)];
+      const std::vector<PetscInt> position{2 * s.journal(b, 0), 2 * s.journal(b, 1)},
+          rate{position[0] + 1, position[1] + 1};
+      const auto part = static_cast<std::size_t>(b);
+      const Eigen::MatrixXcd by_states = transfer.from_motion(part, h[part], {0, omega}, position, rate, position);
+      const double size = std::abs(Complex(expected.stiffness[0], omega * expected.damping[0]));
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t j = 0; j < 2; ++j) {
+          const Complex at_constant_states(film.d_position[i][j], omega * film.d_velocity[i][j]);
+          const Complex sum =
+              by_states(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) - at_constant_states;
+          EXPECT_LT(std::abs(sum - Complex(expected.stiffness[2 * i + j], omega * expected.damping[2 * i + j])),
+                    1e-9 * size)
+              << s.train().supports[part].name << i << j;
+        }
+    }
+  }
+}
+
+// Regions in which films have few eigenvalues of their own, and many.
+struct Reach {
+  double frequency, decay;
+  int at_least;
+};
+
+void expect_in(const system::Train& train, double speed, std::initializer_list<Reach> regions) {
+  system::RotorSystem s(MPI_COMM_WORLD, train, speed);
+  for (const Reach& r : regions) {
+    solve::TransferOptions o;
+    o.frequency = r.frequency;
+    o.decay = r.decay;
+    expect_the_whole_pencils(s, o, r.at_least, 1e-10);
+  }
+}
+
+TEST(TransferModes, OfAFiniteFilmAreThoseOfTheWholePencil) {
+  expect_in(rigid(Kind::compliant_finite, {20, 6}, 0.1), 2.4 * scale,
+            {{2 * scale, scale, 1}, {8 * scale, 12 * scale, 3}, {16 * scale, 24 * scale, 4}});
+}
+
+TEST(TransferModes, OfADampedLinerAreThoseOfTheWholePencil) {
+  expect_in(damped(), 2.0 * scale, {{2 * scale, 2 * scale, 2}});
+}
+
+TEST(TransferModes, OfAFilmThatHoldsItsContentAreThoseOfTheWholePencil) {
+  expect_in(content(), 2.0 * scale, {{2 * scale, scale, 1}, {3 * scale, 3.4 * scale, 4}});
+}
+
+TEST(TransferModes, OfTheTrainOnFiveLinersAreThoseOfTheWholePencil) {
+  expect_in(on_liners(), 377, {{400, 100, 4}, {1000, 500, 8}});
+  // Begins anew on smaller circles; ranks that wait would take as long again.
+  if (core::size_of(MPI_COMM_WORLD) == 1) expect_in(on_liners(), 377, {{2000, 1000, 10}});
+}
+
+// Each place of a damped liner has an eigenvalue of its own near -1/tau that the journal hardly sees. They are all
+// counted; not all are found, and the answer says so.
+TEST(TransferModes, CountThoseThatHideInADampedLiner) {
+  system::RotorSystem s(MPI_COMM_WORLD, damped(), 2.0 * scale);
+  const core::Vector x = rest(s);
+  solve::TransferOptions o;
+  o.frequency = 8 * scale;
+  o.decay = 6 * scale;
+  int number = 0, found = 0;
+  for (const auto& m : spectral::modes(s, x.get(), {}))
+    if (within(m.lambda, o)) number += m.lambda.imag() != 0 ? 2 : 1;
+  EXPECT_GT(number, 40);
+  const auto modes = solve::transfer_modes(s, x.get(), o);
+  EXPECT_EQ(modes.counted, number);
+  EXPECT_GE(modes.modes.size(), 1U);
+  for (const auto& m : modes.modes) found += m.lambda.imag() != 0 ? 2 : 1;
+  EXPECT_EQ(modes.missed, number - found);
+}
