@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solve/cycle/film_march.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/composition.hpp"
