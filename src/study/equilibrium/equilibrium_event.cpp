@@ -77,6 +77,7 @@ void put_reduction_error(io::Bifurcation& b, const EquilibriumEvent& at, double 
 // the other meshes; these are asked as long as they can decide.
 void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega,
                       const std::vector<std::vector<double>>& there) {
+  if (!at.cycles) return;
   const std::vector<double> found = kept(at, "cycles", [&] { return birth_here(at, omega, few_harmonics, 0); });
   if (found.empty() || at.found.sensitivity == 0) return;
   const double curvature = found[0], spread = found[1], largest = found.back();
