@@ -85,6 +85,7 @@ void RotorSystem::Blocks::find_own_states() {
     problem::OwnStates own{bearing.first, bearing.count, 4 * k, 4, 2 * k, 2, {}, {}};
     for (const film::Entry& e : responses_[i].d_states) own.states.push_back({e.row, e.column});
     for (const film::Entry& e : responses_[i].d_rates) own.rates.push_back({e.row, e.column});
+    own.settles = bearing.states->whole_steps();
     own_.push_back(std::move(own));
   }
 }

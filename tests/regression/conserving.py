@@ -8,7 +8,8 @@ stability no other value exists: there the answer must not depend on the number 
 """
 import sys
 
-from harness import Harness, value
+from compare import datasets, same_results
+from harness import GUYAN, Harness, every_bearing, value
 
 NEAR = "range={from: 120 rad/s, to: 140 rad/s}"
 CONDENSED = "bearings.*.film.states=condensed"
@@ -16,6 +17,10 @@ CONDENSED = "bearings.*.film.states=condensed"
 
 def only(*studies):
     return "studies=[" + ", ".join(studies) + "]"
+
+
+CYCLE = ("{cycle_branch: {name: cycle, unbalance: [gen_pair], parameter: speed, range: {from: 3550 rpm, to: 3600 rpm},"
+         " step: {initial: 50 rpm, min: 0.01 rpm, max: 50 rpm}, at: [3600 rpm]}}")
 
 
 def deck(h):
@@ -40,6 +45,19 @@ def whole(h):
     h.true("the branch reaches its end", run["balanced"]["status"] == "completed", run["balanced"]["status"])
     h.true("no bifurcation there", not run["balanced"]["bifurcations"])
     h.true("the cycle is there", run["unbalanced"]["points"] >= 1, run["unbalanced"]["status"])
+    # Another way to the same cycle: a state carried through the turn by steps of another scheme.
+    shot = h.run(deck(h), "shooting", [coarse, only("{cycle_branch: {name: unbalanced, unbalance: [a], parameter: speed, "
+                                                    + NEAR.replace("=", ": ") + ", method: shooting, max_points: 1}}")])
+    h.true("the same cycle by shooting", shot["unbalanced"]["points"] == 1, shot["unbalanced"]["status"])
+    ours, theirs = (datasets(h.work / name / "results.h5") for name in ("deck", "shooting"))
+    head = "studies/unbalanced/"
+    for part in ("real", "imag"):
+        a, b = (found[f"{head}branch/multipliers_{part}"][0] for found in (ours, theirs))
+        for k in (0, 1):
+            h.close(f"multiplier {k + 1}, {part}, as by shooting", a[k], b[k], 3e-4)
+    for axis in "xy":
+        a, b = (found[f"{head}orbits/{axis}"][0] for found in (ours, theirs))
+        h.close(f"orbit, {axis}, as by shooting [m]", abs(a - b).max(), 0, 2e-5 * 25e-6)
     h.true("the motion ends", run["return"]["status"] == "completed", run["return"]["status"])
 
 
@@ -58,7 +76,84 @@ def ranks(h):
     h.true("there is a threshold", [b["type"] for b in found[0]["bifurcations"]] == ["hopf"])
 
 
+def as_by_reynolds(h, found, reynolds, statics, thresholds):
+    """A film that runs full from its leading edge and ruptures once is that of Swift and Stieber, which Reynolds' condition
+    finds by another discretisation: the same limit of fine meshes, within both bars."""
+    def same(what, a, b):
+        bars = [e.get("uncertainty", float("nan")) for e in (a, b)]
+        h.true(f"{what}: has bars", min(bars) > 0, f"{bars}")
+        h.close(what, a["value"], b["value"], sum(bars))
+
+    a, b = found[statics]["values"], reynolds[statics]["values"]
+    for name in (f"B{k}" for k in range(1, 6)):
+        for key in (f"load.{name}", f"bearing.{name}.x", f"bearing.{name}.y"):
+            same(key, a[key], b[key])
+    a, b = found[thresholds]["bifurcations"], reynolds[thresholds]["bifurcations"]
+    h.true("one threshold by each", len(a) == len(b) == 1 and a[0]["type"] == b[0]["type"] == "hopf", f"{len(a)}, {len(b)}")
+    same("threshold [rpm]", a[0], b[0])
+    h.close("its period [s]", a[0]["period_s"], b[0]["period_s"], 0.02 * b[0]["period_s"])
+    # A jump of the tangents is enclosed, where no root is.
+    h.true("located", a[0]["uncertainty_location"] <= 1e-5 * a[0]["value"], f"{a[0]['uncertainty_location']}")
+
+
+def train(h):
+    """Condensed films on the train, on a coarse mesh with a reduced shaft, beside Reynolds' condition."""
+    coarse = [*GUYAN, *every_bearing("film.cells", "[60, 12]"), "studies.3.cycle_branch.max_points=1"]
+    found = h.run("mass_conserving.yaml", "train", coarse)
+    reynolds = h.run("mass_conserving.yaml", "reynolds", [*coarse, *every_bearing("film.cavitation", "reynolds")])
+    as_by_reynolds(h, found, reynolds, "at service speed", "balanced")
+    # The bar of films with kinks is wide; thresholds scatter less.
+    a, b = (s["balanced"]["bifurcations"][0]["value"] for s in (found, reynolds))
+    h.close("threshold, nearer than its bar [rpm]", a, b, 0.03 * b)
+    h.true("the cycle is there", found["G2.5"]["points"] == 1, found["G2.5"]["status"])
+
+
+def cycle(h, overrides):
+    """The cycle on 1, 2 and 3 ranks, and killed and resumed."""
+    overrides = [only(CYCLE), *overrides]
+    for n in (1, 2, 3):
+        h.run("mass_conserving.yaml", f"cycle_{n}", overrides, launcher=[*h.launcher, "-n", str(n)])
+        for what, difference, within in same_results(h.work / "cycle_1", h.work / f"cycle_{n}") if n > 1 else []:
+            h.close(f"{n} ranks: {what}", difference, 0, within)
+    h.kill_at_checkpoint("mass_conserving.yaml", h.work / "killed", overrides)
+    h.run("mass_conserving.yaml", "killed", overrides, flags=["--resume"], launcher=[])
+    for what, difference, within in same_results(h.work / "cycle_1", h.work / "killed"):
+        h.close(f"killed and resumed: {what}", difference, 0, within)
+
+
+def train_dynamic(h):
+    """A cycle of the train in films with states of their own: near that of condensed films, whose cavities neither fill nor
+    empty."""
+    few = [*GUYAN, *every_bearing("film.cells", "[16, 4]"), only(CYCLE.replace("at: [3600 rpm]", "max_points: 1, intervals: 30"))]
+    with_states = h.run("mass_conserving.yaml", "dynamic", [*few, *every_bearing("film.states", "dynamic")])["cycle"]
+    without = h.run("mass_conserving.yaml", "condensed", few)["cycle"]
+    h.true("both are there", with_states["points"] == without["points"] == 1, f"{with_states['status']}, {without['status']}")
+    a, b = (datasets(h.work / name / "results.h5") for name in ("dynamic", "condensed"))
+    h.true("Newton's method takes few steps", a["studies/cycle/branch/newton_iterations"][0] <= 6,
+           f"{a['studies/cycle/branch/newton_iterations'][0]}")
+    largest = [max(abs(complex(x, y)) for x, y in zip(f["studies/cycle/branch/multipliers_real"][0],
+                                                     f["studies/cycle/branch/multipliers_imag"][0])) for f in (a, b)]
+    h.close("largest multiplier, as without states", largest[0], largest[1], 0.01)
+    for end in ("x_max", "x_min", "y_max", "y_min"):
+        x, y = (f[f"studies/cycle/branch/{end}"][0] for f in (a, b))
+        h.close(f"{end}, largest difference [m]", abs(x - y).max(), 0, 5e-7)
+
+
+def train_ranks(h):
+    cycle(h, [*GUYAN, *every_bearing("film.cells", "[24, 8]")])
+
+
+def train_whole(h):
+    """The deck as it is, with all 740 freedoms."""
+    found = h.run("mass_conserving.yaml", "deck", launcher=[*h.launcher, "-n", "2"])
+    reynolds = h.run("mass_conserving.yaml", "reynolds", every_bearing("film.cavitation", "reynolds"),
+                     launcher=[*h.launcher, "-n", "2"])
+    as_by_reynolds(h, found, reynolds, "at service speed", "balanced")
+    cycle(h, [])
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"whole": whole, "ranks": ranks}[sys.argv[3]](harness)
+    {"whole": whole, "ranks": ranks, "train": train, "train_ranks": train_ranks,
+     "train_dynamic": train_dynamic, "train_whole": train_whole}[sys.argv[3]](harness)
     harness.finish()

@@ -5,6 +5,7 @@ decks.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
 import sys
 
+from compare import datasets
 from harness import GUYAN, Harness, every_bearing, value
 
 NAMES = ["B1", "B2", "B3", "B4", "B5"]
@@ -135,7 +136,34 @@ def balanced(h):
     h.close("Reynolds cavitation, 84 x 20: whirl [rpm]", late[0]["whirl_frequency_rpm"], 1686, 10)
 
 
+def liners(h):
+    """On coarse films: the threshold within its bar of the value on 100 x 20 cells; the cycle by collocation, another solver."""
+    coarse = "bearings.*.film.cells=[24, 6]"
+    balance = h.run("liners.yaml", "balanced", [coarse, "studies=[" + ", ".join(
+        ("{static: {name: at service speed, speed: 3600 rpm}}",
+         "{equilibrium_branch: {name: balanced, parameter: speed, range: {from: 5500 rpm, to: 6000 rpm},"
+         " step: {initial: 250 rpm, min: 0.1 rpm, max: 400 rpm}, detect: [hopf]}}")) + "]"])
+    h.true("statics", balance["at service speed"]["status"] == "completed")
+    found = hopf(balance["balanced"])
+    h.true("one Hopf bifurcation", len(found) == 1)
+    h.close("threshold [rpm]", found[0]["value"], 5861, found[0]["uncertainty"] + 25)
+    h.true("whose bar is short enough to say something", 0 < found[0]["uncertainty"] < 0.1 * 5861, f"{found[0]['uncertainty']}")
+    few, common = "bearings.*.film.cells=[16, 4]", ("name: G2.5, unbalance: [gen_pair], parameter: speed, range: {from: 3600 rpm, "
+        "to: 3650 rpm}, step: {initial: 50 rpm, min: 0.01 rpm, max: 50 rpm}, max_points: 1")
+    cycles = []
+    for name, method in (("picard", "method: newton_picard, scheme: sdirk_4, intervals: 1, steps: 24, radius: 0.2"),
+                         ("collocation", "intervals: 30, degree: 3, adapt_mesh: false")):
+        s = h.run("liners.yaml", name, [few, f"studies=[{{cycle_branch: {{{common}, {method}}}}}]"])["G2.5"]
+        h.true(f"the cycle by {name}", s["points"] == 1, s["status"])
+        d = datasets(h.work / name / "results.h5")
+        mu = zip(d["studies/G2.5/branch/multipliers_real"][0], d["studies/G2.5/branch/multipliers_imag"][0])
+        cycles.append(([abs(complex(*m)) for m in mu], d["studies/G2.5/branch/x_max"][0]))
+    for k in range(6):
+        h.close(f"multiplier {k + 1}, modulus", cycles[0][0][k], cycles[1][0][k], 1e-4)
+    h.close("largest x, worst difference [m]", abs(cycles[0][1] - cycles[1][1]).max(), 0, 1e-8)
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"static": static, "modes": modes, "response": response, "balanced": balanced}[sys.argv[3]](harness)
+    {"static": static, "modes": modes, "response": response, "balanced": balanced, "liners": liners}[sys.argv[3]](harness)
     harness.finish()

@@ -86,6 +86,32 @@ TEST(Detection, AValueThatComesAndGoes) {
   EXPECT_TRUE(r.suspected.empty());
 }
 
+// A value that jumps across the border, as those of films on a mesh do, never comes near it: the ends enclose the
+// place.
+TEST(Detection, AValueThatJumps) {
+  constexpr double jump = 0.1234;
+  test::SmallSystem s(PETSC_COMM_SELF, 2, -1, speed,
+                      half_turning([](auto a, auto b, auto) { return std::pair(decltype(a)(-a), decltype(a)(-b)); }));
+  solve::CycleProblem problem(MPI_COMM_WORLD, s, degree_four(), solve::uniform_mesh(12));
+  test::Recorded found;
+  auto callbacks = test::recording(problem, found);
+  callbacks.cycles = true;
+  callbacks.stability = [&](Vec u) {
+    const double p = solve::last_entry(MPI_COMM_WORLD, u);
+    return solve::make_stability({-1 - (p < jump ? -0.05 : 0.05) - 0.001 * p},
+                                 [](test::Complex z) { return std::abs(z) - 1; });
+  };
+  core::Vector u = problem.make_unknown();
+  auto options = test::range(-1, 1, 0.3);
+  options.location_tolerance = 1e-6;
+  found.end = solve::follow_branch(problem, std::move(u), options, callbacks);
+  const auto flips = found.of(Event::flip);
+  ASSERT_EQ(flips.size(), 1U);
+  EXPECT_TRUE(flips[0].located);
+  EXPECT_LE(flips[0].bracket, 1e-6);
+  EXPECT_NEAR(flips[0].parameter, jump, flips[0].bracket);
+}
+
 // It comes near and goes: nothing to report.
 TEST(Detection, AValueThatOnlyComesNear) {
   const auto r = follow(half_turning([](auto a, auto b, auto p) {

@@ -22,6 +22,8 @@ struct OwnStates {
   Eigen::Index first_input = 0, inputs = 0;  ///< among the inputs
   Eigen::Index first_force = 0, forces = 0;  ///< among the forces
   std::vector<Place> states, rates;          ///< entries of dg/ds and dg/ds', rows and columns counted from `first`
+  /// g is linear in s but for the set of full nodes: a whole step of Newton's method on s alone finds the next set.
+  bool settles = false;
 };
 
 /// Derivatives of one film with own states at one point.

@@ -99,7 +99,7 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
   at.u = copy(b.u.get());
   at.tangent = copy(b.tangent.get());
   at.point = b.point;
-  double last = b.point.parameter, last_f = f1;
+  double last = b.point.parameter, last_f = f1, p0 = a.point.parameter;
   int side = 0;
   for (int k = 0; k < 30; ++k) {
     double s = (s0 * f1 - s1 * f0) / (f1 - f0);
@@ -111,9 +111,10 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
     const double f = test(trial);
     at = std::move(trial);
     found.parameter = at.point.parameter;
-    // False position may creep: what the secant through the last two points says is left counts as well.
-    const double moved = found.parameter - last;
-    found.bracket = std::max(std::abs(moved), f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0);
+    const double moved = found.parameter - last, secant = f != last_f ? std::abs(f / (f - last_f) * moved) : 0.0;
+    if (f * f1 < 0) p0 = last;
+    // A search that creeps has left what the secant says; one across a jump, what its ends enclose.
+    found.bracket = std::min(std::max(std::abs(moved), secant), std::abs(found.parameter - p0));
     // The slope near the zero, from the last two points that lie far enough apart to show one.
     if (std::abs(moved) > 1e-4 * std::abs(dp)) found.sensitivity = (f - last_f) / moved;
     if (f == 0 || rounded(found.bracket) <= tolerance) return true;
@@ -319,7 +320,6 @@ void Follower::visits(const State& before, const State& a, const State& b, bool 
         around(peak.s < 0 ? before : a, here, peak.s < 0 ? a : b);
         break;
       }
-      // Closer around the peak.
       if (peak.s < 0) {
         h1 = -peak.s, f1 = f;
       } else {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "solve/cycle/cycle_matrix.hpp"
+#include "solve/cycle/film_march.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/composition.hpp"

@@ -131,12 +131,18 @@ void Blocks<M>::find_border() {
 }
 
 template <int M>
-void Blocks<M>::factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                          Index first, double length) {
+void Blocks<M>::factorise_alone(const std::vector<const PointState*>& points, std::size_t index,
+                                const ScaledPoint& scales, Index first, double length) {
   length_ = length;
   slope_ = scheme_.slope.rightCols(m()) / length;
   read(points, index, scales, first);
   factorise_band();
+}
+
+template <int M>
+void Blocks<M>::factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                          Index first, double length) {
+  factorise_alone(points, index, scales, first, length);
   find_border();
 }
 

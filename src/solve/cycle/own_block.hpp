@@ -48,6 +48,9 @@ public:
   /// From the tangents of film `index` at the points; `first` is its first state among all states.
   virtual void factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
                          Eigen::Index first, double length) = 0;
+  /// The same for eliminate() alone, of a film without separators.
+  virtual void factorise_alone(const std::vector<const PointState*>& points, std::size_t index,
+                               const ScaledPoint& scales, Eigen::Index first, double length) = 0;
 
   /// Inputs that occur at all, counted from the film's first one.
   [[nodiscard]] const std::vector<Eigen::Index>& active() const { return active_; }

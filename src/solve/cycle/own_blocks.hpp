@@ -26,6 +26,8 @@ public:
   }
   void factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
                  Index first, double length) override;
+  void factorise_alone(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                       Index first, double length) override;
   void eliminate(Index columns, double* y, MatrixXd& force) const override;
   void substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const override;
   void start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const override;

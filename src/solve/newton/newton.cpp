@@ -267,7 +267,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   check(SNESSetConvergenceHistory(snes.get(), norms.data(), nullptr, static_cast<PetscInt>(norms.size()), PETSC_TRUE));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
-  check(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+  check(SNESLineSearchSetType(search, options.searches ? SNESLINESEARCHBT : SNESLINESEARCHBASIC));
   if (context.problem.settles()) check(SNESLineSearchSetPreCheck(search, settle_step, &context));
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));

@@ -192,7 +192,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     }
   };
   callbacks.refine = [&](const solve::LocatedEvent& e, Vec v, Vec t) {
-    return solve::refine(*system, problem, e, v, t, continuation.newton);
+    return solve::refine(*system, problem, e, v, t, to_refine(continuation.newton, law_of(context.machine)));
   };
   if (films.exists()) {
     const auto thickness = [&](Vec v) {

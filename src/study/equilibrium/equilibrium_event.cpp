@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -11,8 +10,8 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/equilibrium/hopf_cycles.hpp"
+#include "study/equilibrium/located_elsewhere.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/solve/bifurcation/augmented_problem.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
@@ -35,91 +34,16 @@ double lyapunov(system::Plant& system, Vec x, double omega, double step) {
   }
 }
 
-constexpr int most_looks = 8, most_halvings = 6;
-
-struct Crossing {
-  double distance = unknown, omega = unknown;  // of the eigenvalue next to the critical one, from the axis [1/s, rad/s]
-};
-
-Crossing crossing_at(system::Plant& system, Vec x, double omega) {
-  const auto s = equilibrium_stability(system, x);
-  double nearest = std::numeric_limits<double>::infinity();
-  Crossing out;
-  for (std::size_t k = 0; k < s.values.size(); ++k) {
-    const double apart = std::abs(std::abs(s.values[k].imag()) - omega) + std::abs(s.values[k].real());
-    if (apart >= nearest) continue;
-    nearest = apart;
-    out = {s.distance[k], std::abs(s.values[k].imag())};
-  }
-  return out;
-}
-
-// The Hopf point on the branch through x, where Newton's method for it does not arrive from the parameter of the other
-// mesh: it begins anew from where the secant on the real part of the eigenvalue crosses zero, each time nearer. The
-// equilibrium moves along, so that the frequency is that of the Hopf point and not of the other mesh's parameter.
-std::optional<solve::Refined> approach(system::Plant& system, solve::EquilibriumProblem& problem,
-                                       const EquilibriumEvent& at, Vec x) {
-  solve::LocatedEvent event = at.found;
-  double p = event.parameter, slope = event.sensitivity, last_p = p, last_distance = 0;
-  core::Vector u = problem.make_unknown(), trial = core::duplicate(x);
-  for (int look = 0;; ++look) {
-    problem.from_state(x, p * at.scale, u.get());
-    const core::Vector tangent = solve::any_tangent(problem, u.get());
-    if (auto there = solve::refine(system, problem, event, u.get(), tangent.get(), at.newton)) return there;
-    if (look == most_looks) return {};
-    system.set_parameter(p * at.scale);
-    const Crossing here = crossing_at(system, x, std::abs(event.critical.imag()));
-    if (look > 0) slope = (here.distance - last_distance) / (p - last_p);
-    if (!std::isfinite(here.distance / slope)) return {};
-    last_p = p;
-    last_distance = here.distance;
-    event.critical = {0, here.omega};
-    double step = -here.distance / slope;
-    for (int halvings = 0;; ++halvings, step /= 2) {
-      if (halvings > most_halvings) return {};
-      core::check(VecCopy(x, trial.get()));
-      system.set_parameter((last_p + step) * at.scale);
-      if (solve::find_equilibrium(system, trial.get(), at.newton).converged) break;
-    }
-    core::check(VecCopy(trial.get(), x));
-    p = last_p + step;
-  }
-}
-
-// The same bifurcation with other cells.
-struct Elsewhere {
-  std::unique_ptr<system::Plant> system;
-  core::Vector x;
-  std::optional<solve::Refined> found;
-};
-
-std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
-  Elsewhere out{at.make(film_cells), {}, {}};
-  system::Plant& system = *out.system;
-  system.set_parameter(at.found.parameter * at.scale);
-  out.x = resampled(system, at.system, at.system.gather(at.x));
-  const bool hopf = at.found.event == solve::Event::hopf;
-  // On the far side of a fold there is no equilibrium at this parameter.
-  if (hopf && !solve::find_equilibrium(system, out.x.get(), at.newton).converged) return {};
-  solve::EquilibriumProblem problem(system, at.scale, at.state_weight);
-  core::Vector u = problem.make_unknown();
-  problem.from_state(out.x.get(), at.found.parameter * at.scale, u.get());
-  out.found =
-      hopf ? approach(system, problem, at, out.x.get())
-           : solve::refine(system, problem, at.found, u.get(), solve::any_tangent(problem, u.get()).get(), at.newton);
-  if (!out.found) return {};
-  problem.to_state(out.found->u.get(), out.x.get());
-  system.set_parameter(out.found->parameter * at.scale);
-  return out;
-}
-
-// Of the cycles born at the Hopf point with other cells; not a number if they cannot be had.
-double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells, double largest) {
+// Of the cycles born at the Hopf point with other cells, whose numbers are `there`; not a number if they cannot be had.
+double curvature_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells,
+                    const std::vector<double>& there, double largest) {
   const auto born = answer_of([&]() -> std::optional<BirthOfCycles> {
-    const auto there = located_on(at, film_cells);
-    if (!there) return {};
-    return birth_of_cycles(*there->system, there->x.get(), std::abs(there->found->critical.imag()), at.scale,
-                           few_harmonics, largest);
+    if (there.empty()) return {};
+    const auto system = at.make(film_cells);
+    system->set_parameter(there[place] * at.scale);
+    const core::Vector x = resampled(*system, at.system, at.system.gather(at.x));
+    if (!solve::find_equilibrium(*system, x.get(), at.newton).converged) return {};
+    return birth_of_cycles(*system, x.get(), there[frequency], at.scale, few_harmonics, largest);
   });
   return born ? born->curvature : unknown;
 }
@@ -149,8 +73,10 @@ void put_reduction_error(io::Bifurcation& b, const EquilibriumEvent& at, double 
   if (!errors.empty()) b.more["reduction_error"] = -errors[0].real() / at.found.sensitivity;
 }
 
-// Cycles at finite amplitudes reach over the kinks of a force that is smooth by pieces only.
-void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega) {
+// Cycles at finite amplitudes reach over the kinks of a force that is smooth by pieces only. `there` are the numbers on
+// the other meshes; these are asked as long as they can decide.
+void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega,
+                      const std::vector<std::vector<double>>& there) {
   if (!at.cycles) return;
   const std::vector<double> found = kept(at, "cycles", [&] { return birth_here(at, omega, few_harmonics, 0); });
   if (found.empty() || at.found.sensitivity == 0) return;
@@ -160,9 +86,12 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
   double doubt = finer.empty() ? unknown : std::abs(finer[0] - curvature);
   Bars bars({curvature}, at.law);
   for (std::size_t k = 0; k < at.meshes.size(); ++k) {
+    // The bar of a film with kinks is that of its worst mesh: more of them do not make it smaller.
+    const double worst = at.law.kinks && k > 0 ? bars[0].total() : 0;
+    if (!decided(curvature, spread + doubt + (std::isfinite(worst) ? worst : 0))) break;
     const FilmMesh& mesh = at.meshes[k];
     const double c = kept(at, fmt::format("cycles on mesh {}", k), [&] {
-                       return std::vector<double>{curvature_on(at, mesh.factor, largest)};
+                       return std::vector<double>{curvature_on(at, mesh.factor, there[k], largest)};
                      }).front();
     bars.add(mesh.axis, mesh.spacing, {c});
     // A sign that changes with the mesh is none.
@@ -227,10 +156,11 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   here[coefficient] = hopf ? lyapunov(at.system, at.x, omega, steps.longer) : at.found.quadratic;
   double doubt = hopf ? doubt_of_steps(lyapunov(at.system, at.x, omega, steps.shorter), here[coefficient]) : 0;
   Bars bars(here, at.law);
+  std::vector<std::vector<double>> elsewhere;
   for (std::size_t k = 0; k < at.meshes.size(); ++k) {
     const FilmMesh& mesh = at.meshes[k];
-    const std::vector<double> there =
-        kept(at, fmt::format("on mesh {}", k), [&] { return numbers_on(at, mesh.factor); });
+    const std::vector<double>& there =
+        elsewhere.emplace_back(kept(at, fmt::format("on mesh {}", k), [&] { return numbers_on(at, mesh.factor); }));
     bars.add(mesh.axis, mesh.spacing, there);
     // A sign that changes with the mesh is none.
     const double c = there.empty() ? unknown : there[coefficient];
@@ -248,7 +178,7 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
   if (hopf)
     put_criticality(b, here[coefficient], error, "supercritical", "subcritical",
                     "first Lyapunov coefficient (Kuznetsov 2004, 5.39)");
-  if (hopf && at.law.piecewise && b.criticality == "undetermined") decide_by_cycles(b, at, omega);
+  if (hopf && at.law.piecewise && b.criticality == "undetermined") decide_by_cycles(b, at, omega, elsewhere);
   if (!hopf && here[coefficient] != 0)
     put_criticality(b, here[coefficient], error, "below", "above",
                     "second derivative of the parameter along the branch: the side on which the equilibria exist");

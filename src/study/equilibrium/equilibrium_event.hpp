@@ -34,6 +34,13 @@ struct DifferenceSteps {
   return 2 * std::abs(shorter - longer);
 }
 
+/// Newton's method for the place of a bifurcation. Where tangents jump it arrives within the smooth piece that it
+/// begins in or not at all: a few whole steps tell.
+[[nodiscard]] inline solve::NewtonOptions to_refine(solve::NewtonOptions newton, const MeshLaw& law) {
+  if (law.kinks) newton.max_iterations = 6, newton.searches = false;
+  return newton;
+}
+
 /// A bifurcation of equilibria that a branch found, and how to meet it on other film meshes.
 struct EquilibriumEvent {
   system::Plant& system;             ///< the one that is followed; left at the parameter of the event

@@ -17,6 +17,7 @@
 namespace whirl::solve {
 
 class CycleMatrix;
+class FilmMarch;
 
 struct CycleOptions {
   int degree = 2;
@@ -53,6 +54,8 @@ public:
   [[nodiscard]] Vec weights() const override { return weights_.get(); }
   [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
   void residual(Vec u, Vec r) override;
+  [[nodiscard]] bool settles() const override;
+  bool settle(Vec u) override;
   void linearise(Vec u, Vec row) override;
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
@@ -115,6 +118,9 @@ public:
                                                       const std::vector<const Path*>& b);
 
 protected:
+  /// False where the equations of an interval are not those of collocation, and films cannot settle in it by
+  /// themselves.
+  [[nodiscard]] virtual bool collocates() const { return true; }
   /// What an interval's equations are; the scheme's collocation unless a derived problem says otherwise. `i` counts
   /// this rank's intervals, `own` are the scaled values at its nodes [n x m], `start` is the state before them. Not
   /// collective; thrown errors are agreed by the caller.
@@ -195,6 +201,7 @@ private:
   Run run_;
   std::unique_ptr<Composition> composition_;
   std::unique_ptr<CycleMatrix> matrix_;  // once it was asked for
+  std::unique_ptr<FilmMarch> march_;
 };
 
 }  // namespace whirl::solve

@@ -14,6 +14,7 @@ struct NewtonOptions {
   double tolerance = 1e-10;       ///< root mean square of the scaled residual at which Newton stops
   double step_tolerance = 1e-11;  ///< relative size of a step below which Newton stops
   int max_iterations = 12;
+  bool searches = true;  ///< false: whole steps, which end at the first domain error
   std::string prefix = "newton_", linear_prefix = "tangent_";  ///< of the PETSc options
   Journal* journal = nullptr;  ///< keeps solutions and iterates; the problem may then be linearised anywhere
 };

@@ -36,6 +36,7 @@ public:
   [[nodiscard]] const Scheme& orbit_scheme() const override { return quintic(); }
 
 protected:
+  [[nodiscard]] bool collocates() const override { return false; }
   void interval_residual(Eigen::Index i, const double* own, const Eigen::VectorXd& start, double period,
                          double* out) override;
   [[nodiscard]] std::unique_ptr<Interval> linearise_interval(Eigen::Index i, const double* own,
