@@ -12,6 +12,7 @@ namespace {
 std::string text_of(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
+  if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
   if (!s.stability.empty()) text += fmt::format("  {}\n", s.stability);
   for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
   for (const io::Bifurcation& b : s.bifurcations) {

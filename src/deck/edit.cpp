@@ -219,6 +219,7 @@ private:
       throw InputError(
           fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint, whole));
     }
+    require_key(step);
     Node& next = at.set(step, Node{});
     next.place = next.key_place = edit_.place;
     return at.items.size() - 1;

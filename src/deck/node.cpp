@@ -111,6 +111,13 @@ void Report::fail(std::string_view path, const std::string& message) const {
     problems_->add(place(path), message);
 }
 
+void require_key(std::string_view key) {
+  constexpr std::size_t longest = 200;
+  if (key == "<<") throw core::InputError("merge keys ('<<') are not supported; use `base:` or repeat the values");
+  if (key.size() > longest)
+    throw core::InputError(fmt::format("a key of {} bytes; it has {} at most", key.size(), longest));
+}
+
 std::vector<std::string> split_path(std::string_view path) {
   std::vector<std::string> steps;
   while (!path.empty()) {

@@ -70,7 +70,11 @@ Column column_of(const Cell& cell, const Place& place) {
     c.unit = trimmed(std::string_view(cell.text).substr(open + 1, cell.text.size() - open - 2));
   }
   if (c.key.empty()) throw InputError(place.text() + ": a header cell is empty");
-  if (c.key == "<<") throw InputError(place.text() + ": '<<' is the merge key of YAML, not the name of a column");
+  try {
+    require_key(c.key);
+  } catch (const InputError& e) {
+    throw InputError(place.text() + ": " + e.what());
+  }
   return c;
 }
 

@@ -142,8 +142,11 @@ private:
     Open& top = stack_.back();
     const std::string where = n.place.text() + ": ";
     if (n.kind != Node::Kind::scalar) throw InputError(where + "a key must be a single word");
-    if (n.text == "<<")
-      throw InputError(where + "merge keys ('<<') are not supported; use `base:` or repeat the values");
+    try {
+      require_key(n.text);
+    } catch (const InputError& e) {
+      throw InputError(where + e.what());
+    }
     if (const auto [first, fresh] = top.lines.emplace(n.text, n.place.line); !fresh)
       throw InputError(fmt::format("{}key '{}' is given twice, first in line {}", where, n.text, first->second));
     top.key = n.text;

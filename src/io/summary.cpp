@@ -189,6 +189,7 @@ Json to_json(const StudySummary& s) {
             {"bifurcations", std::move(bifurcations)},
             {"modes", std::move(modes)},
             {"points", s.points}};
+  if (!s.layout.empty()) j["layout"] = s.layout;
   if (!s.stability.empty()) j["stability"] = s.stability;
   if (!s.warnings.empty()) j["warnings"] = s.warnings;
   for (const Column& c : s.curve) {
@@ -221,6 +222,7 @@ StudySummary study(const Json& j) {
                        m.value("speed_unit", std::string()),
                        others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability"}),
                        m.value("stability", std::string())});
+  s.layout = j.value("layout", std::string());
   s.stability = j.value("stability", std::string());
   s.warnings = j.value("warnings", std::vector<std::string>());
   const Json curve = j.value("curve", Json::object());

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "findings.hpp"
-#include "groups.hpp"
+#include "layout.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/study/parameter.hpp"

@@ -6,6 +6,13 @@
 
 namespace whirl::study {
 
+double n_film_states(const system::Machine& machine) {
+  double own = 0;
+  for (const system::Bearing& b : machine.bearings)
+    own += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
+  return own;
+}
+
 double n_states(const system::Machine& machine) {
   if (!system::is_rotor(machine))
     return machine.system.name == system::Brusselator::key
@@ -19,12 +26,9 @@ double n_states(const system::Machine& machine) {
                     : r.reduction.type == none            ? 4 * nodes
                     : r.reduction.type == guyan           ? 2 * masters
                                                           : 2 * (masters + modes);
-  double own = 0;
-  for (const system::Bearing& b : machine.bearings) {
+  for (const system::Bearing& b : machine.bearings)
     if (b.pedestal) freedoms += 2;
-    own += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
-  }
-  return 2 * freedoms + own;
+  return 2 * freedoms + n_film_states(machine);
 }
 
 double memory_of_equilibria(const system::Machine& machine) {

@@ -9,6 +9,9 @@ namespace whirl::study {
 /// States of the equations of `machine`, displacements and velocities, with the films' own.
 [[nodiscard]] double n_states(const system::Machine& machine);
 
+/// The films' own states among them, those of all bearings; about so many, no film is made.
+[[nodiscard]] double n_film_states(const system::Machine& machine);
+
 /// A branch of equilibria, or anything that factorises one sparse Jacobian [byte].
 [[nodiscard]] double memory_of_equilibria(const system::Machine& machine);
 

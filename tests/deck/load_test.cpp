@@ -71,6 +71,8 @@ TEST(Yaml, WhatItsParserWouldLetPass) {
   EXPECT_EQ(yaml_refusal("a:\n\tb: 1\n"), "d.yaml:2:1: a tab in the indentation; use spaces");
   EXPECT_NE(yaml_refusal("a: {<<: {b: 1}}\n").find("merge keys"), std::string::npos);
   EXPECT_NE(yaml_refusal("[1, 2]: 3\n").find("a key must be a single word"), std::string::npos);
+  EXPECT_NE(yaml_refusal(std::string(201, 'a') + ": 1\n").find("a key of 201 bytes"), std::string::npos);
+  EXPECT_EQ(yaml_refusal(std::string(200, 'a') + ": 1\n"), "accepted");
   EXPECT_NE(yaml_refusal("a: !!int 3\n").find("tags"), std::string::npos);
   EXPECT_NE(yaml_refusal("a: *nowhere\n"), "accepted");
   EXPECT_NE(yaml_refusal("a: [1, 2\n"), "accepted");

@@ -44,11 +44,13 @@ def whole(h):
 
 
 def ranks(h):
-    """Equilibria and the threshold on 1, 2 and 3 ranks."""
+    """Equilibria and the threshold on 1, 2 and 3 ranks that share the states of the films."""
     branch = "{equilibrium_branch: {name: balanced, parameter: speed, range: {from: 380 rad/s, to: 480 rad/s}}}"
-    found = [h.run(deck(h), f"ranks_{n}", [only(branch), "bearings.*.film.cells=[24, 4]", "bearings.*.film.grooves.1.pressure=2 kPa"],
+    found = [h.run(deck(h), f"ranks_{n}", [only(branch), "bearings.*.film.cells=[24, 4]", "bearings.*.film.grooves.1.pressure=2 kPa",
+                                                    "layout.machine=all_ranks"],
                    launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in (1, 2, 3)]
     for n, s in enumerate(found[1:], 2):
+        h.true(f"{n} ranks: they share one machine", s["layout"] == f"one machine on {n} ranks (by the deck)", s["layout"])
         h.true(f"{n} ranks: as many points", s["points"] == found[0]["points"])
         for a, b in zip(found[0]["bifurcations"], s["bifurcations"], strict=True):
             h.close(f"{n} ranks: {a['type']}", b["value"], a["value"], 1e-7 * a["value"])

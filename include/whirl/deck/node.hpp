@@ -91,6 +91,10 @@ private:
 /// The same for names of the deck: where none is near, `; there are a, b`, the first ten of them.
 [[nodiscard]] std::string did_you_mean_one_of(std::string_view word, const std::vector<std::string>& names);
 
+/// Throws core::InputError, without a place, if `key` cannot stand in a deck as it is written: the merge key `<<`, or
+/// more than 200 bytes (YAML ends a key after 1024 characters, and a byte takes up to four).
+void require_key(std::string_view key);
+
 /// `path` split at its dots.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
 

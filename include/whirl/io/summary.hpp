@@ -96,6 +96,7 @@ struct StudySummary {
   std::string name = {}, kind = {};
   std::string status = "completed";  ///< or why it ended early
   double wall_seconds = 0;
+  std::string layout = {};  ///< how several ranks shared the work; in the file only if there were several
   std::vector<std::pair<std::string, Quantity>> values = {};  ///< dotted names, in the order they were set
   std::vector<Bifurcation> bifurcations = {};
   std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any

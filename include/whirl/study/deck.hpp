@@ -8,6 +8,7 @@
 
 #include "whirl/deck/edit.hpp"
 #include "whirl/deck/output.hpp"
+#include "whirl/study/layout_options.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
@@ -21,6 +22,7 @@ void describe(deck::Description<Limits>& d);
 struct Deck {
   system::Machine machine;
   Limits limits;
+  LayoutOptions layout;
   std::vector<std::unique_ptr<Study>> studies;
   std::vector<deck::Change> changes;  ///< what the overrides did
 };

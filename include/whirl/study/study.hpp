@@ -22,6 +22,7 @@ namespace whirl::study {
 
 class Findings;
 class Study;
+struct LayoutOptions;
 
 /// What a study found; the same on all ranks.
 struct StudyResult {
@@ -36,6 +37,7 @@ struct StudyResult {
 struct Context {
   MPI_Comm comm;
   const system::Machine& machine;
+  const LayoutOptions& layout;                      ///< what the deck says of sharing it
   Findings& results;                                ///< what the study has found so far
   const io::Group& earlier;                         ///< results of the studies before, by io::safe_name of their names
   std::span<const io::StudySummary> summaries;      ///< of those
@@ -43,6 +45,11 @@ struct Context {
   std::span<const std::unique_ptr<Study>> studies;  ///< of the deck
   /// Where a part of this study keeps a checkpoint of its own. Collective.
   std::function<std::filesystem::path(const std::string& part)> checkpoint_of;
+
+  /// The same work on another machine, which has to outlive it.
+  [[nodiscard]] Context with(const system::Machine& other) const {
+    return {comm, other, layout, results, earlier, summaries, resume, studies, checkpoint_of};
+  }
 };
 
 /// One analysis of a deck.

@@ -22,8 +22,7 @@ namespace {
 // Machine and solver at one level: film meshes doubled `level` times.
 struct Level {
   Level(Context& context, const CycleBranchOptions& options, int level)
-      : machine(context.machine), here{context.comm,      machine,        context.results, context.earlier,
-                                       context.summaries, context.resume, context.studies, context.checkpoint_of} {
+      : machine(context.machine), here(context.with(machine)) {
     for (auto& b : machine.bearings)
       for (int& cells : b.film.cells) cells <<= level;
     follower = std::make_unique<CycleFollower>(here, options);

@@ -92,7 +92,8 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
 }
 
 std::optional<solve::Restart> CycleFollower::restore() {
-  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(space()));
+  pieces_ =
+      std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(layout().space));
   newton_.journal = continuation_.newton.journal = pieces_->journal();
   if (!pieces_->state().has_group("cycle")) return std::nullopt;
   const io::Group state = pieces_->state();

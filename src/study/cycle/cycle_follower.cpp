@@ -63,7 +63,7 @@ std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<doubl
   wanted.value = options_.start ? options_.start->value : options_.parameter.range.from;
   wanted.speed = options_.speed ? options_.speed->value : 0;
   wanted.film_cells = film_cells;
-  return make_plant(space(), context_.machine, wanted);
+  return make_plant(layout(static_cast<std::size_t>(options_.intervals)).space, context_.machine, wanted);
 }
 
 solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) const {

@@ -89,8 +89,8 @@ public:
 
 private:
   [[nodiscard]] std::unique_ptr<system::Plant> make_system(const std::array<double, 2>& film_cells) const;
-  /// Who shares a system: its states are distributed by solvers that are parallel in space.
-  [[nodiscard]] MPI_Comm space() const;
+  /// Who shares the states of a system, or the intervals of a mesh.
+  [[nodiscard]] Layout layout(std::size_t intervals = 1) const;
   /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with `finer` (1/2, 1, 2) times as
   /// many steps in time.
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::Plant& system, int turns,

@@ -4,8 +4,6 @@
 #include <cstdlib>
 
 #include "study/cycle/cycle_follower.hpp"
-#include "study/groups.hpp"
-#include "whirl/film/state_model.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
 
@@ -42,13 +40,11 @@ double CycleFollower::order_of_scheme() const {
   return 2 * options_.degree - (options_.points == CycleBranchOptions::Points::radau ? 1 : 0);
 }
 
-// Only films with many states of their own are worth the messages; below that every rank does the same.
-MPI_Comm CycleFollower::space() const {
-  constexpr int shared_from = 3000;
-  int states = 0;
-  for (const auto& b : context_.machine.bearings)
-    states += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
-  return options_.method == Method::newton_picard && states >= shared_from ? context_.comm : PETSC_COMM_SELF;
+Layout CycleFollower::layout(std::size_t intervals) const {
+  const Sharing sharing = options_.method == Method::newton_picard ? Sharing::machine
+                          : options_.method == Method::shooting    ? Sharing::nothing
+                                                                   : Sharing::intervals;
+  return plan(context_, sharing, intervals);
 }
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,
@@ -75,9 +71,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
     o.constant_rates = system.constant_rates();
     return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
   }
-  // Single shooting has nothing to share: every rank computes the same.
-  const MPI_Comm time =
-      options_.method == Method::shooting ? PETSC_COMM_SELF : sharing_time(context_.comm, mesh.size() - 1);
+  const MPI_Comm time = layout(mesh.size() - 1).time;
   solve::CycleOptions o;
   o.degree = options_.degree;
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;

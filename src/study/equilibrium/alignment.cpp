@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "study/common.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -25,7 +25,7 @@ StudyResult Alignment::run(Context& context) {
     rule.loaded.push_back(position(name));
     rule.loads.push_back(load);
   }
-  MPI_Comm space = Groups::split(context.comm, context.machine).space;
+  MPI_Comm space = plan(context, Sharing::machine).space;
   const auto as_given = rotor::rigid_static(space, shaft, supports, context.machine.gravity);
   const auto elevations = rotor::align(space, shaft, supports, rule, context.machine.gravity);
   for (std::size_t b = 0; b < supports.size(); ++b) supports[b].elevation = elevations[b];

@@ -13,7 +13,7 @@
 #include "study/common.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/located.hpp"
 #include "study/make_plant.hpp"
 #include "study/pieces.hpp"
@@ -34,7 +34,7 @@ std::unique_ptr<system::Plant> plant_of(const Context& context, const Equilibriu
   wanted.value = o.parameter.range.from;
   wanted.speed = o.speed ? o.speed->value : 0;
   wanted.film_cells = film_cells;
-  return make_plant(Groups::split(context.comm, context.machine).space, context.machine, wanted);
+  return make_plant(plan(context, Sharing::machine).space, context.machine, wanted);
 }
 
 double state_weight_of(const EquilibriumBranchOptions& o) {
@@ -170,7 +170,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     pieces.complete(event, b, [&] {
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
                    law_of(context.machine), [&](const auto& cells) { return plant_of(context, options, cells); },
-                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); }});
+                   [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); },
+                   !plan(context, Sharing::machine).large});
     });
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});

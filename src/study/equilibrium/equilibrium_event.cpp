@@ -151,6 +151,7 @@ void put_reduction_error(io::Bifurcation& b, const EquilibriumEvent& at, double 
 
 // Cycles at finite amplitudes reach over the kinks of a force that is smooth by pieces only.
 void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega) {
+  if (!at.cycles) return;
   const std::vector<double> found = kept(at, "cycles", [&] { return birth_here(at, omega, few_harmonics, 0); });
   if (found.empty() || at.found.sensitivity == 0) return;
   const double curvature = found[0], spread = found[1], largest = found.back();

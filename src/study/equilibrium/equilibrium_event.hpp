@@ -49,6 +49,7 @@ struct EquilibriumEvent {
   /// Gives the numbers of that name if they are known already, else those that `work` makes; nothing: always `work`.
   std::function<std::vector<double>(const std::string& name, const std::function<std::vector<double>()>& work)> keep =
       {};
+  bool cycles = true;  ///< cycles may decide on the criticality: they need the whole machine on one rank
 };
 
 /// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with

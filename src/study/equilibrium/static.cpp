@@ -8,7 +8,7 @@
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -112,7 +112,7 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
 }  // namespace
 
 StudyResult Static::run(Context& context) {
-  system::RotorSystem system(Groups::split(context.comm, context.machine).space, system::train_of(context.machine),
+  system::RotorSystem system(plan(context, Sharing::machine).space, system::train_of(context.machine),
                              options.speed.value);
   Walker walker(system);
   const std::vector<double> x = system.gather(walker.at(options.speed.value));

@@ -44,7 +44,7 @@ std::vector<std::size_t> few_of(std::size_t n) {
 }
 
 // One task is one mesh at all these speeds, each from its neighbour.
-ModeBars::ModeBars(const Context& context, const Groups& groups, Pieces& pieces,
+ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
                    const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
   const std::vector<FilmMesh> meshes = film_meshes(context.machine);
@@ -53,7 +53,7 @@ ModeBars::ModeBars(const Context& context, const Groups& groups, Pieces& pieces,
   const auto compute = [&](std::size_t i) {
     std::vector<double> all;
     const bool answered = has_answer([&] {
-      system::RotorSystem there(groups.space, with_film_mesh(system::train_of(context.machine), meshes[i].factor),
+      system::RotorSystem there(layout.space, with_film_mesh(system::train_of(context.machine), meshes[i].factor),
                                 sampled.front().speed);
       Walker walker(there);
       for (const SampledModes& s : sampled) {
@@ -66,7 +66,7 @@ ModeBars::ModeBars(const Context& context, const Groups& groups, Pieces& pieces,
   };
   // Each mesh starts anew and leaves nothing behind.
   const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
-  const auto on_meshes = distribute(groups, meshes.size(), compute, pieces, "film mesh", none);
+  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "film mesh", none);
   std::vector<double> here;
   for (const SampledModes& s : sampled)
     for (const spectral::ModePoint& m : s.modes) append(here, m.lambda);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/pieces.hpp"
 #include "whirl/spectral/follow.hpp"
 #include "whirl/study/study.hpp"
@@ -30,7 +30,7 @@ class ModeBars {
 public:
   /// Computes the modes at the same equilibria on other film meshes, each paired by its shape. `modes_at` gives those
   /// of a system at an equilibrium. Collective.
-  ModeBars(const Context& context, const Groups& groups, Pieces& pieces, const std::vector<SampledModes>& sampled,
+  ModeBars(const Context& context, const Layout& layout, Pieces& pieces, const std::vector<SampledModes>& sampled,
            const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at);
 
   /// Bars of the real part [1/s], imaginary part [rad/s] and log decrement of a mode: the larger one of the neighbours,

@@ -13,7 +13,7 @@
 
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
 #include "study/linear/mode_reduction.hpp"
@@ -180,7 +180,7 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   if (options.supports == ModesOptions::Supports::pinned)
     for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
   const auto frequencies =
-      rotor::natural_frequencies(Groups::split(context.comm, context.machine).space, shaft, pinned, options.count);
+      rotor::natural_frequencies(plan(context, Sharing::speeds).space, shaft, pinned, options.count);
   auto& summary = context.results.summary();
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
@@ -202,8 +202,8 @@ StudyResult Modes::run(Context& context) {
   const std::string unit = options.unit();
   const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
   const auto count = static_cast<std::size_t>(options.count);
-  const Groups groups = Groups::split(context.comm, context.machine);
-  system::RotorSystem system(groups.space, system::train_of(context.machine), speeds.front());
+  const Layout layout = plan(context, Sharing::speeds);
+  system::RotorSystem system(layout.space, system::train_of(context.machine), speeds.front());
   Walker walker(system);
   auto& results = context.results;
   auto& summary = results.summary();
@@ -215,12 +215,12 @@ StudyResult Modes::run(Context& context) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
       auto modes = pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit));
-      ready += static_cast<std::size_t>(groups.count);
+      ready += static_cast<std::size_t>(layout.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
       return modes;
     };
-    const auto packed = distribute(groups, list.size(), compute, pieces,
+    const auto packed = distribute(layout, list.size(), compute, pieces,
                                    rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
     std::vector<std::vector<ShaftMode>> out;
@@ -252,7 +252,7 @@ StudyResult Modes::run(Context& context) {
     sampled.push_back({stations[i].speed, {}, points_of(stations[i].modes)});
     for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
   }
-  const ModeBars bars(context, groups, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
+  const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit));
   });
   ModeReduction reduction(system, walker, sampled);
@@ -316,7 +316,7 @@ StudyResult Modes::run(Context& context) {
     }
     return std::vector<double>{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
   };
-  const auto refined = distribute(groups, crossings.size(), refine, pieces, "critical", walker.trail());
+  const auto refined = distribute(layout, crossings.size(), refine, pieces, "critical", walker.trail());
   struct Critical {
     double speed, decrement;
     int id;

@@ -14,7 +14,7 @@
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/common.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/linear/response_bars.hpp"
 #include "study/linear/response_peaks.hpp"
 #include "study/pieces.hpp"
@@ -83,9 +83,9 @@ double film_left(const system::Support& s, const std::array<double, 2>& at, cons
 class Machine {
 public:
   /// `cells`: of the films over those of the deck.
-  Machine(const Context& context, const Groups& groups, const UnbalanceResponseOptions& options, std::vector<int> nodes,
+  Machine(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options, std::vector<int> nodes,
           const std::array<double, 2>& cells = {1, 1})
-      : system_(groups.space, with_film_mesh(system::train_of(context.machine, options.unbalance), cells),
+      : system_(layout.space, with_film_mesh(system::train_of(context.machine, options.unbalance), cells),
                 options.range.from),
         walker_(system_),
         solver_(system_),
@@ -222,8 +222,8 @@ StudyResult UnbalanceResponse::run(Context& context) {
     nodes.assign(wanted.begin(), wanted.end());
   }
   const std::string unit = options.range.unit;
-  const Groups groups = Groups::split(context.comm, context.machine);
-  Machine machine(context, groups, options, nodes);
+  const Layout layout = plan(context, Sharing::speeds);
+  Machine machine(context, layout, options, nodes);
   auto& results = context.results;
   auto& summary = results.summary();
   const std::size_t n_bearings = context.machine.bearings.size();
@@ -238,7 +238,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
       return packed;
     };
     std::vector<Response> out;
-    for (const auto& flat : distribute(groups, speeds.size(), compute, pieces, piece, which.trail()))
+    for (const auto& flat : distribute(layout, speeds.size(), compute, pieces, piece, which.trail()))
       out.push_back(unpack(flat, nodes.size(), n_bearings));
     return out;
   };
@@ -335,7 +335,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   put_response_bars(summary, film_meshes(context.machine), law_of(context.machine), named, put_peak,
                     [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
                       std::optional<Machine> other;
-                      if (cells != std::array<double, 2>{1, 1}) other.emplace(context, groups, options, nodes, cells);
+                      if (cells != std::array<double, 2>{1, 1}) other.emplace(context, layout, options, nodes, cells);
                       if (options.operating_speed) at.push_back(options.operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);
                       MeshResponse out;

@@ -13,7 +13,7 @@
 #include "study/common.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/cycle/cycle_record.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/located.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/core/agree.hpp"
@@ -91,15 +91,23 @@ system::Train LocusFollower::train_at(double first, const FilmFactor& film) cons
   return with_film_mesh(system::train_of(machine, unbalance_), film);
 }
 
+// Conditions on equilibria are solved by every rank for itself.
+MPI_Comm LocusFollower::space() const {
+  return plan(context_, of_cycles_ ? Sharing::intervals : Sharing::nothing, seed_.cycle.mesh.size() - 1).space;
+}
+
+MPI_Comm LocusFollower::time(const std::vector<double>& mesh) const {
+  return plan(context_, Sharing::intervals, mesh.size() - 1).time;
+}
+
 std::unique_ptr<system::RotorSystem> LocusFollower::make_system(double first, const FilmFactor& film) const {
-  if (first_.path == "speed")
-    return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, train_at(first, film), first);
+  if (first_.path == "speed") return std::make_unique<system::RotorSystem>(space(), train_at(first, film), first);
   system::Varying varying;
   varying.train = [this, film](double p) { return train_at(p, film); };
   varying.value = first;
   varying.magnitude = std::max(std::abs(first_range_.from), std::abs(first_range_.to));
   const auto& speed = of_cycles_ ? of_cycles_->speed : of_rest_->speed;
-  return std::make_unique<system::RotorSystem>(PETSC_COMM_SELF, std::move(varying), speed->value);
+  return std::make_unique<system::RotorSystem>(space(), std::move(varying), speed->value);
 }
 
 void LocusFollower::make_cycles(const CycleBranchOptions& o) {
@@ -119,8 +127,7 @@ void LocusFollower::make_cycles(const CycleBranchOptions& o) {
   // Folds of small cycles are flat: what Newton's method leaves there shifts all of them to the same side.
   const bool flat = c.autonomous && seed_.event == solve::Event::cyclic_fold;
   continuation_.newton.tolerance = flat ? o.tolerance / 100 : o.tolerance;
-  cycles_ = std::make_unique<solve::CycleProblem>(sharing_time(context_.comm, seed_.cycle.mesh.size() - 1), *system_, c,
-                                                  seed_.cycle.mesh);
+  cycles_ = std::make_unique<solve::CycleProblem>(time(seed_.cycle.mesh), *system_, c, seed_.cycle.mesh);
   if (c.autonomous) cycles_->set_phase_reference(seed_.cycle);
   branch_ = cycles_.get();
   const core::Vector u = cycles_->scatter(seed_.cycle), along = solve::any_tangent(*cycles_, u.get());

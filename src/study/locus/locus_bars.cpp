@@ -115,8 +115,7 @@ std::unique_ptr<LocusFollower::Elsewhere> LocusFollower::carried_to(const CycleM
     if (mesh.axis == Axis::time && mesh.spacing < 1) times = solve::doubled(times);
     if (mesh.axis == Axis::time && mesh.spacing > 1) times = merged(times);
     if (times.empty()) return nullptr;
-    out->cycles = std::make_unique<solve::CycleProblem>(sharing_time(context_.comm, times.size() - 1), system,
-                                                        cycles_->options(), times);
+    out->cycles = std::make_unique<solve::CycleProblem>(time(times), system, cycles_->options(), times);
     if (cycles_->options().autonomous) out->cycles->set_phase_reference(cycle);
     branch = out->cycles.get();
     u = out->cycles->scatter(cycle);

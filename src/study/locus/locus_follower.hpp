@@ -74,6 +74,9 @@ private:
   void make_equilibria();
   // At a first parameter and the present second one.
   [[nodiscard]] system::Train train_at(double first, const FilmFactor& film = {1, 1}) const;
+  /// Who holds a system, and who shares the intervals of cycles on `mesh`.
+  [[nodiscard]] MPI_Comm space() const;
+  [[nodiscard]] MPI_Comm time(const std::vector<double>& mesh) const;
   [[nodiscard]] std::unique_ptr<system::RotorSystem> make_system(double first, const FilmFactor& film = {1, 1}) const;
   [[nodiscard]] solve::SecondParameter second(system::RotorSystem& system, const FilmFactor& film = {1, 1});
   [[nodiscard]] Row row_at(Vec whole, double second) const;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "study/groups.hpp"
 #include "study/locus/locus_follower.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -67,7 +66,7 @@ void LocusFollower::record_row(const std::string& type, const Row& row, double e
 
 Beside LocusFollower::flips_beside(Vec whole, const std::vector<double>& mesh, double reach) {
   const auto cycle = cycles_->gather(problem_->branch_part(whole).get());
-  solve::CycleProblem cycles(sharing_time(context_.comm, mesh.size() - 1), *system_, cycles_->options(), mesh);
+  solve::CycleProblem cycles(time(mesh), *system_, cycles_->options(), mesh);
   const core::Vector u = cycles.scatter(cycle), along = solve::any_tangent(cycles, u.get());
   const auto condition = solve::make_flip(cycles);
   solve::AugmentedProblem problem(cycles, *condition, along.get(), second(*system_));

@@ -10,7 +10,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/common.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/make_plant.hpp"
 #include "study/motion/motion_record.hpp"
 #include "study/motion/motion_start.hpp"
@@ -34,7 +34,7 @@ class Player {
 public:
   Player(Context& context, const MotionOptions& given)
       : context_(context),
-        plant_(make_plant(Groups::split(context.comm, context.machine).space, context.machine,
+        plant_(make_plant(plan(context, Sharing::machine).space, context.machine,
                           {.unbalance = given.unbalance, .value = given.speed.value})),
         system_(*plant_),
         options_(limited(given, system_)),

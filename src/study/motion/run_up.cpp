@@ -9,7 +9,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/common.hpp"
-#include "study/groups.hpp"
+#include "study/layout.hpp"
 #include "study/motion/motion_start.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -78,8 +78,8 @@ public:
         options_(options),
         unit_(options.range.unit),
         drive_(drive_of(options)),
-        system_(Groups::split(context.comm, context.machine).space,
-                system::train_of(context.machine, options.unbalance), drive_.speed),
+        system_(plan(context, Sharing::machine).space, system::train_of(context.machine, options.unbalance),
+                drive_.speed),
         x_(start_state(system_, options.start).x),
         integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),
         places_(system_.places()),

@@ -1,0 +1,62 @@
+#pragma once
+// How the ranks of a run share the work.
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace whirl::study {
+
+class Pieces;
+struct Context;
+
+/// How an analysis can be shared.
+enum class Sharing {
+  machine,    ///< one state after another: branches of equilibria, motions in time, Newton-Picard's cycles
+  speeds,     ///< independent problems of one machine: modes, responses
+  intervals,  ///< pieces of a cycle in time, each of which needs the whole machine on its rank
+  nothing,    ///< neither: single shooting
+};
+
+/// Groups of ranks, each of which holds a whole machine on its `space` communicator; independent work is shared between
+/// the groups.
+///
+/// Counts decide, never clocks, so that a decision repeats itself: a shaft or films with fewer states than
+/// LayoutOptions says fit one rank's cache, and their solves are over before a message arrives, so that every rank is a
+/// group of its own. A larger machine is spread over all ranks as one group.
+struct Layout {
+  MPI_Comm world = MPI_COMM_NULL, space = MPI_COMM_NULL;
+  MPI_Comm time = MPI_COMM_SELF;  ///< ranks that share the intervals of a cycle
+  int count = 1;                  ///< number of groups
+  int index = 0;                  ///< of this rank's group
+  bool large = false;             ///< the machine is one that several ranks share where there are several
+};
+
+/// The one place where the world is split. The first plan of a study on several ranks says in its summary what was
+/// chosen. `intervals`: of the time mesh, for Sharing::intervals; with more ranks than intervals each rank computes all
+/// of them.
+[[nodiscard]] Layout plan(const Context& context, Sharing sharing, std::size_t intervals = 1);
+
+/// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
+/// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.
+[[nodiscard]] std::vector<std::vector<double>> distribute(const Layout& layout, std::size_t n,
+                                                          const std::function<std::vector<double>(std::size_t)>& work);
+
+/// What an item leaves behind from which the next one starts, as numbers: to be read after an item, and to be put back
+/// where a resumed run takes an item as it was kept.
+struct Trail {
+  std::function<std::vector<double>()> leave;
+  std::function<void(const std::vector<double>&)> take;
+};
+
+/// The same in rounds of about a quarter of a second, after which the answers are `kept` as pieces `name 1`, ..., `name
+/// n`: those of an interrupted run are not computed again, and on one rank the others start from what they would have
+/// started from.
+[[nodiscard]] std::vector<std::vector<double>> distribute(const Layout& layout, std::size_t n,
+                                                          const std::function<std::vector<double>(std::size_t)>& work,
+                                                          Pieces& kept, const std::string& name, const Trail& trail);
+
+}  // namespace whirl::study
