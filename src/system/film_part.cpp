@@ -25,8 +25,7 @@ std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
   std::vector<problem::Field> out;
   for (const film::StateField& f : film_->state_fields()) {
     const int begin = std::clamp(f.begin, share_.begin, share_.end), end = std::clamp(f.end, share_.begin, share_.end);
-    out.push_back(
-        {name, row_ + begin - share_.begin, row_ + end - share_.begin, f.name, f.unit, f.scale, !out.empty()});
+    out.push_back({name, row_ + begin - share_.begin, row_ + end - share_.begin, f.name, f.unit, f.scale});
   }
   return out;
 }

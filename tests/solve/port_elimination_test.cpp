@@ -31,15 +31,15 @@ struct Machine {
     const auto cut = [&](int r) -> PetscInt { return r == 0 ? 0 : r == size ? n : 5 + 15 * r / size; };
     first = cut(rank);
     local = cut(rank + 1) - first;
-    const auto part = [&](const char* name, PetscInt from, PetscInt to, bool continues = false) {
+    const auto part = [&](const char* name, PetscInt from, PetscInt to, const char* quantity = "") {
       from = std::clamp<PetscInt>(from - first, 0, local);
       to = std::clamp<PetscInt>(to - first, 0, local);
-      fields.push_back({name, from, to, "", "", 0, continues});
+      fields.push_back({name, from, to, quantity});
     };
     part("machine", 0, 5);
     part("one", 5, 11);
     part("two", 11, 14);
-    part("two", 14, 20, true);  // another field of the same part
+    part("two", 14, 20, "other");
     part("three", 20, 24);
     check(MatCreateAIJ(MPI_COMM_WORLD, local, local, n, n, n, nullptr, n, nullptr, a.put()));
     fill(1);

@@ -17,12 +17,11 @@ class Structure;
 
 /// States of one kind of one part (a body or a film) on this rank: local rows [begin, end) of x.
 struct Field {
-  std::string name;  ///< of the part
+  std::string name;  ///< of the part; fields of one part follow each other
   PetscInt begin = 0, end = 0;
   std::string quantity{};  ///< what they are: "thickness"; empty if they differ,
   std::string unit{};      ///< and so is this, and
   double scale = 0.0;      ///< their typical magnitude is zero
-  bool continues = false;  ///< of the same part as the field before
 };
 
 /// The same with the fields of each part as one.
