@@ -1,6 +1,7 @@
 // Force, residual and tangents of short and long compliant films.
 #include <Eigen/Core>
 #include <algorithm>
+#include <numeric>
 
 #include "film/compliant_around.hpp"
 #include "film/kinds.hpp"
@@ -20,9 +21,9 @@ void CompliantFilm::place(const std::vector<bool>& fixed) {
     else
       ++runs_.back().count;
   }
-  for (int k = 0; k < n_; ++k) {
-    if (fixed[at(k)]) continue;
-    for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < n_; ++k) {
+      if (fixed[at(k)]) continue;
       const int other = wrap(k + i - 2);
       const bool flow = long_ ? i > 0 : i == 2;  // by its P
       if (!flow && neighbours_.slope[at(i)] == 0.0) continue;
@@ -30,13 +31,20 @@ void CompliantFilm::place(const std::vector<bool>& fixed) {
         banks_.push_back({state_[at(k)], k, i, other});
         continue;
       }
-      d_states_.push_back({state_[at(k)], state_[at(other)], 0.0});
+      d_states_.add(state_[at(k)], state_[at(other)]);
       by_h_at_.push_back(at(i * n_ + k));
       if (i != 2 && !(flow && liner_.damped())) continue;
-      d_rates_.push_back({state_[at(k)], state_[at(other)], i == 2 ? 1.0 : 0.0});
+      d_rates_.add(state_[at(k)], state_[at(other)]);
+      constant_rates_.push_back(i == 2 ? 1.0 : 0.0);
       by_p_at_.push_back(at((i - 1) * n_ + k));
     }
-  }
+}
+
+Share CompliantFilm::share(int begin, int end) const {
+  core::require(begin == 0 && end == states_, "a film that is not cut");
+  Share out{begin, end, std::vector<int>(at(states_)), d_states_, d_rates_};
+  std::iota(out.seen.begin(), out.seen.end(), 0);
+  return out;
 }
 
 void CompliantFilm::set(const Motion& motion, std::span<const double> states, std::span<const double> rates) {
@@ -126,10 +134,11 @@ void CompliantFilm::integrate(Need need, StateResponse& response) {
   for (const Run& r : runs_)
     for (int k = r.node; k < r.node + r.count; ++k) {
       const std::size_t to = at(r.state + k - r.node);
-      response.force_d_states[to] = {scale * (sx[k] * by_h[k] + fx[k] * stiff[k]),
-                                     scale * (sy[k] * by_h[k] + fy[k] * stiff[k]), 0.0, 0.0};
-      if (liner_.damped())
-        response.force_d_rates[to] = {scale * sx[k] * by_rate[k], scale * sy[k] * by_rate[k], 0.0, 0.0};
+      response.force_d_states[0][to] = scale * (sx[k] * by_h[k] + fx[k] * stiff[k]);
+      response.force_d_states[1][to] = scale * (sy[k] * by_h[k] + fy[k] * stiff[k]);
+      if (!liner_.damped()) continue;
+      response.force_d_rates[0][to] = scale * sx[k] * by_rate[k];
+      response.force_d_rates[1][to] = scale * sy[k] * by_rate[k];
     }
 }
 
@@ -195,12 +204,10 @@ void CompliantFilm::tangents(double speed, StateResponse& response) {
       b1[k] = square * h[k];
     }
   }
-  response.d_states = d_states_;
-  for (std::size_t e = 0; e < by_h_at_.size(); ++e) response.d_states[e].value = by_h_[by_h_at_[e]];
-  response.d_rates = d_rates_;
+  for (std::size_t e = 0; e < by_h_at_.size(); ++e) response.d_states[e] = by_h_[by_h_at_[e]];
+  response.d_rates = constant_rates_;
   if (liner_.damped())
-    for (std::size_t e = 0; e < by_p_at_.size(); ++e)
-      response.d_rates[e].value += liner_.damping() * by_p_[by_p_at_[e]];
+    for (std::size_t e = 0; e < by_p_at_.size(); ++e) response.d_rates[e] += liner_.damping() * by_p_[by_p_at_[e]];
 }
 
 void CompliantFilm::by_journal(StateResponse& response) const {
@@ -213,41 +220,36 @@ void CompliantFilm::by_journal(StateResponse& response) const {
     return here + b0[k] * by[k - 1] * normal[k - 1] + b2[k] * by[k + 1] * normal[k + 1];
   };
   const double *by_u = around(carried_.by_u), *by_rate = around(carried_.by_rate);
+  double *by_speed = response.d_speed.data(), *by_x = response.d_position[0].data(),
+         *by_y = response.d_position[1].data(), *by_vx = response.d_velocity[0].data(),
+         *by_vy = response.d_velocity[1].data();
   for (const Run& r : runs_)
     for (int k = r.node; k < r.node + r.count; ++k) {
       const std::size_t to = at(r.state + k - r.node);
-      response.d_speed[to] = wedge * (s0 * h[k - 2] + s1 * h[k - 1] + s2 * h[k] + s3 * h[k + 1]);
-      response.d_position[to] = {through(by_u, c, k), through(by_u, s, k), 0.0, 0.0};
-      if (liner_.damped()) response.d_velocity[to] = {through(by_rate, c, k), through(by_rate, s, k), 0.0, 0.0};
+      by_speed[to] = wedge * (s0 * h[k - 2] + s1 * h[k - 1] + s2 * h[k] + s3 * h[k + 1]);
+      by_x[to] = through(by_u, c, k);
+      by_y[to] = through(by_u, s, k);
+      if (!liner_.damped()) continue;
+      by_vx[to] = through(by_rate, c, k);
+      by_vy[to] = through(by_rate, s, k);
     }
   // h = 1 - e_x cos - e_y sin in a groove.
   for (const Bank& b : banks_) {
     const double by = by_h_[at(b.place * n_ + b.row)];
-    response.d_position[at(b.state)][0] -= by * c[b.node];
-    response.d_position[at(b.state)][1] -= by * s[b.node];
+    by_x[b.state] -= by * c[b.node];
+    by_y[b.state] -= by * s[b.node];
   }
 }
 
-void CompliantFilm::evaluate_lines(const Motion& motion, Lines /*part*/, std::span<const double> states,
-                                   std::span<const double> rates, Need need, StateResponse& response) {
+void CompliantFilm::evaluate(const Motion& motion, const Share& share, std::span<const double> states,
+                             std::span<const double> rates, Need need, StateResponse& response) {
   set(motion, states, rates);
-  const std::size_t n = need == Need::tangents ? states.size() : 0;
-  response.journal = {};
+  resize(share, need, response);
   response.journal.min_thickness = g_.clearance * least_;
-  response.residual.resize(states.size());
-  response.d_position.resize(n);
-  response.d_speed.resize(n);
-  response.force_d_states.resize(n);
-  response.force_d_rates.resize(liner_.damped() ? n : 0);
-  response.d_velocity.assign(n, {});
   integrate(need, response);
   if (long_) faces();
   residual(motion.speed, rates, response.residual);
-  if (need == Need::force) {
-    response.d_states.clear();
-    response.d_rates.clear();
-    return;
-  }
+  if (need == Need::force) return;
   tangents(motion.speed, response);
   by_journal(response);
 }

@@ -76,7 +76,13 @@ public:
   /// Throws core::InputError unless bore, lubricant and liner make a compliant film.
   CompliantModel(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
   [[nodiscard]] bool constant_rates() const final { return !liner_.damped(); }
-  [[nodiscard]] double state_scale() const final { return g_.clearance; }
+  [[nodiscard]] std::vector<StateField> state_fields() const final {
+    return {{"thickness", "m", g_.clearance, 0, static_cast<int>(states())}};
+  }
+  [[nodiscard]] std::span<const Port> ports() const final {
+    static constexpr std::array<Port, 2> aligned = {Port::x, Port::y};
+    return aligned;
+  }
   [[nodiscard]] double least_thickness(const Motion& /*motion*/, std::span<const double> states) const final {
     return *std::min_element(states.begin(), states.end());
   }
@@ -89,6 +95,8 @@ protected:
   /// For reports, which know no rates: those at which g(motion, s, s') = 0, which is linear in them, if the force
   /// depends on them.
   [[nodiscard]] std::vector<double> settled_rates(const Motion& motion, std::span<const double> states);
+  /// Sizes for the rows of a share; derivatives only if they are wanted.
+  void resize(const Share& share, Need need, StateResponse& response) const;
   /// Of an empty film on a mesh of `along` nodes along it: theta, z, pressure and thickness.
   [[nodiscard]] std::array<Field, 4> empty_fields(std::size_t along) const;
 

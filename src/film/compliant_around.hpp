@@ -64,13 +64,16 @@ public:
   }
 
   [[nodiscard]] std::size_t states() const override { return at(states_); }
-  [[nodiscard]] int row_entries() const override { return 4 + (liner_.damped() && long_ ? 3 : 1); }
+  // It is not cut: its loops run once around.
+  [[nodiscard]] int cut(int near) const override { return 2 * near < states_ ? 0 : states_; }
+  [[nodiscard]] Share share(int begin, int end) const override;
   void unloaded(const Motion& motion, std::span<double> states) const override {
     for (int k = 0; k < n_; ++k)
       if (!fixed(k)) states[index(k)] = rigid(motion, k) * g_.clearance;
   }
-  void evaluate_lines(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates,
-                      Need need, StateResponse& response) override;
+  using StateModel::evaluate;
+  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
+                Need need, StateResponse& response) override;
   void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
                 std::span<double> to) const override;
   Summary summary(const Motion& motion, std::span<const double> states) override;
@@ -106,8 +109,9 @@ private:
   std::vector<Run> runs_;
   std::vector<int> fixed_;  // nodes in grooves
   std::vector<Bank> banks_;
-  std::vector<Entry> d_states_, d_rates_;       // pattern, with what is constant
-  std::vector<std::size_t> by_h_at_, by_p_at_;  // of their entries in by_h_ and by_p_
+  Places d_states_, d_rates_;
+  std::vector<double> constant_rates_;          // what of dg/ds' does not come from the liner
+  std::vector<std::size_t> by_h_at_, by_p_at_;  // of the entries in by_h_ and by_p_
   // At all nodes.
   std::vector<double> h_, cos_, sin_;                 // around; h in clearances
   std::vector<double> u_, moved_;                     // deflection and its rate, in clearances

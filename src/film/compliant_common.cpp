@@ -92,13 +92,29 @@ std::vector<double> CompliantModel::settled_rates(const Motion& motion, std::spa
   StateResponse at;
   evaluate(motion, states, rates, Need::tangents, at);
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Entry& e : at.d_rates) entries.emplace_back(e.row, e.column, e.value);
+  for_entries(whole(), whole().d_rates, at.d_rates, [&](int i, int j, double v) { entries.emplace_back(i, j, v); });
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
   if (lu.info() != Eigen::Success) throw core::NotConverged("the rates of the film are singular");
   Eigen::Map<Eigen::VectorXd>(rates.data(), n) = -lu.solve(Eigen::Map<const Eigen::VectorXd>(at.residual.data(), n));
   return rates;
+}
+
+void CompliantModel::resize(const Share& share, Need need, StateResponse& response) const {
+  const bool tangents = need == Need::tangents;
+  const auto rows = static_cast<std::size_t>(share.rows()), n = tangents ? rows : 0, k = ports().size();
+  response.journal = {};
+  response.residual.resize(rows);
+  response.d_states.resize(tangents ? share.d_states.size() : 0);
+  response.d_rates.resize(tangents ? share.d_rates.size() : 0);
+  response.d_speed.resize(n);
+  response.force_d_rates.resize(liner_.damped() ? k : 0);
+  for (PortColumns* columns : {&response.d_position, &response.force_d_states}) columns->resize(k);
+  for (PortColumns* columns : {&response.d_position, &response.force_d_states, &response.force_d_rates})
+    for (std::vector<double>& column : *columns) column.resize(n);
+  response.d_velocity.resize(k);
+  for (std::vector<double>& column : response.d_velocity) column.assign(n, 0.0);
 }
 
 std::array<Field, 4> CompliantModel::empty_fields(std::size_t along) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "film/kinds.hpp"
+#include "film/ring_preconditioner.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -52,7 +53,7 @@ void FiniteFilm::set(const Motion& motion, Lines part, std::span<const double> s
 void FiniteFilm::set_settled(const Motion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
   const std::vector<double> rates = settled_rates(motion, states);
-  set(motion, all, with_neighbours(*this, all, states), with_neighbours(*this, all, rates));
+  set(motion, all, seen_of(whole(), states), seen_of(whole(), rates));
 }
 
 // dF*/dP at every state; F* = -int max(P, 0) (cos, sin), around the bearing at every inner node of z, is homogeneous in
@@ -126,7 +127,8 @@ void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
     const std::array<double, 2> normal = this->normal(part.begin + i);
     const Array sx(&slope_[0][k], n), sy(&slope_[1][k], n), by_u(&carried_.by_u[x], n), by_h(&carried_.by_h[x], n),
         by_rate(&carried_.by_rate[x], n);
-    Eigen::Map<Eigen::ArrayXd> fx(x_.data(), n), fy(y_.data(), n);
+    Eigen::Map<Eigen::ArrayXd> fx(response.force_d_states[0].data() + k, n),
+        fy(response.force_d_states[1].data() + k, n);
     fx = scale * sx * by_h;
     fy = scale * sy * by_h;
     if (liner_.touches()) {
@@ -135,7 +137,6 @@ void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
       fx += scale * wx * z * stiff;
       fy += scale * wy * z * stiff;
     }
-    put(k, response.force_d_states);
     const auto add = [&](const Array& by, std::array<std::array<double, 4>, 4>& to) {
       const std::array<double, 2> slope = {scale * (sx * by).sum(), scale * (sy * by).sum()};
       for (std::size_t d = 0; d < 2; ++d)
@@ -143,9 +144,8 @@ void FiniteFilm::integrate(Lines part, Need need, StateResponse& response) {
     };
     add(by_u, out.d_position);
     if (!liner_.damped()) continue;
-    fx = scale * sx * by_rate;
-    fy = scale * sy * by_rate;
-    put(k, response.force_d_rates);
+    Eigen::Map<Eigen::ArrayXd>(response.force_d_rates[0].data() + k, n) = scale * sx * by_rate;
+    Eigen::Map<Eigen::ArrayXd>(response.force_d_rates[1].data() + k, n) = scale * sy * by_rate;
     add(by_rate, out.d_velocity);
   }
 }
@@ -169,36 +169,33 @@ void FiniteFilm::rows(Lines part, const Motion& motion, std::span<const double> 
     const int line = part.begin + i;
     const double* rate = rates.data() + (i + reach()) * inner();
     if (fixed(line)) {
-      hold(i, line, motion, rate, need, response);
+      hold(i, part.count() * inner(), line, motion, rate, need, response);
       continue;
     }
     residual(i, motion.speed, rate, &response.residual[at(i * inner())]);
     if (need == Need::force) continue;
-    by_states(i, motion.speed, response);
+    by_states(i, part.count() * inner(), motion.speed, response);
     by_journal(i, line, response);
   }
 }
 
 // A line in a groove.
-void FiniteFilm::hold(int i, int line, const Motion& motion, const double* rates, Need need,
+void FiniteFilm::hold(int i, int rows, int line, const Motion& motion, const double* rates, Need need,
                       StateResponse& response) const {
   const std::size_t begin = at(i * inner()), n = at(inner());
   const double moved = away(motion, line), r = rigid(motion, line), *h = &h_[node(i + reach(), 1)];
   for (std::size_t j = 0; j < n; ++j)
     response.residual[begin + j] = rates[j] + moved + release() * g_.clearance * (h[j] - r);
   if (need == Need::force) return;
-  const auto fill = [&](std::vector<double>& values, double value) {
-    if (!values.empty()) std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(begin), n, value);
-  };
-  for (std::size_t place = 0; place < Stencil::n_places; ++place) {
-    fill(response.by_states.at[place], place == Stencil::centre ? release() : 0.0);
-    fill(response.by_rates.at[place], place == Stencil::centre ? 1.0 : 0.0);
-  }
-  fill(response.d_speed, 0.0);
-  const auto [c, s] = normal(line);
-  for (std::size_t k = begin; k < begin + n; ++k) {
-    response.d_position[k] = {release() * c, release() * s, 0.0, 0.0};
-    response.d_velocity[k] = {c, s, 0.0, 0.0};
+  const auto fill = [&](double* values, double value) { std::fill_n(values + begin, n, value); };
+  for (const auto& [values, centre] : {std::pair{&response.d_states, release()}, std::pair{&response.d_rates, 1.0}})
+    for (std::size_t place = 0; place * at(rows) < values->size(); ++place)
+      fill(values->data() + place * at(rows), place == Stencil::centre ? centre : 0.0);
+  fill(response.d_speed.data(), 0.0);
+  const std::array<double, 2> away_from = normal(line);
+  for (std::size_t d = 0; d < 2; ++d) {
+    fill(response.d_position[d].data(), release() * away_from[d]);
+    fill(response.d_velocity[d].data(), away_from[d]);
   }
 }
 
@@ -217,22 +214,26 @@ void FiniteFilm::residual(int i, double speed, const double* rates, double* __re
 }
 
 // The P of a node follows its h and the journal; on an edge P is zero and h follows.
-void FiniteFilm::by_states(int i, double speed, StateResponse& response) const {
+void FiniteFilm::by_states(int i, int rows, double speed, StateResponse& response) const {
   const double wedge = 0.5 * speed / ring_.step();
   const auto [w0, w1, w2, w3] = neighbours_.slope;
   const std::size_t stride = node(1, 0), x = node(i + reach(), 1), begin = at(i * inner());
   const int n = inner();
   const double *ka = &around_.k[x], *kb = ka - stride, *kz = &along_.k[x], *qa = &around_.q[x], *qb = qa - stride,
                *qz = &along_.q[x];
+  const auto place = [&](Stencil::Place p, std::vector<double>& of) {
+    return Stencil::at(p, at(rows), of.data()) + begin;
+  };
   // Of the P that `by` moves, and of the h at faces (flow = 1) or not.
-  const auto set = [&](const std::vector<double>& by, double flow, std::array<double, 3> wedge_of, Stencil& s) {
+  const auto set = [&](const std::vector<double>& by, double flow, std::array<double, 3> wedge_of,
+                       std::vector<double>& s) {
     const auto [before, centre, after] = wedge_of;
     const double *here = &by[x], *pb = here - stride, *pf = here + stride;
-    double* __restrict to = &s.at[Stencil::centre][begin];
-    double* __restrict to_before = &s.at[Stencil::before][begin];
-    double* __restrict to_after = &s.at[Stencil::after][begin];
-    double* __restrict to_below = &s.at[Stencil::below][begin];
-    double* __restrict to_above = &s.at[Stencil::above][begin];
+    double* __restrict to = place(Stencil::centre, s);
+    double* __restrict to_before = place(Stencil::before, s);
+    double* __restrict to_after = place(Stencil::after, s);
+    double* __restrict to_below = place(Stencil::below, s);
+    double* __restrict to_above = place(Stencil::above, s);
     for (int j = 0; j < n; ++j) {
       to[j] = centre - flow * (qa[j] - qb[j] + qz[j] - qz[j - 1]) + here[j] * (ka[j] + kb[j] + kz[j] + kz[j - 1]);
       to_before[j] = before + flow * qb[j] - pb[j] * kb[j];
@@ -242,9 +243,9 @@ void FiniteFilm::by_states(int i, double speed, StateResponse& response) const {
     }
     to_below[0] = to_above[n - 1] = 0.0;
   };
-  set(carried_.by_h, 1.0, {w1 * wedge, w2 * wedge, w3 * wedge}, response.by_states);
-  if (reach() == 2) std::fill_n(&response.by_states.at[Stencil::second_before][begin], n, w0 * wedge);
-  if (liner_.damped()) set(carried_.by_rate, 0.0, {0.0, 1.0, 0.0}, response.by_rates);
+  set(carried_.by_h, 1.0, {w1 * wedge, w2 * wedge, w3 * wedge}, response.d_states);
+  if (reach() == 2) std::fill_n(place(Stencil::second_before, response.d_states), n, w0 * wedge);
+  if (liner_.damped()) set(carried_.by_rate, 0.0, {0.0, 1.0, 0.0}, response.d_rates);
 }
 
 void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
@@ -260,9 +261,9 @@ void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
   const auto [c, s] = normal(line);
   const auto [cf, sf] = normal(line + 1);
   // Of the P that `by` moves with the journal.
-  const auto through = [&](const std::vector<double>& by, std::vector<std::array<double, 4>>& to) {
+  const auto through = [&](const std::vector<double>& by, PortColumns& to) {
     const double *here = &by[x], *pb = here - stride, *pf = here + stride;
-    double* __restrict to_x = x_.data(), * __restrict to_y = y_.data();
+    double* __restrict to_x = to[0].data() + begin, * __restrict to_y = to[1].data() + begin;
     for (int j = 0; j < n; ++j) {
       const double before = kb[j] * pb[j], after = ka[j] * pf[j],
                    centre =
@@ -270,34 +271,44 @@ void FiniteFilm::by_journal(int i, int line, StateResponse& response) {
       to_x[j] = centre * c - before * cb - after * cf;
       to_y[j] = centre * s - before * sb - after * sf;
     }
-    put(begin, to);
   };
   through(carried_.by_u, response.d_position);
   if (liner_.damped()) through(carried_.by_rate, response.d_velocity);
   const double follow = edge_[at(i + reach())].by_rigid;
   for (const auto& [j, by_edge] : {std::pair{0, along_.q[x - 1]}, std::pair{n - 1, -along_.q[x + at(n - 1)]}}) {
-    response.d_position[begin + at(j)][0] -= by_edge * follow * c;
-    response.d_position[begin + at(j)][1] -= by_edge * follow * s;
+    response.d_position[0][begin + at(j)] -= by_edge * follow * c;
+    response.d_position[1][begin + at(j)] -= by_edge * follow * s;
   }
 }
 
-void FiniteFilm::evaluate_lines(const Motion& motion, Lines part, std::span<const double> states,
-                                std::span<const double> rates, Need need, StateResponse& response) {
+Share FiniteFilm::share(int begin, int end) const {
+  const int line = inner(), n = static_cast<int>(states()), rows = end - begin;
+  core::require(begin % line == 0 && end % line == 0, "a film that is cut at whole lines");
+  Share out{begin, end, {}, {}, {}};
+  for (int k = begin - reach() * line; k < end + reach() * line; ++k) out.seen.push_back((k % n + n) % n);
+  // In the order of Stencil; with the zeros at the ends of lines, so that every diagonal is in one piece.
+  const int own = reach() * line;
+  for (const int offset : {0, -line, line, -1, 1}) out.d_states.add({0, own + offset, rows});
+  if (reach() == 2) out.d_states.add({0, own - 2 * line, rows});
+  for (const int offset : {0, -line, line, -1, 1})
+    if (offset == 0 || liner_.damped()) out.d_rates.add({0, own + offset, rows});
+  return out;
+}
+
+std::unique_ptr<StatePreconditioner> FiniteFilm::preconditioner(MPI_Comm comm, const Share& share) const {
+  const Lines here{share.begin / inner(), share.end / inner()};
+  int least = here.count();
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, comm);
+  if (least < 2) return nullptr;
+  return std::make_unique<RingPreconditioner>(comm, ring_.nodes(), inner(), here);
+}
+
+void FiniteFilm::evaluate(const Motion& motion, const Share& share, std::span<const double> states,
+                          std::span<const double> rates, Need need, StateResponse& response) {
+  const Lines part{share.begin / inner(), share.end / inner()};
   set(motion, part, states, rates);
-  const std::size_t n = at(part.count() * inner()), m = need == Need::tangents ? n : 0;
-  response.journal = {};
-  response.residual.resize(n);
-  response.d_position.resize(m);
-  response.d_speed.resize(m);
-  response.force_d_states.resize(m);
-  response.force_d_rates.resize(liner_.damped() ? m : 0);
-  response.d_velocity.assign(m, {});
-  for (std::size_t place = 0; place < Stencil::n_places; ++place) {
-    const bool second = place == Stencil::second_before;
-    response.by_states.at[place].resize(second && reach() == 1 ? 0 : m);
-    response.by_rates.at[place].resize(second || !liner_.damped() ? 0 : m);
-  }
-  if (!liner_.damped()) response.by_rates.at[Stencil::centre].assign(m, 1.0);
+  resize(share, need, response);
+  if (!liner_.damped()) std::fill(response.d_rates.begin(), response.d_rates.end(), 1.0);
   response.journal.min_thickness =
       g_.clearance * Array(&h_[node(reach(), 0)], static_cast<Eigen::Index>(node(part.count(), 0))).minCoeff();
   integrate(part, need, response);

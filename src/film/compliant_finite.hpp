@@ -10,6 +10,7 @@
 
 #include "film/compliant.hpp"
 #include "film/groove.hpp"
+#include "film/stencil.hpp"
 #include "whirl/core/index.hpp"
 
 namespace whirl::film {
@@ -64,18 +65,20 @@ public:
     for (int j = 1; j < cells_; ++j)
       z_weight_.push_back((ring_.nodal() ? (j % 2 == 0 ? 2.0 : 4.0) / 3.0 : 1.0) * per_cell);
     edge_weight_ = per_cell / (ring_.nodal() ? 3.0 : 2.0);
-    for (auto* values : {&x_, &y_}) values->resize(core::at(inner()));
   }
 
   [[nodiscard]] std::size_t states() const override { return core::at(ring_.nodes() * inner()); }
-  [[nodiscard]] Ring ring() const override { return {ring_.nodes(), reach()}; }
-  [[nodiscard]] int row_entries() const override { return Stencil::n_places + (liner_.damped() ? 5 : 1); }
+  // At whole lines. A share sees `reach` lines on either side, in front of its own and behind them.
+  [[nodiscard]] int cut(int near) const override { return (near + inner() / 2) / inner() * inner(); }
+  [[nodiscard]] Share share(int begin, int end) const override;
+  [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override;
   void unloaded(const Motion& motion, std::span<double> states) const override {
     for (int i = 0; i < ring_.nodes(); ++i)
       std::fill_n(states.begin() + i * inner(), inner(), rigid(motion, i) * g_.clearance);
   }
-  void evaluate_lines(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates,
-                      Need need, StateResponse& response) override;
+  using StateModel::evaluate;
+  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
+                Need need, StateResponse& response) override;
   void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
                 std::span<double> to) const override;
   Summary summary(const Motion& motion, std::span<const double> states) override;
@@ -96,15 +99,13 @@ private:
   void set_settled(const Motion& motion, std::span<const double> states);
   void slopes(Lines part);
   void integrate(Lines part, Need need, StateResponse& response);
-  // x_ and y_ to the states of a line, of which the first one is `begin`.
-  void put(std::size_t begin, std::vector<std::array<double, 4>>& to) const {
-    for (std::size_t j = 0; j < x_.size(); ++j) to[begin + j] = {x_[j], y_[j], 0.0, 0.0};
-  }
   void add_edges(int line, const LinerLaw::Edge& edge, Need need, Response& out) const;
   void rows(Lines part, const Motion& motion, std::span<const double> rates, Need need, StateResponse& response);
-  void hold(int i, int line, const Motion& motion, const double* rates, Need need, StateResponse& response) const;
+  // Row i of the lines at hand; of all together there are `rows`.
+  void hold(int i, int rows, int line, const Motion& motion, const double* rates, Need need,
+            StateResponse& response) const;
   void residual(int i, double speed, const double* rates, double* g) const;
-  void by_states(int i, double speed, StateResponse& response) const;
+  void by_states(int i, int rows, double speed, StateResponse& response) const;
   void by_journal(int i, int line, StateResponse& response);
   // kappa
   [[nodiscard]] double release() const { return 2.0 * (by_step_ + by_length_) * liner_.stiffness(); }
@@ -121,7 +122,6 @@ private:
   Faces around_, along_;
   std::array<std::vector<double>, 2> slope_;  // d force*/d P at the states of the lines at hand
   std::vector<int> mixed_;                    // those in front of cells in which P changes its sign
-  std::vector<double> x_, y_;                 // of one line
 };
 
 }  // namespace whirl::film

@@ -1,5 +1,6 @@
 // Film on rigid pads that conserves its mass in time: what the gap holds is the state.
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "film/content_pad.hpp"
@@ -25,27 +26,46 @@ public:
   }
 
   [[nodiscard]] std::size_t states() const override { return states_; }
-  [[nodiscard]] int row_entries() const override { return 6; }
-  [[nodiscard]] double state_scale() const override { return geometry_.clearance; }
+  [[nodiscard]] std::vector<StateField> state_fields() const override {
+    return {{"content", "m", geometry_.clearance, 0, static_cast<int>(states_)}};
+  }
+  [[nodiscard]] std::span<const Port> ports() const override {
+    static constexpr std::array<Port, 4> all = {Port::x, Port::y, Port::tilt_x, Port::tilt_y};
+    return std::span(all).first(options_.tilt ? 4 : 2);
+  }
   [[nodiscard]] bool whole_steps() const override { return true; }
   void unloaded(const Motion& /*motion*/, std::span<double> states) const override {
     std::fill(states.begin(), states.end(), 0.0);
   }
 
-  void evaluate_lines(const Motion& motion, Lines /*part*/, std::span<const double> states,
-                      std::span<const double> rates, Need need, StateResponse& response) override {
+  // At whole columns; all pads have the same number of states in each.
+  [[nodiscard]] int cut(int near) const override {
+    const int column = solvers_.front()->column();
+    return (near + column / 2) / column * column;
+  }
+  [[nodiscard]] Share share(int begin, int end) const override { return lay_out(begin, end).share; }
+
+  using StateModel::evaluate;
+  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
+                Need need, StateResponse& response) override {
+    if (at_hand_.share.begin != share.begin || at_hand_.share.end != share.end)
+      at_hand_ = lay_out(share.begin, share.end);
+    core::require(states.size() == share.seen.size() && rates.size() == states.size(), "what a share of a film sees");
+    const bool tangents = need == Need::tangents;
+    const auto rows = static_cast<std::size_t>(share.rows());
     response.journal = {};
     response.journal.min_thickness = std::numeric_limits<double>::infinity();
-    response.residual.clear();
-    response.d_states.clear();
-    response.d_rates.clear();
-    response.d_position.clear();
-    response.d_velocity.clear();
-    response.d_speed.clear();
+    response.residual.resize(rows);
+    response.d_states.resize(tangents ? share.d_states.size() : 0);
+    response.d_rates.resize(tangents ? share.d_rates.size() : 0);
+    response.d_speed.resize(tangents ? rows : 0);
     response.force_d_rates.clear();
-    response.force_d_states.assign(need == Need::tangents ? states_ : 0, {});
+    for (PortColumns* columns : {&response.d_position, &response.d_velocity, &response.force_d_states}) {
+      columns->resize(ports().size());
+      for (std::vector<double>& column : *columns) column.resize(tangents ? rows : 0);
+    }
     for (std::size_t n = 0; n < pads_.size(); ++n)
-      solvers_[n]->append(motion, of(n, states), of(n, rates), static_cast<int>(first_[n]), need, response);
+      solvers_[n]->evaluate(motion, at_hand_.pads[n], states, rates, need, response);
   }
 
   void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
@@ -71,6 +91,39 @@ public:
   }
 
 private:
+  struct Layout {
+    Share share;
+    std::vector<PadShare> pads;
+  };
+  // States held come first among those seen, then the columns beside them, pad by pad.
+  [[nodiscard]] Layout lay_out(int begin, int end) const {
+    const int line = solvers_.front()->column();
+    core::require(begin % line == 0 && end % line == 0, "a film that is cut at whole columns");
+    Layout out{{begin, end, {}, {}, {}}, {}};
+    for (int k = begin; k < end; ++k) out.share.seen.push_back(k);
+    for (std::size_t n = 0; n < pads_.size(); ++n) {
+      const int first = static_cast<int>(first_[n]) / line, columns = static_cast<int>(solvers_[n]->states()) / line;
+      PadShare pad;
+      pad.begin = std::clamp(begin / line - first, 0, columns);
+      pad.end = std::clamp(end / line - first, 0, columns);
+      pad.row = (first + pad.begin) * line - begin;
+      pad.seen.assign(static_cast<std::size_t>(columns), -1);
+      for (int c = pad.begin; c < pad.end; ++c)
+        pad.seen[static_cast<std::size_t>(c)] = pad.row + (c - pad.begin) * line;
+      if (pad.begin < pad.end)
+        for (int c = 0; c < columns; ++c) {
+          const bool beside = solvers_[n]->sees(pad.begin, c) || solvers_[n]->sees(pad.end - 1, c);
+          if (!beside || pad.seen[static_cast<std::size_t>(c)] >= 0) continue;
+          pad.seen[static_cast<std::size_t>(c)] = static_cast<int>(out.share.seen.size());
+          for (int j = 0; j < line; ++j) out.share.seen.push_back((first + c) * line + j);
+        }
+      out.pads.push_back(std::move(pad));
+    }
+    for (int place = 0; place < ContentPad::places; ++place)
+      for (std::size_t n = 0; n < pads_.size(); ++n) solvers_[n]->add_places(place, out.pads[n], out.share.d_states);
+    if (begin < end) out.share.d_rates.add({0, 0, end - begin});
+    return out;
+  }
   [[nodiscard]] std::span<const double> of(std::size_t pad, std::span<const double> all) const {
     return all.subspan(first_[pad], solvers_[pad]->states());
   }
@@ -87,6 +140,7 @@ private:
   std::vector<std::unique_ptr<ContentPad>> solvers_;
   std::vector<std::size_t> first_;  // state of each pad
   std::size_t states_ = 0;
+  Layout at_hand_;  // of the share that was evaluated last
 };
 
 }  // namespace

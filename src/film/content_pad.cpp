@@ -25,31 +25,54 @@ ContentPad::ContentPad(const Pad& pad, const Options& options, const Lubricant& 
   }
 }
 
+bool ContentPad::sees(int column, int other) const {
+  const int i = columns_[static_cast<std::size_t>(column)];
+  return column_at(i - 1) == other || column_at(i + 1) == other;
+}
+
+// The places are those before and after around the pad, below and above along it, and the node itself.
+void ContentPad::add_places(int place, PadShare& share, Places& to) const {
+  constexpr std::array<std::array<int, 2>, places> offset = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {0, 0}}};
+  const auto [around_it, along_it] = offset[static_cast<std::size_t>(place)];
+  share.at.resize(static_cast<std::size_t>((share.end - share.begin) * rows_));
+  for (int c = share.begin; c < share.end; ++c) {
+    const int other = column_at(columns_[static_cast<std::size_t>(c)] + around_it);
+    if (other < 0) continue;
+    for (int j = std::max(0, -along_it); j < std::min(rows_, rows_ - along_it); ++j) {
+      const int row = (c - share.begin) * rows_ + j;
+      share.at[static_cast<std::size_t>(row)][static_cast<std::size_t>(place)] = to.size();
+      to.add(share.row + row, share.seen[static_cast<std::size_t>(other)] + j + along_it);
+    }
+  }
+}
+
+void ContentPad::read(int i, int j, const double* value) {
+  Node& here = nodes_[static_cast<std::size_t>(i * rows_ + j)] = {};
+  const auto k = static_cast<std::size_t>(i);
+  here.z = row_z(j);
+  here.cosine = grid_.mean * grid_.node_cos[k];
+  here.sine = grid_.mean * grid_.node_sin[k];
+  here.h = pad_.clearance - (X_ + here.z * tx_) * here.cosine - (Y_ + here.z * ty_) * here.sine;
+  if (!value) {
+    here.p = wall_pressure(i);
+    if (!pad_.closed && i == (ahead_ > 0 ? 0 : grid_.n_theta)) here.empty = empty_at_edge_;
+  } else if (*value >= 0.0) {
+    here.p_q = bulk_modulus_ / here.h;
+    here.p = here.p_q * *value;
+    here.p_h = -here.p / here.h;
+  } else {
+    here.empty_q = -1.0 / here.h;
+    here.empty = here.empty_q * *value;
+    here.empty_h = -here.empty / here.h;
+  }
+}
+
 void ContentPad::read(const Motion& motion, std::span<const double> q) {
   coefficients(motion);
   for (int i = 0; i <= grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) {
-      Node& here = nodes_[static_cast<std::size_t>(i * rows_ + j)] = {};
-      const auto k = static_cast<std::size_t>(i);
-      here.z = row_z(j);
-      here.cosine = grid_.mean * grid_.node_cos[k];
-      here.sine = grid_.mean * grid_.node_sin[k];
-      here.h = pad_.clearance - (X_ + here.z * tx_) * here.cosine - (Y_ + here.z * ty_) * here.sine;
-      if (wall(i)) {
-        here.p = wall_pressure(i);
-        if (!pad_.closed && i == (ahead_ > 0 ? 0 : grid_.n_theta)) here.empty = empty_at_edge_;
-        continue;
-      }
-      const double value = q[static_cast<std::size_t>(state(i, j))];
-      if (value >= 0.0) {
-        here.p_q = bulk_modulus_ / here.h;
-        here.p = here.p_q * value;
-        here.p_h = -here.p / here.h;
-      } else {
-        here.empty_q = -1.0 / here.h;
-        here.empty = here.empty_q * value;
-        here.empty_h = -here.empty / here.h;
-      }
+      const int column = column_at(i);
+      read(i, j, column < 0 ? nullptr : &q[static_cast<std::size_t>(column * rows_ + j)]);
     }
 }
 
@@ -65,7 +88,7 @@ std::array<ContentPad::Side, 4> ContentPad::sides(int i, int j) const {
     Side& s = out[step < 0 ? 0 : 1];
     const int face = wrap(step < 0 ? i - 1 : i);
     s.other = &node(i + step, j);
-    s.state = state(i + step, j);
+    s.state = column_at(i + step) >= 0;
     at_face(a_, around(face, j), 1.0, s);
     s.couette_h = 0.5 * step / grid_.dtheta;
     s.couette = s.couette_h * a_.h[around(face, j)];
@@ -81,7 +104,7 @@ std::array<ContentPad::Side, 4> ContentPad::sides(int i, int j) const {
     at_face(b_, along(i, face), 1.0 / v, s);
     if (j + step >= 0 && j + step < rows_) {
       s.other = &node(i, j + step);
-      s.state = state(i, j + step);
+      s.state = true;
     }
     s.cosine = grid_.node_cos[static_cast<std::size_t>(i)];
     s.sine = grid_.node_sin[static_cast<std::size_t>(i)];
@@ -98,36 +121,38 @@ void ContentPad::add_thickness(double by, double cosine, double sine, double z, 
   to[3] -= by * z * sine;
 }
 
-void ContentPad::row(int i, int j, double rate, int first, Need need, StateResponse& response) const {
+void ContentPad::row(int i, int j, double rate, std::size_t k, const PadShare& share, Need need,
+                     StateResponse& response) const {
   const Node& here = node(i, j);
-  const int own = state(i, j);
   const std::array<Side, 4> around_it = sides(i, j);
-  double g = rate + source_[at(i, j)] / share(j);
+  double g = rate + source_[at(i, j)] / PadEquations::share(j);
   for (const Side& s : around_it) {
     g += s.k * (here.p - (s.other ? s.other->p : 0.0));
     if (s.upstream) g -= speed_ * s.couette * s.upstream->empty;
   }
-  response.residual.push_back(g);
+  response.residual[k] = g;
   if (need == Need::force) return;
 
   // By this state and its neighbours', and by the thickness: at faces, and through p and `empty` at the same nodes.
   std::array<double, 4> d_position{}, d_velocity{};
   double by_speed = 0.0, own_p = 0.0, own_empty = 0.0;
-  const auto through = [&](const Node& n, int column, double by_p, double by_empty) {
-    response.d_states.push_back({first + own, first + column, by_p * n.p_q + by_empty * n.empty_q});
+  const std::array<std::size_t, places>& to = share.at[k - static_cast<std::size_t>(share.row)];
+  const auto through = [&](const Node& n, std::size_t place, double by_p, double by_empty) {
+    response.d_states[to[place]] = by_p * n.p_q + by_empty * n.empty_q;
     add_thickness(by_p * n.p_h + by_empty * n.empty_h, n.cosine, n.sine, n.z, d_position);
   };
-  for (const Side& s : around_it) {
+  for (std::size_t place = 0; place < around_it.size(); ++place) {
+    const Side& s = around_it[place];
     const double jump = here.p - (s.other ? s.other->p : 0.0), empty = s.upstream ? s.upstream->empty : 0.0;
     by_speed += s.k_speed * jump - s.couette * empty;
     add_thickness(s.k_h * jump - speed_ * s.couette_h * empty, s.cosine, s.sine, s.z, d_position);
     const bool from_here = s.upstream == &here;
     own_p += s.k;
     if (from_here) own_empty -= speed_ * s.couette;
-    if (s.state >= 0) through(*s.other, s.state, -s.k, from_here ? 0.0 : -speed_ * s.couette);
+    if (s.state) through(*s.other, place, -s.k, from_here ? 0.0 : -speed_ * s.couette);
   }
-  through(here, own, own_p, own_empty);
-  response.d_rates.push_back({first + own, first + own, 1.0});
+  through(here, 4, own_p, own_empty);
+  response.d_rates[k] = 1.0;
 
   // Wedge Omega/2 dh/dtheta and squeeze.
   const double half = 0.5 * speed_;
@@ -139,42 +164,68 @@ void ContentPad::row(int i, int j, double rate, int first, Need need, StateRespo
     d_velocity[2 * moment + 1] -= lever * here.sine;
   }
   by_speed += 0.5 * ((X_ + here.z * tx_) * here.sine - (Y_ + here.z * ty_) * here.cosine);
-  response.d_position.push_back(d_position);
-  response.d_velocity.push_back(d_velocity);
-  response.d_speed.push_back(by_speed);
+  for (std::size_t port = 0; port < response.d_position.size(); ++port) {
+    response.d_position[port][k] = d_position[port];
+    response.d_velocity[port][k] = d_velocity[port];
+  }
+  response.d_speed[k] = by_speed;
 }
 
 // Force by the trapezoidal rule with exact means of cos and sin, as that of the film without states; grooves carry too.
-void ContentPad::integrate(Need need, std::size_t first, StateResponse& response) const {
+void ContentPad::integrate(int i, int k, Need need, StateResponse& response) const {
   const double area = pad_.radius * grid_.dtheta * grid_.dz * grid_.mean * std::cos(0.5 * grid_.dtheta);
   const std::size_t components = tilt_ ? 4 : 2;
-  for (int i = first_; i < grid_.n_theta; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    for (int j = 0; j < rows_; ++j) {
-      const Node& here = node(i, j);
-      const int own = state(i, j);
-      const double times = -area * (tilt_ ? 1.0 : 2.0 * share(j)), lever = tilt_ ? here.z : 0.0;
-      const double x = times * grid_.node_cos[k], y = times * grid_.node_sin[k];
-      const std::array<double, 4> weight = {x, y, lever * x, lever * y};
-      std::array<double, 4> by_position{}, by_state{};
-      if (need == Need::tangents) add_thickness(here.p_h, here.cosine, here.sine, here.z, by_position);
-      for (std::size_t f = 0; f < components; ++f) {
-        response.journal.force[f] += weight[f] * here.p;
-        by_state[f] = weight[f] * here.p_q;
-        for (std::size_t d = 0; d < components; ++d) response.journal.d_position[f][d] += weight[f] * by_position[d];
-      }
-      if (need == Need::tangents && own >= 0) response.force_d_states[first + static_cast<std::size_t>(own)] = by_state;
+  const auto column = static_cast<std::size_t>(i);
+  for (int j = 0; j < rows_; ++j) {
+    const Node& here = node(i, j);
+    const double times = -area * (tilt_ ? 1.0 : 2.0 * PadEquations::share(j)), lever = tilt_ ? here.z : 0.0;
+    const double x = times * grid_.node_cos[column], y = times * grid_.node_sin[column];
+    const std::array<double, 4> weight = {x, y, lever * x, lever * y};
+    std::array<double, 4> by_position{};
+    if (need == Need::tangents) add_thickness(here.p_h, here.cosine, here.sine, here.z, by_position);
+    for (std::size_t f = 0; f < components; ++f) {
+      response.journal.force[f] += weight[f] * here.p;
+      for (std::size_t d = 0; d < components; ++d) response.journal.d_position[f][d] += weight[f] * by_position[d];
+      if (need == Need::tangents && k >= 0)
+        response.force_d_states[f][static_cast<std::size_t>(k + j)] = weight[f] * here.p_q;
     }
   }
 }
 
-void ContentPad::append(const Motion& motion, std::span<const double> q, std::span<const double> rates, int first,
-                        Need need, StateResponse& response) {
-  read(motion, q);
+// A column and its neighbours, in a wall or not, are read before the rows of the column are taken.
+void ContentPad::evaluate(const Motion& motion, const PadShare& share, std::span<const double> q,
+                          std::span<const double> rates, Need need, StateResponse& response) {
+  if (share.begin == share.end) return;
+  conductances(motion);
   response.journal.min_thickness = std::min(response.journal.min_thickness, h_min_);
-  for (const int i : columns_)
-    for (int j = 0; j < rows_; ++j) row(i, j, rates[static_cast<std::size_t>(state(i, j))], first, need, response);
-  integrate(need, static_cast<std::size_t>(first), response);
+  const auto value = [&](std::span<const double> of, int i, int j) {
+    const int column = column_at(i);
+    return column < 0 ? nullptr : &of[static_cast<std::size_t>(share.seen[static_cast<std::size_t>(column)] + j)];
+  };
+  const auto read_column = [&](int i) {
+    for (int j = 0; j < rows_; ++j) read(i, j, value(q, i, j));
+  };
+  const auto column = [&](int c) { return columns_[static_cast<std::size_t>(c)]; };
+  for (int c = share.begin; c < share.end; ++c) {
+    const int i = column(c), before = wrap(i - 1), after = wrap(i + 1);
+    if (c == share.begin || column(c - 1) != before) read_column(before);
+    read_column(i);
+    if (c + 1 == share.end || column(c + 1) != after) read_column(after);
+  }
+  for (int c = share.begin, k = share.row; c < share.end; ++c) {
+    const int i = column(c);
+    source(motion, i);
+    integrate(i, k, need, response);
+    for (int j = 0; j < rows_; ++j, ++k)
+      row(i, j, *value(rates, i, j), static_cast<std::size_t>(k), share, need, response);
+  }
+  if (share.begin > 0) return;
+  // What is given in grooves counts once.
+  for (int i = first_; i < grid_.n_theta; ++i)
+    if (wall(i)) {
+      read_column(i);
+      integrate(i, -1, need, response);
+    }
 }
 
 PadReport ContentPad::report(const Motion& motion, std::span<const double> q) {
@@ -210,7 +261,7 @@ void ContentPad::resample(const Motion& motion, ContentPad& other, std::span<con
         return (1.0 - s) * ((1.0 - t) * v[first] + t * v[first + 1]) +
                s * ((1.0 - t) * v[first + columns] + t * v[first + columns + 1]);
       };
-      const auto own = static_cast<std::size_t>(state(i, j));
+      const auto own = static_cast<std::size_t>(column_at(i) * rows_ + j);
       const double h = node(i, j).h, p = between(there.pressure);
       to[own] = p > 0.0 ? h * p / bulk_modulus_ : -h * (1.0 - between(there.fill));
     }

@@ -30,6 +30,11 @@ PadEquations::PadEquations(const Pad& pad, const Options& options, const Lubrica
 }
 
 void PadEquations::coefficients(const Motion& motion) {
+  conductances(motion);
+  for (int i = first_; i < grid_.n_theta; ++i) source(motion, i);
+}
+
+void PadEquations::conductances(const Motion& motion) {
   const int n = grid_.n_theta;
   speed_ = motion.speed;
   ahead_ = speed_ < 0.0 ? -1 : 1;
@@ -37,7 +42,6 @@ void PadEquations::coefficients(const Motion& motion) {
   Y_ = motion.position[1] - pad_.centre_y;
   tx_ = tilt_ ? motion.position[2] : 0.0;
   ty_ = tilt_ ? motion.position[3] : 0.0;
-  const double txd = tilt_ ? motion.velocity[2] : 0.0, tyd = tilt_ ? motion.velocity[3] : 0.0;
   const double c = pad_.clearance;
   h_min_ = least_(X_, Y_, tx_, ty_);
   require_thickness(h_min_);
@@ -63,16 +67,17 @@ void PadEquations::coefficients(const Motion& motion) {
   };
   mobilities(a_, resistance_around_, step);
   mobilities(b_, resistance_along_, grid_.dz);
+}
 
-  // Exact cell means of (Omega/2) dh/dtheta + dh/dt.
-  for (int i = first_; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    for (int j = 0; j < rows_; ++j) {
-      const double z = row_z(j);
-      const double sine = 0.5 * speed * (X_ + z * tx_) - (motion.velocity[1] + z * tyd);
-      const double cosine = 0.5 * speed * (Y_ + z * ty_) + (motion.velocity[0] + z * txd);
-      source_[at(i, j)] = share(j) * grid_.mean * (sine * grid_.node_sin[k] - cosine * grid_.node_cos[k]);
-    }
+// Exact cell means of (Omega/2) dh/dtheta + dh/dt.
+void PadEquations::source(const Motion& motion, int column) {
+  const double txd = tilt_ ? motion.velocity[2] : 0.0, tyd = tilt_ ? motion.velocity[3] : 0.0, speed = motion.speed;
+  const auto k = static_cast<std::size_t>(column);
+  for (int j = 0; j < rows_; ++j) {
+    const double z = row_z(j);
+    const double sine = 0.5 * speed * (X_ + z * tx_) - (motion.velocity[1] + z * tyd);
+    const double cosine = 0.5 * speed * (Y_ + z * ty_) + (motion.velocity[0] + z * txd);
+    source_[at(column, j)] = share(j) * grid_.mean * (sine * grid_.node_sin[k] - cosine * grid_.node_cos[k]);
   }
 }
 

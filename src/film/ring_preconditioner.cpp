@@ -1,4 +1,4 @@
-#include "whirl/film/ring_preconditioner.hpp"
+#include "film/ring_preconditioner.hpp"
 
 #include <algorithm>
 #include <array>
@@ -364,13 +364,18 @@ RingPreconditioner::RingPreconditioner(MPI_Comm comm, int lines, int line, Lines
 
 RingPreconditioner::~RingPreconditioner() = default;
 
-void RingPreconditioner::set(const Stencil& rows) {
+void RingPreconditioner::set(std::span<const double> d_states, std::span<const double> d_rates, double alpha,
+                             double sigma) {
   const int n = here_.count();
+  const std::size_t rows = at(n * line_);
   Level::Rows out{Block(line_, n), Block(line_, n), Block(line_, n)};
   const auto put = [&](Stencil::Place place, Columns& to) {
-    const std::vector<double>& from = rows.at[place];
-    for (int i = 0; i < n && !from.empty(); ++i)
-      for (int z = 0; z < line_; ++z) to.row(z)[i] += static_cast<Real>(from[at(i * line_ + z)]);
+    for (const auto& [values, factor] : {std::pair{d_states, alpha}, std::pair{d_rates, sigma}}) {
+      if ((static_cast<std::size_t>(place) + 1) * rows > values.size()) continue;
+      const double* from = Stencil::at(place, rows, values.data());
+      for (int i = 0; i < n; ++i)
+        for (int z = 0; z < line_; ++z) to.row(z)[i] += static_cast<Real>(factor * from[at(i * line_ + z)]);
+    }
   };
   put(Stencil::centre, out.own.centre);
   put(Stencil::below, out.own.below);

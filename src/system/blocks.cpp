@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 
+#include "film_part.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -71,21 +72,17 @@ void RotorSystem::Blocks::rebuild() {
   l0_speed_ = -1;
 }
 
-// The places are those of any evaluation, for one at the centre of the bearing.
 void RotorSystem::Blocks::find_own_states() {
   responses_.resize(system_.bearings_.size());
   for (std::size_t i = 0; i < system_.bearings_.size(); ++i) {
-    const Bearing& bearing = system_.bearings_[i];
-    if (!bearing.states) continue;
-    const std::vector<double> rates(static_cast<std::size_t>(bearing.count), 0.0);
-    std::vector<double> states = rates;
-    bearing.states->unloaded({}, states);
-    bearing.states->evaluate({}, states, rates, film::Need::tangents, responses_[i]);
+    const FilmPart* part = system_.bearings_[i].part.get();
+    if (!part) continue;
     const auto k = static_cast<Eigen::Index>(i);
-    problem::OwnStates own{bearing.first, bearing.count, 4 * k, 4, 2 * k, 2, {}, {}};
-    for (const film::Entry& e : responses_[i].d_states) own.states.push_back({e.row, e.column});
-    for (const film::Entry& e : responses_[i].d_rates) own.rates.push_back({e.row, e.column});
-    own.settles = bearing.states->whole_steps();
+    problem::OwnStates own{part->first(), part->count(), 4 * k, 4, 2 * k, 2, {}, {}};
+    const film::Share& all = part->film().whole();
+    for (const auto& [from, to] : {std::pair{&all.d_states, &own.states}, std::pair{&all.d_rates, &own.rates}})
+      film::for_entries(all, *from, {}, [to = to](int row, int column, double) { to->push_back({row, column}); });
+    own.settles = part->film().whole_steps();
     own_.push_back(std::move(own));
   }
 }
@@ -114,24 +111,22 @@ void take(const film::StateResponse& response, const problem::OwnStates& at, Eig
           problem::OwnTangents& out, Eigen::VectorXd& d_speed) {
   core::require(response.d_states.size() == at.states.size() && response.d_rates.size() == at.rates.size(),
                 "a film tells its derivatives at the same places in every call");
-  out.states.resize(response.d_states.size());
-  out.rates.resize(response.d_rates.size());
-  for (std::size_t e = 0; e < out.states.size(); ++e) out.states[e] = response.d_states[e].value;
-  for (std::size_t e = 0; e < out.rates.size(); ++e) out.rates[e] = response.d_rates[e].value;
+  out.states = response.d_states;
+  out.rates = response.d_rates;
   out.inputs.resize(at.inputs, at.count);
   out.forces.resize(at.forces, at.count);
   out.force_rates.resize(response.force_d_rates.empty() ? 0 : at.forces, at.count);
-  for (Eigen::Index k = 0; k < at.count; ++k) {
-    const auto state = static_cast<std::size_t>(k);
-    for (std::size_t d = 0; d < 2; ++d) {
-      const auto e = static_cast<Eigen::Index>(d);
-      out.inputs(e, k) = response.d_position[state][d];
-      out.inputs(2 + e, k) = response.d_velocity[state][d];
-      out.forces(e, k) = response.force_d_states[state][d];
-      if (out.force_rates.rows() > 0) out.force_rates(e, k) = response.force_d_rates[state][d];
-    }
-    d_speed(coordinates + at.first + k) = response.d_speed[state];
+  const auto thin = [&](const std::vector<double>& v) {
+    return Eigen::Map<const Eigen::RowVectorXd>(v.data(), at.count);
+  };
+  for (std::size_t d = 0; d < 2; ++d) {
+    const auto e = static_cast<Eigen::Index>(d);
+    out.inputs.row(e) = thin(response.d_position[d]);
+    out.inputs.row(2 + e) = thin(response.d_velocity[d]);
+    out.forces.row(e) = thin(response.force_d_states[d]);
+    if (out.force_rates.rows() > 0) out.force_rates.row(e) = thin(response.force_d_rates[d]);
   }
+  d_speed.segment(coordinates + at.first, at.count) = thin(response.d_speed).transpose();
 }
 
 }  // namespace
@@ -161,21 +156,21 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
     motion.position[1] -= system_.train_.supports[k].elevation;
     const Bearing& bearing = system_.bearings_[k];
     try {
-      if (bearing.states) {
-        const auto count = static_cast<std::size_t>(bearing.count);
-        bearing.states->evaluate(motion, {own + bearing.first, count}, {rates + bearing.first, count}, need,
-                                 responses_[k]);
+      if (bearing.part) {
+        film::StateModel& film = bearing.part->film();
+        const PetscInt first = bearing.part->first();
+        film.evaluate(motion, {own + first, film.states()}, {rates + first, film.states()}, need, responses_[k]);
       } else {
         bearing.film->evaluate(motion, need, condensed);
       }
     } catch (const core::DomainError& e) {
       throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
     }
-    const film::Response& response = bearing.states ? responses_[k].journal : condensed;
+    const film::Response& response = bearing.part ? responses_[k].journal : condensed;
     for (int d = 0; d < 2; ++d) films.forces(2 * i + d) = response.force[static_cast<std::size_t>(d)];
-    if (bearing.states)
-      films.residual.segment(bearing.first, bearing.count) =
-          Eigen::Map<const Eigen::VectorXd>(responses_[k].residual.data(), bearing.count);
+    if (bearing.part)
+      films.residual.segment(bearing.part->first(), bearing.part->count()) =
+          Eigen::Map<const Eigen::VectorXd>(responses_[k].residual.data(), bearing.part->count());
     if (!tangents) continue;
     for (int d = 0; d < 2; ++d) {
       const auto row = static_cast<std::size_t>(d);
@@ -185,7 +180,7 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
       }
       films.d_speed(2 * i + d) = response.d_speed[row];
     }
-    if (!bearing.states) continue;
+    if (!bearing.part) continue;
     take(responses_[k], own_[next], r, films.own[next], films.d_speed);
     ++next;
   }

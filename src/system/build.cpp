@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "blocks.hpp"
+#include "film_part.hpp"
 #include "frozen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -70,23 +71,29 @@ void RotorSystem::build() {
       b.journal[static_cast<std::size_t>(d)] = rotor_->coordinate(s.node, d);
       if (b.journal[static_cast<std::size_t>(d)] < 0)
         throw core::InputError("a bearing's node is not a master node of the reduced rotor");
-      if (s.has_pedestal) b.pedestal[static_cast<std::size_t>(d)] = n_++;
+      b.ports.push_back({{b.journal[static_cast<std::size_t>(d)], 1.0}});
+      if (!s.has_pedestal) continue;
+      b.pedestal[static_cast<std::size_t>(d)] = n_++;
+      b.ports.back().emplace_back(b.pedestal[static_cast<std::size_t>(d)], -1.0);
     }
     bearings_.push_back(std::move(b));
   }
+  n_own_ = 0;
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const Support& s = train_.supports[i];
-      if (film::has_states(s.film))
-        bearings_[i].states = film::make_state_model(s.geometry, s.film, s.lubricant);
-      else
+      if (film::has_states(s.film)) {
+        bearings_[i].part = std::make_unique<FilmPart>(film::make_state_model(s.geometry, s.film, s.lubricant), n_own_);
+        n_own_ = bearings_[i].part->end();
+      } else {
         bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
+      }
     }
   });
   PetscInt rotor_begin = 0, rotor_end = 0, rotor_here = 0;
   check(MatGetLocalSize(m.mass.get(), &rotor_here, nullptr));
   first_holds_rotor_ =
-      std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.states != nullptr; });
+      std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.part != nullptr; });
   core::Matrix moved[4];
   Mat parts[] = {m.mass.get(), m.damping.get(), m.stiffness.get(), m.gyroscopic.get()};
   for (std::size_t k = 0; k < 4 && first_holds_rotor_ && core::size_of(comm_) > 1; ++k) {
@@ -162,16 +169,9 @@ void RotorSystem::build() {
     for (std::size_t d = 0; d < 2; ++d)
       for (const PetscInt q : {b.journal[d], b.pedestal[d]})
         for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * std::max<PetscInt>(q, 0) + rate);
-  const std::size_t inputs = wanted_.size();
-  for (Bearing& b : bearings_) {
-    b.gathered = wanted_.size() - inputs;
-    if (b.part.count() == 0) continue;
-    const film::Ring ring = b.states->ring();
-    const auto line = static_cast<PetscInt>(b.states->line());
-    for (int i = b.part.begin - ring.reach; i < b.part.end + ring.reach; ++i)
-      for (PetscInt k = 0; k < line; ++k)
-        wanted_.push_back(2 * n_ + b.first + (i + ring.lines) % ring.lines * line + k);
-  }
+  for (const Bearing& b : bearings_)
+    for (std::size_t k = 0; b.part && k < b.part->share().seen.size(); ++k)
+      wanted_.push_back(2 * n_ + b.part->first() + b.part->share().seen[k]);
   core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
   core::IndexSet from;
   check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), wanted_.data(), PETSC_COPY_VALUES,
@@ -185,35 +185,23 @@ void RotorSystem::build() {
   j_at_rest_.reset();
 }
 
-// Own states stand behind all pairs, film by film. Cut at whole lines near equal shares.
+// Own states stand behind all pairs, film by film, in near equal shares of all.
 void RotorSystem::share_out_own_states() {
-  n_own_ = 0;
-  for (Bearing& b : bearings_) {
-    b.first = n_own_;
-    if (b.states) b.count = static_cast<PetscInt>(b.states->states());
-    n_own_ += b.count;
-  }
   const int rank = core::rank_of(comm_), size = core::size_of(comm_);
   const auto cut = [&](int r) -> PetscInt {
-    if (r == size) return n_own_;
-    if (r == 0) return 0;
     const PetscInt wanted = n_own_ * r / size;
-    for (const Bearing& b : bearings_) {
-      if (!b.states || wanted >= b.first + b.count) continue;
-      const auto line = static_cast<PetscInt>(b.states->line());
-      return b.first + (wanted - b.first + line / 2) / line * line;
-    }
+    for (const Bearing& b : bearings_)
+      if (b.part && wanted < b.part->end())
+        return b.part->first() + b.part->film().cut(static_cast<int>(wanted - b.part->first()));
     return n_own_;
   };
   const PetscInt begin = cut(rank), end = cut(rank + 1);
   own_here_ = end - begin;
-  for (Bearing& b : bearings_) {
-    b.part = {0, 0};
-    b.row = 2 * (end_ - begin_) + std::max<PetscInt>(b.first - begin, 0);
-    const PetscInt from = std::max(b.first, begin), to = std::min(b.first + b.count, end);
-    if (!b.states || from >= to) continue;
-    const auto line = static_cast<PetscInt>(b.states->line());
-    b.part = {static_cast<int>((from - b.first) / line), static_cast<int>((to - b.first) / line)};
+  std::size_t gathered = 0;
+  for (const Bearing& b : bearings_) {
+    if (!b.part) continue;
+    b.part->hold(begin, end, 2 * (end_ - begin_), gathered);
+    gathered += b.part->share().seen.size();
   }
 }
 
@@ -223,24 +211,13 @@ void RotorSystem::make_constant_parts() {
   const PetscInt rows = end_ - begin_, local_rows = local_size();
   std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local_rows, 1)), 2);
   std::vector<PetscInt> coupled(static_cast<std::size_t>(n_), 0);  // own states that act on a coordinate
-  Films pattern;
-  pattern.journal.resize(bearings_.size());
-  pattern.own.resize(bearings_.size());
-  for (std::size_t b = 0; b < bearings_.size(); ++b) {
-    const Bearing& bearing = bearings_[b];
-    if (!bearing.states) continue;
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const PetscInt q : {bearing.journal[d], bearing.pedestal[d]})
-        if (q >= 0) coupled[static_cast<std::size_t>(q)] += bearing.count;
-    if (bearing.part.count() == 0) continue;
-    std::vector<double> states(static_cast<std::size_t>(bearing.count));
-    bearing.states->unloaded(motion({}), states);
-    states = film::with_neighbours(*bearing.states, bearing.part, states);
-    const std::vector<double> zero(states.size(), 0.0);
-    bearing.states->evaluate_lines(motion({}), bearing.part, states, zero, film::Need::tangents, pattern.own[b]);
-    for (PetscInt k = bearing.row; k < bearing.row + bearing.rows(); ++k)
-      count[static_cast<std::size_t>(k)] = std::min(bearing.states->row_entries() + 8, size());
+  for (const Bearing& b : bearings_) {
+    if (!b.part) continue;
+    for (const Port& port : b.ports)
+      for (const auto& [q, side] : port) coupled[static_cast<std::size_t>(q)] += b.part->count();
+    b.part->count_entries(b.ports, count);
   }
+  for (PetscInt& c : count) c = std::min(c, size());
   for (PetscInt i = 0; i < rows; ++i) {
     PetscInt k = 0, total = coupled[static_cast<std::size_t>(begin_ + i)];
     for (Mat m : {mass_.get(), damping_.get(), stiffness_.get(), gyroscopic_.get()}) {
@@ -280,7 +257,7 @@ void RotorSystem::make_constant_parts() {
       check(MatSetValue(j.get(), 2 * i + 1, 2 * i, rates, ADD_VALUES));
       check(MatSetValue(j.get(), 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
     }
-    add_films(j.get(), pattern, 0, 0);
+    add_films(j.get(), nullptr, 0, 0);
     check(MatAssemblyBegin(j.get(), MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(j.get(), MAT_FINAL_ASSEMBLY));
     return j;

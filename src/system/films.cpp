@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 
+#include "film_part.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -62,7 +62,7 @@ film::Motion RotorSystem::motion(const JournalState& journal) const {
 
 bool RotorSystem::evaluates(std::size_t bearing) const {
   const Bearing& b = bearings_[bearing];
-  if (b.states) return b.part.count() > 0;
+  if (b.part) return b.part->rows() > 0;
   return static_cast<int>(bearing) % core::size_of(comm_) == core::rank_of(comm_);
 }
 
@@ -96,11 +96,8 @@ RotorSystem::Films RotorSystem::films_at(const std::vector<JournalState>& journa
       if (!evaluates(i)) continue;
       const Bearing& b = bearings_[i];
       try {
-        if (b.states) {
-          const std::size_t n =
-              static_cast<std::size_t>(b.part.count() + 2 * b.states->ring().reach) * b.states->line();
-          b.states->evaluate_lines(motion(journals[i]), b.part, own.subspan(b.gathered, n),
-                                   rates.subspan(b.gathered, n), need, films.own[i]);
+        if (b.part) {
+          b.part->evaluate(motion(journals[i]), own, rates, need, films.own[i]);
           films.journal[i] = films.own[i].journal;
         } else {
           b.film->evaluate(motion(journals[i]), need, films.journal[i]);
@@ -148,47 +145,22 @@ void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
   }
 }
 
-void RotorSystem::add_films(Mat j, const Films& all, double alpha, double sigma) const {
-  const std::vector<film::Response>& films = all.journal;
-  for (std::size_t b = 0; b < bearings_.size(); ++b)
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const auto& [row, sign] :
-           {std::pair{bearings_[b].journal[d], -1.0}, std::pair{bearings_[b].pedestal[d], 1.0}}) {
-        if (row < 0 || !owns(row)) continue;
-        for (std::size_t e = 0; e < 2; ++e)
-          for (const auto& [column, side] :
-               {std::pair{bearings_[b].journal[e], 1.0}, std::pair{bearings_[b].pedestal[e], -1.0}}) {
-            if (column < 0) continue;
-            check(MatSetValue(j, 2 * row, 2 * column, alpha * sign * side * films[b].d_position[d][e], ADD_VALUES));
-            check(MatSetValue(j, 2 * row, 2 * column + 1, alpha * sign * side * films[b].d_velocity[d][e], ADD_VALUES));
+void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigma) const {
+  static const film::Response none;
+  for (std::size_t b = 0; b < bearings_.size(); ++b) {
+    const film::Response& r = films ? films->journal[b] : none;
+    const std::vector<Port>& ports = bearings_[b].ports;
+    for (std::size_t d = 0; d < ports.size(); ++d)
+      for (const auto& [row, to] : ports[d]) {
+        if (!owns(row)) continue;
+        for (std::size_t e = 0; e < ports.size(); ++e)
+          for (const auto& [column, side] : ports[e]) {
+            check(MatSetValue(j, 2 * row, 2 * column, -alpha * to * side * r.d_position[d][e], ADD_VALUES));
+            check(MatSetValue(j, 2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e], ADD_VALUES));
           }
       }
-  std::vector<film::Entry> lines;
-  for (std::size_t b = 0; b < bearings_.size(); ++b) {
-    const Bearing& bearing = bearings_[b];
-    if (bearing.part.count() == 0) continue;
-    const film::StateResponse& own = all.own[b];
-    const PetscInt first = 2 * n_ + bearing.first,
-                   begin = first + bearing.part.begin * static_cast<PetscInt>(bearing.states->line());
-    const bool ring = bearing.states->ring().lines > 1;
-    for (const auto& [triplets, stencil, factor] :
-         {std::tuple(&own.d_states, &own.by_states, alpha), std::tuple(&own.d_rates, &own.by_rates, sigma)}) {
-      lines.clear();
-      if (ring) film::add_entries(*bearing.states, bearing.part, *stencil, lines);
-      for (const film::Entry& e : ring ? lines : *triplets)
-        check(MatSetValue(j, first + e.row, first + e.column, factor * e.value, ADD_VALUES));
-    }
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const auto& [q, side] : {std::pair{bearing.journal[d], 1.0}, std::pair{bearing.pedestal[d], -1.0}})
-        for (PetscInt k = 0; k < bearing.rows() && q >= 0; ++k) {
-          const auto state = static_cast<std::size_t>(k);
-          const PetscInt row = begin + k;
-          check(MatSetValue(j, row, 2 * q, alpha * side * own.d_position[state][d], ADD_VALUES));
-          check(MatSetValue(j, row, 2 * q + 1, alpha * side * own.d_velocity[state][d], ADD_VALUES));
-          const double by_rate = own.force_d_rates.empty() ? 0 : own.force_d_rates[state][d];
-          const double force = alpha * own.force_d_states[state][d] + sigma * by_rate;
-          check(MatSetValue(j, 2 * q, row, -side * force, ADD_VALUES));
-        }
+    if (const FilmPart* part = bearings_[b].part.get(); part && part->rows() > 0)
+      part->add(j, films ? &films->own[b] : nullptr, n_, ports, alpha, sigma);
   }
   check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
@@ -196,61 +168,60 @@ void RotorSystem::add_films(Mat j, const Films& all, double alpha, double sigma)
 
 bool RotorSystem::constant_rates() const {
   return std::all_of(bearings_.begin(), bearings_.end(),
-                     [](const Bearing& b) { return !b.states || b.states->constant_rates(); });
+                     [](const Bearing& b) { return !b.part || b.part->film().constant_rates(); });
 }
 
 film::Summary RotorSystem::film_summary(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
   const Bearing& bearing = bearings_[i];
   const film::Motion at = motion(journals(x)[i]);
-  if (!bearing.states) return bearing.film->summary(at);
-  return bearing.states->summary(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
+  return bearing.part ? bearing.part->film().summary(at, bearing.part->of(x, n_)) : bearing.film->summary(at);
 }
 
 std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
   const Bearing& bearing = bearings_[i];
   const film::Motion at = motion(journals(x)[i]);
-  if (!bearing.states) return bearing.film->fields(at);
-  return bearing.states->fields(at, {x + 2 * n_ + bearing.first, bearing.states->states()});
+  return bearing.part ? bearing.part->film().fields(at, bearing.part->of(x, n_)) : bearing.film->fields(at);
 }
 
 bool RotorSystem::settles() const {
   return std::any_of(bearings_.begin(), bearings_.end(),
-                     [](const Bearing& b) { return b.states && b.states->whole_steps(); });
+                     [](const Bearing& b) { return b.part && b.part->film().whole_steps(); });
 }
 
-// Films that are not cut stand on one rank.
 void RotorSystem::settle(Vec x) {
-  const std::vector<JournalState> journals = journals_of(gather_inputs(x));
-  core::agree(comm_, [&] {
-    const core::WriteArray xa(x);
-    for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      const Bearing& b = bearings_[i];
-      if (b.part.count() == 0 || !b.states->whole_steps()) continue;
-      core::require(b.rows() == b.count, "a film that settles is not cut");
-      std::vector<double> states(xa.data() + b.row, xa.data() + b.row + b.count);
-      film::relax(*b.states, motion(journals[i]), states);
-      std::copy(states.begin(), states.end(), xa.data() + b.row);
-    }
-  });
+  relax(
+      x, [](const FilmPart& part) { return part.film().whole_steps(); }, true);
 }
 
-// Every rank relaxes the whole of a film that it has a part of.
 void RotorSystem::relax_films(Vec x) {
+  relax(
+      x, [](const FilmPart&) { return true; }, false);
+}
+
+// Every rank relaxes the whole of a film that it holds a share of: a sparse LU of the film per Newton step, on each of
+// its ranks at the same time. What its ranks start from is gathered if it is cut.
+void RotorSystem::relax(Vec x, const std::function<bool(const FilmPart&)>& which, bool from_present) {
   const std::vector<JournalState> journals = journals_of(gather_inputs(x));
+  std::vector<double> whole;
+  if (from_present && core::size_of(comm_) > 1) whole = core::gather(x);
   core::agree(comm_, [&] {
     const core::WriteArray xa(x);
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      const Bearing& b = bearings_[i];
-      if (b.part.count() == 0) continue;
-      film::Motion still = motion(journals[i]);
-      still.velocity = {};
-      std::vector<double> states(b.states->states());
-      b.states->unloaded(still, states);
-      film::relax(*b.states, still, states);
-      const auto begin = states.begin() + b.part.begin * static_cast<std::ptrdiff_t>(b.states->line());
-      std::copy(begin, begin + b.rows(), xa.data() + b.row);
+      const FilmPart* part = bearings_[i].part.get();
+      if (!part || part->rows() == 0 || !which(*part)) continue;
+      film::Motion at = motion(journals[i]);
+      std::vector<double> states(part->film().states());
+      if (!from_present) {
+        at.velocity = {};
+        part->film().unloaded(at, states);
+      } else {
+        const std::span<const double> present = part->of(whole.empty() ? xa.data() : whole.data(), n_);
+        states.assign(present.begin(), present.end());
+      }
+      film::relax(part->film(), at, states);
+      std::copy_n(states.begin() + part->share().begin, part->rows(), xa.data() + part->row());
     }
   });
 }
@@ -262,10 +233,10 @@ std::vector<double> RotorSystem::resampled(const Plant& of, const double* x) con
   out.resize(static_cast<std::size_t>(size()));
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    const Bearing &to = bearings_[i], &from = other.bearings_[i];
-    if (to.states)
-      to.states->resample(motion(at[i]), *from.states, {x + 2 * n_ + from.first, static_cast<std::size_t>(from.count)},
-                          {out.data() + 2 * n_ + to.first, static_cast<std::size_t>(to.count)});
+    const FilmPart *to = bearings_[i].part.get(), *from = other.bearings_[i].part.get();
+    if (to)
+      to->film().resample(motion(at[i]), from->film(), from->of(x, n_),
+                          {out.data() + 2 * n_ + to->first(), to->film().states()});
   }
   return out;
 }

@@ -1,30 +1,31 @@
 #pragma once
-// Linearised equations of a rigid rotor with one film in lines: a sparse film with a thin border.
+// Linearised equations of a machine whose films with own states bring their preconditioners: sparse films with thin
+// borders.
 
-#include <Eigen/LU>
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <memory>
+#include <vector>
 
+#include "film_part.hpp"
 #include "whirl/core/gate.hpp"
-#include "whirl/film/ring_preconditioner.hpp"
 #include "whirl/problem/frozen.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::system {
 
-/// What all frozen equations of one system share: the Krylov method (GMRES, prefix "stage_"), the constant dense blocks
-/// of rotor and pedestals on the first rank, and work space.
+/// What all frozen equations of one system share: the Krylov method (FGMRES, prefix "stage_"), the sparse constant
+/// blocks of rotor and pedestals on the first rank, and the films, each with a communicator of the ranks that hold it.
 ///
-/// With r the rotor's states on the first rank and s the film's, u = C r the journal's position and velocity in its
-/// bearing [4] and f the film's force [2],
+/// With r the rotor's states on the first rank and s the films', u = C r the journals' positions and velocities in
+/// their bearings [4 a film] and f = F s the films' forces [2 a film],
 ///
-///     A = [ A_rr     -alpha B F ]        preconditioned by        [ 1        0 ] [ S  -alpha B F ]
-///         [ G C       D         ]                                 [ . G C S^-1  1 ] ...
-///
-/// that is by elimination of s with one cycle of film::RingPreconditioner in place of D^-1.
+///     A = [ A_rr     -alpha B F ]        preconditioned by elimination of s with the films' own
+///         [ G C       D         ]        preconditioners in place of D^-1
 class RotorSystem::FilmSolver {
 public:
-  explicit FilmSolver(RotorSystem& system);
-  /// Empty if the machine is not of that kind.
+  ~FilmSolver();
+  /// Empty if there is no film with states or one of them has no preconditioner. Collective.
   [[nodiscard]] static std::unique_ptr<FilmSolver> make(RotorSystem& system);
 
   class Equations;
@@ -32,18 +33,32 @@ public:
                                                         const problem::Frozen* similar);
 
 private:
-  friend class Equations;
-  [[nodiscard]] Eigen::MatrixXd rotor_block(double alpha, double sigma) const;
+  using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  struct Film {
+    std::size_t bearing = 0;
+    const FilmPart* part = nullptr;
+    MPI_Comm comm = MPI_COMM_NULL;  // of the ranks that hold it; null elsewhere. Owned
+    // Scales of the states it sees, and of its states and rows here; the places of D, and where dg/ds' adds to them.
+    Eigen::VectorXd seen, state, residual;
+    film::Places places;
+    std::vector<std::size_t> rates_at;
+    std::array<double, 8> journal_scale{};  // of the entries of journal and pedestal among the films' inputs
+  };
+  explicit FilmSolver(RotorSystem& system);
+  void make_rotor();
+  void make_films();
+  void make_krylov();
+  [[nodiscard]] Sparse rotor_block(double alpha, double sigma) const;
+  /// What film k sees of the scaled inputs of all films.
+  [[nodiscard]] std::array<double, 4> motion_of(std::size_t k, const double* inputs) const;
   static PetscErrorCode shell_multiply(Mat m, Vec v, Vec y);
   static PetscErrorCode shell_precondition(PC pc, Vec r, Vec y);
 
   RotorSystem& system_;
-  std::size_t film_ = 0;  // the bearing whose film has states
-  Eigen::MatrixXd mass_, damping_, gyroscopic_, stiffness_;
-  Eigen::MatrixXd inputs_, outputs_;  // C [4 x 2 n], B [2 n x 2], from scaled states and to scaled rows
-  Eigen::VectorXd state_, residual_;  // scales of the rotor's states and rows, on the first rank
-  double film_state_ = 1, film_residual_ = 1;
-  std::array<double, 8> journal_scale_{};  // of the journal's and the pedestal's entries among the films' inputs
+  std::vector<Film> films_;
+  Sparse rates_, at_rest_, gyroscopic_;  // of the rotor's rows, scaled
+  Sparse inputs_, outputs_;              // C [4 films x 2 n], B [2 n x 2 films], from scaled states and to scaled rows
+  Eigen::VectorXd state_, residual_;     // scales of the rotor's states and rows, on the first rank
   core::Matrix shell_;
   core::LinearSolver krylov_;
   core::Gate gate_;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "blocks.hpp"
+#include "film_part.hpp"
 #include "frozen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -101,7 +102,8 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
       if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].force[d];
     }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
-    std::copy(all.own[b].residual.begin(), all.own[b].residual.end(), fa.data() + bearings_[b].row);
+    if (const FilmPart* part = bearings_[b].part.get())
+      std::copy_n(all.own[b].residual.begin(), part->rows(), fa.data() + part->row());
 }
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
@@ -109,7 +111,10 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, doub
   check(MatCopy(j_at_rest_.get(), j, SAME_NONZERO_PATTERN));
   if (alpha != 1) check(MatScale(j, alpha));
   if (alpha != 0) check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
-  if (alpha != 0 || n_own_ > 0) add_films(j, films_at(x, xdot, film::Need::tangents), alpha, sigma);
+  if (alpha != 0 || n_own_ > 0) {
+    const Films films = films_at(x, xdot, film::Need::tangents);
+    add_films(j, &films, alpha, sigma);
+  }
   if (sigma != 0) check(MatAXPY(j, sigma, j_rates_.get(), SAME_NONZERO_PATTERN));
 }
 
@@ -146,7 +151,8 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
       if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].d_speed[d];
     }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
-    std::copy(all.own[b].d_speed.begin(), all.own[b].d_speed.end(), fa.data() + bearings_[b].row);
+    if (const FilmPart* part = bearings_[b].part.get())
+      std::copy_n(all.own[b].d_speed.begin(), part->rows(), fa.data() + part->row());
 }
 
 // Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the
@@ -182,9 +188,9 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
     r[2 * i + 1] = length * frequency;
     r[2 * i] = load;
   }
-  for (const Bearing& b : bearings_)
-    for (PetscInt i = b.row; i < b.row + b.rows(); ++i) {
-      s[i] = b.states->state_scale();
+  for (const problem::Field& f : fields())
+    for (PetscInt i = f.begin; f.scale > 0 && i < f.end; ++i) {
+      s[i] = f.scale;
       r[i] = s[i] * frequency;
     }
 }
@@ -192,7 +198,8 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
 std::vector<problem::Field> RotorSystem::fields() const {
   std::vector<problem::Field> out{{"machine", 0, 2 * (end_ - begin_)}};
   for (std::size_t i = 0; i < bearings_.size(); ++i)
-    if (const Bearing& b = bearings_[i]; b.states) out.push_back({train_.supports[i].name, b.row, b.row + b.rows()});
+    if (const FilmPart* part = bearings_[i].part.get())
+      for (problem::Field& f : part->fields(train_.supports[i].name)) out.push_back(std::move(f));
   return out;
 }
 
@@ -224,8 +231,8 @@ std::vector<double> RotorSystem::film_thickness(const double* x) const {
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Bearing& b = bearings_[i];
-    if (b.states)
-      out[i] = b.states->least_thickness(motion(at[i]), {x + 2 * n_ + b.first, static_cast<std::size_t>(b.count)});
+    if (b.part)
+      out[i] = b.part->film().least_thickness(motion(at[i]), b.part->of(x, n_));
     else if (!b.film->linear())
       out[i] = film::minimum_thickness(train_.supports[i].geometry, {at[i].position[0], at[i].position[1], 0, 0});
   }

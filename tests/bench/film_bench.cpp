@@ -125,8 +125,8 @@ void evaluate(benchmark::State& state, Options options, Need need) {
                                                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-// A film with own states around a moving journal, with rates; half of it carries. As solvers do it, who hand their own
-// lines and those of their neighbours to a film in lines.
+// A film with own states around a moving journal, with rates; half of it carries. As solvers do it, who hand over what
+// a share sees.
 void evaluate_states(benchmark::State& state, Options options, Need need) {
   const Geometry bore{Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0.0, 0.0, 0.0};
   options.compliance = 0.1;
@@ -139,15 +139,15 @@ void evaluate_states(benchmark::State& state, Options options, Need need) {
   std::vector<double> states(film->states());
   film->unloaded(m, states);
   relax(*film, m, states);
-  const Lines all{0, film->ring().lines};
-  if (all.end > 1) states = with_neighbours(*film, all, states);
+  const Share& all = film->whole();
+  states = seen_of(all, states);
   const std::vector<double> rates(states.size(), 0.01 * bore.clearance * m.speed);
   StateResponse r;
   long count = 0;
   const double start = m.position[0];
   for (auto _ : state) {
     m.position[0] = start * (1.0 + 1e-3 * static_cast<double>(++count % 16));
-    film->evaluate_lines(m, all, states, rates, need, r);
+    film->evaluate(m, all, states, rates, need, r);
     benchmark::DoNotOptimize(r);
   }
 }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <numbers>
 
-#include "whirl/film/model.hpp"
+#include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
 
@@ -34,6 +34,11 @@ inline Motion motion(const Geometry& g, std::array<double, 4> position, std::arr
     m.velocity[i] *= scale * speed;
   }
   return m;
+}
+
+/// Typical magnitude of the states of a film with one field.
+inline double scale_of(const StateModel& film) {
+  return film.state_fields().front().scale;
 }
 
 inline Response evaluate(Model& model, const Motion& m, Need need = Need::tangents) {

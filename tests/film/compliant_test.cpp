@@ -1,4 +1,4 @@
-// Films with own states: derivatives, limits, orders of accuracy, coefficients.
+// Films with elastic liners: limits, orders of accuracy, coefficients.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,68 +11,7 @@
 namespace whirl::film::testing {
 namespace {
 
-struct Case {
-  std::string name;
-  Options options;
-};
-
-std::vector<Case> cases() {
-  using enum Options::Kind;
-  std::vector<Case> all = {{"short", compliant(compliant_short, 0.1, 40, false)},
-                           {"short_as_source", compliant(compliant_short, 1.0, 50, true)},
-                           {"long", compliant(compliant_long, 0.1, 41, false)},
-                           {"long_as_source", compliant(compliant_long, 1.0, 50, true)},
-                           {"finite", compliant(compliant_finite, 0.1, 20, false)},
-                           {"finite_as_source", compliant(compliant_finite, 1.0, 22, true)}};
-  const std::size_t plain = all.size();
-  for (std::size_t k = 0; k < plain; k += 2) {
-    Case c = all[k];
-    const std::string name = c.name;
-    c.options.differences = Options::Differences::third_order;
-    c.name = name + "_third_order";
-    all.push_back(c);
-    c.options.liner_damping = 0.4 / kSpeed;
-    c.options.rubber_thickness = 2.0 * cylinder().clearance;
-    c.name = name + "_damped_rubber";
-    all.push_back(c);
-    c.options.rubber_thickness.reset();
-    c.options.grooves = {{100.0 * kDegree, 0.0}, {-20.0 * kDegree, 30.0 * kDegree}};
-    c.name = name + "_damped_grooved";
-    all.push_back(c);
-    c.options.contact = Contact{0.24 * cylinder().clearance, 1e10};
-    c.name = name + "_damped_grooved_contact";
-    all.push_back(c);
-    c = all[k];
-    c.options.contact = Contact{0.24 * cylinder().clearance, 1e10};
-    c.options.rubber_thickness = 2.0 * cylinder().clearance;
-    c.name = name + "_rubber_contact";
-    all.push_back(c);
-  }
-  return all;
-}
-
-const Motion kMoving = motion(cylinder(), {0.2, -0.4, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, kSpeed);
-
-class Compliant : public ::testing::TestWithParam<Case> {};
-
-// A state off equilibrium, smooth and with rates; thin enough for asperities, which are left out of what gives it.
-struct Point {
-  Motion motion;
-  std::vector<double> states, rates;
-};
-
-Point point(Options options) {
-  options.contact.reset();
-  const auto made = make_state_model(cylinder(), options, oil());
-  StateModel& film = *made;
-  Point p{kMoving, relaxed(film, still(0.2, -0.4)), {}};
-  for (std::size_t k = 0; k < p.states.size(); ++k) {
-    const double c = film.state_scale(), angle = 0.3 * static_cast<double>(k);
-    p.states[k] += 0.02 * c * std::sin(angle);
-    p.rates.push_back(0.1 * c * kSpeed * std::cos(angle));
-  }
-  return p;
-}
+class Compliant : public ::testing::TestWithParam<CompliantCase> {};
 
 // Asperities take part where they are asked for. They do not show in the force as long as the film stays positive
 // beneath them: both together carry what the liner does.
@@ -82,7 +21,7 @@ TEST_P(Compliant, ContactCarries) {
   auto with = make_state_model(cylinder(), o, oil());
   o.contact.reset();
   auto without = make_state_model(cylinder(), o, oil());
-  const Point base = point(o);
+  const CompliantPoint base = point(o);
   StateResponse a, b;
   with->evaluate(base.motion, base.states, base.rates, Need::tangents, a);
   without->evaluate(base.motion, base.states, base.rates, Need::tangents, b);
@@ -94,94 +33,9 @@ TEST_P(Compliant, ContactCarries) {
   EXPECT_GT(apart, 0.05 * size);
 }
 
-// Along random directions in each group of arguments the remainders of residual and force must fall as e^2.
-TEST_P(Compliant, TaylorRemainderIsSecondOrder) {
-  auto film = make_state_model(cylinder(), GetParam().options, oil());
-  const double c = film->state_scale();
-  const Point base = point(GetParam().options);
-  StateResponse at, there;
-  film->evaluate(base.motion, base.states, base.rates, Need::tangents, at);
-  const std::size_t n = film->states();
-  ASSERT_EQ(at.residual.size(), n);
-  for (int group = 0; group < 5; ++group) {
-    std::array<double, 2> remainder{};
-    double size = 0.0;
-    for (std::size_t turn = 0; turn < 2; ++turn) {
-      const double e = turn == 0 ? 1e-4 : 0.5e-4;
-      Point moved = base;
-      std::vector<double> g(n, 0.0);
-      std::array<double, 2> f{};
-      const auto direction = [](std::size_t k) { return std::sin(1.0 + 2.3 * static_cast<double>(k)); };
-      for (std::size_t k = 0; k < n; ++k) {
-        if (group == 0) moved.states[k] += e * c * direction(k);
-        if (group == 1) moved.rates[k] += e * c * kSpeed * direction(k);
-      }
-      for (const Entry& entry : group == 0 ? at.d_states : group == 1 ? at.d_rates : std::vector<Entry>{})
-        g[static_cast<std::size_t>(entry.row)] +=
-            entry.value * e * c * (group == 0 ? 1.0 : kSpeed) * direction(static_cast<std::size_t>(entry.column));
-      for (std::size_t k = 0; k < n && group == 0; ++k)
-        for (std::size_t i = 0; i < 2; ++i) f[i] += at.force_d_states[k][i] * e * c * direction(k);
-      for (std::size_t k = 0; k < at.force_d_rates.size() && group == 1; ++k)
-        for (std::size_t i = 0; i < 2; ++i) f[i] += at.force_d_rates[k][i] * e * c * kSpeed * direction(k);
-      for (std::size_t j = 0; j < 2 && (group == 2 || group == 3); ++j) {
-        const double step = e * c * direction(j) * (group == 2 ? 1.0 : kSpeed);
-        (group == 2 ? moved.motion.position : moved.motion.velocity)[j] += step;
-        for (std::size_t k = 0; k < n; ++k) g[k] += (group == 2 ? at.d_position : at.d_velocity)[k][j] * step;
-        for (std::size_t i = 0; i < 2; ++i)
-          f[i] += (group == 2 ? at.journal.d_position : at.journal.d_velocity)[i][j] * step;
-      }
-      if (group == 4) {
-        moved.motion.speed += e * kSpeed;
-        for (std::size_t k = 0; k < n; ++k) g[k] += at.d_speed[k] * e * kSpeed;
-        for (std::size_t i = 0; i < 2; ++i) f[i] += at.journal.d_speed[i] * e * kSpeed;
-      }
-      film->evaluate(moved.motion, moved.states, moved.rates, Need::force, there);
-      for (std::size_t k = 0; k < n; ++k) {
-        remainder[turn] += std::abs(there.residual[k] - at.residual[k] - g[k]) / (c * kSpeed);
-        size += std::abs(g[k]) / (c * kSpeed);
-      }
-      const double load = std::hypot(at.journal.force[0], at.journal.force[1]);
-      for (std::size_t i = 0; i < 2; ++i) {
-        remainder[turn] += std::abs(there.journal.force[i] - at.journal.force[i] - f[i]) / load;
-        size += std::abs(f[i]) / load;
-      }
-    }
-    if (group != 3 || GetParam().options.liner_damping > 0.0) {
-      EXPECT_GT(size, 1e-5) << group;
-    }
-    if (remainder[1] < 1e-10 * (1.0 + size)) continue;  // linear up to rounding
-    EXPECT_GE(std::log2(remainder[0] / remainder[1]), 1.9) << GetParam().name << " group " << group;
-  }
-}
-
-TEST_P(Compliant, PatternForceAndHistory) {
-  auto film = make_state_model(cylinder(), GetParam().options, oil());
-  auto fresh = make_state_model(cylinder(), GetParam().options, oil());
-  const Point p = point(GetParam().options);
-  StateResponse a, b;
-  film->evaluate(p.motion, p.states, p.rates, Need::tangents, a);
-  std::vector<double> flat(film->states());
-  film->unloaded(still(0.0, 0.0), flat);
-  film->evaluate(still(0.0, 0.0), flat, std::vector<double>(flat.size(), 0.0), Need::tangents, b);
-  ASSERT_EQ(a.d_states.size(), b.d_states.size());
-  std::vector<int> per_row(film->states(), 0);
-  for (std::size_t k = 0; k < a.d_states.size(); ++k) {
-    EXPECT_EQ(a.d_states[k].row, b.d_states[k].row);
-    EXPECT_EQ(a.d_states[k].column, b.d_states[k].column);
-    ++per_row[static_cast<std::size_t>(a.d_states[k].row)];
-  }
-  ASSERT_EQ(a.d_rates.size(), b.d_rates.size());
-  for (const Entry& e : a.d_rates) ++per_row[static_cast<std::size_t>(e.row)];
-  EXPECT_LE(*std::max_element(per_row.begin(), per_row.end()), film->row_entries());
-  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(b.journal.force[i], 0.0, 1e-12 * std::abs(a.journal.force[1]));
-  fresh->evaluate(p.motion, p.states, p.rates, Need::force, b);
-  EXPECT_EQ(a.journal.force, b.journal.force);
-  EXPECT_EQ(a.residual, b.residual);
-}
-
 TEST_P(Compliant, ContactIsADomainError) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
-  Point p = point(GetParam().options);
+  CompliantPoint p = point(GetParam().options);
   StateResponse r;
   p.states[7] = 0.0;
   EXPECT_THROW(film->evaluate(p.motion, p.states, p.rates, Need::force, r), core::DomainError);
@@ -199,10 +53,10 @@ TEST_P(Compliant, ResamplingKeepsTheFilm) {
   std::vector<double> between(fine->states()), back(film->states());
   fine->resample(m, *film, coarse, between);
   film->resample(m, *fine, between, back);
-  for (std::size_t k = 0; k < back.size(); ++k) EXPECT_NEAR(back[k], coarse[k], 1e-12 * film->state_scale());
+  for (std::size_t k = 0; k < back.size(); ++k) EXPECT_NEAR(back[k], coarse[k], 1e-12 * scale_of(*film));
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, Compliant, ::testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Films, Compliant, ::testing::ValuesIn(compliant_films()),
                          [](const auto& which) { return which.param.name; });
 
 // A stiff liner gives the rigid films; the difference is proportional to B.
@@ -274,7 +128,7 @@ TEST(CompliantLimits, OrdersOfTheDifferences) {
         film->evaluate(still(0.3, -0.4), s, std::vector<double>(s.size(), 0.0), Need::force, r);
         const double theta = 90.0 * kDegree + 7 * 9.0 * kDegree;  // node 7 of 40
         const double exact = 0.5 * kSpeed * cylinder().clearance * (0.3 * std::sin(theta) + 0.4 * std::cos(theta));
-        const std::size_t line = kind == Options::Kind::compliant_finite ? film->line() : 1;
+        const std::size_t line = kind == Options::Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
         error[k] = std::abs(r.residual[(7 << k) * line] - exact);
       }
       EXPECT_NEAR(std::log2(error[0] / error[1]), order, 0.3);

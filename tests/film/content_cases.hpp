@@ -3,6 +3,7 @@
 
 #include <Eigen/SparseLU>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "film/cases.hpp"
@@ -22,6 +23,37 @@ inline Options without_states(Options o) {
   return o;
 }
 
+/// Every bore that such a film may have.
+struct ContentCase {
+  std::string name;
+  Geometry geometry;
+  Options options;
+  std::array<double, 4> position, velocity;
+};
+
+inline std::vector<ContentCase> content_films() {
+  const std::array<double, 4> loaded = {0.5, -0.4, 0.2, -0.15}, moving = {0.05, -0.08, 0.03, 0.02};
+  const std::array<double, 4> shallow = {0.2, -0.6, 0.1, 0.1};
+  Options turbulent = dynamic({40, 12});
+  turbulent.turbulence = Options::Turbulence::constantinescu;
+  Options starved = dynamic({37, 11});
+  starved.edge_fill = 0.7;
+  Options tilted = dynamic({23, 9});
+  tilted.tilt = true;
+  tilted.edge_fill = 0.9;
+  Options fed = dynamic({48, 12});
+  fed.grooves = {{90.0 * kDegree, 20.0 * kDegree, 2e5}, {-30.0 * kDegree, 0.0, 0.0}};
+  Options line = dynamic({40, 10});
+  line.inlet = {Inlet::Type::line, 100.0 * kDegree};
+  Geometry offset = lemon();
+  offset.offset = 0.4 * offset.clearance;
+  return {{"lemon", lemon(), turbulent, loaded, moving},
+          {"lemon_tilted", offset, tilted, loaded, moving},
+          {"arc_starved", arc(), starved, shallow, moving},
+          {"grooved", cylinder(), fed, shallow, moving},
+          {"inlet_line", cylinder(), line, {0.3, -0.5}, moving}};
+}
+
 /// The states at which nothing changes while the journal moves as `m` says.
 inline std::vector<double> settled(StateModel& film, const Motion& m) {
   std::vector<double> q(film.states());
@@ -30,13 +62,13 @@ inline std::vector<double> settled(StateModel& film, const Motion& m) {
   return q;
 }
 
-/// dg/ds + sigma dg/ds'.
-inline Eigen::SparseMatrix<double> matrix_of(const StateResponse& r, double sigma) {
-  const auto n = static_cast<Eigen::Index>(r.residual.size());
+/// dg/ds + sigma dg/ds' of the whole film.
+inline Eigen::SparseMatrix<double> matrix_of(const StateModel& film, const StateResponse& r, double sigma) {
+  const Share& all = film.whole();
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Entry& e : r.d_states) entries.emplace_back(e.row, e.column, e.value);
-  for (const Entry& e : r.d_rates) entries.emplace_back(e.row, e.column, sigma * e.value);
-  Eigen::SparseMatrix<double> m(n, n);
+  for_entries(all, all.d_states, r.d_states, [&](int i, int j, double v) { entries.emplace_back(i, j, v); });
+  for_entries(all, all.d_rates, r.d_rates, [&](int i, int j, double v) { entries.emplace_back(i, j, sigma * v); });
+  Eigen::SparseMatrix<double> m(all.rows(), all.rows());
   m.setFromTriplets(entries.begin(), entries.end());
   return m;
 }
@@ -46,14 +78,14 @@ struct Eliminated {
   std::array<std::array<double, 2>, 2> d_position, d_velocity;
   std::array<double, 2> d_speed;
 };
-inline Eliminated eliminate(const StateResponse& r) {
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(r, 0.0));
+inline Eliminated eliminate(const StateModel& film, const StateResponse& r) {
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(film, r, 0.0));
   const auto n = static_cast<Eigen::Index>(r.residual.size());
   Eigen::MatrixXd by(n, 5), force(2, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto s = static_cast<std::size_t>(k);
-    by.row(k) << r.d_position[s][0], r.d_position[s][1], r.d_velocity[s][0], r.d_velocity[s][1], r.d_speed[s];
-    force.col(k) << r.force_d_states[s][0], r.force_d_states[s][1];
+    by.row(k) << r.d_position[0][s], r.d_position[1][s], r.d_velocity[0][s], r.d_velocity[1][s], r.d_speed[s];
+    force.col(k) << r.force_d_states[0][s], r.force_d_states[1][s];
   }
   const Eigen::MatrixXd through = -force * lu.solve(by).eval();
   Eliminated out;

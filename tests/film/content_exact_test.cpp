@@ -232,7 +232,7 @@ Squeezed squeeze(const Plates& s, int cells, int steps, double bulk_modulus, con
     for (int iteration = 0; iteration < 60; ++iteration) {
       for (std::size_t i = 0; i < n; ++i) k[i] = (to[i] - from[i]) / (gamma * d);
       film->evaluate(at(t), to, k, Need::tangents, r);
-      const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(r, 1.0 / (gamma * d)));
+      const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(*film, r, 1.0 / (gamma * d)));
       const Eigen::VectorXd step =
           lu.solve(Eigen::Map<const Eigen::VectorXd>(r.residual.data(), static_cast<Eigen::Index>(n)));
       for (std::size_t i = 0; i < n; ++i) to[i] -= step[static_cast<Eigen::Index>(i)];

@@ -148,7 +148,7 @@ TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
     auto plain = make_state_model(cylinder(), o, oil());
     const Motion m = still(ex, ey);
     const auto a = relaxed(*damped, m), b = relaxed(*plain, m);
-    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * damped->state_scale());
+    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * scale_of(*damped));
     EXPECT_NEAR(damped->summary(m, a).max_pressure, plain->summary(m, b).max_pressure,
                 1e-8 * plain->summary(m, b).max_pressure);
     // A journal that moves: the settled rates satisfy the equation and carry another pressure than the spring.

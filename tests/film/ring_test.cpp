@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/cases.hpp"
-#include "whirl/film/ring_preconditioner.hpp"
+#include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -23,37 +23,37 @@ double rate(std::array<int, 2> cells, double dt, Options::Differences difference
   auto film = make_state_model(g, o, {0.001, 1000.0});
   const Motion m = motion(g, {0.5, -0.55, 0.0, 0.0}, {}, 800.0);
   const std::size_t n = film->states();
-  const Lines all{0, cells[0]};
   std::vector<double> s(n), zero(n, 0.0);
   film->unloaded(m, s);
   for (std::size_t k = 0; k < n; ++k) s[k] *= 1.0 + 0.1 * std::sin(0.01 * static_cast<double>(k));
   StateResponse r;
   film->evaluate(m, s, zero, Need::tangents, r);
-  for (auto& place : r.by_states.at)
-    for (double& value : place) value *= dt;
-  for (double& value : r.by_states.at[Stencil::centre]) value += 1.0;
-  RingPreconditioner cycle(MPI_COMM_SELF, cells[0], static_cast<int>(film->line()), all);
-  cycle.set(r.by_states);
-  std::vector<Entry> entries;
-  add_entries(*film, all, r.by_states, entries);
+  const Share& all = film->whole();
+  const auto cycle = film->preconditioner(MPI_COMM_SELF, all);
+  cycle->set(r.d_states, r.d_rates, dt, 1.0);
   std::vector<double> x(n, 0.0), residual(n), d(n);
   double size = 0.0, last = 0.0, first = 0.0;
   for (int k = 0; k < 8; ++k) {
     for (std::size_t i = 0; i < n; ++i) residual[i] = std::sin(1.7 * static_cast<double>(i * (i + 1)));
-    for (const Entry& e : entries)
-      residual[static_cast<std::size_t>(e.row)] -= e.value * x[static_cast<std::size_t>(e.column)];
+    const auto subtract = [&](const Places& places, const std::vector<double>& values, double factor) {
+      for_entries(all, places, values, [&](int row, int column, double value) {
+        residual[static_cast<std::size_t>(row)] -= factor * value * x[static_cast<std::size_t>(column)];
+      });
+    };
+    subtract(all.d_states, r.d_states, dt);
+    subtract(all.d_rates, r.d_rates, 1.0);
     last = size;
     size = 0.0;
     for (const double v : residual) size += v * v;
     if (k == 0) first = size;
     if (size < 1e-20 * first) break;
-    cycle.apply(residual, d);
+    cycle->apply(residual, d);
     for (std::size_t i = 0; i < n; ++i) x[i] += d[i];
   }
   return std::sqrt(size / last);
 }
 
-TEST(RingPreconditioner, RateDoesNotDependOnTheMesh) {
+TEST(StatePreconditioner, RateDoesNotDependOnTheMesh) {
   const double dt = 0.005 / 160.0;
   using enum Options::Differences;
   for (const auto cells :

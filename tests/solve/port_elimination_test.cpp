@@ -17,8 +17,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// A hub of 5 with a border behind everything, two films of 6 and 9 states that are cut where the ranks want it, and one
-// that only the last rank has. Each sees two unknowns of the hub, one of which all see, and the border.
+// A hub of 5 with a border behind everything, two films of 6 and 9 states that are cut where the ranks want it, one of
+// them with two fields, and one that only the last rank has. Each sees two unknowns of the hub, one of which all see,
+// and the border.
 struct Machine {
   static constexpr PetscInt hub = 5, n = 5 + 6 + 9 + 4 + 1;
   PetscInt local = 0, first = 0;
@@ -30,14 +31,15 @@ struct Machine {
     const auto cut = [&](int r) -> PetscInt { return r == 0 ? 0 : r == size ? n : 5 + 15 * r / size; };
     first = cut(rank);
     local = cut(rank + 1) - first;
-    const auto part = [&](const char* name, PetscInt from, PetscInt to) {
+    const auto part = [&](const char* name, PetscInt from, PetscInt to, const char* quantity = "") {
       from = std::clamp<PetscInt>(from - first, 0, local);
       to = std::clamp<PetscInt>(to - first, 0, local);
-      fields.push_back({name, from, to});
+      fields.push_back({name, from, to, quantity});
     };
     part("machine", 0, 5);
     part("one", 5, 11);
-    part("two", 11, 20);
+    part("two", 11, 14);
+    part("two", 14, 20, "other");
     part("three", 20, 24);
     check(MatCreateAIJ(MPI_COMM_WORLD, local, local, n, n, n, nullptr, n, nullptr, a.put()));
     fill(1);

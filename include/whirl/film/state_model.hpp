@@ -1,53 +1,57 @@
 #pragma once
 // Films with states of their own: motion, states and their rates in, residual and journal force out.
 
+#include <mpi.h>
+
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "whirl/film/model.hpp"
+#include "whirl/film/share.hpp"
 
 namespace whirl::film {
 
-/// One entry of a sparse matrix; entries of the same place add up.
-struct Entry {
-  int row, column;
-  double value;
+/// States [begin, end) of a film that are of one kind.
+struct StateField {
+  std::string name, unit;
+  double scale;  ///< typical magnitude
+  int begin, end;
 };
 
-/// Derivatives of the rows of a film whose states are lines in a ring, one array [rows] per place of the neighbour: a
-/// line is a run of consecutive states, `before` and `after` are the lines on either side, `below` and `above` the
-/// neighbours within the line (zero at its ends). Empty arrays are zero.
-struct Stencil {
-  enum Place { centre, before, after, below, above, second_before, n_places };
-  std::array<std::vector<double>, n_places> at;
-};
+/// A motion of the journal that a film sees, and the force that does work with it: where they stand in Motion and in
+/// Response.
+enum class Port { x, y, tilt_x, tilt_y };
 
-/// g(motion, s, s') [n] of the own states s [n] with rates s', the force on the journal, and all derivatives. Of a part
-/// of a film: its rows, and its share of force and derivatives, which add up (min_thickness: the least).
+/// Thin blocks of derivatives, spread like the states: [port][row of the share], ports as the film names them.
+using PortColumns = std::vector<std::vector<double>>;
+
+/// g(motion, s, s') of the rows of a share, its part of the force on the journal, and all derivatives. Forces and their
+/// derivatives of all shares of a film add up (min_thickness: the least).
 struct StateResponse {
-  Response journal;                                           // force and its derivatives at constant s
-  std::vector<double> residual;                               // [n] g
-  std::vector<Entry> d_states;                                // dg/ds, the same places in the same order in every call
-  std::vector<Entry> d_rates;                                 // dg/ds', likewise
-  Stencil by_states, by_rates;                                // the same of a film in lines
-  std::vector<std::array<double, 4>> d_position, d_velocity;  // [n] dg/d(position), dg/d(velocity)
-  std::vector<double> d_speed;                                // [n] dg/dOmega
-  std::vector<std::array<double, 4>> force_d_states;          // [n] d force_i/d s_k at [k][i]
-  std::vector<std::array<double, 4>> force_d_rates;           // likewise d force_i/d s'_k; empty if zero
+  Response journal;                       // force and its derivatives at constant s
+  std::vector<double> residual;           // [rows] g
+  std::vector<double> d_states, d_rates;  // dg/ds, dg/ds' at the places of the share
+  PortColumns d_position, d_velocity;     // dg/d(position), dg/d(velocity)
+  std::vector<double> d_speed;            // [rows] dg/dOmega
+  PortColumns force_d_states;             // d force/d s_k of the states k held
+  PortColumns force_d_rates;              // likewise d force/d s'_k; no ports if zero
 };
 
-/// How the states of a film may be shared out: `lines` runs of equal length that form a ring. A row depends on its own
-/// line and on `reach` lines on either side. A film of one line is not cut.
-struct Ring {
-  int lines = 1, reach = 0;
-};
-
-/// Lines [begin, end) of a ring.
-struct Lines {
-  int begin = 0, end = 1;
-  [[nodiscard]] int count() const { return end - begin; }
+/// Approximate inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one
+/// communicator. All members are collective.
+class StatePreconditioner {
+public:
+  StatePreconditioner() = default;
+  StatePreconditioner(const StatePreconditioner&) = delete;
+  StatePreconditioner& operator=(const StatePreconditioner&) = delete;
+  virtual ~StatePreconditioner() = default;
+  /// Takes the derivatives of this rank's share, at its places.
+  virtual void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) = 0;
+  /// x = approximately A^-1 r [rows]: good to precondition only.
+  virtual void apply(std::span<const double> r, std::span<double> x) = 0;
 };
 
 /// A film with own states: g(motion, s, s') = 0, force = f(motion, s, s'). Not thread-safe (own workspace).
@@ -59,28 +63,36 @@ public:
   virtual ~StateModel() = default;
   /// Number n of own states.
   [[nodiscard]] virtual std::size_t states() const = 0;
-  [[nodiscard]] virtual Ring ring() const { return {}; }
-  /// States of one line.
-  [[nodiscard]] std::size_t line() const { return states() / static_cast<std::size_t>(ring().lines); }
-  /// At most so many entries of d_states and d_rates together have the same row.
-  [[nodiscard]] virtual int row_entries() const = 0;
+  /// What they are, in their order.
+  [[nodiscard]] virtual std::vector<StateField> state_fields() const = 0;
+  /// The motions that it sees; of all others it knows nothing, and its force along them is zero.
+  [[nodiscard]] virtual std::span<const Port> ports() const = 0;
+  /// Where the film may be cut, near state `near` of 0 ... n; monotonic, and 0 and n are always among these.
+  [[nodiscard]] virtual int cut(int near) const = 0;
+  /// What holds states [begin, end), which are where it may be cut.
+  [[nodiscard]] virtual Share share(int begin, int end) const = 0;
+  /// The share that holds all, made once.
+  [[nodiscard]] const Share& whole() const;
   /// True if the force does not depend on s' and dg/ds' depends on nothing.
   [[nodiscard]] virtual bool constant_rates() const { return true; }
-  /// Typical magnitude of every state.
-  [[nodiscard]] virtual double state_scale() const = 0;
   /// True if Newton's method on a film by itself is to take whole steps even where the residual rises: a film that is
   /// linear but for the set of its full nodes, of which a whole step finds the next one.
   [[nodiscard]] virtual bool whole_steps() const { return false; }
   /// The states of a film that carries nothing, to start from. Throws as evaluate() does.
   virtual void unloaded(const Motion& motion, std::span<double> states) const = 0;
-  /// Fills `response`; derivatives are empty or zero if only the force is needed. Throws core::DomainError outside the
-  /// validity (film thickness not positive: contact).
+  /// Fills `response` with the rows of a share; `states` and `rates` are those it sees. Derivatives are empty or zero
+  /// if only the force is needed. Throws core::DomainError outside the validity (film thickness not positive: contact).
+  virtual void evaluate(const Motion& motion, const Share& share, std::span<const double> states,
+                        std::span<const double> rates, Need need, StateResponse& response) = 0;
+  /// The same of the whole film, from its states in their order.
   void evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates, Need need,
                 StateResponse& response);
-  /// The same for some lines (all, if the film is not cut). `states` and `rates` hold in front of them and behind them
-  /// `reach` lines each. The derivatives of a film in lines are by_states and by_rates, not triplets.
-  virtual void evaluate_lines(const Motion& motion, Lines part, std::span<const double> states,
-                              std::span<const double> rates, Need need, StateResponse& response) = 0;
+  /// What the film offers to solve its linearised equations with, if `share` is this rank's of a film whose shares
+  /// stand on all ranks of `comm`; null if it offers nothing, on all ranks. Collective.
+  [[nodiscard]] virtual std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm /*comm*/,
+                                                                            const Share& /*share*/) const {
+    return nullptr;
+  }
   /// Own states on this mesh from those of `other`, the same film on another one.
   virtual void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
                         std::span<double> to) const = 0;
@@ -88,6 +100,9 @@ public:
   [[nodiscard]] virtual double least_thickness(const Motion& motion, std::span<const double> states) const = 0;
   virtual Summary summary(const Motion& motion, std::span<const double> states) = 0;
   virtual std::vector<Field> fields(const Motion& motion, std::span<const double> states) = 0;
+
+private:
+  mutable std::unique_ptr<const Share> whole_;
 };
 
 /// True for the films that make_state_model() makes; the others belong to make_model().
@@ -105,12 +120,6 @@ public:
 /// The film described by the options; throws core::InputError on values outside their range.
 std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,
                                              const Lubricant& lubricant);
-
-/// The lines `part` of a ring film with their neighbours, as evaluate_lines() wants them, from all its states.
-[[nodiscard]] std::vector<double> with_neighbours(const StateModel& film, Lines part, std::span<const double> states);
-
-/// Adds the entries of `stencil`, the rows of `part`, to `entries`, numbered in all states of the film.
-void add_entries(const StateModel& film, Lines part, const Stencil& stencil, std::vector<Entry>& entries);
 
 /// Own states at which g(motion, s, 0) = 0, by Newton from `states`. Throws core::NotConverged or core::DomainError.
 void relax(StateModel& film, const Motion& motion, std::vector<double>& states);

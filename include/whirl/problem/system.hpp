@@ -15,11 +15,17 @@ namespace whirl::problem {
 
 class Structure;
 
-/// States of one body or film on this rank: local rows [begin, end) of x.
+/// States of one kind of one part (a body or a film) on this rank: local rows [begin, end) of x.
 struct Field {
-  std::string name;
+  std::string name;  ///< of the part; fields of one part follow each other
   PetscInt begin = 0, end = 0;
+  std::string quantity{};  ///< what they are: "thickness"; empty if they differ,
+  std::string unit{};      ///< and so is this, and
+  double scale = 0.0;      ///< their typical magnitude is zero
 };
+
+/// The same with the fields of each part as one.
+[[nodiscard]] std::vector<Field> parts_of(const std::vector<Field>& fields);
 
 /// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.
 ///
@@ -59,8 +65,8 @@ public:
   /// F/residual_scale.
   virtual void scales(Vec state_scale, Vec residual_scale) = 0;
 
-  /// All states in parts, the same names on every rank: first the hub, to which the others are joined by few of its
-  /// states; the others do not see each other. Not collective.
+  /// All states, the same fields on every rank: first the hub, to which the other parts are joined by few of its
+  /// states; these do not see each other. Not collective.
   [[nodiscard]] virtual std::vector<Field> fields() const { return {{"state", 0, local_size()}}; }
 
   /// The linearised equations at (angle, x, xdot) if the system solves them itself, else nullptr (on all ranks). What

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "whirl/film/state_model.hpp"
@@ -13,6 +14,8 @@
 #include "whirl/system/train.hpp"
 
 namespace whirl::system {
+
+class FilmPart;
 
 /// A parameter other than the speed: the train as a function of it, from which everything that depends on it is
 /// rebuilt.
@@ -36,9 +39,9 @@ using JournalState = PlaceState;
 /// follows the bent axis and adds no moment of its own. f_film acts on the journal and with the opposite sign on
 /// the pedestal. Rows follow the rotor's distribution; pedestals are on its last rank. Film i is evaluated on rank i
 /// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
-/// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks in whole
-/// lines; the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14,
-/// 20, 23.
+/// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks, cut where
+/// the films allow it; the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with
+/// errata 14, 20, 23.
 class RotorSystem : public Plant, public problem::Settles {
 public:
   /// The speed [rad/s] is the parameter.
@@ -59,10 +62,10 @@ public:
   void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) override;
   void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override;
   void scales(Vec state_scale, Vec residual_scale) override;
-  /// "machine" (rotor and pedestals), then every film with own states by the name of its bearing.
+  /// "machine" (rotor and pedestals), then the fields of every film with own states by the name of its bearing.
   [[nodiscard]] std::vector<problem::Field> fields() const override;
   [[nodiscard]] problem::Structure* structure() override;
-  /// Of a rigid rotor with one film in lines, at least two on every rank.
+  /// Where every film with own states offers a preconditioner.
   [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
                                                         const problem::Frozen* similar) override;
 
@@ -127,13 +130,10 @@ public:
 private:
   struct Bearing {
     std::array<PetscInt, 2> journal{-1, -1}, pedestal{-1, -1};
-    std::unique_ptr<film::Model> film;         // null for a film with own states
-    std::unique_ptr<film::StateModel> states;  // null for a film without
-    PetscInt first = 0, count = 0;             // its own states: where among all of them, how many
-    film::Lines part{0, 0};                    // its lines on this rank,
-    PetscInt row = 0;                          // where they begin in this rank's part of a state,
-    std::size_t gathered = 0;                  // and, with their neighbours, among the gathered own states
-    [[nodiscard]] PetscInt rows() const { return states ? part.count() * static_cast<PetscInt>(states->line()) : 0; }
+    std::unique_ptr<film::Model> film;  // null for a film with own states
+    std::unique_ptr<FilmPart> part;     // null for a film without
+    // Coordinates of journal and pedestal with their signs, whose sum is what the film sees, along x and y.
+    std::vector<std::vector<std::pair<PetscInt, double>>> ports;
   };
   /// Films at one state: what they do to the journals on all ranks, and this rank's rows of own states.
   struct Films {
@@ -153,13 +153,16 @@ private:
   void make_constant_parts();
   /// Made when first wanted at this value of the parameter. Collective.
   [[nodiscard]] Neighbours& neighbours();
-  /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates. Collective:
-  /// assembles j.
-  void add_films(Mat j, const Films& films, double alpha, double sigma) const;
+  /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates; zeros at their
+  /// places without films. Collective: assembles j.
+  void add_films(Mat j, const Films* films, double alpha, double sigma) const;
   [[nodiscard]] Films films_at(Vec x, Vec xdot, film::Need need);
-  /// `own` and `rates` are this rank's lines with their neighbours, as gathered; no rates are zero rates.
+  /// `own` and `rates` are what this rank's films see, as gathered; no rates are zero rates.
   [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, std::span<const double> own,
                                std::span<const double> rates, film::Need need);
+  /// Gives the films that `which` names the own states at which they rest, from the present ones while the journals
+  /// move, or from those of unloaded films under still journals. Collective.
+  void relax(Vec x, const std::function<bool(const FilmPart&)>& which, bool from_present);
   void sum_over_ranks(std::vector<film::Response>& films) const;
   /// Factors of the cosine and the sine parts of the unbalance at a shaft angle [1/s^2].
   [[nodiscard]] std::array<double, 2> unbalance_factors(double angle) const;

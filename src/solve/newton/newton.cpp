@@ -147,7 +147,7 @@ void configure(KSP ksp, SolveContext& c, double relative, double absolute) {
 void set_fields(PC pc, ExtendedProblem& problem, Vec like) {
   PetscInt first = 0, last = 0;
   check(VecGetOwnershipRange(like, &first, &last));
-  std::vector<problem::Field> fields = problem.fields();
+  const std::vector<problem::Field> parts = problem::parts_of(problem.fields());
   std::vector<bool> taken(static_cast<std::size_t>(last - first), false);
   const auto add = [&](const char* name, const std::vector<PetscInt>& rows) {
     core::IndexSet set;
@@ -156,7 +156,7 @@ void set_fields(PC pc, ExtendedProblem& problem, Vec like) {
     check(PCFieldSplitSetIS(pc, name, set.get()));
   };
   std::vector<PetscInt> rows;
-  for (const problem::Field& f : fields) {
+  for (const problem::Field& f : parts) {
     rows.clear();
     for (PetscInt i = f.begin; i < f.end; ++i) {
       rows.push_back(first + i);

@@ -24,8 +24,8 @@ void require_answer(KSP ksp) {
 
 }  // namespace
 
-PortElimination::PortElimination(MPI_Comm comm, std::vector<problem::Field> fields)
-    : comm_(comm), fields_(std::move(fields)) {
+PortElimination::PortElimination(MPI_Comm comm, const std::vector<problem::Field>& fields)
+    : comm_(comm), fields_(problem::parts_of(fields)) {
   core::require(serves(fields_), "parts that elimination keeps apart");
 }
 

@@ -27,10 +27,11 @@ class PortElimination {
 public:
   /// Whether there are parts, and no more of them than this keeps apart (63).
   [[nodiscard]] static bool serves(const std::vector<problem::Field>& fields) {
-    return fields.size() > 1 && fields.size() <= 64;
+    const std::size_t parts = problem::parts_of(fields).size();
+    return parts > 1 && parts <= 64;
   }
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
-  PortElimination(MPI_Comm comm, std::vector<problem::Field> fields);
+  PortElimination(MPI_Comm comm, const std::vector<problem::Field>& fields);
 
   /// `a` has the same pattern in every call.
   void factorise(Mat a);

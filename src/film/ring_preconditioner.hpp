@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "film/stencil.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
@@ -24,16 +25,17 @@ namespace whirl::film {
 /// line and equal -A_FF^-1 A_FC and -A_CF A_FF^-1 for vectors that do not change along it. It is exact, a block cyclic
 /// reduction, where these hold for all vectors. On several ranks levels of fewer than `few_lines` lines per rank are
 /// gathered to all. Source: Schaffer (1998) for semicoarsening; Ries, Trottenberg and Winter (1983) for the reduction.
-class RingPreconditioner {
+class RingPreconditioner final : public StatePreconditioner {
 public:
   /// `line` states in each of `lines` lines, of which this rank holds `here`. Every rank of `comm` holds two or more.
   RingPreconditioner(MPI_Comm comm, int lines, int line, Lines here);
-  ~RingPreconditioner();
+  ~RingPreconditioner() override;
 
-  /// Takes the rows of `here`; a second line before is lumped with the first. Collective.
-  void set(const Stencil& rows);
-  /// x = approximately A^-1 r, [lines here x line], in single precision: good to precondition only. Collective.
-  void apply(std::span<const double> r, std::span<double> x);
+  /// Of a Stencil [rows x places] of dg/ds and one of dg/ds', of which places may be missing at the end; a second line
+  /// before is lumped with the first.
+  void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) override;
+  /// In single precision.
+  void apply(std::span<const double> r, std::span<double> x) override;
 
 private:
   class Level;

@@ -1,0 +1,76 @@
+#include "film_part.hpp"
+
+#include <algorithm>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::system {
+
+using core::check;
+
+void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered) {
+  const PetscInt from = std::max(first_, begin), to = std::min(this->end(), end);
+  share_ = from < to ? film_->share(static_cast<int>(from - first_), static_cast<int>(to - first_)) : film::Share{};
+  row_ = row + std::clamp<PetscInt>(first_ - begin, 0, end - begin);
+  gathered_ = gathered;
+}
+
+void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
+                        film::Need need, film::StateResponse& response) const {
+  const std::size_t n = share_.seen.size();
+  film_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
+}
+
+std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
+  std::vector<problem::Field> out;
+  for (const film::StateField& f : film_->state_fields()) {
+    const int begin = std::clamp(f.begin, share_.begin, share_.end), end = std::clamp(f.end, share_.begin, share_.end);
+    out.push_back({name, row_ + begin - share_.begin, row_ + end - share_.begin, f.name, f.unit, f.scale});
+  }
+  return out;
+}
+
+void FilmPart::count_entries(const std::vector<Port>& ports, std::span<PetscInt> count) const {
+  const auto add = [&](const film::Places& places) {
+    film::for_entries(share_, places, {}, [&](int row, int, double) { ++count[static_cast<std::size_t>(row_ + row)]; });
+  };
+  add(share_.d_states);
+  add(share_.d_rates);
+  PetscInt inputs = 0;  // positions and velocities
+  for (const Port& port : ports) inputs += 2 * static_cast<PetscInt>(port.size());
+  for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;
+}
+
+void FilmPart::add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<Port>& ports, double alpha,
+                   double sigma) const {
+  const PetscInt all = 2 * n + first_, begin = all + share_.begin;
+  const auto matrix = [&](const film::Places& places, const std::vector<double>* values, double factor) {
+    const std::span<const double> at = values ? std::span<const double>(*values) : std::span<const double>();
+    film::for_entries(share_, places, at, [&](int row, int column, double value) {
+      check(MatSetValue(j, begin + row, all + column, factor * value, ADD_VALUES));
+    });
+  };
+  matrix(share_.d_states, response ? &response->d_states : nullptr, alpha);
+  matrix(share_.d_rates, response ? &response->d_rates : nullptr, sigma);
+  std::vector<PetscInt> states(static_cast<std::size_t>(rows()));
+  for (std::size_t k = 0; k < states.size(); ++k) states[k] = begin + static_cast<PetscInt>(k);
+  std::vector<double> values(states.size());
+  const auto count = static_cast<PetscInt>(states.size());
+  for (std::size_t port = 0; port < ports.size(); ++port)
+    for (const auto& [q, side] : ports[port]) {
+      const auto column = [&](const film::PortColumns* from, PetscInt unknown) {
+        for (std::size_t k = 0; k < values.size(); ++k) values[k] = from ? alpha * side * (*from)[port][k] : 0.0;
+        check(MatSetValues(j, count, states.data(), 1, &unknown, values.data(), ADD_VALUES));
+      };
+      column(response ? &response->d_position : nullptr, 2 * q);
+      column(response ? &response->d_velocity : nullptr, 2 * q + 1);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        values[k] = response ? -side * alpha * response->force_d_states[port][k] : 0.0;
+        if (response && !response->force_d_rates.empty()) values[k] -= side * sigma * response->force_d_rates[port][k];
+      }
+      const PetscInt row = 2 * q;
+      check(MatSetValues(j, 1, &row, count, states.data(), values.data(), ADD_VALUES));
+    }
+}
+
+}  // namespace whirl::system
