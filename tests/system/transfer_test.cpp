@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/train_system.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -217,4 +220,27 @@ TEST(TransferModes, CountThoseThatHideInADampedLiner) {
   EXPECT_GE(modes.modes.size(), 1U);
   for (const auto& m : modes.modes) found += m.lambda.imag() != 0 ? 2 : 1;
   EXPECT_EQ(modes.missed, number - found);
+}
+
+TEST(MachineModes, AreFoundTheWayThatIsAskedFor) {
+  system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {20, 6}, 0.1), 2.4 * scale);
+  const core::Vector x = rest(s);
+  const auto by = [&](const char* way) {
+    if (way) core::check(PetscOptionsSetValue(nullptr, "-modes_by", way));
+    return solve::machine_modes(s, x.get(), {});
+  };
+  const auto least_stable = [](const solve::MachineModes& m) {
+    return std::max_element(m.modes.begin(), m.modes.end(),
+                            [](const auto& a, const auto& b) { return a.lambda.real() < b.lambda.real(); })
+        ->lambda;
+  };
+  const auto automatic = by(nullptr), whole = by("whole"), transfer = by("transfer");
+  EXPECT_FALSE(automatic.transfer);
+  EXPECT_FALSE(whole.transfer);
+  EXPECT_TRUE(transfer.transfer);
+  EXPECT_EQ(transfer.missed, 0);
+  EXPECT_LT(std::abs(least_stable(transfer) - least_stable(whole)), 1e-9 * scale);
+  EXPECT_LT(transfer.modes.size(), whole.modes.size());
+  EXPECT_THROW((void)by("guess"), core::InputError);
+  core::check(PetscOptionsClearValue(nullptr, "-modes_by"));
 }
