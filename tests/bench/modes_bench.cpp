@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -31,7 +32,7 @@ system::Train on_liners(int around) {
         film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
     s.film = {};
     s.film.kind = film::Options::Kind::compliant_finite;
-    s.film.compliance = 0.05;
+    s.film.compliance = 0.3;
     s.film.reference_speed = 377;
     s.film.cells = {around, around / 5};
   }
@@ -60,7 +61,8 @@ void row(int around, Rest& last) {
   if (last.system) core::fill(x.get(), s.resampled(*last.system, last.x.data()));
   solve::NewtonOptions newton;
   newton.max_iterations = 40;
-  core::require(solve::find_equilibrium(s, x.get(), newton).converged, "equilibrium");
+  const auto rest = solve::find_equilibrium(s, x.get(), newton);
+  if (!rest.converged && core::rank_of(PETSC_COMM_WORLD) == 0) fmt::print("{} cells: {}\n", around, rest.reason);
   spectral::EigenOptions whole;
   whole.count = 60;
   whole.dense_below = 0;
@@ -85,6 +87,7 @@ void row(int around, Rest& last) {
     fmt::print("{:4} x {:3} {:8} {:9.2f} {:9.2f} {:6.1f} {:6} {:6} {:6} {:6} {:9.1e}\n", around, around / 5, s.size(),
                by_pencil.processor, by_transfer.processor, by_transfer.processor / by_pencil.processor, found.counted,
                found.missed, found.poles, found.solves, apart);
+  std::fflush(stdout);
 }
 
 }  // namespace

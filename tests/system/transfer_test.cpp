@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/train_system.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -195,9 +198,10 @@ TEST(TransferModes, OfAFilmThatHoldsItsContentAreThoseOfTheWholePencil) {
 }
 
 TEST(TransferModes, OfTheTrainOnFiveLinersAreThoseOfTheWholePencil) {
-  expect_in(on_liners(), 377, {{400, 100, 4}, {1000, 500, 8}});
-  // Begins anew on smaller circles; ranks that wait would take as long again.
-  if (core::size_of(MPI_COMM_WORLD) == 1) expect_in(on_liners(), 377, {{2000, 1000, 10}});
+  expect_in(on_liners(), 377, {{400, 100, 4}});
+  // Many eigenvalues, the second time with a search that begins anew on smaller circles: one rank decides all of it,
+  // and others that wait would take as long again.
+  if (core::size_of(MPI_COMM_WORLD) == 1) expect_in(on_liners(), 377, {{1000, 500, 8}, {2000, 1000, 10}});
 }
 
 // Each place of a damped liner has an eigenvalue of its own near -1/tau that the journal hardly sees. They are all
@@ -217,4 +221,27 @@ TEST(TransferModes, CountThoseThatHideInADampedLiner) {
   EXPECT_GE(modes.modes.size(), 1U);
   for (const auto& m : modes.modes) found += m.lambda.imag() != 0 ? 2 : 1;
   EXPECT_EQ(modes.missed, number - found);
+}
+
+TEST(MachineModes, AreFoundTheWayThatIsAskedFor) {
+  system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {20, 6}, 0.1), 2.4 * scale);
+  const core::Vector x = rest(s);
+  const auto by = [&](const char* way) {
+    if (way) core::check(PetscOptionsSetValue(nullptr, "-modes_by", way));
+    return solve::machine_modes(s, x.get(), {});
+  };
+  const auto least_stable = [](const solve::MachineModes& m) {
+    return std::max_element(m.modes.begin(), m.modes.end(),
+                            [](const auto& a, const auto& b) { return a.lambda.real() < b.lambda.real(); })
+        ->lambda;
+  };
+  const auto automatic = by(nullptr), whole = by("whole"), transfer = by("transfer");
+  EXPECT_FALSE(automatic.transfer);
+  EXPECT_FALSE(whole.transfer);
+  EXPECT_TRUE(transfer.transfer);
+  EXPECT_EQ(transfer.missed, 0);
+  EXPECT_LT(std::abs(least_stable(transfer) - least_stable(whole)), 1e-9 * scale);
+  EXPECT_LT(transfer.modes.size(), whole.modes.size());
+  EXPECT_THROW((void)by("guess"), core::InputError);
+  core::check(PetscOptionsClearValue(nullptr, "-modes_by"));
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
@@ -12,13 +13,17 @@ namespace whirl::solve {
 
 namespace {
 
+// From where on the factorisations of films one by one cost no more than that of the whole pencil (docs/speed.md).
+constexpr PetscInt whole_up_to = 100000;
+
 bool by_transfer(const problem::System& system) {
   std::array<char, 16> word{};
   PetscBool given = PETSC_FALSE;
   core::check(PetscOptionsGetString(nullptr, nullptr, "-modes_by", word.data(), word.size(), &given));
-  const std::string_view way = given ? word.data() : "whole";
-  if (way != "whole" && way != "transfer") throw core::InputError("-modes_by is 'whole' or 'transfer'");
-  return way == "transfer" && system.fields().size() > 1;
+  const std::string_view way = given ? word.data() : "automatic";
+  if (way != "whole" && way != "transfer" && way != "automatic")
+    throw core::InputError("-modes_by is 'whole', 'transfer' or 'automatic'");
+  return system.fields().size() > 1 && (way == "transfer" || (way == "automatic" && system.size() > whole_up_to));
 }
 
 constexpr int most_regions = 6;

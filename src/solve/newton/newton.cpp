@@ -85,7 +85,11 @@ PetscErrorCode settle_step(SNESLineSearch search, Vec u, Vec step, PetscBool* ch
   return c.gate.run([&] {
     constexpr double shortest = 1e-3, sufficient = 1e-4;  // fall of the residual, as a line search asks for
     const double norm = core::norm(here);
-    core::Vector end = core::duplicate(u), there = core::duplicate(u);
+    core::Vector end = core::duplicate(u), there = core::duplicate(u), longest;
+    const auto take = [&](Vec settled) {
+      check(VecWAXPY(step, -1, settled, u));
+      *changed = PETSC_TRUE;
+    };
     for (double part = 1; part > shortest; part /= 2) {
       check(VecWAXPY(end.get(), -part, step, u));
       if (!c.problem.settle(end.get())) continue;
@@ -94,11 +98,13 @@ PetscErrorCode settle_step(SNESLineSearch search, Vec u, Vec step, PetscBool* ch
       } catch (const core::DomainError&) {
         continue;
       }
-      if (!(core::norm(there.get()) <= (1 - sufficient * part) * norm)) continue;
-      check(VecWAXPY(step, -1, end.get(), u));
-      *changed = PETSC_TRUE;
-      return;
+      if (core::norm(there.get()) <= (1 - sufficient * part) * norm) return take(end.get());
+      if (longest) continue;
+      longest = core::duplicate(u);
+      check(VecCopy(end.get(), longest.get()));
     }
+    // None helps: the search may find something on the way to the longest of them.
+    if (longest) take(longest.get());
   });
 }
 
@@ -268,7 +274,13 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, options.searches ? SNESLINESEARCHBT : SNESLINESEARCHBASIC));
-  if (context.problem.settles()) check(SNESLineSearchSetPreCheck(search, settle_step, &context));
+  if (context.problem.settles()) {
+    check(SNESLineSearchSetPreCheck(search, settle_step, &context));
+    // It has asked for a fall of the residual already. The slope along a step that settles is none of a smooth
+    // function.
+    constexpr double any_fall = 1e-12;
+    check(SNESLineSearchBTSetAlpha(search, any_fall));
+  }
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));
   // Digits below Newton's own tolerance are of no use.

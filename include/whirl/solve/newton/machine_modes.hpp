@@ -26,8 +26,9 @@ struct Region {
 ///
 /// | whole | spectral::modes on the whole pencil: all of a small one, those nearest to zero of a large one |
 /// | transfer | transfer_modes() in a region |
+/// | automatic | the default: `whole` up to 100 000 states, `transfer` above |
 ///
-/// `whole` unless it is given; a system without parts or at rest has no other way. Regions reach half as far to the
+/// A system without parts or at rest has no other way than `whole`. Regions reach half as far to the
 /// left as they are high. Without a frequency the first one reaches to twice the speed, and it grows by half, at most
 /// five times, until it holds enough. Collective; throws core::NotConverged, core::InputError on another word.
 [[nodiscard]] MachineModes machine_modes(problem::System& system, Vec x, const spectral::EigenOptions& options,
