@@ -154,7 +154,7 @@ void RotorSystem::FilmSolver::Equations::take_rotor(const std::vector<film::Resp
   const RotorSystem& s = solver_.system_;
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t b = 0; b < s.bearings_.size(); ++b) {
-    const std::vector<Port>& ports = s.bearings_[b].ports;
+    const std::vector<PortEnds>& ports = s.bearings_[b].ports;
     for (std::size_t d = 0; d < ports.size(); ++d)
       for (const auto& [q, to] : ports[d])
         for (std::size_t e = 0; e < ports.size(); ++e)
