@@ -213,7 +213,7 @@ void RotorSystem::make_constant_parts() {
   std::vector<PetscInt> coupled(static_cast<std::size_t>(n_), 0);  // own states that act on a coordinate
   for (const Bearing& b : bearings_) {
     if (!b.part) continue;
-    for (const Port& port : b.ports)
+    for (const PortEnds& port : b.ports)
       for (const auto& [q, side] : port) coupled[static_cast<std::size_t>(q)] += b.part->count();
     b.part->count_entries(b.ports, count);
   }

@@ -30,19 +30,19 @@ std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
   return out;
 }
 
-void FilmPart::count_entries(const std::vector<Port>& ports, std::span<PetscInt> count) const {
+void FilmPart::count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const {
   const auto add = [&](const film::Places& places) {
     film::for_entries(share_, places, {}, [&](int row, int, double) { ++count[static_cast<std::size_t>(row_ + row)]; });
   };
   add(share_.d_states);
   add(share_.d_rates);
   PetscInt inputs = 0;  // positions and velocities
-  for (const Port& port : ports) inputs += 2 * static_cast<PetscInt>(port.size());
+  for (const PortEnds& port : ports) inputs += 2 * static_cast<PetscInt>(port.size());
   for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;
 }
 
-void FilmPart::add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<Port>& ports, double alpha,
-                   double sigma) const {
+void FilmPart::add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports,
+                   double alpha, double sigma) const {
   const PetscInt all = 2 * n + first_, begin = all + share_.begin;
   const auto matrix = [&](const film::Places& places, const std::vector<double>* values, double factor) {
     const std::span<const double> at = values ? std::span<const double>(*values) : std::span<const double>();

@@ -16,7 +16,7 @@ namespace whirl::system {
 
 /// Coordinates of the machine whose sum, with these signs, is a motion that a film sees: journal less pedestal. A
 /// machine has those along x and y; all others are zero.
-using Port = std::vector<std::pair<PetscInt, double>>;
+using PortEnds = std::vector<std::pair<PetscInt, double>>;
 
 /// Own states of all films stand film by film behind the machine; this one's begin at `first` among them.
 class FilmPart {
@@ -48,10 +48,10 @@ public:
   }
 
   /// Room for the entries of its rows, [local rows].
-  void count_entries(const std::vector<Port>& ports, std::span<PetscInt> count) const;
+  void count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const;
   /// j += alpha times the derivatives in states and journal, sigma times those in rates; without a response the places
   /// alone. The rows of own states of all films begin at 2 n.
-  void add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<Port>& ports, double alpha,
+  void add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports, double alpha,
            double sigma) const;
 
 private:

@@ -104,7 +104,7 @@ void RotorSystem::FilmSolver::make_rotor() {
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1.0);
   }
   for (Index k = 0; k < films && n > 0; ++k) {
-    const std::vector<Port>& ports = s.bearings_[films_[static_cast<std::size_t>(k)].bearing].ports;
+    const std::vector<PortEnds>& ports = s.bearings_[films_[static_cast<std::size_t>(k)].bearing].ports;
     for (std::size_t d = 0; d < ports.size(); ++d)
       for (const auto& [q, side] : ports[d]) {
         const auto e = static_cast<Index>(d);
@@ -132,7 +132,7 @@ RotorSystem::FilmSolver::Sparse RotorSystem::FilmSolver::rotor_block(double alph
 
 std::array<double, 4> RotorSystem::FilmSolver::motion_of(std::size_t k, const double* inputs) const {
   const Film& film = films_[k];
-  const std::vector<Port>& ports = system_.bearings_[film.bearing].ports;
+  const std::vector<PortEnds>& ports = system_.bearings_[film.bearing].ports;
   std::array<double, 4> u{};  // position, velocity
   for (std::size_t d = 0; d < 2; ++d)
     for (std::size_t rate = 0; rate < 2; ++rate)

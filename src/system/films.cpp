@@ -149,7 +149,7 @@ void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigm
   static const film::Response none;
   for (std::size_t b = 0; b < bearings_.size(); ++b) {
     const film::Response& r = films ? films->journal[b] : none;
-    const std::vector<Port>& ports = bearings_[b].ports;
+    const std::vector<PortEnds>& ports = bearings_[b].ports;
     for (std::size_t d = 0; d < ports.size(); ++d)
       for (const auto& [row, to] : ports[d]) {
         if (!owns(row)) continue;

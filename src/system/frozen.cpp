@@ -61,7 +61,8 @@ private:
     };
     std::vector<Film> films;
     Eigen::SparseLU<Eigen::SparseMatrix<double>> rest;  // S, on the first rank
-    MatrixXd to_force;                                  // inputs per force, with the films eliminated
+    MatrixXd by_force;                                  // alpha S^-1 B: rotor per force, on the first rank
+    MatrixXd to_force;                                  // C alpha S^-1 B: inputs per force
   };
   [[nodiscard]] bool first() const { return solver_.state_.size() > 0; }
   void take_film(const Film& film, film::StateResponse& own, double sigma);
@@ -153,7 +154,7 @@ void RotorSystem::FilmSolver::Equations::take_rotor(const std::vector<film::Resp
   const RotorSystem& s = solver_.system_;
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t b = 0; b < s.bearings_.size(); ++b) {
-    const std::vector<Port>& ports = s.bearings_[b].ports;
+    const std::vector<PortEnds>& ports = s.bearings_[b].ports;
     for (std::size_t d = 0; d < ports.size(); ++d)
       for (const auto& [q, to] : ports[d])
         for (std::size_t e = 0; e < ports.size(); ++e)
@@ -193,7 +194,8 @@ void RotorSystem::FilmSolver::Equations::eliminate() {
     const Eigen::SparseMatrix<double> rest = rotor_ + alpha_ * by_films;
     p.rest.compute(rest);
     if (p.rest.info() != Eigen::Success) throw core::DomainError("the rotor in its linearised films is singular");
-    p.to_force = alpha_ * (solver_.inputs_ * p.rest.solve(MatrixXd(solver_.outputs_)));
+    p.by_force = alpha_ * p.rest.solve(MatrixXd(solver_.outputs_));
+    p.to_force = solver_.inputs_ * p.by_force;
   });
   MPI_Bcast(p.to_force.data(), static_cast<int>(p.to_force.size()), MPI_DOUBLE, 0, solver_.system_.comm_);
 }
@@ -287,9 +289,10 @@ void RotorSystem::FilmSolver::Equations::precondition(Vec r, Vec y) const {
   }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, solver_.system_.comm_);
   const VectorXd u = sums.tail(4 * films) + p.to_force * sums.head(2 * films);
-  if (first())
-    Map<VectorXd>(ya.data(), rotor_.rows()) =
-        z + p.rest.solve(VectorXd(alpha_ * (solver_.outputs_ * sums.head(2 * films))));
+  if (first()) {
+    z.noalias() += p.by_force * sums.head(2 * films);
+    Map<VectorXd>(ya.data(), rotor_.rows()) = z;
+  }
   for (std::size_t k = 0; k < films_.size(); ++k) {
     if (!p.films[k].inverse) continue;
     const Index at = 4 * static_cast<Index>(k);
