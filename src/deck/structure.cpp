@@ -160,6 +160,9 @@ Node plain_schema(const Structure& s, bool whole, const std::string& selector, c
     const bool written = selects && o.codec->write(o.member(s.defaults.get())).text != choice;
     if ((o.required && o.aliases.empty()) || written) required.push(Node::scalar(o.key, true));
   }
+  // Takes away what a base says for another choice.
+  for (const Option& o : s.options)
+    if (!properties.find(o.key)) properties.set(o.key, typed_schema("null"));
   if (whole && !required.items.empty()) n.set("required", std::move(required));
   return n;
 }

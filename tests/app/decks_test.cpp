@@ -62,7 +62,8 @@ std::string invalid(const Json& schema, const Json& value, const std::string& pa
     for (const Json& t : types)
       fits = fits || (t == "object" && value.is_object()) || (t == "array" && value.is_array()) ||
              (t == "string" && value.is_string()) || (t == "number" && value.is_number()) ||
-             (t == "integer" && value.is_number_integer()) || (t == "boolean" && value.is_boolean());
+             (t == "integer" && value.is_number_integer()) || (t == "boolean" && value.is_boolean()) ||
+             (t == "null" && value.is_null());
     if (!fits) return path + " is not of type " + schema["type"].dump() + ": " + value.dump();
   }
   if (schema.contains("pattern") && value.is_string() &&
