@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "film/kinds.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -304,9 +303,8 @@ void FiniteFilm::evaluate_lines(const Motion& motion, Lines part, std::span<cons
   rows(part, motion, rates, need, response);
 }
 
-std::unique_ptr<StateModel> make_compliant_finite(const Geometry& g, const Options& options,
-                                                  const Lubricant& lubricant) {
-  return std::make_unique<FiniteFilm>(g, options, lubricant);
+Made make(const Geometry& geometry, const CompliantFinite& options, const Lubricant& lubricant) {
+  return std::make_unique<FiniteFilm>(geometry, options, lubricant);
 }
 
 }  // namespace whirl::film

@@ -21,7 +21,7 @@ namespace whirl::film {
 
 class ContentPad : private PadEquations {
 public:
-  ContentPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  ContentPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   [[nodiscard]] std::size_t states() const { return columns_.size() * static_cast<std::size_t>(rows_); }
   /// Adds force and derivatives of the force to `response.journal`, lowers its min_thickness, and appends the rows of
   /// this pad with their derivatives; `first` is its first state, q [states()] those of this pad.
@@ -66,5 +66,9 @@ private:
   std::vector<int> columns_, column_of_;  // of unknowns, in the order of the states, and the inverse
   std::vector<Node> nodes_;               // [n_theta + 1][rows_]
 };
+
+/// Film on rigid pads that conserves its mass, with what its gap holds as states. Throws core::InputError on values
+/// outside their range.
+std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film

@@ -22,7 +22,7 @@ struct PadEquations {
     }
   };
 
-  PadEquations(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  PadEquations(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   /// Coefficients and source at `motion`; throws core::DomainError unless the thickness is positive.
   void coefficients(const Motion& motion);
   /// Flows of the equations with `pressure(i, j)` at nodes and `deficit(i, j)` = |Omega| (1 - fill) [rad/s], which the

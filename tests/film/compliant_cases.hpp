@@ -4,21 +4,22 @@
 #include <vector>
 
 #include "film/cases.hpp"
+#include "support/film_of.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
 
 inline constexpr double kSpeed = 377.0;
 
-inline Options compliant(Options::Kind kind, double compliance, int cells, bool as_source) {
-  Options o;
+inline Elastic compliant(Kind kind, double compliance, int cells, bool as_source) {
+  Elastic o;
   o.kind = kind;
   o.compliance = compliance;
   o.reference_speed = 300.0;
-  o.cells = {cells, kind == Options::Kind::compliant_finite ? 8 : 4};
+  o.cells = {cells, kind == Kind::compliant_finite ? 8 : 4};
   if (as_source) {
-    o.quadrature = Options::Quadrature::simpson;
-    o.differences = Options::Differences::upwind;
+    o.quadrature = Compliant::Quadrature::simpson;
+    o.differences = Compliant::Differences::upwind;
   }
   return o;
 }

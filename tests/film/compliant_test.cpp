@@ -13,11 +13,11 @@ namespace {
 
 struct Case {
   std::string name;
-  Options options;
+  Elastic options;
 };
 
 std::vector<Case> cases() {
-  using enum Options::Kind;
+  using enum Kind;
   std::vector<Case> all = {{"short", compliant(compliant_short, 0.1, 40, false)},
                            {"short_as_source", compliant(compliant_short, 1.0, 50, true)},
                            {"long", compliant(compliant_long, 0.1, 41, false)},
@@ -28,7 +28,7 @@ std::vector<Case> cases() {
   for (std::size_t k = 0; k < plain; k += 2) {
     Case c = all[k];
     const std::string name = c.name;
-    c.options.differences = Options::Differences::third_order;
+    c.options.differences = Compliant::Differences::third_order;
     c.name = name + "_third_order";
     all.push_back(c);
     c.options.liner_damping = 0.4 / kSpeed;
@@ -53,7 +53,7 @@ std::vector<Case> cases() {
 
 const Motion kMoving = motion(cylinder(), {0.2, -0.4, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, kSpeed);
 
-class Compliant : public ::testing::TestWithParam<Case> {};
+class CompliantFilms : public ::testing::TestWithParam<Case> {};
 
 // A state off equilibrium, smooth and with rates; thin enough for asperities, which are left out of what gives it.
 struct Point {
@@ -61,7 +61,7 @@ struct Point {
   std::vector<double> states, rates;
 };
 
-Point point(Options options) {
+Point point(Elastic options) {
   options.contact.reset();
   const auto made = make_state_model(cylinder(), options, oil());
   StateModel& film = *made;
@@ -76,8 +76,8 @@ Point point(Options options) {
 
 // Asperities take part where they are asked for. They do not show in the force as long as the film stays positive
 // beneath them: both together carry what the liner does.
-TEST_P(Compliant, ContactCarries) {
-  Options o = GetParam().options;
+TEST_P(CompliantFilms, ContactCarries) {
+  Elastic o = GetParam().options;
   if (!o.contact) GTEST_SKIP() << "without contact";
   auto with = make_state_model(cylinder(), o, oil());
   o.contact.reset();
@@ -95,7 +95,7 @@ TEST_P(Compliant, ContactCarries) {
 }
 
 // Along random directions in each group of arguments the remainders of residual and force must fall as e^2.
-TEST_P(Compliant, TaylorRemainderIsSecondOrder) {
+TEST_P(CompliantFilms, TaylorRemainderIsSecondOrder) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
   const double c = film->state_scale();
   const Point base = point(GetParam().options);
@@ -154,7 +154,7 @@ TEST_P(Compliant, TaylorRemainderIsSecondOrder) {
   }
 }
 
-TEST_P(Compliant, PatternForceAndHistory) {
+TEST_P(CompliantFilms, PatternForceAndHistory) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
   auto fresh = make_state_model(cylinder(), GetParam().options, oil());
   const Point p = point(GetParam().options);
@@ -179,7 +179,7 @@ TEST_P(Compliant, PatternForceAndHistory) {
   EXPECT_EQ(a.residual, b.residual);
 }
 
-TEST_P(Compliant, ContactIsADomainError) {
+TEST_P(CompliantFilms, ContactIsADomainError) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
   Point p = point(GetParam().options);
   StateResponse r;
@@ -189,9 +189,9 @@ TEST_P(Compliant, ContactIsADomainError) {
   EXPECT_THROW(film->evaluate(p.motion, p.states, p.rates, Need::force, r), core::DomainError);
 }
 
-TEST_P(Compliant, ResamplingKeepsTheFilm) {
+TEST_P(CompliantFilms, ResamplingKeepsTheFilm) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
-  Options twice = GetParam().options;
+  Elastic twice = GetParam().options;
   for (int& cells : twice.cells) cells *= 2;
   auto fine = make_state_model(cylinder(), twice, oil());
   const Motion m = still(0.2, -0.4);
@@ -202,15 +202,14 @@ TEST_P(Compliant, ResamplingKeepsTheFilm) {
   for (std::size_t k = 0; k < back.size(); ++k) EXPECT_NEAR(back[k], coarse[k], 1e-12 * film->state_scale());
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, Compliant, ::testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Films, CompliantFilms, ::testing::ValuesIn(cases()),
                          [](const auto& which) { return which.param.name; });
 
 // A stiff liner gives the rigid films; the difference is proportional to B.
 TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
-  using enum Options::Kind;
+  using enum Kind;
   for (const auto& [soft, hard] : {std::pair{compliant_short, short_bearing}, std::pair{compliant_long, long_inlet}}) {
-    Options rigid;
-    rigid.kind = hard;
+    const Options rigid = film_of(hard);
     auto model = make_model(cylinder(), rigid, oil());
     const Motion m = still(0.3, -0.3);
     const Response exact = evaluate(*model, m);
@@ -227,9 +226,8 @@ TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
 
 // Stiffness and damping with a stiff liner are the rigid tangents; the static stiffness is the slope of static forces.
 TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
-  using enum Options::Kind;
-  Options rigid;
-  rigid.kind = short_bearing;
+  using enum Kind;
+  const Short rigid;
   auto model = make_model(cylinder(), rigid, oil());
   const Motion m = still(0.3, -0.3);
   const Response exact = evaluate(*model, m);
@@ -243,7 +241,7 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
       EXPECT_NEAR(c.damping[2 * i + j] * kSpeed, -exact.d_velocity[i][j] * kSpeed, 5e-3 * size);
     }
   for (const auto kind : {compliant_short, compliant_long}) {
-    const Options soft = compliant(kind, 0.5, 60, false);
+    const Elastic soft = compliant(kind, 0.5, 60, false);
     auto other = make_state_model(cylinder(), soft, oil());
     const Coefficients slow = coefficients(*other, m, relaxed(*other, m), 1e-3);
     const double step = 1e-5;
@@ -260,12 +258,12 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
 
 // A film that carries nothing has the residual Omega/2 dh/dtheta alone.
 TEST(CompliantLimits, OrdersOfTheDifferences) {
-  using enum Options::Differences;
-  for (const auto kind : {Options::Kind::compliant_short, Options::Kind::compliant_finite})
+  using enum Compliant::Differences;
+  for (const auto kind : {Kind::compliant_short, Kind::compliant_finite})
     for (const auto& [differences, order] : {std::pair{central, 2.0}, {upwind, 2.0}, {third_order, 3.0}}) {
       std::array<double, 2> error{};
       for (std::size_t k = 0; k < 2; ++k) {
-        Options o = compliant(kind, 0.1, 40 << k, false);
+        Elastic o = compliant(kind, 0.1, 40 << k, false);
         o.differences = differences;
         auto film = make_state_model(cylinder(), o, oil());
         std::vector<double> s(film->states());
@@ -274,7 +272,7 @@ TEST(CompliantLimits, OrdersOfTheDifferences) {
         film->evaluate(still(0.3, -0.4), s, std::vector<double>(s.size(), 0.0), Need::force, r);
         const double theta = 90.0 * kDegree + 7 * 9.0 * kDegree;  // node 7 of 40
         const double exact = 0.5 * kSpeed * cylinder().clearance * (0.3 * std::sin(theta) + 0.4 * std::cos(theta));
-        const std::size_t line = kind == Options::Kind::compliant_finite ? film->line() : 1;
+        const std::size_t line = kind == Kind::compliant_finite ? film->line() : 1;
         error[k] = std::abs(r.residual[(7 << k) * line] - exact);
       }
       EXPECT_NEAR(std::log2(error[0] / error[1]), order, 0.3);
@@ -282,11 +280,11 @@ TEST(CompliantLimits, OrdersOfTheDifferences) {
 }
 
 TEST(CompliantLimits, StaticForceIsOfSecondOrder) {
-  using enum Options::Kind;
+  using enum Kind;
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {
     std::array<std::array<double, 4>, 4> f{};
     for (std::size_t k = 0; k < 4; ++k) {
-      Options o = compliant(kind, 0.1, (kind == compliant_finite ? 15 : 60) << k, false);
+      Elastic o = compliant(kind, 0.1, (kind == compliant_finite ? 15 : 60) << k, false);
       o.cells[1] = 4 << k;
       f[k] = static_response(o, still(0.3, -0.3)).force;
     }
@@ -296,7 +294,7 @@ TEST(CompliantLimits, StaticForceIsOfSecondOrder) {
 }
 
 TEST(CompliantLimits, ALinerIsItsCompliance) {
-  Options by_b = compliant(Options::Kind::compliant_short, 0.1, 40, false), by_liner = by_b;
+  Elastic by_b = compliant(Kind::compliant_short, 0.1, 40, false), by_liner = by_b;
   const Geometry g = cylinder();
   // B = 6 mu Omega_0 d (1 + nu)(1 - 2 nu)/((c/R)^2 c E (1 - nu))
   const double d = 2e-3, nu = 0.3, ratio = g.clearance / g.radius;
@@ -313,9 +311,8 @@ TEST(CompliantLimits, ALinerIsItsCompliance) {
 }
 
 TEST(CompliantLimits, ReportsAgreeWithTheRigidFilm) {
-  using enum Options::Kind;
-  Options rigid;
-  rigid.kind = short_bearing;
+  using enum Kind;
+  const Short rigid;
   const Motion m = still(0.3, -0.3);
   const Summary exact = make_model(cylinder(), rigid, oil())->summary(m);
   auto film = make_state_model(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());

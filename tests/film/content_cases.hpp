@@ -10,15 +10,15 @@
 
 namespace whirl::film::testing {
 
-inline Options dynamic(std::array<int, 2> cells) {
-  Options o;
-  o.cavitation = Options::Cavitation::mass_conserving;
-  o.states = Options::States::dynamic;
+inline Reynolds dynamic(std::array<int, 2> cells) {
+  Reynolds o;
+  o.cavitation = Reynolds::Cavitation::mass_conserving;
+  o.states = Reynolds::States::dynamic;
   o.cells = cells;
   return o;
 }
-inline Options without_states(Options o) {
-  o.states = Options::States::condensed;
+inline Reynolds without_states(Reynolds o) {
+  o.states = Reynolds::States::condensed;
   return o;
 }
 
@@ -76,7 +76,7 @@ inline double step_of(const Geometry& g, int direction, double e) {
 }
 
 /// Area [m^2] of the cell of every state, both halves of an aligned film.
-inline std::vector<double> cell_areas(const Geometry& g, const Options& o) {
+inline std::vector<double> cell_areas(const Geometry& g, const Reynolds& o) {
   const bool closed = g.type == Geometry::Bore::cylindrical, edges = !closed || o.inlet.type == Inlet::Type::line;
   const double step = (closed ? 2.0 * std::numbers::pi : g.arc) / o.cells[0];
   const int rows = o.tilt ? o.cells[1] - 1 : o.cells[1] / 2, pads = g.type == Geometry::Bore::lemon_bore ? 2 : 1;

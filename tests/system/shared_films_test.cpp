@@ -20,11 +20,11 @@ system::Train on_liners() {
     s.name = "B" + std::to_string(&s - t.supports.data() + 1);
     s.geometry = {
         film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    s.film = {};
-    s.film.kind = film::Options::Kind::compliant_finite;
-    s.film.compliance = 0.05;
-    s.film.reference_speed = 377;
-    s.film.cells = {12, 5};
+    film::CompliantFinite film;
+    film.compliance = 0.05;
+    film.reference_speed = 377;
+    film.cells = {12, 5};
+    s.film = film;
   }
   return t;
 }
