@@ -84,11 +84,12 @@ public:
     return all;
   }
   std::string step() const override { return "1"; }
-  Leaf leaf(const void*, std::span<const std::string> path) const override {
+  Leaf leaf(const void*, std::span<const std::string> path, const Node* given) const override {
     if (path.size() < 2) return {};
     std::vector<std::string> names;
     for (const ChoiceKind& k : kinds_) {
-      if (path[1] == k.name) return leaf_of(*k.options, nullptr, path.subspan(2));
+      if (path[1] == k.name)
+        return leaf_of(*k.options, nullptr, path.subspan(2), given_part(given_part(given, path[0]), k.name));
       names.push_back(k.name);
     }
     throw InputError(fmt::format("there is no kind '{}'{}", path[1], did_you_mean(path[1], names)));

@@ -58,9 +58,10 @@ public:
   std::string step() const override { return "1"; }
   const Spec* spec() const override { return item_->spec(); }
   std::vector<Choice> choices() const override { return choices_of(*item_); }
-  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+  Leaf leaf(const void* preset, std::span<const std::string> path, const Node* given) const override {
     const std::size_t i = index_of(path.front(), std::numeric_limits<std::size_t>::max());
-    return leaf_of(*item_, preset && i < a_.size(preset) ? a_.at(mutable_part(preset), i) : nullptr, path.subspan(1));
+    return leaf_of(*item_, preset && i < a_.size(preset) ? a_.at(mutable_part(preset), i) : nullptr, path.subspan(1),
+                   given_part(given, path.front()));
   }
   Access find(void* value, std::span<const std::string> path) const override {
     if (path.empty()) return {};
@@ -132,8 +133,8 @@ public:
   const Structure* structure() const override { return &row_; }
   std::string step() const override { return "1"; }
   const Spec* spec() const override { return scalar_.empty() ? nullptr : row_.option(scalar_)->codec->spec(); }
-  Leaf leaf(const void*, std::span<const std::string> path) const override {
-    return leaf_of(row_, nullptr, path.subspan(1));
+  Leaf leaf(const void*, std::span<const std::string> path, const Node* given) const override {
+    return leaf_of(row_, nullptr, path.subspan(1), given_part(given, path.front()));
   }
   Access find(void*, std::span<const std::string>) const override { return {}; }
 
@@ -186,8 +187,8 @@ public:
   std::string type() const override { return fmt::format("a map NAME: {}", item_->type()); }
   const Structure* structure() const override { return item_->structure(); }
   std::string step() const override { return "NAME"; }
-  Leaf leaf(const void*, std::span<const std::string> path) const override {
-    return leaf_of(*item_, nullptr, path.subspan(1));
+  Leaf leaf(const void*, std::span<const std::string> path, const Node* given) const override {
+    return leaf_of(*item_, nullptr, path.subspan(1), given_part(given, path.front()));
   }
   Access find(void* value, std::span<const std::string> path) const override {
     if (path.empty()) return {};
@@ -223,8 +224,8 @@ public:
   std::string step() const override { return item_->step(); }
   const Spec* spec() const override { return item_->spec(); }
   std::vector<Choice> choices() const override { return choices_of(*item_); }
-  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
-    return leaf_of(*item_, preset ? a_.get(mutable_part(preset)) : nullptr, path);
+  Leaf leaf(const void* preset, std::span<const std::string> path, const Node* given) const override {
+    return leaf_of(*item_, preset ? a_.get(mutable_part(preset)) : nullptr, path, given);
   }
   Access find(void* value, std::span<const std::string> path) const override {
     void* v = a_.get(value);
@@ -253,8 +254,8 @@ public:
   Node schema(bool whole) const override { return either_schema(typed_schema("string"), value_->schema(whole)); }
   std::string type() const override { return "a name, or a map"; }
   const Structure* structure() const override { return value_->structure(); }
-  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
-    return leaf_of(*value_, preset && !a_.name(preset) ? a_.value(mutable_part(preset)) : nullptr, path);
+  Leaf leaf(const void* preset, std::span<const std::string> path, const Node* given) const override {
+    return leaf_of(*value_, preset && !a_.name(preset) ? a_.value(mutable_part(preset)) : nullptr, path, given);
   }
   Access find(void* value, std::span<const std::string> path) const override {
     if (const std::string* name = a_.name(value))

@@ -140,6 +140,7 @@ public:
 
   std::vector<Change> run(Node& root) {
     steps_ = steps_of(edit_.path);
+    root_ = &root;
     walk(root, nullptr, 0);
     return std::move(changes_);
   }
@@ -285,7 +286,7 @@ private:
   [[nodiscard]] Leaf known_leaf() const { return leaf_at(path_); }
   [[nodiscard]] Leaf leaf_at(const std::vector<std::string>& path) const {
     try {
-      return leaf_of(structure_, nullptr, path);
+      return leaf_of(structure_, nullptr, path, root_);
     } catch (const InputError&) {
       return {};
     }
@@ -333,6 +334,7 @@ private:
   const Edit& edit_;
   const Structure& structure_;
   const Files& files_;
+  const Node* root_ = nullptr;
   std::vector<std::string> steps_;
   std::vector<std::string> path_;  // up to here, without wildcards
   std::vector<Change> changes_;

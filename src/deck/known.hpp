@@ -27,14 +27,19 @@ public:
   /// Values of a choice, or of the items of a list of choices; empty for all else.
   [[nodiscard]] virtual std::vector<Choice> choices() const { return {}; }
   /// What is known at the rest of a path that is not empty; `preset` is the default at the start of it, null if
-  /// unknown. Throws core::InputError (without a place) if there is no such option.
-  [[nodiscard]] virtual Leaf leaf(const void* preset, std::span<const std::string> path) const;
+  /// unknown, and `given` what the deck gives there, null if nothing: options may depend on the kind that it chooses.
+  /// Throws core::InputError (without a place) if there is no such option.
+  [[nodiscard]] virtual Leaf leaf(const void* preset, std::span<const std::string> path, const Node* given) const;
 };
 
+/// Entry or item `step` of what the deck gives; null if there is none.
+[[nodiscard]] const Node* given_part(const Node* given, const std::string& step);
 /// What is known at `path` below a value of `codec`.
-[[nodiscard]] Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path);
+[[nodiscard]] Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path,
+                           const Node* given);
 /// The same below a struct, whose own defaults hold where `preset` is null.
-[[nodiscard]] Leaf leaf_of(const Structure& structure, const void* preset, std::span<const std::string> path);
+[[nodiscard]] Leaf leaf_of(const Structure& structure, const void* preset, std::span<const std::string> path,
+                           const Node* given);
 /// Values of a choice, or of the items of a list of choices; empty for all else.
 [[nodiscard]] std::vector<Choice> choices_of(const Codec& codec);
 

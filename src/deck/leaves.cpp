@@ -178,7 +178,7 @@ public:
     return with_bounds(fmt::format("range {{from, to}}, each a {}", unit_words(spec_.unit)), spec_.check);
   }
   const Spec* spec() const override { return &spec_; }
-  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
+  Leaf leaf(const void* preset, std::span<const std::string> path, const Node*) const override {
     if (path.size() > 1 || (path[0] != "from" && path[0] != "to"))
       throw InputError(fmt::format("a range has no '{}'{}", path[0], did_you_mean(path[0], {"from", "to"})));
     return {&spec_, preset ? *write(preset).find(path[0]) : Node{}};

@@ -149,9 +149,9 @@ std::string join_path(const std::string& a, const std::string& b) {
   return a.empty() ? b : b.empty() ? a : a + "." + b;
 }
 
-std::string default_text(const Option& o, const Structure& s) {
+std::string default_text(const Option& o) {
   if (o.required) return "required";
-  const Node value = o.codec->write(o.member(s.defaults.get()));
+  const Node value = o.codec->write(o.preset);
   if (value.kind == Node::Kind::none) return "optional";
   if (o.codec->structure() && o.codec->step().empty()) return {};
   if (!is_leaf(value) && value.items.empty()) return {};
@@ -159,12 +159,12 @@ std::string default_text(const Option& o, const Structure& s) {
   return "default " + flow(value);
 }
 
-// Calls `visit(path, option, structure)` for every option below, depth first.
+// Calls `visit(path, option)` for every option below, depth first.
 template <class Visit>
 void walk(const Structure& s, const std::string& path, const Visit& visit) {
   for (const Option& o : s.options) {
     const std::string here = join_path(path, o.key);
-    visit(here, o, s);
+    visit(here, o);
     const std::string inside = join_path(here, o.codec->step());
     if (o.codec->structure()) walk(*o.codec->structure(), inside, visit);
     for (const auto& [kind, options] : o.codec->kinds()) walk(*options, join_path(inside, kind), visit);
@@ -228,8 +228,8 @@ std::string schema_text(const Structure& structure, std::string_view title) {
 namespace {
 
 // What help says of one option.
-std::string entry_text(const std::string& key, const Option& o, const Structure& s) {
-  const std::string value = default_text(o, s);
+std::string entry_text(const std::string& key, const Option& o) {
+  const std::string value = default_text(o);
   const Spec* spec = o.codec->spec();
   std::string out = fmt::format("{}\n    {}{}{}", key, o.codec->type(), value.empty() ? "" : "; ", value);
   if (spec && spec->unit != "1" && spec->unit != "*" && spec->letter.empty())
@@ -272,19 +272,19 @@ std::string reference_text(const Structure& structure, std::string_view path, st
   std::string out;
   std::vector<std::string> keys;
   std::vector<std::string> words;  // that one may ask for
-  walk(structure, {}, [&](const std::string& key, const Option& o, const Structure&) {
+  walk(structure, {}, [&](const std::string& key, const Option& o) {
     keys.push_back(key);
     words.push_back(split_path(key).back());
     for (const Choice& c : choices_of(*o.codec)) words.push_back(c.name);
   });
   // `bearings.geometry` is an option of every bearing before it is a bearing of that name.
   const bool any_name = std::none_of(keys.begin(), keys.end(), [&](const auto& k) { return is_below(k, path, false); });
-  walk(structure, {}, [&](const std::string& key, const Option& o, const Structure& s) {
+  walk(structure, {}, [&](const std::string& key, const Option& o) {
     // A single word finds every option that has it in its path, is written so, or takes it as a value.
     const std::vector<std::string> steps = split_path(key);
     const bool named = std::find(steps.begin(), steps.end(), path) != steps.end();
     if (path.empty() || named || has_alias(o, path) || has_choice(o, path) || is_below(key, path, any_name))
-      out += entry_text(key, o, s);
+      out += entry_text(key, o);
   });
   if (out.empty()) {
     keys.insert(keys.end(), words.begin(), words.end());
@@ -295,7 +295,7 @@ std::string reference_text(const Structure& structure, std::string_view path, st
 
 std::vector<std::string> undocumented(const Structure& structure) {
   std::vector<std::string> bare;
-  walk(structure, {}, [&](const std::string& key, const Option& o, const Structure&) {
+  walk(structure, {}, [&](const std::string& key, const Option& o) {
     if (o.text.size() < 8) bare.push_back(key);
   });
   return bare;

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "known.hpp"
 #include "schema.hpp"
@@ -21,6 +22,12 @@ const Option* Structure::option(std::string_view key) const {
   return it == options.end() ? nullptr : &*it;
 }
 
+const Option* Structure::option_of(std::string_view key, const void* object) const {
+  const auto it =
+      std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.key == key && applies(o, object); });
+  return it == options.end() ? option(key) : &*it;
+}
+
 const Option* Structure::aliased(std::string_view key, double& factor) const {
   for (const Option& o : options)
     for (const Alias& a : o.aliases)
@@ -33,7 +40,8 @@ const Option* Structure::aliased(std::string_view key, double& factor) const {
 
 std::vector<std::string> Structure::keys() const {
   std::vector<std::string> k;
-  for (const Option& o : options) k.push_back(o.key);
+  for (const Option& o : options)
+    if (&o == option(o.key)) k.push_back(o.key);
   return k;
 }
 
@@ -101,6 +109,7 @@ void Structure::read(const Node& node, void* object, Reading& r) const {
                                hint.empty() ? fmt::format("; valid keys are {}", fmt::join(keys(), ", ")) : hint));
   }
   for (const Option& o : options) {
+    if (&o != option_of(o.key, object)) continue;
     Node meant;
     const Node* value = given(o, node, meant, r);
     if (!applies(o, object)) {
@@ -148,7 +157,7 @@ Node plain_schema(const Structure& s, bool whole, const std::string& selector, c
       p.set("const", Node::scalar(choice, true));
     }
     p.set("description", Node::scalar(o.text, true));
-    const Node value = o.codec->write(o.member(s.defaults.get()));
+    const Node value = o.codec->write(o.preset);
     if (!o.required && !selects && value.kind == Node::Kind::scalar) p.set("default", value);
     for (const Alias& a : o.aliases) {
       Node other = o.codec->schema(whole);
@@ -157,7 +166,7 @@ Node plain_schema(const Structure& s, bool whole, const std::string& selector, c
     }
     properties.set(o.key, std::move(p));
     // A choice that is not the default one must be written for its keys to apply.
-    const bool written = selects && o.codec->write(o.member(s.defaults.get())).text != choice;
+    const bool written = selects && value.text != choice;
     if ((o.required && o.aliases.empty()) || written) required.push(Node::scalar(o.key, true));
   }
   // Takes away what a base says for another choice.
@@ -183,7 +192,7 @@ Node Structure::schema(bool whole) const {
 
 Access Structure::find(void* object, std::span<const std::string> path) const {
   if (path.empty()) return {};
-  const Option* o = option(path.front());
+  const Option* o = option_of(path.front(), object);
   if (!o) throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), keys())));
   if (!applies(*o, object)) throw InputError(fmt::format("option '{}' does not apply here", path.front()));
   Access a = o->codec->find(o->member(object), path.subspan(1));
@@ -196,26 +205,49 @@ std::vector<Choice> choices_of(const Codec& codec) {
   return knows ? knows->choices() : std::vector<Choice>{};
 }
 
-Leaf Knows::leaf(const void*, std::span<const std::string> path) const {
+Leaf Knows::leaf(const void*, std::span<const std::string> path, const Node*) const {
   throw InputError(fmt::format("'{}' leads into a value that has no parts", path.front()));
 }
 
-Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path) {
+const Node* given_part(const Node* given, const std::string& step) {
+  if (!given || given->kind != Node::Kind::list) return given ? given->find(step) : nullptr;
+  std::size_t k = 0;
+  const auto [end, code] = std::from_chars(step.data(), step.data() + step.size(), k);
+  const bool item = code == std::errc() && end == step.data() + step.size() && k >= 1 && k <= given->items.size();
+  return item ? &given->items[k - 1] : nullptr;
+}
+
+Leaf leaf_of(const Codec& codec, const void* preset, std::span<const std::string> path, const Node* given) {
   if (path.empty()) return {codec.spec(), preset ? codec.write(preset) : Node{}};
   const auto* knows = dynamic_cast<const Knows*>(&codec);
   if (!knows) throw InputError(fmt::format("'{}' leads into a value that has no parts", path.front()));
-  return knows->leaf(preset, path);
+  return knows->leaf(preset, path, given);
 }
 
-Leaf leaf_of(const Structure& s, const void* preset, std::span<const std::string> path) {
+namespace {
+
+// True if `o` is the option of its key where the deck gives `given` and `object` holds what it does not give.
+bool applies_in(const Structure& s, const Option& o, const void* object, const Node* given) {
+  if (o.selector.empty()) return true;
+  const Node* chosen = given ? given->find(o.selector) : nullptr;
+  if (!chosen || chosen->kind != Node::Kind::scalar) return s.applies(o, object);
+  return std::find(o.selected.begin(), o.selected.end(), chosen->text) != o.selected.end();
+}
+
+}  // namespace
+
+Leaf leaf_of(const Structure& s, const void* preset, std::span<const std::string> path, const Node* given) {
   if (path.empty()) return {};
+  const void* object = preset ? preset : s.defaults.get();
   double factor = 1;
   const Option* o = s.option(path.front());
   if (!o) o = s.aliased(path.front(), factor);
   if (!o)
     throw InputError(fmt::format("there is no option '{}'{}", path.front(), did_you_mean(path.front(), s.keys())));
-  void* object = const_cast<void*>(preset ? preset : s.defaults.get());
-  Leaf leaf = leaf_of(*o->codec, object ? o->member(object) : nullptr, path.subspan(1));
+  for (const Option& other : s.options)
+    if (other.key == o->key && applies_in(s, other, object, given)) o = &other;
+  const void* value = o->member(const_cast<void*>(object));
+  Leaf leaf = leaf_of(*o->codec, value ? value : o->preset, path.subspan(1), given_part(given, path.front()));
   if (path.size() > 1) return leaf;
   if (leaf.preset.kind == Node::Kind::scalar && factor != 1) leaf.preset.text = scaled(leaf.preset.text, factor);
   leaf.words = {{o->key, 1}};
@@ -245,8 +277,8 @@ public:
   Node schema(bool whole) const override { return structure_.schema(whole); }
   std::string type() const override { return "map"; }
   const Structure* structure() const override { return &structure_; }
-  Leaf leaf(const void* preset, std::span<const std::string> path) const override {
-    return leaf_of(structure_, preset, path);
+  Leaf leaf(const void* preset, std::span<const std::string> path, const Node* given) const override {
+    return leaf_of(structure_, preset, path, given);
   }
   Access find(void* value, std::span<const std::string> path) const override { return structure_.find(value, path); }
 

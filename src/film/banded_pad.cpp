@@ -7,7 +7,7 @@
 
 namespace whirl::film {
 
-BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
+BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : PadEquations(pad, options, lubricant),
       cavitation_(options.cavitation),
       stiffen_(1.0 + std::pow(4.0 * pad.radius * grid_.dtheta / pad.length, 4)),
@@ -17,14 +17,14 @@ BandedPad::BandedPad(const Pad& pad, const Options& options, const Lubricant& lu
   cavitated_.assign(size, 0);
   for (int i = first_; i < grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = wall(i);
-  if (cavitation_ == Options::Cavitation::reynolds) enter_ruptured();
+  if (cavitation_ == Reynolds::Cavitation::reynolds) enter_ruptured();
   x_.assign(size, 0.0);
   load_.assign(size, Quad::zero());
-  if (cavitation_ == Options::Cavitation::mass_conserving) enter_conserving(options.edge_fill);
+  if (cavitation_ == Reynolds::Cavitation::mass_conserving) enter_conserving(options.edge_fill);
 }
 
 void BandedPad::assemble() {
-  Band& band = cavitation_ == Options::Cavitation::reynolds ? base_ : band_;
+  Band& band = cavitation_ == Reynolds::Cavitation::reynolds ? base_ : band_;
   for (int i = first_; i < grid_.n_theta; ++i) {
     for (int j = 0; j < rows_; ++j) {
       const std::size_t here = at(i, j);
@@ -49,8 +49,8 @@ void BandedPad::assemble() {
 }
 
 void BandedPad::solve() {
-  if (cavitation_ == Options::Cavitation::reynolds) return solve_ruptured();
-  if (cavitation_ == Options::Cavitation::mass_conserving) return solve_conserving();
+  if (cavitation_ == Reynolds::Cavitation::reynolds) return solve_ruptured();
+  if (cavitation_ == Reynolds::Cavitation::mass_conserving) return solve_conserving();
   assemble();
   band_.factor();
   for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = cavitated_[k] ? 0.0 : -source_[k];
@@ -59,9 +59,9 @@ void BandedPad::solve() {
 
 // Force, and its derivatives in the nodal pressures into load_.
 void BandedPad::integrate(Need need, Response& response) {
-  if (cavitation_ == Options::Cavitation::reynolds) return integrate_ruptured(need, response);
-  if (cavitation_ == Options::Cavitation::mass_conserving) return integrate_conserving(need, response);
-  const bool truncated = cavitation_ == Options::Cavitation::half_sommerfeld;
+  if (cavitation_ == Reynolds::Cavitation::reynolds) return integrate_ruptured(need, response);
+  if (cavitation_ == Reynolds::Cavitation::mass_conserving) return integrate_conserving(need, response);
+  const bool truncated = cavitation_ == Reynolds::Cavitation::half_sommerfeld;
   const double area = pad_.radius * grid_.dtheta * grid_.dz * grid_.mean;
   std::fill(load_.begin(), load_.end(), Quad::zero());
   Quad force = Quad::zero();
@@ -100,8 +100,8 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
   for (std::size_t k = 0; k < load_.size(); ++k) {
     if (cavitated_[k]) load_[k] = Quad::zero();
   }
-  const bool ruptured = cavitation_ == Options::Cavitation::reynolds;
-  const bool conserving = cavitation_ == Options::Cavitation::mass_conserving;
+  const bool ruptured = cavitation_ == Reynolds::Cavitation::reynolds;
+  const bool conserving = cavitation_ == Reynolds::Cavitation::mass_conserving;
   conserving ? general_->solve_transposed(load_) : band_.solve(load_);
   if (ruptured) weigh_ruptured();
   const auto lambda = [&](int i, int j) {
@@ -193,7 +193,7 @@ std::vector<double> BandedPad::pressure(const Motion& motion) {
   coefficients(motion);
   solve();
   const bool truncated =
-      cavitation_ == Options::Cavitation::half_sommerfeld || cavitation_ == Options::Cavitation::reynolds;
+      cavitation_ == Reynolds::Cavitation::half_sommerfeld || cavitation_ == Reynolds::Cavitation::reynolds;
   std::vector<double> values;
   for (int i = 0; i <= grid_.n_theta; ++i) {
     for (int j = 0; j <= grid_.n_z; ++j) {
@@ -206,7 +206,7 @@ std::vector<double> BandedPad::pressure(const Motion& motion) {
 }
 
 std::vector<double> BandedPad::fill(const Motion& motion) {
-  if (cavitation_ != Options::Cavitation::mass_conserving) return {};
+  if (cavitation_ != Reynolds::Cavitation::mass_conserving) return {};
   Response ignored;
   add(motion, Need::force, ignored);
   std::vector<double> values;
@@ -220,7 +220,7 @@ std::vector<double> BandedPad::fill(const Motion& motion) {
   return values;
 }
 
-std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Options& options, const Lubricant& lubricant) {
+std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant) {
   return std::make_unique<BandedPad>(pad, options, lubricant);
 }
 

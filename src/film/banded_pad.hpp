@@ -17,7 +17,7 @@ namespace whirl::film {
 
 class BandedPad final : public PadSolver, private PadEquations {
 public:
-  BandedPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   void add(const Motion& motion, Need need, Response& response) override;
   std::vector<double> pressure(const Motion& motion) override;
   std::vector<double> fill(const Motion& motion) override;
@@ -51,7 +51,7 @@ private:
     return stiffen_ * 0.5 * (a_.value[around(wrap(i - 1), j)] + a_.value[around(i, j)]);
   }
 
-  Options::Cavitation cavitation_;
+  Reynolds::Cavitation cavitation_;
   // The parabola in front of the rupture is seen by cells that are short against the length of the pad; where they are
   // not, 1 + (dx/(L/4))^4 flattens it and whole cells remain.
   double stiffen_;

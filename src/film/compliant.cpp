@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include "film/compliant_around.hpp"
-#include "film/kinds.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -254,8 +253,11 @@ void CompliantFilm::evaluate(const Motion& motion, const Share& share, std::span
   by_journal(response);
 }
 
-std::unique_ptr<StateModel> make_compliant(const Geometry& g, const Options& options, const Lubricant& lubricant) {
-  return std::make_unique<CompliantFilm>(g, options, lubricant);
+Made make(const Geometry& geometry, const CompliantShort& options, const Lubricant& lubricant) {
+  return std::make_unique<CompliantFilm>(geometry, options, false, lubricant);
+}
+Made make(const Geometry& geometry, const CompliantLong& options, const Lubricant& lubricant) {
+  return std::make_unique<CompliantFilm>(geometry, options, true, lubricant);
 }
 
 }  // namespace whirl::film

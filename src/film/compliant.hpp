@@ -13,7 +13,7 @@ namespace whirl::film {
 /// Scales of a compliant film with thickness h and eccentricity e in clearances and P = p (c/R)^2/(6 mu) in 1/s. A
 /// linear liner gives P = u/b with its deflection u = h - 1 + e_x cos + e_y sin.
 struct CompliantScales {
-  CompliantScales(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+  CompliantScales(const Geometry& geometry, const Compliant& options, const Lubricant& lubricant);
   double pressure;  // Pa s, p/P = 6 mu (R/c)^2
   double force;     // N s, force over int P (cos, sin) d theta of the mean pressure along z: 3 mu L D (R/c)^2
   double liner;     // s, b
@@ -22,7 +22,7 @@ struct CompliantScales {
 /// Weights of the nodes k - 2 ... k + 1 around the bearing. `third_order` is the difference of third order that is
 /// biased against the flow (kappa = 1/3), exact for cubics; the speed must not be negative for both upwind kinds.
 struct Neighbours {
-  explicit Neighbours(Options::Differences which);
+  explicit Neighbours(Compliant::Differences which);
   std::array<double, 4> slope{};  // of dh/dtheta at k, over the step
   std::array<double, 4> face{};   // of h midway between k - 1 and k
   int reach = 1;                  // lines before k that enter the slope
@@ -33,7 +33,7 @@ struct Neighbours {
 /// on by one turn on either side, -n <= k < 2 n.
 class RingQuadrature {
 public:
-  RingQuadrature(int n, Options::Quadrature rule);
+  RingQuadrature(int n, Compliant::Quadrature rule);
 
   [[nodiscard]] int nodes() const { return n_; }
   [[nodiscard]] double step() const { return step_; }
@@ -74,7 +74,8 @@ private:
 class CompliantModel : public StateModel {
 public:
   /// Throws core::InputError unless bore, lubricant and liner make a compliant film.
-  CompliantModel(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+  /// Its mesh has `options.cells[0]` cells around the bearing and `along` along it, 0 for none.
+  CompliantModel(const Geometry& geometry, const Compliant& options, int along, const Lubricant& lubricant);
   [[nodiscard]] bool constant_rates() const final { return !liner_.damped(); }
   [[nodiscard]] std::vector<StateField> state_fields() const final {
     return {{"thickness", "m", g_.clearance, 0, static_cast<int>(states())}};

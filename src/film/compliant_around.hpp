@@ -35,11 +35,8 @@ inline void close(std::vector<double>& values) {
 // arrays of all nodes, or of those between grooves, without asking where a node lies or what its liner is made of.
 class CompliantFilm final : public CompliantModel {
 public:
-  CompliantFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : CompliantModel(geometry, options, lubricant),
-        long_(options.kind == Options::Kind::compliant_long),
-        n_(ring_.nodes()),
-        step_(ring_.step()) {
+  CompliantFilm(const Geometry& geometry, const Compliant& options, bool is_long, const Lubricant& lubricant)
+      : CompliantModel(geometry, options, 0, lubricant), long_(is_long), n_(ring_.nodes()), step_(ring_.step()) {
     const double ld = 0.5 * g_.length / g_.radius;
     side_ = 1.5 / (ld * ld);
     const bool top = long_ && options.grooves.empty();

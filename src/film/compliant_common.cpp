@@ -13,7 +13,7 @@ namespace {
 using std::numbers::pi;
 
 // Flexibility U/p of the liner [m/Pa].
-double flexibility(const Geometry& g, const Options& o, const Lubricant& lubricant) {
+double flexibility(const Geometry& g, const Compliant& o, const Lubricant& lubricant) {
   if (o.liner)
     return o.liner->thickness * (1.0 + o.liner->poisson) * (1.0 - 2.0 * o.liner->poisson) /
            (o.liner->modulus * (1.0 - o.liner->poisson));
@@ -22,7 +22,7 @@ double flexibility(const Geometry& g, const Options& o, const Lubricant& lubrica
 }
 
 // Throws core::InputError unless bore, lubricant and liner make a compliant film.
-const Geometry& checked(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+const Geometry& checked(const Geometry& g, const Compliant& options, int along, const Lubricant& lubricant) {
   if (g.type != Geometry::Bore::cylindrical) throw core::InputError("film: a compliant film needs a cylindrical bore");
   if (!(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0))
     throw core::InputError("film: radius, length and clearance must be positive");
@@ -39,36 +39,34 @@ const Geometry& checked(const Geometry& g, const Options& options, const Lubrica
     throw core::InputError("film: the thickness of the rubber must be positive");
   if (options.contact && !(options.contact->roughness > 0.0 && options.contact->pressure > 0.0))
     throw core::InputError("film: roughness and pressure of the contact must be positive");
-  const bool finite = options.kind == Options::Kind::compliant_finite;
-  if (options.cells[0] < 4 || (finite && options.cells[1] < 2))
+  if (options.cells[0] < 4 || (along != 0 && along < 2))
     throw core::InputError("film: a compliant film needs at least 4 cells around and 2 along the bearing");
-  if (options.quadrature == Options::Quadrature::simpson &&
-      (options.cells[0] % 2 != 0 || (finite && options.cells[1] % 2 != 0)))
+  if (options.quadrature == Compliant::Quadrature::simpson && (options.cells[0] % 2 != 0 || along % 2 != 0))
     throw core::InputError("film: Simpson's rule needs even numbers of cells");
   return g;
 }
 
 }  // namespace
 
-CompliantScales::CompliantScales(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+CompliantScales::CompliantScales(const Geometry& g, const Compliant& options, const Lubricant& lubricant) {
   const double ratio = g.radius / g.clearance;
   pressure = 6.0 * lubricant.viscosity * ratio * ratio;
   force = pressure * g.length * g.radius;
   liner = flexibility(g, options, lubricant) * pressure / g.clearance;
 }
 
-Neighbours::Neighbours(Options::Differences which) {
+Neighbours::Neighbours(Compliant::Differences which) {
   switch (which) {
-    case Options::Differences::central:
+    case Compliant::Differences::central:
       slope = {0.0, -0.5, 0.0, 0.5};
       face = {0.0, 0.5, 0.5, 0.0};
       return;
-    case Options::Differences::upwind:
+    case Compliant::Differences::upwind:
       slope = {0.5, -2.0, 1.5, 0.0};
       face = {-0.125, 0.75, 0.375, 0.0};
       reach = 2;
       return;
-    case Options::Differences::third_order:
+    case Compliant::Differences::third_order:
       slope = {1.0 / 6.0, -1.0, 0.5, 1.0 / 3.0};
       face = {0.0, 0.5, 0.5, 0.0};
       reach = 2;
@@ -77,8 +75,9 @@ Neighbours::Neighbours(Options::Differences which) {
   throw core::Bug("differences without weights");
 }
 
-CompliantModel::CompliantModel(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-    : g_(checked(geometry, options, lubricant)),
+CompliantModel::CompliantModel(const Geometry& geometry, const Compliant& options, int along,
+                               const Lubricant& lubricant)
+    : g_(checked(geometry, options, along, lubricant)),
       viscosity_(lubricant.viscosity),
       scales_(geometry, options, lubricant),
       liner_(geometry, options, scales_.liner, scales_.pressure),
@@ -126,8 +125,8 @@ std::array<Field, 4> CompliantModel::empty_fields(std::size_t along) const {
   return {theta, z, Field{0, "pressure", "Pa", {around, along}, {}}, Field{0, "thickness", "m", {around, along}, {}}};
 }
 
-RingQuadrature::RingQuadrature(int n, Options::Quadrature rule)
-    : n_(n), simpson_(rule == Options::Quadrature::simpson), step_(2.0 * pi / n) {
+RingQuadrature::RingQuadrature(int n, Compliant::Quadrature rule)
+    : n_(n), simpson_(rule == Compliant::Quadrature::simpson), step_(2.0 * pi / n) {
   for (int k = 0; k < n; ++k) {
     cos_.push_back(std::cos(angle(k)));
     sin_.push_back(std::sin(angle(k)));

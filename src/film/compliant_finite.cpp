@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "film/kinds.hpp"
 #include "film/ring_preconditioner.hpp"
 #include "whirl/core/error.hpp"
 
@@ -315,9 +314,8 @@ void FiniteFilm::evaluate(const Motion& motion, const Share& share, std::span<co
   rows(part, motion, rates, need, response);
 }
 
-std::unique_ptr<StateModel> make_compliant_finite(const Geometry& g, const Options& options,
-                                                  const Lubricant& lubricant) {
-  return std::make_unique<FiniteFilm>(g, options, lubricant);
+Made make(const Geometry& geometry, const CompliantFinite& options, const Lubricant& lubricant) {
+  return std::make_unique<FiniteFilm>(geometry, options, lubricant);
 }
 
 }  // namespace whirl::film

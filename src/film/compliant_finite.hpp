@@ -54,8 +54,8 @@ private:
 // which a film of nominal thickness would let a node go.
 class FiniteFilm final : public CompliantModel {
 public:
-  FiniteFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : CompliantModel(geometry, options, lubricant),
+  FiniteFilm(const Geometry& geometry, const Compliant& options, const Lubricant& lubricant)
+      : CompliantModel(geometry, options, options.cells[1], lubricant),
         cells_(options.cells[1]),
         fixed_(grooved(options.cells[0], options.grooves)) {
     const double slenderness = g_.length / g_.radius;  // 2 L/D

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "film/content_pad.hpp"
-#include "film/kinds.hpp"
 #include "film/report.hpp"
 #include "whirl/core/error.hpp"
 
@@ -13,7 +12,7 @@ namespace {
 
 class ContentFilm final : public StateModel {
 public:
-  ContentFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
+  ContentFilm(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant)
       : geometry_(geometry), options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
     if (options.inlet.type == Inlet::Type::maximum_gap)
       throw core::InputError("film: a film with dynamic states cannot follow an inlet at the maximum gap");
@@ -134,7 +133,7 @@ private:
   }
 
   Geometry geometry_;
-  Options options_;
+  Reynolds options_;
   Lubricant lubricant_;
   std::vector<Pad> pads_;
   std::vector<std::unique_ptr<ContentPad>> solvers_;
@@ -145,8 +144,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Options& options, const Lubricant& lubricant) {
-  check_pads(geometry, options, lubricant);
+std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Reynolds& options,
+                                         const Lubricant& lubricant) {
   return std::make_unique<ContentFilm>(geometry, options, lubricant);
 }
 

@@ -9,7 +9,7 @@
 namespace whirl::film {
 
 // A closed pad starts behind a groove, so that its columns form a band.
-ContentPad::ContentPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
+ContentPad::ContentPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : PadEquations(pad, options, lubricant),
       bulk_modulus_(options.bulk_modulus),
       empty_at_edge_(1.0 - options.edge_fill),

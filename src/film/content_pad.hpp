@@ -31,7 +31,7 @@ struct PadShare {
 
 class ContentPad : private PadEquations {
 public:
-  ContentPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  ContentPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   [[nodiscard]] std::size_t states() const { return columns_.size() * static_cast<std::size_t>(rows_); }
   /// States of a column; columns stand one behind the other around the pad.
   [[nodiscard]] int column() const { return rows_; }
@@ -86,5 +86,9 @@ private:
   std::vector<int> columns_, column_of_;  // of unknowns, in the order of the states, and the inverse
   std::vector<Node> nodes_;               // [n_theta + 1][rows_]
 };
+
+/// Film on rigid pads that conserves its mass, with what its gap holds as states. Throws core::InputError on values
+/// outside their range.
+std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/bore.hpp"
 
 namespace whirl::film {
 

@@ -168,7 +168,7 @@ void require_inside(const Pair& e) {
 
 }  // namespace
 
-Impedance impedance(Options::Kind kind, double ld, const Pair& e, const Pair& v) {
+Impedance impedance(ClosedForm kind, double ld, const Pair& e, const Pair& v) {
   require_inside(e);
   const double size = std::hypot(v[0], v[1]), eps = std::hypot(e[0], e[1]);
   const Pair unit = size > 0.0  ? Pair{v[0] / size, v[1] / size}
@@ -176,20 +176,18 @@ Impedance impedance(Options::Kind kind, double ld, const Pair& e, const Pair& v)
                                 : Pair{1.0, 0.0};
   Impedance out;
   switch (kind) {
-    case Options::Kind::short_bearing:
+    case ClosedForm::short_bearing:
       out = short_film(ld, e, unit);
       break;
-    case Options::Kind::long_bearing:
+    case ClosedForm::long_bearing:
       out = long_film(e, unit);
       break;
-    case Options::Kind::long_inlet:
+    case ClosedForm::long_inlet:
       out = long_inlet_film(e, unit);
       break;
-    case Options::Kind::finite_approximate:
+    case ClosedForm::finite_approximate:
       out = finite_film(ld, e, unit);
       break;
-    default:
-      throw core::Bug("this kind of film has no impedance");
   }
   for (std::size_t i = 0; i < 2; ++i) {
     out.force[i] *= size;
@@ -200,7 +198,7 @@ Impedance impedance(Options::Kind kind, double ld, const Pair& e, const Pair& v)
 
 // The force is F* = d_squeeze(v) v, and Newton's step on it leads to d_squeeze(v)^-1 F*; shortened while the residual
 // grows. Only the harmonic sums, which are not monotone in v, ever need another start than v = -F*.
-Pair squeeze_under(Options::Kind kind, double ld, const Pair& e, const Pair& force) {
+Pair squeeze_under(ClosedForm kind, double ld, const Pair& e, const Pair& force) {
   require_inside(e);
   const double size = std::hypot(force[0], force[1]);
   if (size == 0.0) return {0.0, 0.0};
@@ -233,17 +231,17 @@ Pair squeeze_under(Options::Kind kind, double ld, const Pair& e, const Pair& for
   throw core::DomainError("no squeeze velocity found that gives this film force");
 }
 
-double mid_pressure(Options::Kind kind, double ld, const Pair& e, const Pair& v, double theta) {
+double mid_pressure(ClosedForm kind, double ld, const Pair& e, const Pair& v, double theta) {
   require_inside(e);
   const auto h = [&](double at) { return 1.0 - e[0] * std::cos(at) - e[1] * std::sin(at); };
   const auto along = [&](const Pair& w, double at) { return w[0] * std::cos(at) + w[1] * std::sin(at); };
-  if (kind == Options::Kind::short_bearing) return std::max(0.0, ld * ld * along(v, theta) / std::pow(h(theta), 3));
-  core::require(kind == Options::Kind::long_bearing || kind == Options::Kind::long_inlet,
+  if (kind == ClosedForm::short_bearing) return std::max(0.0, ld * ld * along(v, theta) / std::pow(h(theta), 3));
+  core::require(kind == ClosedForm::long_bearing || kind == ClosedForm::long_inlet,
                 "this kind of film has no pressure");
   const double s = 2.0 + dot(e, e), ev = dot(e, v);
   const Pair w = {(2.0 * v[0] + e[0] * ev) / s, (2.0 * v[1] + e[1] * ev) / s};
   const auto p = [&](double at) { return along(w, at) * (1.0 / h(at) + 1.0 / (h(at) * h(at))); };
-  const double inlet = kind == Options::Kind::long_inlet ? p(0.5 * std::numbers::pi) : 0.0;
+  const double inlet = kind == ClosedForm::long_inlet ? p(0.5 * std::numbers::pi) : 0.0;
   return std::max(0.0, p(theta) - inlet);
 }
 

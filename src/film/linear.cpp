@@ -1,6 +1,7 @@
 #include <limits>
 
-#include "film/kinds.hpp"
+#include "whirl/film/describe.hpp"
+#include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
 namespace {
@@ -8,7 +9,7 @@ namespace {
 // force = -K (x, y) - C (x', y').
 class LinearFilm final : public Model {
 public:
-  explicit LinearFilm(const Options& options) : stiffness_(options.stiffness), damping_(options.damping) {}
+  explicit LinearFilm(const Linear& options) : stiffness_(options.stiffness), damping_(options.damping) {}
 
   void evaluate(const Motion& motion, Need need, Response& response) override {
     response = {};
@@ -32,7 +33,20 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Model> make_linear(const Options& options) {
+void describe(deck::Description<Linear>& d) {
+  d.add("stiffness", &Linear::stiffness, "N/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
+      .isotropic()
+      .continuable();
+  d.add("damping", &Linear::damping, "N s/m", deck::any, "coefficients xx, xy, yx, yy of force = -K d - C d'")
+      .isotropic()
+      .continuable();
+}
+
+Facts facts_of(const Linear& /*options*/, const Geometry& /*geometry*/) {
+  return {.coefficients = true};
+}
+
+Made make(const Geometry& /*geometry*/, const Linear& options, const Lubricant& /*lubricant*/) {
   return std::make_unique<LinearFilm>(options);
 }
 

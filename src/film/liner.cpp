@@ -22,7 +22,7 @@ void Carried::clear(std::size_t first, std::size_t count) {
     std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(first), count, 0.0);
 }
 
-LinerLaw::LinerLaw(const Geometry& geometry, const Options& options, double b, double pressure)
+LinerLaw::LinerLaw(const Geometry& geometry, const Compliant& options, double b, double pressure)
     : stiffness_(1.0 / b), damping_(options.liner_damping / b), rubber_(options.rubber_thickness.has_value()) {
   if (rubber_) thickness_ = *options.rubber_thickness / geometry.clearance;
   if (!options.contact) return;

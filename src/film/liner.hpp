@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/elastic.hpp"
 
 namespace whirl::film {
 
@@ -29,7 +29,7 @@ struct Carried {
 class LinerLaw {
 public:
   /// `b` in s, `pressure` = p/P in Pa s.
-  LinerLaw(const Geometry& geometry, const Options& options, double b, double pressure);
+  LinerLaw(const Geometry& geometry, const Compliant& options, double b, double pressure);
 
   [[nodiscard]] bool damped() const { return damping_ > 0.0; }
   [[nodiscard]] bool touches() const { return reach_ > 0.0; }

@@ -21,9 +21,9 @@ double dot(const Complex& a, const Complex& b) {
   return a.real() * b.real() + a.imag() * b.imag();
 }
 
-class LongInlet {
+class InletIntegrals {
 public:
-  LongInlet(const Complex& e, const Complex& v)
+  InletIntegrals(const Complex& e, const Complex& v)
       : e_(e),
         v_(v),
         r_(std::sqrt(1.0 - std::norm(e))),
@@ -59,7 +59,7 @@ private:
 };
 
 // Where the pressure passes `level` between two extremes, by Newton's method within a shrinking bracket.
-double LongInlet::root(double falling, double from, double to, double level) const {
+double InletIntegrals::root(double falling, double from, double to, double level) const {
   double x = 0.5 * (from + to);
   for (int i = 0; i < 100 && to - from > 4e-16 * (1.0 + std::abs(x)); ++i) {
     const Point at = point(x);
@@ -74,7 +74,7 @@ double LongInlet::root(double falling, double from, double to, double level) con
   return x;
 }
 
-Impedance LongInlet::evaluate() {
+Impedance InletIntegrals::evaluate() {
   // l = 0 at the extremes of p; the highest pressure is where the journal moves to.
   const double beta = std::arg(v_), lag = std::asin(-0.5 * k_ / std::abs(v_));
   const double low = zeta(std::polar(1.0, beta - pi + lag));
@@ -118,7 +118,7 @@ Impedance LongInlet::evaluate() {
 }  // namespace
 
 Impedance long_inlet_film(const Pair& e, const Pair& v) {
-  return LongInlet({e[0], e[1]}, {v[0], v[1]}).evaluate();
+  return InletIntegrals({e[0], e[1]}, {v[0], v[1]}).evaluate();
 }
 
 }  // namespace whirl::film

@@ -138,11 +138,11 @@ void BandedPad::integrate_conserving(Need need, Response& response) {
 
 // Film that is ruptured within a cell or cut off counts as it is written in the equations.
 std::optional<Flows> BandedPad::flows(const Motion& motion) {
-  if (cavitation_ == Options::Cavitation::half_sommerfeld) return {};
+  if (cavitation_ == Reynolds::Cavitation::half_sommerfeld) return {};
   Response ignored;
   solved_.reset();
   add(motion, Need::force, ignored);
-  const bool conserving = cavitation_ == Options::Cavitation::mass_conserving;
+  const bool conserving = cavitation_ == Reynolds::Cavitation::mass_conserving;
   return PadEquations::flows([&](int i, int j) { return pressure_at(i, j); },
                              [&](int i, int j) { return conserving ? deficit_at(i, j) : 0.0; });
 }

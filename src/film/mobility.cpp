@@ -13,13 +13,13 @@ Resistance mixing_length(double factor, double exponent) {
 
 }  // namespace
 
-Resistance resistance_around(Options::Turbulence turbulence) {
-  if (turbulence == Options::Turbulence::laminar) return {0.0, 1.0};
+Resistance resistance_around(Turbulence turbulence) {
+  if (turbulence == Turbulence::laminar) return {0.0, 1.0};
   return mixing_length(0.53, 0.725);
 }
 
-Resistance resistance_along(Options::Turbulence turbulence) {
-  if (turbulence == Options::Turbulence::laminar) return {0.0, 1.0};
+Resistance resistance_along(Turbulence turbulence) {
+  if (turbulence == Turbulence::laminar) return {0.0, 1.0};
   return mixing_length(0.296, 0.65);
 }
 

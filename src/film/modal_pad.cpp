@@ -20,7 +20,7 @@ namespace {
 
 class ModalPad final : public PadSolver {
 public:
-  ModalPad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  ModalPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   void add(const Motion& motion, Need need, Response& response) override;
   std::vector<double> pressure(const Motion& motion) override;
 
@@ -71,11 +71,11 @@ private:
   std::vector<Pack> load_left_, load_right_;    // [n_theta][pack of modes] derivatives of the strip integrals
 };
 
-ModalPad::ModalPad(const Pad& pad, const Options& options, const Lubricant& lubricant)
+ModalPad::ModalPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : pad_(pad),
       grid_(pad, options.cells),
       least_(pad),
-      truncated_(options.cavitation == Options::Cavitation::half_sommerfeld),
+      truncated_(options.cavitation == Reynolds::Cavitation::half_sommerfeld),
       around_(resistance_around(options.turbulence)),
       along_(resistance_along(options.turbulence)),
       viscosity_(lubricant.viscosity),
@@ -368,7 +368,7 @@ std::vector<double> ModalPad::pressure(const Motion& motion) {
 
 }  // namespace
 
-std::unique_ptr<PadSolver> make_modal_pad(const Pad& pad, const Options& options, const Lubricant& lubricant) {
+std::unique_ptr<PadSolver> make_modal_pad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant) {
   return std::make_unique<ModalPad>(pad, options, lubricant);
 }
 

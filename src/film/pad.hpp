@@ -72,9 +72,9 @@ public:
 };
 
 /// Aligned pad without complementarity: sine modes along z, tridiagonal systems along theta.
-std::unique_ptr<PadSolver> make_modal_pad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+std::unique_ptr<PadSolver> make_modal_pad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
 /// Any pad: banded factorisation; half the pad if the journal stays aligned.
-std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Options& options, const Lubricant& lubricant);
+std::unique_ptr<PadSolver> make_banded_pad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
 
 /// Throws core::DomainError unless h_min > 0.
 void require_thickness(double h_min);

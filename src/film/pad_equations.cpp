@@ -7,7 +7,7 @@
 
 namespace whirl::film {
 
-PadEquations::PadEquations(const Pad& pad, const Options& options, const Lubricant& lubricant)
+PadEquations::PadEquations(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : pad_(pad),
       grid_(pad, options.cells),
       least_(pad),

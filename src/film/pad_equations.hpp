@@ -22,7 +22,7 @@ struct PadEquations {
     }
   };
 
-  PadEquations(const Pad& pad, const Options& options, const Lubricant& lubricant);
+  PadEquations(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   /// Coefficients and source at `motion`; throws core::DomainError unless the thickness is positive.
   void coefficients(const Motion& motion);
   /// The coefficients alone, and then the source of one column of unknowns: for those who need only some of them.

@@ -9,7 +9,7 @@
 namespace whirl::film {
 namespace {
 
-double thickness(const Pad& pad, const Options& options, const Motion& motion, double theta, double z) {
+double thickness(const Pad& pad, const Reynolds& options, const Motion& motion, double theta, double z) {
   const double tx = options.tilt ? motion.position[2] : 0.0, ty = options.tilt ? motion.position[3] : 0.0;
   return pad.clearance - (motion.position[0] + z * tx - pad.centre_x) * std::cos(theta) -
          (motion.position[1] + z * ty - pad.centre_y) * std::sin(theta);
@@ -23,7 +23,7 @@ double thickness(const Pad& pad, const Options& options, const Motion& motion, d
 // A film that conserves its mass counts the flows of its own equations.
 // What enters is Couette flow U h/2 less the pressure's own around the pad, at its first edge in the direction of
 // rotation.
-Summary summarise(const std::vector<Pad>& pads, const Options& options, const Lubricant& lubricant,
+Summary summarise(const std::vector<Pad>& pads, const Reynolds& options, const Lubricant& lubricant,
                   const Motion& motion, const std::vector<PadReport>& reports) {
   Summary result;
   Flows total;
@@ -31,7 +31,7 @@ Summary summarise(const std::vector<Pad>& pads, const Options& options, const Lu
   result.inlet_flow = 0.0;
   result.min_thickness = std::numeric_limits<double>::infinity();
   const Resistance along = resistance_along(options.turbulence), around = resistance_around(options.turbulence);
-  const bool laminar = options.turbulence == Options::Turbulence::laminar;
+  const bool laminar = options.turbulence == Turbulence::laminar;
   const double mu = lubricant.viscosity;
   for (std::size_t n = 0; n < pads.size(); ++n) {
     const Pad& pad = pads[n];
@@ -95,14 +95,14 @@ Summary summarise(const std::vector<Pad>& pads, const Options& options, const Lu
     result.outlet_flow = total.leaves;
     result.imbalance = total.enters - total.leaves - total.sides - total.squeezed;
   }
-  if (options.cavitation == Options::Cavitation::mass_conserving) {
+  if (options.cavitation == Reynolds::Cavitation::mass_conserving) {
     result.inlet_flow = total.enters;
     result.side_flow = total.sides;
   }
   return result;
 }
 
-std::vector<Field> fields_of(const std::vector<Pad>& pads, const Options& options, const Motion& motion, double turn,
+std::vector<Field> fields_of(const std::vector<Pad>& pads, const Reynolds& options, const Motion& motion, double turn,
                              std::vector<PadReport> reports) {
   std::vector<Field> all;
   for (std::size_t n = 0; n < pads.size(); ++n) {

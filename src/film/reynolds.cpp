@@ -3,11 +3,13 @@
 #include <numbers>
 #include <string>
 
-#include "film/kinds.hpp"
+#include "film/content_pad.hpp"
 #include "film/pad.hpp"
+#include "film/refine.hpp"
 #include "film/report.hpp"
 #include "film/turning_frame.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/describe.hpp"
 
 namespace whirl::film {
 namespace {
@@ -16,9 +18,7 @@ void demand(bool condition, const char* what) {
   if (!condition) throw core::InputError(std::string("film: ") + what);
 }
 
-}  // namespace
-
-void check_pads(const Geometry& g, const Options& o, const Lubricant& l) {
+void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
   demand(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
   const double limit = (g.type == Geometry::Bore::lemon_bore ? 1.0 : 2.0) * std::numbers::pi;
   const bool closed = g.type == Geometry::Bore::cylindrical;
@@ -26,7 +26,7 @@ void check_pads(const Geometry& g, const Options& o, const Lubricant& l) {
   demand(closed || o.grooves.empty(), "only a cylindrical bore has grooves");
   demand(o.inlet.type == Inlet::Type::free || (closed && o.grooves.empty()),
          "only a cylindrical bore without grooves has an inlet");
-  demand(o.cavitation != Options::Cavitation::mass_conserving || !closed || !o.grooves.empty() ||
+  demand(o.cavitation != Reynolds::Cavitation::mass_conserving || !closed || !o.grooves.empty() ||
              o.inlet.type != Inlet::Type::free,
          "a film that conserves its mass must be fed: a cylindrical bore needs 'grooves' or an 'inlet'");
   demand(o.edge_fill == 1.0 || !closed || o.inlet.type != Inlet::Type::free,
@@ -35,18 +35,16 @@ void check_pads(const Geometry& g, const Options& o, const Lubricant& l) {
   demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
   demand(o.cells[0] >= 3 && o.cells[1] >= 2, "at least 3 x 2 cells per pad");
   demand(l.viscosity > 0.0, "the viscosity must be positive");
-  demand(l.density >= 0.0 && (l.density > 0.0 || o.turbulence == Options::Turbulence::laminar),
+  demand(l.density >= 0.0 && (l.density > 0.0 || o.turbulence == Turbulence::laminar),
          "a turbulent film needs a positive density");
 }
 
-namespace {
-
 class ReynoldsFilm final : public Model {
 public:
-  ReynoldsFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
+  ReynoldsFilm(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant)
       : options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
-    const bool modal = !options.tilt && (options.cavitation == Options::Cavitation::half_sommerfeld ||
-                                         options.cavitation == Options::Cavitation::none);
+    const bool modal = !options.tilt && (options.cavitation == Reynolds::Cavitation::half_sommerfeld ||
+                                         options.cavitation == Reynolds::Cavitation::none);
     for (const Pad& pad : pads_) {
       solvers_.push_back(modal && !pad.closed ? make_modal_pad(pad, options, lubricant)
                                               : make_banded_pad(pad, options, lubricant));
@@ -86,16 +84,105 @@ private:
     return out;
   }
 
-  Options options_;
+  Reynolds options_;
   Lubricant lubricant_;
   std::vector<Pad> pads_;
   std::vector<std::unique_ptr<PadSolver>> solvers_;
 };
 
+// A film with states of its own.
+bool dynamic(const Reynolds& o) {
+  return o.cavitation == Reynolds::Cavitation::mass_conserving && o.states == Reynolds::States::dynamic;
+}
+
 }  // namespace
 
-std::unique_ptr<Model> make_reynolds(const Geometry& geometry, const Options& options, const Lubricant& lubricant) {
+std::span<const deck::Name<Reynolds::Cavitation>> names(Reynolds::Cavitation) {
+  static constexpr deck::Name<Reynolds::Cavitation> table[] = {
+      {Reynolds::Cavitation::half_sommerfeld, "half_sommerfeld", "negative pressure is cut off after the solution"},
+      {Reynolds::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
+      {Reynolds::Cavitation::mass_conserving, "mass_conserving",
+       "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
+       "edges of pads, grooves and inlets. Loads, stiffness and flows are exact; damping is that of a cavity that "
+       "neither fills nor empties, unless 'states' are dynamic"},
+      {Reynolds::Cavitation::none, "none", "negative pressure stays"}};
+  return table;
+}
+
+std::span<const deck::Name<Reynolds::States>> names(Reynolds::States) {
+  static constexpr deck::Name<Reynolds::States> table[] = {
+      {Reynolds::States::condensed, "condensed", "none: what the cavity holds does not change as the journal moves"},
+      {Reynolds::States::dynamic, "dynamic",
+       "what the gap holds beyond or short of its volume, at every node: the cavity fills and empties in time, and the "
+       "oil is compressible"}};
+  return table;
+}
+
+void describe(deck::Description<Reynolds>& d) {
+  d.add("cavitation", &Reynolds::cavitation,
+        "what happens where the pressure would be negative; half_sommerfeld, the cheapest, unless given");
+  d.add("edge_fill", &Reynolds::edge_fill, "1", deck::Check{.min = 0, .max = 1, .min_open = true},
+        "part of the gap that is full of oil where it enters a pad, of mass_conserving films")
+      .continuable();
+  d.add("states", &Reynolds::states, "own states of a mass_conserving film; condensed, the cheapest, unless given");
+  d.add(
+       "bulk_modulus", &Reynolds::bulk_modulus, "Pa", deck::positive,
+       "of the oil where the gap is full, of a film with dynamic states: it stores h (1 + p/bulk_modulus). Mineral oil "
+       "without air, 1.5 GPa, unless given; equilibria do not depend on it")
+      .continuable();
+  d.add("turbulence", &Reynolds::turbulence,
+        "flow coefficients of the film; laminar unless given, however large the Reynolds number", "004 errata 15");
+  d.add("inlet", &Reynolds::inlet, "where the film of a cylindrical bore without grooves starts",
+        "Raimondi and Boyd 1958");
+  d.add("cells", &Reynolds::cells, deck::in(4, 2000), "intervals around and along each pad");
+  d.add("tilt", &Reynolds::tilt, "follow the slope of the journal (bearings of a machine do not)");
+  d.add("grooves", &Reynolds::grooves,
+        "axial grooves of a cylindrical bore, at pressure zero unless the film conserves its mass");
+  d.check([](const Reynolds& o, const deck::Report& r) {
+    if (o.inlet.type != Inlet::Type::free && !o.grooves.empty())
+      r.fail("inlet", "a film starts at its 'grooves' or at an 'inlet', not at both");
+    const bool conserves = o.cavitation == Reynolds::Cavitation::mass_conserving;
+    if (!conserves && o.edge_fill != 1)
+      r.fail("edge_fill", "only a film with cavitation mass_conserving knows how full the gap is");
+    const bool has_states = o.states == Reynolds::States::dynamic;
+    if (!conserves && has_states) r.fail("states", "only a film with cavitation mass_conserving has states of its own");
+    if (has_states && o.inlet.type == Inlet::Type::maximum_gap)
+      r.fail("inlet",
+             "an inlet at the maximum gap turns with the journal: a film with dynamic states cannot follow it");
+    if (!has_states && o.bulk_modulus != Reynolds{}.bulk_modulus)
+      r.fail("bulk_modulus", "only a film with dynamic states is compressible");
+    for (const Groove& g : o.grooves)
+      if (!conserves && g.pressure != 0)
+        r.fail("grooves", "only grooves of films with cavitation mass_conserving have a pressure");
+  });
+}
+
+void refine(Reynolds& options, const std::array<double, 2>& factor) {
+  for (std::size_t d = 0; d < 2; ++d) options.cells[d] = refined(options.cells[d], factor[d], false);
+}
+
+Facts facts_of(const Reynolds& o, const Geometry& geometry) {
+  Facts f;
+  f.tilts = o.tilt;
+  f.cells = o.cells;
+  if (!o.grooves.empty())
+    f.circle_only = {"grooves", "only a cylindrical bore has grooves"};
+  else if (o.inlet.type != Inlet::Type::free)
+    f.circle_only = {"inlet", "only a cylindrical bore has an inlet"};
+  if (o.cavitation == Reynolds::Cavitation::mass_conserving)
+    f.smoothness = {0, "the force has kinks where the edge of the full film passes a node"};
+  else if (o.cavitation != Reynolds::Cavitation::none)
+    f.smoothness = {1, "the tangents have kinks where the edge of the positive pressure passes a node"};
+  f.own_states = dynamic(o);
+  if (f.own_states)
+    f.states =
+        (geometry.type == Geometry::Bore::lemon_bore ? 2 : 1) * o.cells[0] * (o.tilt ? o.cells[1] : o.cells[1] / 2);
+  return f;
+}
+
+Made make(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant) {
   check_pads(geometry, options, lubricant);
+  if (dynamic(options)) return make_content(geometry, options, lubricant);
   return std::make_unique<ReynoldsFilm>(geometry, options, lubricant);
 }
 

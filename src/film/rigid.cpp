@@ -4,9 +4,11 @@
 #include <limits>
 #include <numbers>
 
-#include "film/kinds.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/closed_form.hpp"
+#include "whirl/film/describe.hpp"
 #include "whirl/film/impedance.hpp"
+#include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
 namespace {
@@ -15,8 +17,8 @@ using std::numbers::pi;
 
 class RigidFilm final : public Model {
 public:
-  RigidFilm(const Geometry& geometry, const Options& options, const Lubricant& lubricant)
-      : g_(geometry), kind_(options.kind), viscosity_(lubricant.viscosity), ld_(0.5 * g_.length / g_.radius) {
+  RigidFilm(const Geometry& geometry, ClosedForm kind, const Lubricant& lubricant)
+      : g_(geometry), kind_(kind), viscosity_(lubricant.viscosity), ld_(0.5 * g_.length / g_.radius) {
     const double ratio = g_.radius / g_.clearance;
     force_ = viscosity_ * g_.length * 2.0 * g_.radius * ratio * ratio;
     pressure_ = 6.0 * viscosity_ * ratio * ratio;
@@ -50,10 +52,10 @@ private:
     return {e,
             {m.velocity[0] / g_.clearance + 0.5 * m.speed * e[1], m.velocity[1] / g_.clearance - 0.5 * m.speed * e[0]}};
   }
-  [[nodiscard]] bool has_pressure() const { return kind_ != Options::Kind::finite_approximate; }
+  [[nodiscard]] bool has_pressure() const { return kind_ != ClosedForm::finite_approximate; }
 
   Geometry g_;
-  Options::Kind kind_;
+  ClosedForm kind_;
   double viscosity_, ld_;
   double force_;     // N s, mu L D (R/c)^2
   double pressure_;  // Pa s, 6 mu (R/c)^2
@@ -73,7 +75,7 @@ Summary RigidFilm::summary(const Motion& motion) {
   s.power_loss =
       U * (2.0 * pi * viscosity_ * U * g_.radius * g_.length / (g_.clearance * r) +
            (motion.position[0] * response.force[1] - motion.position[1] * response.force[0]) / (2.0 * g_.radius));
-  if (kind_ == Options::Kind::short_bearing)
+  if (kind_ == ClosedForm::short_bearing)
     s.side_flow = 2.0 * g_.radius * g_.clearance * g_.length * std::hypot(v[0], v[1]);
   if (!has_pressure()) {
     s.max_pressure = s.side_flow = std::numeric_limits<double>::quiet_NaN();
@@ -100,7 +102,7 @@ Summary RigidFilm::summary(const Motion& motion) {
 std::vector<Field> RigidFilm::fields(const Motion& motion) {
   if (!has_pressure()) return {};
   const auto [e, v] = state(motion);
-  const bool is_short = kind_ == Options::Kind::short_bearing;
+  const bool is_short = kind_ == ClosedForm::short_bearing;
   constexpr std::size_t kAround = 181;
   const std::size_t along = is_short ? 17 : 2;
   Field theta{0, "theta", "rad", {kAround}, {}}, z{0, "z", "m", {along}, {}};
@@ -121,15 +123,49 @@ std::vector<Field> RigidFilm::fields(const Motion& motion) {
   return {theta, z, pressure, h};
 }
 
-}  // namespace
-
-std::unique_ptr<Model> make_rigid(const Geometry& g, const Options& options, const Lubricant& lubricant) {
+std::unique_ptr<Model> make_rigid(const Geometry& g, ClosedForm kind, const Lubricant& lubricant) {
   if (g.type != Geometry::Bore::cylindrical)
     throw core::InputError("film: short, long and finite_approximate films need a cylindrical bore");
   if (!(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0))
     throw core::InputError("film: radius, length and clearance must be positive");
   if (!(lubricant.viscosity > 0.0)) throw core::InputError("film: the viscosity must be positive");
-  return std::make_unique<RigidFilm>(g, options, lubricant);
+  return std::make_unique<RigidFilm>(g, kind, lubricant);
+}
+
+constexpr CircleOnly circle{"type", "a film in closed form needs a cylindrical bore"};
+
+}  // namespace
+
+void describe(deck::Description<Short>& /*d*/) {}
+Facts facts_of(const Short& /*options*/, const Geometry& /*geometry*/) {
+  return {.circle_only = circle};
+}
+Made make(const Geometry& g, const Short& /*options*/, const Lubricant& lubricant) {
+  return make_rigid(g, ClosedForm::short_bearing, lubricant);
+}
+
+void describe(deck::Description<Long>& /*d*/) {}
+Facts facts_of(const Long& /*options*/, const Geometry& /*geometry*/) {
+  return {.circle_only = circle};
+}
+Made make(const Geometry& g, const Long& /*options*/, const Lubricant& lubricant) {
+  return make_rigid(g, ClosedForm::long_bearing, lubricant);
+}
+
+void describe(deck::Description<LongInlet>& /*d*/) {}
+Facts facts_of(const LongInlet& /*options*/, const Geometry& /*geometry*/) {
+  return {.circle_only = circle};
+}
+Made make(const Geometry& g, const LongInlet& /*options*/, const Lubricant& lubricant) {
+  return make_rigid(g, ClosedForm::long_inlet, lubricant);
+}
+
+void describe(deck::Description<FiniteApproximate>& /*d*/) {}
+Facts facts_of(const FiniteApproximate& /*options*/, const Geometry& /*geometry*/) {
+  return {.circle_only = circle};
+}
+Made make(const Geometry& g, const FiniteApproximate& /*options*/, const Lubricant& lubricant) {
+  return make_rigid(g, ClosedForm::finite_approximate, lubricant);
 }
 
 }  // namespace whirl::film

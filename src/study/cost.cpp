@@ -9,7 +9,7 @@ namespace whirl::study {
 double n_film_states(const system::Machine& machine) {
   double own = 0;
   for (const system::Bearing& b : machine.bearings)
-    own += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
+    own += film::facts(b.film, b.geometry.value_or(film::Geometry{})).states;
   return own;
 }
 

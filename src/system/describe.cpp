@@ -79,18 +79,16 @@ void describe(deck::Description<Bearing>& d) {
   d.add("minimum_film", &Bearing::minimum_film, "m", non_negative,
         "film thickness at mid-plane below which journal and bearing touch; that of the machine if not given");
   d.check([](const Bearing& b, const deck::Report& r) {
-    if (b.film.kind == film::Options::Kind::linear) return;
-    if (b.film.tilt)
+    const film::Facts film = film::facts(b.film);
+    if (film.coefficients) return;
+    if (film.tilts)
       r.fail("film.tilt",
              "films of a machine do not follow the slope of its shaft: each journal stays parallel to its "
              "bearing. Leave 'tilt' out");
     if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
-    const bool closed = b.geometry && b.geometry->type == film::Geometry::Bore::cylindrical;
-    if (b.geometry && !closed && b.film.kind != film::Options::Kind::reynolds)
-      r.fail("film.type", "a film in closed form needs a cylindrical bore");
-    if (b.geometry && !closed && !b.film.grooves.empty()) r.fail("film.grooves", "only a cylindrical bore has grooves");
-    if (b.geometry && !closed && b.film.inlet.type != film::Inlet::Type::free)
-      r.fail("film.inlet", "only a cylindrical bore has an inlet");
+    const bool circle = b.geometry && b.geometry->type == film::Geometry::Bore::cylindrical;
+    if (b.geometry && !circle && !film.circle_only.option.empty())
+      r.fail(fmt::format("film.{}", film.circle_only.option), std::string(film.circle_only.reason));
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
   });

@@ -11,7 +11,7 @@ std::optional<Groups> groups_of(const Train& train) {
   const Support& first = train.supports.front();
   const film::Geometry& g = first.geometry;
   for (const Support& s : train.supports)
-    if (s.film.kind == film::Options::Kind::linear || s.film.kind != first.film.kind || s.geometry.type != g.type ||
+    if (film::facts(s.film).coefficients || !film::same_kind(s.film, first.film) || s.geometry.type != g.type ||
         s.geometry.radius != g.radius || s.geometry.length != g.length || s.geometry.clearance != g.clearance ||
         s.lubricant.viscosity != first.lubricant.viscosity)
       return std::nullopt;

@@ -93,9 +93,9 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
       s.lubricant = *own;
     else if (const std::string& name = std::get<std::string>(b.lubricant); !name.empty())
       s.lubricant = m.lubricants.at(name);
-    if (b.film.kind != film::Options::Kind::linear) {
+    if (const film::Facts film = film::facts(b.film); !film.coefficients) {
       // Asperities that carry are beyond any limit but contact.
-      const double usual = b.film.contact ? 0 : film::default_minimum_film(s.geometry);
+      const double usual = film.asperities ? 0 : film::default_minimum_film(s.geometry);
       s.minimum_film = b.minimum_film.value_or(m.minimum_film.value_or(usual));
     }
     s.has_pedestal = b.pedestal.has_value();

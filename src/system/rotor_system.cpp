@@ -259,7 +259,7 @@ void RotorSystem::displace(Vec x, const std::array<double, 2>& offset) {
 
 bool RotorSystem::has_film_mesh() const {
   return std::any_of(train_.supports.begin(), train_.supports.end(),
-                     [](const Support& s) { return film::has_mesh(s.film.kind); });
+                     [](const Support& s) { return film::facts(s.film).cells[0] > 0; });
 }
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {

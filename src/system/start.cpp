@@ -12,11 +12,9 @@ core::Vector static_guess(RotorSystem& system) {
   Train train = system.train();
   train.unbalance.clear();
   for (Support& s : train.supports) {
-    if (s.film.kind == film::Options::Kind::linear) continue;
+    if (film::facts(s.film).coefficients) continue;
     // Stiff against the film and soft against the shaft's elements, so that the solve keeps its digits.
-    s.film.kind = film::Options::Kind::linear;
-    s.film.stiffness = {1e11, 0, 0, 1e11};
-    s.film.damping = {0, 0, 0, 0};
+    s.film = film::Linear{.stiffness = {1e11, 0, 0, 1e11}};
     s.elevation -= 0.45 * s.geometry.clearance;
   }
   RotorSystem springs(system.comm(), std::move(train), system.speed());

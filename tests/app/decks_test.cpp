@@ -216,7 +216,7 @@ TEST(TurbineTrain, OverridesReachCellsBearingsAndStudies) {
                               "studies.1.equilibrium_branch.range.to=9000 rpm"});
   EXPECT_EQ(d.machine.rotor.segments[2].length, 0.081);
   EXPECT_EQ(d.machine.bearings[1].geometry->clearance, 2.64e-4);
-  EXPECT_EQ(d.machine.bearings[1].film.cells[0], 120);
+  EXPECT_EQ(film::facts(d.machine.bearings[1].film).cells[0], 120);
   EXPECT_NEAR(dynamic_cast<const study::EquilibriumBranch&>(*d.studies[0]).options.parameter.range.to,
               300 * std::numbers::pi, 1e-11);
 }

@@ -43,12 +43,13 @@ system::Train train(int cells) {
   t.rotor.mass = 0.5 * bearings;
   t.rotor.load = 0.32 * bearings;
   if (cells > 0) {
-    s.film.kind = film::Options::Kind::compliant_short;
-    s.film.compliance = 0.1;
-    s.film.reference_speed = kOmega0;
-    s.film.cells = {cells, 4};
+    film::CompliantShort film;
+    film.compliance = 0.1;
+    film.reference_speed = kOmega0;
+    film.cells = {cells, 4};
+    s.film = film;
   } else {
-    s.film.kind = film::Options::Kind::short_bearing;
+    s.film = film::Short{};
   }
   for (int k = 0; k < bearings; ++k) t.supports.push_back(s);
   t.unbalance = {{1, 0.2 * kClearance * t.rotor.mass, 0}};

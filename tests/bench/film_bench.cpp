@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "support/film_of.hpp"
 #include "whirl/film/model.hpp"
 #include "whirl/film/state_model.hpp"
 
@@ -109,7 +110,7 @@ double factorisation_time() {
   return best;
 }
 
-void evaluate(benchmark::State& state, Options options, Need need) {
+void evaluate(benchmark::State& state, Reynolds options, Need need) {
   options.cells = {kAround, kAlong};
   auto model = make_model(one_pad(), options, {0.0067, 850.0});
   Motion m = loaded(options.tilt);
@@ -127,7 +128,7 @@ void evaluate(benchmark::State& state, Options options, Need need) {
 
 // A film with own states around a moving journal, with rates; half of it carries. As solvers do it, who hand over what
 // a share sees.
-void evaluate_states(benchmark::State& state, Options options, Need need) {
+void evaluate_states(benchmark::State& state, testing::Elastic options, Need need) {
   const Geometry bore{Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0.0, 0.0, 0.0};
   options.compliance = 0.1;
   options.reference_speed = 160.0;
@@ -152,42 +153,41 @@ void evaluate_states(benchmark::State& state, Options options, Need need) {
   }
 }
 
-Options compliant(Options::Kind kind, bool as_source) {
-  Options o;
+testing::Elastic compliant(testing::Kind kind, bool as_source) {
+  testing::Elastic o;
   o.kind = kind;
-  o.cells = {kind == Options::Kind::compliant_finite ? 100 : 50, 20};
+  o.cells = {kind == testing::Kind::compliant_finite ? 100 : 50, 20};
   if (as_source) {
-    o.quadrature = Options::Quadrature::simpson;
-    o.differences = Options::Differences::upwind;
+    o.quadrature = Compliant::Quadrature::simpson;
+    o.differences = Compliant::Differences::upwind;
   }
   return o;
 }
 
 // A rubber that is damped, and asperities that touch where the film is thinnest.
-Options general(Options o) {
+testing::Elastic general(testing::Elastic o) {
   o.liner_damping = 1e-3;
   o.rubber_thickness = 1e-4;
   o.contact = Contact{4e-6, 1e6};
   return o;
 }
 
-Options options(Options::Cavitation cavitation, bool tilt,
-                Options::Turbulence turbulence = Options::Turbulence::constantinescu) {
-  Options o;
+Reynolds options(Reynolds::Cavitation cavitation, bool tilt, Turbulence turbulence = Turbulence::constantinescu) {
+  Reynolds o;
   o.cavitation = cavitation;
   o.tilt = tilt;
   o.turbulence = turbulence;
   return o;
 }
 
-using C = Options::Cavitation;
+using C = Reynolds::Cavitation;
 BENCHMARK(banded_cholesky)->Unit(benchmark::kMicrosecond);
 BENCHMARK(banded_lu)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(evaluate, aligned_tangents, options(C::half_sommerfeld, false), Need::tangents)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(evaluate, aligned_force, options(C::half_sommerfeld, false), Need::force)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(evaluate, aligned_laminar_tangents, options(C::half_sommerfeld, false, Options::Turbulence::laminar),
+BENCHMARK_CAPTURE(evaluate, aligned_laminar_tangents, options(C::half_sommerfeld, false, Turbulence::laminar),
                   Need::tangents)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(evaluate, aligned_uncavitated_tangents, options(C::none, false), Need::tangents)
@@ -202,7 +202,7 @@ BENCHMARK_CAPTURE(evaluate, reynolds_tilted_warm_tangents, options(C::reynolds, 
 #define WHIRL_STATES(name, options)                                                              \
   BENCHMARK_CAPTURE(evaluate_states, name, options, Need::force)->Unit(benchmark::kMicrosecond); \
   BENCHMARK_CAPTURE(evaluate_states, name##_tangents, options, Need::tangents)->Unit(benchmark::kMicrosecond)
-using K = Options::Kind;
+using K = testing::Kind;
 WHIRL_STATES(short_as_source, compliant(K::compliant_short, true));
 WHIRL_STATES(short_sub_cell, compliant(K::compliant_short, false));
 WHIRL_STATES(short_general, general(compliant(K::compliant_short, false)));

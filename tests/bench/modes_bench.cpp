@@ -30,11 +30,11 @@ system::Train on_liners(int around) {
     s.name = "B" + std::to_string(&s - t.supports.data() + 1);
     s.geometry = {
         film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    s.film = {};
-    s.film.kind = film::Options::Kind::compliant_finite;
-    s.film.compliance = 0.3;
-    s.film.reference_speed = 377;
-    s.film.cells = {around, around / 5};
+    film::CompliantFinite film;
+    film.compliance = 0.3;
+    film.reference_speed = 377;
+    film.cells = {around, around / 5};
+    s.film = film;
   }
   return t;
 }

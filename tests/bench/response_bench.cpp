@@ -38,13 +38,13 @@ system::Train linear_train() {
   const auto whole = s.gather(x.get());
   const auto films = s.film_responses(s.journals(whole.data()), film::Need::tangents);
   for (std::size_t b = 0; b < films.size(); ++b) {
-    auto& o = t.supports[b].film;
-    o.kind = film::Options::Kind::linear;
+    film::Linear o;
     for (std::size_t i = 0; i < 2; ++i)
       for (std::size_t j = 0; j < 2; ++j) {
         o.stiffness[2 * i + j] = -films[b].d_position[i][j];
         o.damping[2 * i + j] = -films[b].d_velocity[i][j];
       }
+    t.supports[b].film = o;
   }
   return t;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "whirl/film/impedance.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
@@ -22,6 +23,21 @@ inline Geometry cylinder() {
 }
 inline Lubricant oil() {
   return {0.0067, 850.0};
+}
+
+/// A film with this closed form.
+inline Options film_of(ClosedForm kind) {
+  switch (kind) {
+    case ClosedForm::short_bearing:
+      return Short{};
+    case ClosedForm::long_bearing:
+      return Long{};
+    case ClosedForm::long_inlet:
+      return LongInlet{};
+    case ClosedForm::finite_approximate:
+      break;
+  }
+  return FiniteApproximate{};
 }
 
 /// Position in clearances, velocity in clearances times speed, tilt in clearances per length.

@@ -9,7 +9,7 @@
 namespace whirl::film::testing {
 namespace {
 
-using C = Options::Cavitation;
+using C = Reynolds::Cavitation;
 
 Geometry bore(double length_to_diameter) {
   Geometry g = cylinder();
@@ -17,10 +17,10 @@ Geometry bore(double length_to_diameter) {
   return g;
 }
 
-Options closed(C cavitation, std::array<int, 2> cells) {
-  Options o;
+Reynolds closed(C cavitation, std::array<int, 2> cells) {
+  Reynolds o;
   o.cavitation = cavitation;
-  o.turbulence = Options::Turbulence::laminar;
+  o.turbulence = Turbulence::laminar;
   o.cells = cells;
   return o;
 }
@@ -73,9 +73,8 @@ TEST(Closed, ForceAndTangentsAreOfSecondOrder) {
 // With cavitation after the solution: L/D to 0, of order (L/D)^2; and the part of a long bearing by which another one
 // is longer is the long film.
 TEST(Closed, TendsToTheShortAndTheLongFilm) {
-  Options small, large;
-  small.kind = Options::Kind::short_bearing;
-  large.kind = Options::Kind::long_bearing;
+  const Short small;
+  const Long large;
   const auto away = [&](double ld) {
     const Geometry g = bore(ld);
     return apart(numbers(g, closed(C::half_sommerfeld, {240, 32})), numbers(g, small), 2);
@@ -130,12 +129,12 @@ TEST(Closed, AGrooveIsAnEdge) {
   cut.type = Geometry::Bore::partial_arc;
   cut.arc = 360.0 * kDegree;
   for (const C cavitation : {C::half_sommerfeld, C::reynolds, C::none}) {
-    Options o = closed(cavitation, {48, 12});
+    Reynolds o = closed(cavitation, {48, 12});
     const auto arc = numbers(cut, o);
     o.grooves = {{90.0 * kDegree, 0.0}};
     EXPECT_LT(apart(numbers(g, o), arc), 1e-9);
   }
-  Options all = closed(C::none, {48, 12});
+  Reynolds all = closed(C::none, {48, 12});
   all.grooves = {{0.0, 200.0 * kDegree}, {180.0 * kDegree, 200.0 * kDegree}};
   EXPECT_THROW(make_model(g, all, oil()), core::InputError);
   all.grooves = {{0.0, 0.1}};
@@ -147,13 +146,13 @@ TEST(Closed, GroovesAreOfSecondOrderAndSymmetric) {
   const Geometry g = bore(0.8);
   std::array<std::array<double, 11>, 4> f{};
   for (std::size_t k = 0; k < 4; ++k) {
-    Options o = closed(C::half_sommerfeld, {36 << k, 8 << k});
+    Reynolds o = closed(C::half_sommerfeld, {36 << k, 8 << k});
     o.grooves = {{90.0 * kDegree, 20.0 * kDegree}, {-30.0 * kDegree, 20.0 * kDegree}};
     f[k] = numbers(g, o);
   }
   EXPECT_GT(std::log2(apart(f[1], f[2]) / apart(f[2], f[3])), 1.7);
   EXPECT_LT(apart(f[2], f[3]), 5e-3);
-  Options left = closed(C::half_sommerfeld, {36, 8}), right = left;
+  Reynolds left = closed(C::half_sommerfeld, {36, 8}), right = left;
   left.grooves = {{150.0 * kDegree, 20.0 * kDegree}};
   right.grooves = {{30.0 * kDegree, 20.0 * kDegree}};
   const Response a = evaluate(*make_model(g, left, oil()), motion(g, {0.2, -0.5, 0.0, 0.0}, {}, 377.0)),
@@ -165,8 +164,7 @@ TEST(Closed, GroovesAreOfSecondOrderAndSymmetric) {
 // Moes and Bosma's sum of the short and the long film has the attitude angle within 3 deg and lies above the film that
 // is cut off after the solution, by more as the journal moves out; it is closer to the one with Reynolds' cavitation.
 TEST(Closed, ApproximateFiniteLength) {
-  Options sum;
-  sum.kind = Options::Kind::finite_approximate;
+  const FiniteApproximate sum;
   const auto polar = [](const Response& r) {
     return std::pair{std::hypot(r.force[0], r.force[1]), std::atan2(r.force[1], -r.force[0]) / kDegree};
   };
@@ -188,7 +186,7 @@ TEST(Closed, ApproximateFiniteLength) {
 // Raimondi and Boyd (1958), L/D = 1, e = 0.6, p = 0 where the film is thickest: S = 0.1208, attitude 50.46 deg.
 TEST(Closed, RaimondiBoyd) {
   const Geometry g = bore(1.0);
-  Options o = closed(C::reynolds, {180, 32});
+  Reynolds o = closed(C::reynolds, {180, 32});
   o.grooves = {{180.0 * kDegree, 0.0}};
   const Response r = evaluate(*make_model(g, o, oil()), motion(g, {0.6, 0.0, 0.0, 0.0}, {}, 377.0), Need::force);
   const double load = oil().viscosity * 377.0 / (2.0 * std::numbers::pi) * g.length * 2.0 * g.radius *

@@ -6,21 +6,22 @@
 #include <vector>
 
 #include "film/cases.hpp"
+#include "support/film_of.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
 
 inline constexpr double kSpeed = 377.0;
 
-inline Options compliant(Options::Kind kind, double compliance, int cells, bool as_source) {
-  Options o;
+inline Elastic compliant(Kind kind, double compliance, int cells, bool as_source) {
+  Elastic o;
   o.kind = kind;
   o.compliance = compliance;
   o.reference_speed = 300.0;
-  o.cells = {cells, kind == Options::Kind::compliant_finite ? 8 : 4};
+  o.cells = {cells, kind == Kind::compliant_finite ? 8 : 4};
   if (as_source) {
-    o.quadrature = Options::Quadrature::simpson;
-    o.differences = Options::Differences::upwind;
+    o.quadrature = Compliant::Quadrature::simpson;
+    o.differences = Compliant::Differences::upwind;
   }
   return o;
 }
@@ -47,11 +48,11 @@ inline Response static_response(const Options& o, const Motion& m) {
 /// Every kind with a liner, in its variants.
 struct CompliantCase {
   std::string name;
-  Options options;
+  Elastic options;
 };
 
 inline std::vector<CompliantCase> compliant_films() {
-  using enum Options::Kind;
+  using enum Kind;
   std::vector<CompliantCase> all = {{"short", compliant(compliant_short, 0.1, 40, false)},
                                     {"short_as_source", compliant(compliant_short, 1.0, 50, true)},
                                     {"long", compliant(compliant_long, 0.1, 41, false)},
@@ -62,7 +63,7 @@ inline std::vector<CompliantCase> compliant_films() {
   for (std::size_t k = 0; k < plain; k += 2) {
     CompliantCase c = all[k];
     const std::string name = c.name;
-    c.options.differences = Options::Differences::third_order;
+    c.options.differences = Compliant::Differences::third_order;
     c.name = name + "_third_order";
     all.push_back(c);
     c.options.liner_damping = 0.4 / kSpeed;
@@ -93,7 +94,7 @@ struct CompliantPoint {
   std::vector<double> states, rates;
 };
 
-inline CompliantPoint point(Options options) {
+inline CompliantPoint point(Elastic options) {
   options.contact.reset();
   const auto made = make_state_model(cylinder(), options, oil());
   StateModel& film = *made;

@@ -29,9 +29,9 @@ TEST(CompliantFinite, ManufacturedPressureAtSecondOrder) {
     const double soft = damped ? 0.7 * b : b, tau = 0.4 / kSpeed, rubber = 2.0, vx = 0.05, vy = -0.08;
     std::array<double, 3> residual{}, force{};
     for (std::size_t level = 0; level < 3; ++level) {
-      Options o = compliant(Options::Kind::compliant_finite, 0.4, 40 << level, as_source);
+      Elastic o = compliant(Kind::compliant_finite, 0.4, 40 << level, as_source);
       o.cells[1] = 14 << level;
-      if (way == Way::third_order) o.differences = Options::Differences::third_order;
+      if (way == Way::third_order) o.differences = Compliant::Differences::third_order;
       if (damped) {
         o.liner_damping = tau;
         o.rubber_thickness = rubber * c;
@@ -78,11 +78,11 @@ TEST(CompliantFinite, ManufacturedPressureAtSecondOrder) {
 
 // L/D to 0: the short film, with a difference of order (L/D)^2. L/D to infinity: the periodic long film, of order D/L.
 TEST(CompliantFinite, ShortAndLongLimits) {
-  using enum Options::Kind;
+  using enum Kind;
   const auto away = [](double length_to_diameter, const Options& rigid, std::array<int, 2> cells, double compliance) {
     Geometry g = cylinder();
     g.length = 2.0 * g.radius * length_to_diameter;
-    Options o = compliant(compliant_finite, compliance, cells[0], false);
+    Elastic o = compliant(compliant_finite, compliance, cells[0], false);
     o.cells = cells;
     auto film = make_state_model(g, o, oil());
     const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
@@ -93,9 +93,8 @@ TEST(CompliantFinite, ShortAndLongLimits) {
     return std::hypot(r.journal.force[0] - exact.force[0], r.journal.force[1] - exact.force[1]) /
            std::hypot(exact.force[0], exact.force[1]);
   };
-  Options thin, wide;
-  thin.kind = short_bearing;
-  wide.kind = long_bearing;
+  const Short thin;
+  const Long wide;
   const double a = away(0.3, thin, {120, 24}, 0.1), b = away(0.15, thin, {120, 24}, 0.1);
   EXPECT_LT(b, 0.03);
   EXPECT_NEAR(std::log2(a / b), 2.0, 0.4);

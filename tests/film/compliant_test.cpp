@@ -11,12 +11,12 @@
 namespace whirl::film::testing {
 namespace {
 
-class Compliant : public ::testing::TestWithParam<CompliantCase> {};
+class CompliantFilms : public ::testing::TestWithParam<CompliantCase> {};
 
 // Asperities take part where they are asked for. They do not show in the force as long as the film stays positive
 // beneath them: both together carry what the liner does.
-TEST_P(Compliant, ContactCarries) {
-  Options o = GetParam().options;
+TEST_P(CompliantFilms, ContactCarries) {
+  Elastic o = GetParam().options;
   if (!o.contact) GTEST_SKIP() << "without contact";
   auto with = make_state_model(cylinder(), o, oil());
   o.contact.reset();
@@ -33,7 +33,7 @@ TEST_P(Compliant, ContactCarries) {
   EXPECT_GT(apart, 0.05 * size);
 }
 
-TEST_P(Compliant, ContactIsADomainError) {
+TEST_P(CompliantFilms, ContactIsADomainError) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
   CompliantPoint p = point(GetParam().options);
   StateResponse r;
@@ -43,9 +43,9 @@ TEST_P(Compliant, ContactIsADomainError) {
   EXPECT_THROW(film->evaluate(p.motion, p.states, p.rates, Need::force, r), core::DomainError);
 }
 
-TEST_P(Compliant, ResamplingKeepsTheFilm) {
+TEST_P(CompliantFilms, ResamplingKeepsTheFilm) {
   auto film = make_state_model(cylinder(), GetParam().options, oil());
-  Options twice = GetParam().options;
+  Elastic twice = GetParam().options;
   for (int& cells : twice.cells) cells *= 2;
   auto fine = make_state_model(cylinder(), twice, oil());
   const Motion m = still(0.2, -0.4);
@@ -56,15 +56,14 @@ TEST_P(Compliant, ResamplingKeepsTheFilm) {
   for (std::size_t k = 0; k < back.size(); ++k) EXPECT_NEAR(back[k], coarse[k], 1e-12 * scale_of(*film));
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, Compliant, ::testing::ValuesIn(compliant_films()),
+INSTANTIATE_TEST_SUITE_P(Films, CompliantFilms, ::testing::ValuesIn(compliant_films()),
                          [](const auto& which) { return which.param.name; });
 
 // A stiff liner gives the rigid films; the difference is proportional to B.
 TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
-  using enum Options::Kind;
+  using enum Kind;
   for (const auto& [soft, hard] : {std::pair{compliant_short, short_bearing}, std::pair{compliant_long, long_inlet}}) {
-    Options rigid;
-    rigid.kind = hard;
+    const Options rigid = film_of(hard);
     auto model = make_model(cylinder(), rigid, oil());
     const Motion m = still(0.3, -0.3);
     const Response exact = evaluate(*model, m);
@@ -81,9 +80,8 @@ TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
 
 // Stiffness and damping with a stiff liner are the rigid tangents; the static stiffness is the slope of static forces.
 TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
-  using enum Options::Kind;
-  Options rigid;
-  rigid.kind = short_bearing;
+  using enum Kind;
+  const Short rigid;
   auto model = make_model(cylinder(), rigid, oil());
   const Motion m = still(0.3, -0.3);
   const Response exact = evaluate(*model, m);
@@ -97,7 +95,7 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
       EXPECT_NEAR(c.damping[2 * i + j] * kSpeed, -exact.d_velocity[i][j] * kSpeed, 5e-3 * size);
     }
   for (const auto kind : {compliant_short, compliant_long}) {
-    const Options soft = compliant(kind, 0.5, 60, false);
+    const Elastic soft = compliant(kind, 0.5, 60, false);
     auto other = make_state_model(cylinder(), soft, oil());
     const Coefficients slow = coefficients(*other, m, relaxed(*other, m), 1e-3);
     const double step = 1e-5;
@@ -114,12 +112,12 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
 
 // A film that carries nothing has the residual Omega/2 dh/dtheta alone.
 TEST(CompliantLimits, OrdersOfTheDifferences) {
-  using enum Options::Differences;
-  for (const auto kind : {Options::Kind::compliant_short, Options::Kind::compliant_finite})
+  using enum Compliant::Differences;
+  for (const auto kind : {Kind::compliant_short, Kind::compliant_finite})
     for (const auto& [differences, order] : {std::pair{central, 2.0}, {upwind, 2.0}, {third_order, 3.0}}) {
       std::array<double, 2> error{};
       for (std::size_t k = 0; k < 2; ++k) {
-        Options o = compliant(kind, 0.1, 40 << k, false);
+        Elastic o = compliant(kind, 0.1, 40 << k, false);
         o.differences = differences;
         auto film = make_state_model(cylinder(), o, oil());
         std::vector<double> s(film->states());
@@ -128,7 +126,7 @@ TEST(CompliantLimits, OrdersOfTheDifferences) {
         film->evaluate(still(0.3, -0.4), s, std::vector<double>(s.size(), 0.0), Need::force, r);
         const double theta = 90.0 * kDegree + 7 * 9.0 * kDegree;  // node 7 of 40
         const double exact = 0.5 * kSpeed * cylinder().clearance * (0.3 * std::sin(theta) + 0.4 * std::cos(theta));
-        const std::size_t line = kind == Options::Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
+        const std::size_t line = kind == Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
         error[k] = std::abs(r.residual[(7 << k) * line] - exact);
       }
       EXPECT_NEAR(std::log2(error[0] / error[1]), order, 0.3);
@@ -136,11 +134,11 @@ TEST(CompliantLimits, OrdersOfTheDifferences) {
 }
 
 TEST(CompliantLimits, StaticForceIsOfSecondOrder) {
-  using enum Options::Kind;
+  using enum Kind;
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {
     std::array<std::array<double, 4>, 4> f{};
     for (std::size_t k = 0; k < 4; ++k) {
-      Options o = compliant(kind, 0.1, (kind == compliant_finite ? 15 : 60) << k, false);
+      Elastic o = compliant(kind, 0.1, (kind == compliant_finite ? 15 : 60) << k, false);
       o.cells[1] = 4 << k;
       f[k] = static_response(o, still(0.3, -0.3)).force;
     }
@@ -150,7 +148,7 @@ TEST(CompliantLimits, StaticForceIsOfSecondOrder) {
 }
 
 TEST(CompliantLimits, ALinerIsItsCompliance) {
-  Options by_b = compliant(Options::Kind::compliant_short, 0.1, 40, false), by_liner = by_b;
+  Elastic by_b = compliant(Kind::compliant_short, 0.1, 40, false), by_liner = by_b;
   const Geometry g = cylinder();
   // B = 6 mu Omega_0 d (1 + nu)(1 - 2 nu)/((c/R)^2 c E (1 - nu))
   const double d = 2e-3, nu = 0.3, ratio = g.clearance / g.radius;
@@ -167,9 +165,8 @@ TEST(CompliantLimits, ALinerIsItsCompliance) {
 }
 
 TEST(CompliantLimits, ReportsAgreeWithTheRigidFilm) {
-  using enum Options::Kind;
-  Options rigid;
-  rigid.kind = short_bearing;
+  using enum Kind;
+  const Short rigid;
   const Motion m = still(0.3, -0.3);
   const Summary exact = make_model(cylinder(), rigid, oil())->summary(m);
   auto film = make_state_model(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());

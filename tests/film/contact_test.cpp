@@ -13,7 +13,7 @@ namespace {
 constexpr Contact kContact{4e-6, 3e8};  // 4 % of the clearance
 
 LinerLaw law() {
-  Options o;
+  Compliant o;
   o.contact = kContact;
   return {cylinder(), o, 1e-3, 2.0};
 }
@@ -51,7 +51,7 @@ TEST(Contact, PressureFallsSmoothlyToZero) {
 TEST(Contact, JournalAtRestIsCarriedByAsperities) {
   const Geometry g = cylinder();
   constexpr double e = 1.15, pressure_scale = 6.0;
-  Options o = compliant(Options::Kind::compliant_short, 0.1, 400, false);
+  Elastic o = compliant(Kind::compliant_short, 0.1, 400, false);
   o.contact = kContact;
   const double scale = pressure_scale * oil().viscosity * std::pow(g.radius / g.clearance, 2);
   const LinerLaw liner(g, o, 0.1 / 300.0, scale);
@@ -68,13 +68,13 @@ TEST(Contact, JournalAtRestIsCarriedByAsperities) {
         scale * liner.contact(r + low).pressure * std::cos(theta) * g.length * g.radius * 2.0 * std::numbers::pi / n;
   }
   EXPECT_LT(exact, 0.0);
-  for (const auto kind : {Options::Kind::compliant_short, Options::Kind::compliant_finite})
-    for (const auto quadrature : {Options::Quadrature::sub_cell, Options::Quadrature::simpson}) {
+  for (const auto kind : {Kind::compliant_short, Kind::compliant_finite})
+    for (const auto quadrature : {Compliant::Quadrature::sub_cell, Compliant::Quadrature::simpson}) {
       o.kind = kind;
       o.quadrature = quadrature;
       auto film = make_state_model(g, o, oil());
       const Motion m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 0.0);
-      const std::size_t line = kind == Options::Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
+      const std::size_t line = kind == Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
       std::vector<double> s(film->states());
       for (std::size_t k = 0; k < s.size(); ++k) {
         const double theta = 0.5 * std::numbers::pi + 2.0 * std::numbers::pi * static_cast<double>(k / line) / 400.0;
@@ -92,7 +92,7 @@ TEST(Contact, JournalAtRestIsCarriedByAsperities) {
 // A place without film: the layer under the asperities alone, and how it follows.
 TEST(Contact, EdgeOfAFilm) {
   for (const bool rubber : {false, true}) {
-    Options o;
+    Compliant o;
     o.contact = kContact;
     if (rubber) o.rubber_thickness = 0.5 * cylinder().clearance;
     const LinerLaw liner(cylinder(), o, 1e-3, 2.0);
@@ -112,10 +112,10 @@ TEST(Contact, EdgeOfAFilm) {
 // L/D to 0 with asperities that carry a fixed part of the load: the short film with the same, with a difference of
 // order (L/D)^2.
 TEST(Contact, FiniteFilmTendsToTheShortOne) {
-  const auto force = [](double length_to_diameter, Options::Kind kind, bool contact) {
+  const auto force = [](double length_to_diameter, Kind kind, bool contact) {
     Geometry g = cylinder();
     g.length = 2.0 * g.radius * length_to_diameter;
-    Options o = compliant(kind, 0.1, 120, false);
+    Elastic o = compliant(kind, 0.1, 120, false);
     o.cells[1] = 24;
     if (contact) o.contact = Contact{0.25 * g.clearance, 2e9 * length_to_diameter * length_to_diameter};
     auto film = make_state_model(g, o, oil());
@@ -128,9 +128,8 @@ TEST(Contact, FiniteFilmTendsToTheShortOne) {
   std::array<double, 2> apart{};
   for (std::size_t k = 0; k < 2; ++k) {
     const double ratio = k == 0 ? 0.3 : 0.15;
-    const auto exact = force(ratio, Options::Kind::compliant_short, true),
-               finite = force(ratio, Options::Kind::compliant_finite, true),
-               film_alone = force(ratio, Options::Kind::compliant_short, false);
+    const auto exact = force(ratio, Kind::compliant_short, true), finite = force(ratio, Kind::compliant_finite, true),
+               film_alone = force(ratio, Kind::compliant_short, false);
     const double size = std::hypot(exact[0], exact[1]);
     apart[k] = std::hypot(finite[0] - exact[0], finite[1] - exact[1]) / size;
     EXPECT_GT(std::hypot(film_alone[0] - exact[0], film_alone[1] - exact[1]), 0.2 * size);

@@ -11,15 +11,15 @@
 
 namespace whirl::film::testing {
 
-inline Options dynamic(std::array<int, 2> cells) {
-  Options o;
-  o.cavitation = Options::Cavitation::mass_conserving;
-  o.states = Options::States::dynamic;
+inline Reynolds dynamic(std::array<int, 2> cells) {
+  Reynolds o;
+  o.cavitation = Reynolds::Cavitation::mass_conserving;
+  o.states = Reynolds::States::dynamic;
   o.cells = cells;
   return o;
 }
-inline Options without_states(Options o) {
-  o.states = Options::States::condensed;
+inline Reynolds without_states(Reynolds o) {
+  o.states = Reynolds::States::condensed;
   return o;
 }
 
@@ -27,23 +27,23 @@ inline Options without_states(Options o) {
 struct ContentCase {
   std::string name;
   Geometry geometry;
-  Options options;
+  Reynolds options;
   std::array<double, 4> position, velocity;
 };
 
 inline std::vector<ContentCase> content_films() {
   const std::array<double, 4> loaded = {0.5, -0.4, 0.2, -0.15}, moving = {0.05, -0.08, 0.03, 0.02};
   const std::array<double, 4> shallow = {0.2, -0.6, 0.1, 0.1};
-  Options turbulent = dynamic({40, 12});
-  turbulent.turbulence = Options::Turbulence::constantinescu;
-  Options starved = dynamic({37, 11});
+  Reynolds turbulent = dynamic({40, 12});
+  turbulent.turbulence = Turbulence::constantinescu;
+  Reynolds starved = dynamic({37, 11});
   starved.edge_fill = 0.7;
-  Options tilted = dynamic({23, 9});
+  Reynolds tilted = dynamic({23, 9});
   tilted.tilt = true;
   tilted.edge_fill = 0.9;
-  Options fed = dynamic({48, 12});
+  Reynolds fed = dynamic({48, 12});
   fed.grooves = {{90.0 * kDegree, 20.0 * kDegree, 2e5}, {-30.0 * kDegree, 0.0, 0.0}};
-  Options line = dynamic({40, 10});
+  Reynolds line = dynamic({40, 10});
   line.inlet = {Inlet::Type::line, 100.0 * kDegree};
   Geometry offset = lemon();
   offset.offset = 0.4 * offset.clearance;
@@ -108,7 +108,7 @@ inline double step_of(const Geometry& g, int direction, double e) {
 }
 
 /// Area [m^2] of the cell of every state, both halves of an aligned film.
-inline std::vector<double> cell_areas(const Geometry& g, const Options& o) {
+inline std::vector<double> cell_areas(const Geometry& g, const Reynolds& o) {
   const bool closed = g.type == Geometry::Bore::cylindrical, edges = !closed || o.inlet.type == Inlet::Type::line;
   const double step = (closed ? 2.0 * std::numbers::pi : g.arc) / o.cells[0];
   const int rows = o.tilt ? o.cells[1] - 1 : o.cells[1] / 2, pads = g.type == Geometry::Bore::lemon_bore ? 2 : 1;

@@ -58,7 +58,7 @@ struct Measured {
 };
 
 // Of the mid-plane of a film so long that it does not feel its sides; t = theta + `turn`.
-Measured measure(const LongFilm& exact, const Geometry& g, const Options& o, const Motion& m, double turn) {
+Measured measure(const LongFilm& exact, const Geometry& g, const Reynolds& o, const Motion& m, double turn) {
   const auto fields = make_model(g, o, oil())->fields(m);
   const auto values = [&](const std::string& name) -> const std::vector<double>& {
     return std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; })->values;
@@ -129,7 +129,7 @@ TEST(LongSlider, GrooveUnderPressureFillsTheGapAheadOfIt) {
       exact,
       [&](int n) {
         const Motion m = motion(g, {0.0, -exact.e, 0.0, 0.0}, {}, 377.0);
-        Options o = without_states(dynamic({n, 16}));
+        Reynolds o = without_states(dynamic({n, 16}));
         o.grooves = {
             {90.0 * kDegree, 0.0, exact.feed * 6.0 * oil().viscosity * m.speed * std::pow(g.radius / g.clearance, 2)}};
         return measure(exact, g, o, m, -0.5 * M_PI);
@@ -142,9 +142,9 @@ TEST(LongSlider, FullFilmHasThePressureWithoutCavitation) {
   Geometry g = arc();
   g.arc = 40.0 * kDegree;
   const Motion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
-  const Options o = dynamic({40, 10});
-  Options none = without_states(o);
-  none.cavitation = Options::Cavitation::none;
+  const Reynolds o = dynamic({40, 10});
+  Reynolds none = without_states(o);
+  none.cavitation = Reynolds::Cavitation::none;
   auto film = make_state_model(g, o, oil());
   const auto q = settled(*film, m);
   EXPECT_TRUE(std::all_of(q.begin(), q.end(), [](double x) { return x > 0.0; }));
@@ -210,7 +210,7 @@ struct Squeezed {
 };
 Squeezed squeeze(const Plates& s, int cells, int steps, double bulk_modulus, const std::vector<double>& times) {
   Geometry g{Geometry::Bore::cylindrical, 1.0, 1e4, s.h0, 0.0, 0.0, 0.0};
-  Options o = dynamic({180 * cells, 2});
+  Reynolds o = dynamic({180 * cells, 2});
   o.bulk_modulus = bulk_modulus;
   o.grooves = {{270.0 * kDegree, 358.0 * kDegree, s.p0}};
   auto film = make_state_model(g, o, {s.mu, 0.0});

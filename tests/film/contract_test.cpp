@@ -17,8 +17,8 @@ struct Case {
   std::array<double, 4> position, velocity;
 };
 
-Options options(Options::Cavitation cavitation, Options::Turbulence turbulence, bool tilt, std::array<int, 2> cells) {
-  Options o;
+Reynolds options(Reynolds::Cavitation cavitation, Turbulence turbulence, bool tilt, std::array<int, 2> cells) {
+  Reynolds o;
   o.cavitation = cavitation;
   o.turbulence = turbulence;
   o.tilt = tilt;
@@ -26,32 +26,25 @@ Options options(Options::Cavitation cavitation, Options::Turbulence turbulence, 
   return o;
 }
 
-Options rigid(Options::Kind kind) {
-  Options o;
-  o.kind = kind;
-  return o;
-}
-
 std::vector<Case> cases() {
-  using C = Options::Cavitation;
-  using T = Options::Turbulence;
+  using C = Reynolds::Cavitation;
+  using T = Turbulence;
   const std::array<double, 4> loaded = {0.9, -0.4, 0.2, -0.15}, moving = {0.05, -0.08, 0.03, 0.02};
   const std::array<double, 4> shallow = {0.2, -0.6, 0.1, 0.1};
-  Options linear;
-  linear.kind = Options::Kind::linear;
+  Linear linear;
   linear.stiffness = {4e8, -1e8, -1e9, 1.6e9};
   linear.damping = {1e6, -1.5e6, -2e6, 6e6};
   Geometry offset = lemon();
   offset.offset = 0.5 * offset.clearance;
-  Options grooved = options(C::half_sommerfeld, T::constantinescu, false, {48, 12});
+  Reynolds grooved = options(C::half_sommerfeld, T::constantinescu, false, {48, 12});
   grooved.grooves = {{90.0 * kDegree, 20.0 * kDegree}, {-30.0 * kDegree, 0.0}};
-  Options grooved_reynolds = grooved;
+  Reynolds grooved_reynolds = grooved;
   grooved_reynolds.cavitation = C::reynolds;
-  Options starved = options(C::mass_conserving, T::constantinescu, false, {60, 16});
+  Reynolds starved = options(C::mass_conserving, T::constantinescu, false, {60, 16});
   starved.edge_fill = 0.7;
-  Options fed = options(C::mass_conserving, T::laminar, false, {48, 12});
+  Reynolds fed = options(C::mass_conserving, T::laminar, false, {48, 12});
   fed.grooves = {{90.0 * kDegree, 20.0 * kDegree, 2e5}, {-30.0 * kDegree, 0.0, 0.0}};
-  const auto with_inlet = [](Options o, Inlet inlet) {
+  const auto with_inlet = [](Reynolds o, Inlet inlet) {
     o.inlet = inlet;
     return o;
   };
@@ -95,10 +88,10 @@ std::vector<Case> cases() {
       {"inlet_widest_conserving", cylinder(),
        with_inlet(options(C::mass_conserving, T::constantinescu, false, {60, 16}), widest), shallow, moving},
       {"linear", arc(), linear, shallow, moving},
-      {"short", cylinder(), rigid(Options::Kind::short_bearing), shallow, moving},
-      {"long", cylinder(), rigid(Options::Kind::long_bearing), shallow, moving},
-      {"long_inlet", cylinder(), rigid(Options::Kind::long_inlet), shallow, moving},
-      {"finite_approximate", cylinder(), rigid(Options::Kind::finite_approximate), shallow, moving},
+      {"short", cylinder(), Short{}, shallow, moving},
+      {"long", cylinder(), Long{}, shallow, moving},
+      {"long_inlet", cylinder(), LongInlet{}, shallow, moving},
+      {"finite_approximate", cylinder(), FiniteApproximate{}, shallow, moving},
   };
 }
 
@@ -108,13 +101,13 @@ class Contract : public ::testing::TestWithParam<Case> {};
 // none lies between.
 TEST_P(Contract, TaylorRemainderIsSecondOrder) {
   const Case& c = GetParam();
-  const bool kinked = (c.options.cavitation == Options::Cavitation::reynolds ||
-                       c.options.cavitation == Options::Cavitation::mass_conserving) &&
-                      c.options.kind != Options::Kind::linear;
+  const Reynolds* reynolds = find<Reynolds>(c.options);
+  const bool kinked = reynolds != nullptr && (reynolds->cavitation == Reynolds::Cavitation::reynolds ||
+                                              reynolds->cavitation == Reynolds::Cavitation::mass_conserving);
   auto model = make_model(c.geometry, c.options, oil());
   const Motion base = motion(c.geometry, c.position, c.velocity, 377.0);
   const Response at = evaluate(*model, base);
-  const std::size_t components = c.options.tilt ? 4 : 2;
+  const std::size_t components = facts(c.options).tilts ? 4 : 2;
   const auto scale = [&](std::size_t j) {
     return j < 2 ? c.geometry.clearance : c.geometry.clearance / c.geometry.length;
   };
@@ -123,7 +116,7 @@ TEST_P(Contract, TaylorRemainderIsSecondOrder) {
     if (variable < 8 && j >= components) continue;
     std::array<double, 2> remainder{};
     double slope_size = 0.0;
-    const double first = kinked ? 4e-5 : c.options.grooves.empty() ? 4e-3 : 4e-4;
+    const double first = kinked ? 4e-5 : reynolds == nullptr || reynolds->grooves.empty() ? 4e-3 : 4e-4;
     for (std::size_t k = 0; k < 2; ++k) {
       const double e = k == 0 ? first : 0.5 * first;
       Motion moved = base;
@@ -143,7 +136,7 @@ TEST_P(Contract, TaylorRemainderIsSecondOrder) {
       }
     }
     const double load = std::abs(at.force[0]) + std::abs(at.force[1]);
-    if (c.options.kind != Options::Kind::linear) {
+    if (!facts(c.options).coefficients) {
       EXPECT_TRUE(slope_size > 0.0) << "variable " << variable;
     }
     if (remainder[1] < 1e-11 * load) continue;  // exactly linear up to rounding
@@ -179,8 +172,9 @@ TEST_P(Contract, RestWithoutMotionGivesNoForce) {
   const Case& c = GetParam();
   auto model = make_model(c.geometry, c.options, oil());
   if (model->linear()) GTEST_SKIP();
-  for (const Groove& g : c.options.grooves)
-    if (g.pressure > 0.0) GTEST_SKIP();  // the oil fed to it carries
+  if (const Reynolds* reynolds = find<Reynolds>(c.options))
+    for (const Groove& g : reynolds->grooves)
+      if (g.pressure > 0.0) GTEST_SKIP();  // the oil fed to it carries
   const Response r = evaluate(*model, motion(c.geometry, c.position, {}, 0.0));
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(r.force[i], 0.0);
 }
@@ -195,13 +189,13 @@ TEST(Film, ImpossibleOptionsAreInputErrors) {
   g = arc();
   g.offset = 1e-5;
   EXPECT_THROW(make_model(g, {}, oil()), core::InputError);
-  Options coarse;
+  Reynolds coarse;
   coarse.cells = {2, 16};
   EXPECT_THROW(make_model(arc(), coarse, oil()), core::InputError);
-  Options turbulent;
-  turbulent.turbulence = Options::Turbulence::constantinescu;
+  Reynolds turbulent;
+  turbulent.turbulence = Turbulence::constantinescu;
   EXPECT_THROW(make_model(arc(), turbulent, {0.0067, 0.0}), core::InputError);
-  Options inlet;
+  Reynolds inlet;
   inlet.inlet.type = Inlet::Type::maximum_gap;
   EXPECT_THROW(make_model(arc(), inlet, oil()), core::InputError);
   inlet.grooves = {{0.0, 0.0}};

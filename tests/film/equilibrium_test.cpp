@@ -9,7 +9,7 @@
 namespace whirl::film::testing {
 namespace {
 
-using K = Options::Kind;
+using K = ClosedForm;
 constexpr double pi = std::numbers::pi;
 
 }  // namespace
@@ -64,8 +64,7 @@ struct Coefficients {
 Coefficients coefficients(K kind, double ld, double eps) {
   const Geometry g{Geometry::Bore::cylindrical, 0.05, 0.1 * ld, 0.0001, 0, 0, 0};
   const Lubricant lubricant{0.02, 0};
-  Options o;
-  o.kind = kind;
+  const Options o = film_of(kind);
   auto model = make_model(g, o, lubricant);
   const double speed = 200, unit = lubricant.viscosity * g.length * 2 * g.radius * std::pow(g.radius / g.clearance, 2);
   const Response flat = evaluate(*model, motion(g, {0, -eps, 0, 0}, {}, speed));

@@ -7,12 +7,12 @@
 namespace whirl::film::testing {
 namespace {
 
-using C = Options::Cavitation;
-using T = Options::Turbulence;
+using C = Reynolds::Cavitation;
+using T = Turbulence;
 constexpr double kPi = std::numbers::pi;
 
-Options options(C cavitation, T turbulence, std::array<int, 2> cells) {
-  Options o;
+Reynolds options(C cavitation, T turbulence, std::array<int, 2> cells) {
+  Reynolds o;
   o.cavitation = cavitation;
   o.turbulence = turbulence;
   o.cells = cells;

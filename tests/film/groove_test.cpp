@@ -11,10 +11,10 @@ namespace {
 
 constexpr Groove kTop{90.0 * kDegree, 0.0};
 
-using enum Options::Kind;
+using enum Kind;
 
 TEST(Groove, OneAtTheTopIsTheInletOfTheLongFilm) {
-  Options plain = compliant(compliant_long, 0.1, 40, false), grooved = plain;
+  Elastic plain = compliant(compliant_long, 0.1, 40, false), grooved = plain;
   grooved.grooves = {kTop};
   auto a = make_state_model(cylinder(), plain, oil()), b = make_state_model(cylinder(), grooved, oil());
   ASSERT_EQ(a->states(), b->states());
@@ -26,7 +26,7 @@ TEST(Groove, FiniteFilmTendsToTheLongOne) {
   const auto away = [](double ld, int along) {
     Geometry g = cylinder();
     g.length = 2.0 * g.radius * ld;
-    Options lines = compliant(compliant_finite, 1e-2, 48, false), whole = compliant(compliant_long, 1e-2, 48, false);
+    Elastic lines = compliant(compliant_finite, 1e-2, 48, false), whole = compliant(compliant_long, 1e-2, 48, false);
     lines.cells[1] = along;
     lines.grooves = {kTop};
     const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
@@ -50,7 +50,7 @@ TEST(Groove, StaticForceIsOfSecondOrder) {
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {
     std::array<std::array<double, 4>, 4> f{};
     for (std::size_t k = 0; k < 4; ++k) {
-      Options o = compliant(kind, 0.1, 36 << k, false);
+      Elastic o = compliant(kind, 0.1, 36 << k, false);
       o.cells[1] = 4 << k;
       if (kind == compliant_finite && k == 3) continue;
       o.grooves = {{90.0 * kDegree, 20.0 * kDegree}, {-30.0 * kDegree, 20.0 * kDegree}};
@@ -65,7 +65,7 @@ TEST(Groove, StaticForceIsOfSecondOrder) {
 // The mirror image of the bearing, turning the other way, carries the mirror image of the force.
 TEST(Groove, MirrorImages) {
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {
-    Options left = compliant(kind, 0.1, 36, false), right = left;
+    Elastic left = compliant(kind, 0.1, 36, false), right = left;
     left.grooves = {{150.0 * kDegree, 20.0 * kDegree}};
     right.grooves = {{30.0 * kDegree, 20.0 * kDegree}};
     const Geometry g = cylinder();
@@ -78,7 +78,7 @@ TEST(Groove, MirrorImages) {
 
 // Without pressure in a groove its lines of a finite film follow the journal, however they are moved.
 TEST(Groove, LinesOfAFiniteFilmFollowTheJournal) {
-  Options o = compliant(compliant_finite, 0.1, 36, false);
+  Elastic o = compliant(compliant_finite, 0.1, 36, false);
   o.grooves = {{90.0 * kDegree, 20.0 * kDegree}};
   auto film = make_state_model(cylinder(), o, oil());
   const Motion m = motion(cylinder(), {0.3, -0.3, 0.0, 0.0}, {0.2, 0.1, 0.0, 0.0}, kSpeed);

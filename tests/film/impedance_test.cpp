@@ -13,7 +13,7 @@
 namespace whirl::film::testing {
 namespace {
 
-using K = Options::Kind;
+using K = ClosedForm;
 using Matrix = std::array<Pair, 2>;
 constexpr double pi = std::numbers::pi;
 constexpr K kAll[] = {K::short_bearing, K::long_bearing, K::long_inlet, K::finite_approximate};
@@ -236,8 +236,7 @@ TEST(Rigid, ReportQuantities) {
   const Geometry g = cylinder();
   const double speed = 300, eps = 0.5;
   for (const K kind : {K::short_bearing, K::long_bearing, K::long_inlet}) {
-    Options o;
-    o.kind = kind;
+    const Options o = film_of(kind);
     auto model = make_model(g, o, oil());
     const Motion m = motion(g, {0.3, -0.4, 0, 0}, {0.1, -0.2, 0, 0}, speed);
     const Response r = evaluate(*model, m, Need::force);
@@ -271,8 +270,7 @@ TEST(Rigid, ReportQuantities) {
 
 TEST(Rigid, NeedsACylindricalBore) {
   for (const K kind : kAll) {
-    Options o;
-    o.kind = kind;
+    const Options o = film_of(kind);
     EXPECT_THROW(make_model(arc(), o, oil()), core::InputError);
     EXPECT_THROW(make_model(cylinder(), o, {0, 0}), core::InputError);
   }

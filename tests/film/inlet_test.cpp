@@ -6,15 +6,15 @@
 namespace whirl::film::testing {
 namespace {
 
-using C = Options::Cavitation;
+using C = Reynolds::Cavitation;
 constexpr double kPi = std::numbers::pi;
 
 Geometry plain(double length_to_diameter) {
   return {Geometry::Bore::cylindrical, 0.05, 0.1 * length_to_diameter, 0.0001, 0.0, 0.0, 0.0};
 }
 
-Options starting(Inlet inlet, C cavitation, std::array<int, 2> cells, bool tilt = false) {
-  Options o;
+Reynolds starting(Inlet inlet, C cavitation, std::array<int, 2> cells, bool tilt = false) {
+  Reynolds o;
   o.inlet = inlet;
   o.cavitation = cavitation;
   o.cells = cells;

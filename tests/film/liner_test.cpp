@@ -16,8 +16,8 @@ using Complex = std::complex<double>;
 constexpr double kTau = 0.6 / kSpeed, kRubber = 0.6, kB = 0.3 / 300.0;  // s; thickness in clearances; b [s]
 constexpr double ex = 0.35, ey = -0.45;
 
-Options soft(Options::Kind kind, int cells) {
-  Options o = compliant(kind, 0.3, cells, false);
+Elastic soft(Kind kind, int cells) {
+  Elastic o = compliant(kind, 0.3, cells, false);
   o.liner_damping = kTau;
   o.rubber_thickness = kRubber * cylinder().clearance;
   return o;
@@ -99,7 +99,7 @@ TEST(Liner, ForceStiffnessAndDampingOfAShortFilmAgainstOneWithoutMesh) {
     const double load = std::hypot(exact.force[0], exact.force[1]);
     std::array<double, 2> error{}, of_force{};
     for (std::size_t level = 0; level < 2; ++level) {
-      auto film = make_state_model(cylinder(), soft(Options::Kind::compliant_short, 100 << level), oil());
+      auto film = make_state_model(cylinder(), soft(Kind::compliant_short, 100 << level), oil());
       const auto s = relaxed(*film, m);
       StateResponse r;
       film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
@@ -117,8 +117,8 @@ TEST(Liner, ForceStiffnessAndDampingOfAShortFilmAgainstOneWithoutMesh) {
 
 // Far above the rates of the film the thickness stays and the liner alone gives way: K is its spring, C = tau K.
 TEST(Liner, FastVibrationsSeeTheLinerAlone) {
-  for (const auto kind : {Options::Kind::compliant_short, Options::Kind::compliant_finite}) {
-    Options o = soft(kind, 24);
+  for (const auto kind : {Kind::compliant_short, Kind::compliant_finite}) {
+    Elastic o = soft(kind, 24);
     o.rubber_thickness.reset();
     auto damped = make_state_model(cylinder(), o, oil());
     o.liner_damping = 0.0;
@@ -140,9 +140,9 @@ TEST(Liner, FastVibrationsSeeTheLinerAlone) {
 
 // Damping leaves a film at rest alone, and pressures are those of the film and not of the liner's spring.
 TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
-  using enum Options::Kind;
+  using enum Kind;
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {
-    Options o = soft(kind, 24);
+    Elastic o = soft(kind, 24);
     auto damped = make_state_model(cylinder(), o, oil());
     o.liner_damping = 0.0;
     auto plain = make_state_model(cylinder(), o, oil());
@@ -160,12 +160,12 @@ TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
 }
 
 TEST(Liner, RubberStiffensAndHasAnEnd) {
-  using enum Options::Kind;
+  using enum Kind;
   const Motion m = still(0.3, -0.6);
   for (const auto kind : {compliant_short, compliant_finite}) {
     double last = 1e300;
     for (const double thickness : {0.5, 1.0, 2.0, 1e6}) {  // clearances
-      Options o = compliant(kind, 0.3, 60, false);
+      Elastic o = compliant(kind, 0.3, 60, false);
       o.rubber_thickness = thickness * cylinder().clearance;
       const Response r = static_response(o, m);
       const double force = std::hypot(r.force[0], r.force[1]);
@@ -174,7 +174,7 @@ TEST(Liner, RubberStiffensAndHasAnEnd) {
     }
     const Response linear = static_response(compliant(kind, 0.3, 60, false), m);
     EXPECT_NEAR(last, std::hypot(linear.force[0], linear.force[1]), 1e-5 * last);
-    Options thin = compliant(kind, 0.3, 60, false);
+    Elastic thin = compliant(kind, 0.3, 60, false);
     thin.rubber_thickness = 0.5 * cylinder().clearance;
     auto film = make_state_model(cylinder(), thin, oil());
     std::vector<double> s(film->states());
@@ -183,7 +183,7 @@ TEST(Liner, RubberStiffensAndHasAnEnd) {
     StateResponse r;
     EXPECT_THROW(film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r), core::DomainError);
   }
-  Options wrong = compliant(compliant_short, 0.3, 60, false);
+  Elastic wrong = compliant(compliant_short, 0.3, 60, false);
   wrong.liner_damping = -1.0;
   EXPECT_THROW(make_state_model(cylinder(), wrong, oil()), core::InputError);
 }

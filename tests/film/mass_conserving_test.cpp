@@ -11,15 +11,15 @@
 namespace whirl::film::testing {
 namespace {
 
-Options conserving(std::array<int, 2> cells, bool tilt = false) {
-  Options o;
-  o.cavitation = Options::Cavitation::mass_conserving;
+Reynolds conserving(std::array<int, 2> cells, bool tilt = false) {
+  Reynolds o;
+  o.cavitation = Reynolds::Cavitation::mass_conserving;
   o.cells = cells;
   o.tilt = tilt;
   return o;
 }
 
-Options with(Options o, Options::Cavitation cavitation) {
+Reynolds with(Reynolds o, Reynolds::Cavitation cavitation) {
   o.cavitation = cavitation;
   return o;
 }
@@ -63,7 +63,7 @@ TEST(MassConserving, StarvedLongBearingFillsAndRupturesWhereTheBalanceSays) {
   std::array<double, 4> area{}, place{}, worst{};
   for (std::size_t level = 0; level < 4; ++level) {
     const int n = 60 << level;
-    Options o = conserving({n, 16});
+    Reynolds o = conserving({n, 16});
     o.inlet = {Inlet::Type::line, 0.0};
     o.edge_fill = exact.f;
     const Motion m = motion(g, {-exact.e, 0.0, 0.0, 0.0}, {}, 377.0);
@@ -94,7 +94,7 @@ TEST(MassConserving, StarvedLongBearingFillsAndRupturesWhereTheBalanceSays) {
 TEST(MassConserving, BalancesToRounding) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Options grooved = conserving({48, 12}), starved = conserving({40, 10}, true);
+  Reynolds grooved = conserving({48, 12}), starved = conserving({40, 10}, true);
   grooved.grooves = {{90.0 * kDegree, 20.0 * kDegree, 3e5}, {-50.0 * kDegree, 0.0, 1e5}};
   starved.edge_fill = 0.6;
   for (const auto& [g, o] : {std::pair{lemon(), conserving({40, 10})}, {arc(), starved}, {cylinder(), grooved}}) {
@@ -116,7 +116,7 @@ TEST(MassConserving, IsTheUncavitatedFilmWhereTheGapIsFull) {
   g.arc = 40.0 * kDegree;
   const Motion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
   const Response a = evaluate(*make_model(g, conserving({40, 10}), oil()), m),
-                 b = evaluate(*make_model(g, with(conserving({40, 10}), Options::Cavitation::none), oil()), m);
+                 b = evaluate(*make_model(g, with(conserving({40, 10}), Reynolds::Cavitation::none), oil()), m);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(a.force[i], b.force[i],
                 3e-3 * std::abs(b.force[i]));  // its force counts the nodes, the other the edges
@@ -132,9 +132,9 @@ TEST(MassConserving, FedAtTheWidestGapItIsNearReynolds) {
   Geometry g = cylinder();
   g.length = 2.0 * g.radius;
   for (const double e : {0.2, 0.5, 0.8}) {
-    Options o = conserving({120, 24});
+    Reynolds o = conserving({120, 24});
     o.inlet = {Inlet::Type::maximum_gap, 0.0};
-    auto a = make_model(g, o, oil()), b = make_model(g, with(o, Options::Cavitation::reynolds), oil());
+    auto a = make_model(g, o, oil()), b = make_model(g, with(o, Reynolds::Cavitation::reynolds), oil());
     const Motion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, 377.0);
     const Response ra = evaluate(*a, m), rb = evaluate(*b, m);
     const double load = std::hypot(ra.force[0], ra.force[1]), other = std::hypot(rb.force[0], rb.force[1]);
@@ -148,7 +148,7 @@ TEST(MassConserving, FedAtTheWidestGapItIsNearReynolds) {
 
 // Turning the other way is the mirror image.
 TEST(MassConserving, TurnsBothWays) {
-  Options o = conserving({40, 10});
+  Reynolds o = conserving({40, 10});
   o.edge_fill = 0.8;
   auto film = make_model(lemon(), o, oil());
   const Response a = evaluate(*film, motion(lemon(), {0.4, -0.5, 0.0, 0.0}, {0.05, 0.1, 0.0, 0.0}, 300.0));
@@ -178,7 +178,7 @@ TEST(MassConserving, TheAnswerDoesNotDependOnTheStart) {
 // Closed to the outside a bore would run dry.
 TEST(MassConserving, MustBeFed) {
   EXPECT_THROW((void)make_model(cylinder(), conserving({40, 10}), oil()), core::InputError);
-  Options grooved = conserving({40, 10});
+  Reynolds grooved = conserving({40, 10});
   grooved.grooves = {{90.0 * kDegree, 0.0}};
   EXPECT_NO_THROW((void)make_model(cylinder(), grooved, oil()));
   grooved.edge_fill = 0.5;  // which nothing would read

@@ -9,7 +9,7 @@
 namespace whirl::film::testing {
 namespace {
 
-using C = Options::Cavitation;
+using C = Reynolds::Cavitation;
 
 double largest(const Response& a, const Response& b, bool tangents) {
   double most = 0.0;
@@ -78,10 +78,10 @@ TEST(Truncation, ForceAndTangentAreContinuousAcrossAMovingRupture) {
 TEST(Solvers, SineModesAndBandAgreeToRounding) {
   for (const C cavitation : {C::half_sommerfeld, C::none}) {
     for (const std::array<int, 2> cells : {std::array<int, 2>{60, 16}, {31, 11}, {50, 40}}) {
-      Options modal;
+      Reynolds modal;
       modal.cells = cells;
       modal.cavitation = cavitation;
-      Options band = modal;
+      Reynolds band = modal;
       band.tilt = true;
       for (const Geometry& g : {lemon(), arc()}) {
         const Motion m = motion(g, {0.4, -0.5, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
@@ -109,10 +109,10 @@ TEST(Solvers, SineModesAndBandAgreeToRounding) {
 // The half pad of an aligned journal and the whole pad have the same cavitated film.
 TEST(Solvers, HalfAndWholePadAgreeWithReynoldsCavitation) {
   for (const int rows : {16, 13}) {
-    Options half;
+    Reynolds half;
     half.cells = {48, rows};
     half.cavitation = C::reynolds;
-    Options whole = half;
+    Reynolds whole = half;
     whole.tilt = true;
     const Motion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
     const Response a = evaluate(*make_model(lemon(), half, oil()), m),
@@ -125,7 +125,7 @@ TEST(Solvers, HalfAndWholePadAgreeWithReynoldsCavitation) {
 // Complementarity makes damping symmetric; truncation after the solution does not.
 TEST(Solvers, OnlyComplementarityHasSymmetricDamping) {
   const Motion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
-  Options o;
+  Reynolds o;
   Response r = evaluate(*make_model(lemon(), o, oil()), m);
   EXPECT_GT(std::abs(r.d_velocity[0][1] - r.d_velocity[1][0]), 0.1 * std::abs(r.d_velocity[0][1]));
   o.cavitation = C::reynolds;
@@ -148,7 +148,7 @@ TEST(Signs, LoadedJournalIsLiftedAndPushedForward) {
 
 // In a round bore h turns with the journal: at half speed wedge and squeeze cancel, also on the grid.
 TEST(Signs, HalfSpeedWhirlCarriesNoLoad) {
-  Options o;
+  Reynolds o;
   o.cavitation = C::none;
   auto model = make_model(arc(), o, oil());
   const double still = std::abs(evaluate(*model, motion(arc(), {0.3, -0.5, 0.0, 0.0}, {}, 377.0)).force[1]);
@@ -196,7 +196,7 @@ TEST(Signs, OffsetMovesTheLowerLobeToTheRight) {
 // The force is the integral of the reported pressure, and tilt adds a moment against itself.
 TEST(Fields, IntegrateToTheForce) {
   for (const bool tilt : {false, true}) {
-    Options o;
+    Reynolds o;
     o.tilt = tilt;
     o.cells = {120, 32};
     auto model = make_model(lemon(), o, oil());

@@ -19,7 +19,7 @@ Json records() {
 
 struct Setup {
   Geometry geometry;
-  Options options;
+  Reynolds options;
   double speed;
 };
 
@@ -34,10 +34,9 @@ Setup setup(const Json& p, std::array<int, 2> cells) {
   s.geometry.preload = p.at("preload");
   s.geometry.offset = p.value("offset_cb", 0.0) * s.geometry.clearance;
   s.options.cells = cells;
-  s.options.turbulence =
-      p.at("turbulence").get<bool>() ? Options::Turbulence::constantinescu : Options::Turbulence::laminar;
+  s.options.turbulence = p.at("turbulence").get<bool>() ? Turbulence::constantinescu : Turbulence::laminar;
   s.options.cavitation =
-      p.at("cavitation") == "half-Sommerfeld" ? Options::Cavitation::half_sommerfeld : Options::Cavitation::reynolds;
+      p.at("cavitation") == "half-Sommerfeld" ? Reynolds::Cavitation::half_sommerfeld : Reynolds::Cavitation::reynolds;
   s.speed = p.at("Omega");
   return s;
 }
@@ -66,7 +65,7 @@ std::vector<double> compute(const Json& record, std::array<int, 2> cells) {
   const std::string quantity = record.at("quantity");
   if (p.contains("Re")) {
     const double Re = p.at("Re");
-    const auto t = Options::Turbulence::constantinescu;
+    const auto t = Turbulence::constantinescu;
     return {evaluate(resistance_around(t), Re), evaluate(resistance_along(t), Re)};
   }
   const Setup s = setup(p, cells);

@@ -11,10 +11,9 @@ namespace {
 
 // Reduction of the residual of (1 + dt dg/ds) x = b per cycle x <- x + M (b - A x), over the last of eight or the one
 // that brings it near rounding.
-double rate(std::array<int, 2> cells, double dt, Options::Differences differences, bool contact = false) {
+double rate(std::array<int, 2> cells, double dt, Compliant::Differences differences, bool contact = false) {
   const Geometry g{Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0.0, 0.0, 0.0};
-  Options o;
-  o.kind = Options::Kind::compliant_finite;
+  CompliantFinite o;
   o.cells = cells;
   o.compliance = 0.1;
   o.reference_speed = 160.0;
@@ -55,7 +54,7 @@ double rate(std::array<int, 2> cells, double dt, Options::Differences difference
 
 TEST(StatePreconditioner, RateDoesNotDependOnTheMesh) {
   const double dt = 0.005 / 160.0;
-  using enum Options::Differences;
+  using enum Compliant::Differences;
   for (const auto cells :
        {std::array{48, 10}, std::array{96, 20}, std::array{192, 40}, std::array{200, 6}, std::array{8, 60}})
     EXPECT_LT(rate(cells, dt, central), 0.1) << cells[0] << " x " << cells[1];

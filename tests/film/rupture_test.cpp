@@ -10,10 +10,9 @@
 namespace whirl::film::testing {
 namespace {
 
-Options ruptured(std::array<int, 2> cells, bool tilt = false,
-                 Options::Turbulence turbulence = Options::Turbulence::laminar) {
-  Options o;
-  o.cavitation = Options::Cavitation::reynolds;
+Reynolds ruptured(std::array<int, 2> cells, bool tilt = false, Turbulence turbulence = Turbulence::laminar) {
+  Reynolds o;
+  o.cavitation = Reynolds::Cavitation::reynolds;
   o.turbulence = turbulence;
   o.tilt = tilt;
   o.cells = cells;
@@ -44,7 +43,7 @@ TEST(Rupture, TangentsSumUpToTheForceAcrossNodes) {
   Random random;
   for (const Geometry& g : {lemon(), cylinder()})
     for (const bool tilt : {false, true}) {
-      auto film = make_model(g, ruptured({40, 10}, tilt, Options::Turbulence::constantinescu), oil());
+      auto film = make_model(g, ruptured({40, 10}, tilt, Turbulence::constantinescu), oil());
       double worst = 0.0;
       for (int sample = 0; sample < 6; ++sample) {
         const Motion from = random.motion(g, tilt);
@@ -112,7 +111,7 @@ TEST(Rupture, TangentsAreContinuous) {
 TEST(Rupture, DampingIsSymmetricEverywhere) {
   Random random;
   for (const Geometry& g : {lemon(), arc(), cylinder()}) {
-    auto film = make_model(g, ruptured({31, 11}, true, Options::Turbulence::constantinescu), oil());
+    auto film = make_model(g, ruptured({31, 11}, true, Turbulence::constantinescu), oil());
     for (int sample = 0; sample < 20; ++sample) {
       const Response r = evaluate(*film, random.motion(g, true));
       for (std::size_t i = 0; i < 4; ++i)
@@ -128,7 +127,7 @@ TEST(Rupture, TheAnswerDoesNotDependOnTheStart) {
   Random random;
   for (const Geometry& g : {lemon(), arc(), cylinder()})
     for (const bool tilt : {false, true}) {
-      const Options o = ruptured({36, 10}, tilt, Options::Turbulence::constantinescu);
+      const Reynolds o = ruptured({36, 10}, tilt, Turbulence::constantinescu);
       auto film = make_model(g, o, oil());
       for (int sample = 0; sample < 25; ++sample) {
         const Motion m = random.motion(g, tilt);
@@ -229,9 +228,9 @@ TEST(Rupture, OrderTwo) {
 TEST(Rupture, TangentsAfterTheForceAreThoseOfOneCall) {
   Random random;
   for (const Geometry& g : {lemon(), cylinder()})
-    for (const auto cavitation : {Options::Cavitation::reynolds, Options::Cavitation::half_sommerfeld})
+    for (const auto cavitation : {Reynolds::Cavitation::reynolds, Reynolds::Cavitation::half_sommerfeld})
       for (const bool tilt : {false, true}) {
-        Options o = ruptured({24, 8}, tilt);
+        Reynolds o = ruptured({24, 8}, tilt);
         o.cavitation = cavitation;
         auto twice = make_model(g, o, oil()), once = make_model(g, o, oil());
         Motion m = random.motion(g, tilt);

@@ -1,4 +1,4 @@
-// Least film thickness, and what a film says of its smoothness.
+// Least film thickness.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -6,7 +6,6 @@
 
 #include "film/cases.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/smoothness.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -42,7 +41,7 @@ TEST(Thickness, LeastIsThatOfTheFormula) {
           motion(g, {uniform(random), uniform(random), 0.3 * uniform(random), 0.3 * uniform(random)}, {}, 1.0);
       EXPECT_NEAR(minimum_thickness(g, m.position), sampled(g, m.position), 1e-9 * g.clearance);
       if (g.type == Geometry::Bore::partial_arc) continue;  // its thinnest place may be far from the journal
-      Options o;
+      Reynolds o;
       o.tilt = true;
       o.cells = {12, 4};
       EXPECT_DOUBLE_EQ(evaluate(*make_model(g, o, oil()), m, Need::force).min_thickness,
@@ -52,9 +51,9 @@ TEST(Thickness, LeastIsThatOfTheFormula) {
 
 // Between two nodes of a coarse mesh the journal is through the wall: nodes alone would not see it.
 TEST(Thickness, ContactBetweenNodesIsSeen) {
-  for (const auto cavitation : {Options::Cavitation::half_sommerfeld, Options::Cavitation::reynolds})
+  for (const auto cavitation : {Reynolds::Cavitation::half_sommerfeld, Reynolds::Cavitation::reynolds})
     for (const Geometry& g : {arc(), cylinder()}) {
-      Options o;
+      Reynolds o;
       o.cavitation = cavitation;
       o.cells = {9, 4};
       auto film = make_model(g, o, oil());
@@ -67,21 +66,6 @@ TEST(Thickness, ContactBetweenNodesIsSeen) {
           minimum_thickness(g, {e * g.clearance * std::cos(between), e * g.clearance * std::sin(between), 0.0, 0.0}),
           0.0);
     }
-}
-
-TEST(Smoothness, EveryFilmSaysIt) {
-  Options o;
-  EXPECT_EQ(smoothness(o).derivatives, 1);
-  EXPECT_FALSE(smoothness(o).smooth());
-  EXPECT_FALSE(smoothness(o).reason.empty());
-  o.cavitation = Options::Cavitation::none;
-  EXPECT_TRUE(smoothness(o).smooth());
-  o.kind = Options::Kind::short_bearing;
-  EXPECT_TRUE(smoothness(o).smooth());
-  o.kind = Options::Kind::compliant_short;
-  EXPECT_EQ(smoothness(o).derivatives, 1);
-  o.quadrature = Options::Quadrature::simpson;
-  EXPECT_EQ(smoothness(o).derivatives, 0);
 }
 
 }  // namespace

@@ -135,13 +135,14 @@ double share_in_time(int k, double order) {
 TEST(ErrorBar, CoversKinksInTimeWithTheOrderThatTheyLeave) {
   system::Machine machine;
   film::Options& film = machine.bearings.emplace_back().film;
-  film.kind = film::Options::Kind::short_bearing;
+  film = film::Short{};
   EXPECT_EQ(order_in_time(machine, 7), 7) << "smooth";
-  film.kind = film::Options::Kind::reynolds;
+  film = film::Reynolds{};
   EXPECT_GE(share_in_time(1, order_in_time(machine, 7)), 0.99) << "tangents with kinks";
   EXPECT_LT(share_in_time(1, 7), 0.99) << "with the order of the scheme it does not";
-  film.kind = film::Options::Kind::compliant_short;
-  film.quadrature = film::Options::Quadrature::simpson;
+  film::CompliantShort on_liner;
+  on_liner.quadrature = film::Compliant::Quadrature::simpson;
+  film = on_liner;
   EXPECT_GE(share_in_time(0, order_in_time(machine, 7)), 0.99) << "forces with kinks";
   EXPECT_LT(share_in_time(0, 7), 0.95);
 }

@@ -28,10 +28,11 @@ inline system::Train finite_rotor(int around, int along) {
   s.name = "half";
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
-  s.film.kind = film::Options::Kind::compliant_finite;
-  s.film.compliance = 0.1;
-  s.film.reference_speed = finite_speed_scale;
-  s.film.cells = {around, along};
+  film::CompliantFinite film;
+  film.compliance = 0.1;
+  film.reference_speed = finite_speed_scale;
+  film.cells = {around, along};
+  s.film = film;
   s.lubricant = {0.001, 1000};
   t.supports = {s};
   return t;

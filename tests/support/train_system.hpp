@@ -28,8 +28,10 @@ inline system::Train train(std::array<int, 2> cells, bool guyan) {
     s.geometry.clearance = std::stod(row["radial_clearance_cb_m"]);
     s.geometry.arc = std::stod(row["arc_deg"]) * std::numbers::pi / 180;
     s.geometry.preload = std::stod(row["preload"]);
-    s.film.cells = cells;
-    s.film.turbulence = film::Options::Turbulence::constantinescu;
+    film::Reynolds film;
+    film.cells = cells;
+    film.turbulence = film::Turbulence::constantinescu;
+    s.film = film;
     s.lubricant = {std::stod(row["viscosity_Pa_s"]), std::stod(row["oil_density_kg_m3"])};
     t.supports.push_back(s);
   }

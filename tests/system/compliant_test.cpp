@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 
+#include "support/film_of.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -15,7 +16,7 @@
 #include "whirl/system/start.hpp"
 
 using namespace whirl;
-using Kind = film::Options::Kind;
+using film::testing::Kind;
 
 namespace {
 
@@ -37,14 +38,16 @@ system::Train train(const Bench& b) {
   system::Support s;
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
-  s.film.kind = b.kind;
-  s.film.compliance = b.compliance;
-  s.film.reference_speed = std::sqrt(load / 25e-6);
-  s.film.cells = {b.cells, b.kind == Kind::compliant_finite ? b.cells / 5 : 4};
+  film::testing::Elastic film;
+  film.kind = b.kind;
+  film.compliance = b.compliance;
+  film.reference_speed = std::sqrt(load / 25e-6);
+  film.cells = {b.cells, b.kind == Kind::compliant_finite ? b.cells / 5 : 4};
   if (b.as_source) {
-    s.film.quadrature = film::Options::Quadrature::simpson;
-    s.film.differences = film::Options::Differences::upwind;
+    film.quadrature = film::Compliant::Quadrature::simpson;
+    film.differences = film::Compliant::Differences::upwind;
   }
+  s.film = film;
   s.lubricant = {0.001, 1000};
   t.supports = {s};
   return t;
@@ -52,10 +55,15 @@ system::Train train(const Bench& b) {
 
 // A liner of damped rubber around a film that is differenced at third order.
 void damp(system::Support& s) {
-  s.film.liner_damping = 1e-3;
-  s.film.rubber_thickness = 1e-4;
-  s.film.quadrature = film::Options::Quadrature::sub_cell;
-  s.film.differences = film::Options::Differences::third_order;
+  auto& film = film::as<film::Compliant>(s.film);
+  film.liner_damping = 1e-3;
+  film.rubber_thickness = 1e-4;
+  film.quadrature = film::Compliant::Quadrature::sub_cell;
+  film.differences = film::Compliant::Differences::third_order;
+}
+
+double reference_speed(const system::Train& t) {
+  return film::find<film::Compliant>(t.supports[0].film)->reference_speed;
 }
 
 struct Hopf {
@@ -101,8 +109,8 @@ Hopf hopf(system::RotorSystem& s, double scale, double low, double high) {
 
 Hopf hopf(const Bench& b, double expected, MPI_Comm comm = MPI_COMM_WORLD) {
   const auto t = train(b);
-  system::RotorSystem s(comm, t, 0.8 * expected * t.supports[0].film.reference_speed);
-  return hopf(s, t.supports[0].film.reference_speed, 0.95 * expected, 1.05 * expected);
+  system::RotorSystem s(comm, t, 0.8 * expected * reference_speed(t));
+  return hopf(s, reference_speed(t), 0.95 * expected, 1.05 * expected);
 }
 
 }  // namespace
@@ -119,7 +127,7 @@ TEST(CompliantRotor, DerivativesPassTheTaylorTest) {
       other.stiffness = {2e4, 3e4};
       other.damping = {2, 3};
       system::Support rigid = t.supports[0];
-      rigid.film.kind = Kind::short_bearing;
+      rigid.film = film::Short{};
       t.supports = {other, rigid, t.supports[0]};
       system::RotorSystem s(MPI_COMM_WORLD, t, 300);
       ASSERT_EQ(s.own_states(), kind == Kind::compliant_short ? 48 : kind == Kind::compliant_long ? 46 : 120);
@@ -176,12 +184,12 @@ TEST(CompliantRotor, AFilmSpreadOverRanksIsThatOfOneRank) {
   other.mass = {0.1, 0.2};
   other.stiffness = {2e4, 3e4};
   other.damping = {2, 3};
-  other.film.cells = {15, 6};
-  other.film.differences = film::Options::Differences::upwind;
+  film::as<film::Compliant>(other.film).cells = {15, 6};
+  film::as<film::Compliant>(other.film).differences = film::Compliant::Differences::upwind;
   t.supports.push_back(other);
   damp(other);
   other.has_pedestal = false;
-  other.film.grooves = {{1.0, 0.9}};
+  film::as<film::Compliant>(other.film).grooves = {{1.0, 0.9}};
   t.supports.push_back(other);
   t.supports.push_back(train({Kind::compliant_short, 0.1, 24, false}).supports[0]);
   const auto evaluated = [&](MPI_Comm comm, double thinner) {
@@ -238,9 +246,9 @@ TEST(CompliantRotor, FrozenEquationsAreTheJacobian) {
       t.supports[0].mass = {0.1, 0.2};
       t.supports[0].stiffness = {2e4, 3e4};
       t.supports[0].damping = {2, 3};
-      t.supports[0].film.cells = {46, 8};
+      film::as<film::Compliant>(t.supports[0].film).cells = {46, 8};
       auto rigid = t.supports[0];
-      rigid.film.kind = Kind::short_bearing;
+      rigid.film = film::Short{};
       t.supports.insert(t.supports.begin(), rigid);
     }
     system::RotorSystem s(MPI_COMM_WORLD, t, 700);
@@ -299,7 +307,7 @@ TEST(CompliantRotor, HopfSpeedsOfFiniteFilmsAreOfSecondOrder) {
 TEST(CompliantRotor, CoefficientsAtTheWhirlFrequencyGiveTheHopfPoint) {
   for (const Kind kind : {Kind::compliant_short, Kind::compliant_long}) {
     const auto t = train({kind, 0.1, 60, false});
-    const double scale = t.supports[0].film.reference_speed, guess = kind == Kind::compliant_short ? 2.7326 : 0.4984;
+    const double scale = reference_speed(t), guess = kind == Kind::compliant_short ? 2.7326 : 0.4984;
     system::RotorSystem s(MPI_COMM_WORLD, t, 0.8 * guess * scale);
     const Hopf h = hopf(s, scale, 0.95 * guess, 1.05 * guess);
     const auto film = film::make_state_model(t.supports[0].geometry, t.supports[0].film, t.supports[0].lubricant);

@@ -21,9 +21,9 @@ constexpr double scale = test::finite_speed_scale, speed = 0.75 * scale;
 // a* = 0.1, a groove at the top under 20 kPa.
 system::Train machine() {
   system::Train t = test::finite_rotor(12, 4);
-  film::Options film;
-  film.cavitation = film::Options::Cavitation::mass_conserving;
-  film.states = film::Options::States::dynamic;
+  film::Reynolds film;
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  film.states = film::Reynolds::States::dynamic;
   film.cells = {12, 4};
   film.grooves = {{std::numbers::pi / 2, std::numbers::pi / 6, 20e3}};
   t.supports[0].film = film;

@@ -66,11 +66,11 @@ TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShooting) {
 TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShootingInContact) {
   const system::Train without = test::finite_rotor(12, 4);
   system::Train rough = without;
-  film::Options& film = rough.supports[0].film;
+  auto& film = film::as<film::Compliant>(rough.supports[0].film);
   film.contact = film::Contact{0.25 * rough.supports[0].geometry.clearance, 1e8};
   film.rubber_thickness = 4 * rough.supports[0].geometry.clearance;
   const solve::Cycle a = compared(rough);
-  rough.supports[0].film.contact.reset();
+  film.contact.reset();
   const solve::Cycle b = compared(rough);
   const Eigen::Index states = a.x.rows() - 4;
   EXPECT_GT((a.x - b.x).bottomRows(states).cwiseAbs().maxCoeff(), 0.03 * rough.supports[0].geometry.clearance);

@@ -24,11 +24,12 @@ system::Train train(int cells, double liner_damping) {
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
   s.lubricant = {0.001, 1000};
-  s.film.kind = film::Options::Kind::compliant_short;
-  s.film.compliance = 0.1;
-  s.film.reference_speed = omega_0;
-  s.film.cells = {cells, 4};
-  s.film.liner_damping = liner_damping;
+  film::CompliantShort film;
+  film.compliance = 0.1;
+  film.reference_speed = omega_0;
+  film.cells = {cells, 4};
+  film.liner_damping = liner_damping;
+  s.film = film;
   system::Train t;
   t.gravity = 0;
   t.rotor.type = rotor::Options::Type::rigid;

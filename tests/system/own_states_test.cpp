@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "support/film_of.hpp"
 #include "support/petsc_options.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
@@ -15,7 +16,7 @@
 using namespace whirl;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Kind = film::Options::Kind;
+using film::testing::Kind;
 using Joining = solve::CycleOptions::Joining;
 
 namespace {
@@ -26,14 +27,16 @@ system::Support support(Kind kind, bool as_source, double compliance, int cells)
   system::Support s;
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
-  s.film.kind = kind;
-  s.film.compliance = compliance;
-  s.film.reference_speed = 160;
-  s.film.cells = {cells, 4};
+  film::testing::Elastic film;
+  film.kind = kind;
+  film.compliance = compliance;
+  film.reference_speed = 160;
+  film.cells = {cells, 4};
   if (as_source) {
-    s.film.quadrature = film::Options::Quadrature::simpson;
-    s.film.differences = film::Options::Differences::upwind;
+    film.quadrature = film::Compliant::Quadrature::simpson;
+    film.differences = film::Compliant::Differences::upwind;
   }
+  s.film = film;
   s.lubricant = {0.001, 1000};
   return s;
 }
@@ -51,18 +54,22 @@ system::Train train(std::vector<system::Support> supports) {
 
 enum class Mix { plain, as_source, damped };
 
+film::Compliant& liner_of(system::Support& s) {
+  return film::as<film::Compliant>(s.film);
+}
+
 void damp(system::Support& s) {
-  s.film.liner_damping = 0.3 / 160;
-  s.film.rubber_thickness = 4 * clearance;
-  s.film.differences = film::Options::Differences::third_order;
+  liner_of(s).liner_damping = 0.3 / 160;
+  liner_of(s).rubber_thickness = 4 * clearance;
+  liner_of(s).differences = film::Compliant::Differences::third_order;
 }
 
 // A short film beside a short rigid one, a long film on a pedestal and one with a mesh of lines.
 system::Train mixed(Mix mix) {
   const bool as_source = mix == Mix::as_source;
-  system::Support rigid = support(Kind::short_bearing, false, 0.1, 8),
+  system::Support rigid = support(Kind::compliant_short, false, 0.1, 8),
                   on_pedestal = support(Kind::compliant_long, as_source, 0.3, 14);
-  rigid.film.compliance.reset();
+  rigid.film = film::Short{};
   on_pedestal.has_pedestal = true;
   on_pedestal.mass = {0.1, 0.1};
   on_pedestal.stiffness = {1e6, 2e6};
@@ -71,8 +78,8 @@ system::Train mixed(Mix mix) {
                   first = support(Kind::compliant_short, as_source, 0.1, 12);
   if (mix == Mix::damped) {
     for (auto* film : {&lines, &first, &on_pedestal}) damp(*film);
-    lines.film.grooves = {{2.0, 0.0}};
-    for (auto* film : {&lines, &on_pedestal}) film->film.contact = film::Contact{0.25 * clearance, 1e7};
+    liner_of(lines).grooves = {{2.0, 0.0}};
+    for (auto* film : {&lines, &on_pedestal}) liner_of(*film).contact = film::Contact{0.25 * clearance, 1e7};
   }
   return train({first, rigid, on_pedestal, lines});
 }
@@ -242,11 +249,10 @@ TEST(OwnStates, LinearisationIsTheDerivativeForAnyParameter) {
   };
   const Case cases[] = {
       {"speed", nullptr, speed, speed},
-      {"compliance", [](double b) { return train({support(film::Options::Kind::compliant_short, false, b, 12)}); }, 0.1,
-       0.1},
+      {"compliance", [](double b) { return train({support(Kind::compliant_short, false, b, 12)}); }, 0.1, 0.1},
       {"mass",
        [](double mass) {
-         auto t = train({support(film::Options::Kind::compliant_short, false, 0.1, 12)});
+         auto t = train({support(Kind::compliant_short, false, 0.1, 12)});
          t.rotor.mass = mass;
          return t;
        },
@@ -254,7 +260,7 @@ TEST(OwnStates, LinearisationIsTheDerivativeForAnyParameter) {
       {"liner damping",
        [](double tau) {
          auto t = mixed(Mix::damped);
-         t.supports[0].film.liner_damping = tau;
+         liner_of(t.supports[0]).liner_damping = tau;
          return t;
        },
        0.3 / 160, 0.3 / 160},

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/film_of.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/system/brusselator.hpp"
@@ -34,7 +35,7 @@ core::Vector filled(const problem::System& s, F f) {
   return x;
 }
 
-system::Train rotor_in(film::Options::Kind kind, double liner_damping = 0) {
+system::Train rotor_in(film::testing::Kind kind, double liner_damping = 0) {
   system::Train t;
   t.gravity = 0;
   t.rotor.type = rotor::Options::Type::rigid;
@@ -43,12 +44,13 @@ system::Train rotor_in(film::Options::Kind kind, double liner_damping = 0) {
   system::Support s;
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
-  s.film.kind = kind;
-  s.film.cells = {16, 4};
-  if (film::has_states(s.film)) {
-    s.film.compliance = 0.1;
-    s.film.liner_damping = liner_damping;
-    s.film.reference_speed = 160;
+  s.film = film::testing::film_of(kind);
+  if (film::facts(s.film).gives_way) {
+    auto& film = film::as<film::Compliant>(s.film);
+    film.cells = {16, 4};
+    film.compliance = 0.1;
+    film.liner_damping = liner_damping;
+    film.reference_speed = 160;
   }
   s.lubricant = {0.001, 1000};
   t.supports = {s};
@@ -95,9 +97,9 @@ TEST(Plant, TheBrusselatorRestsAtItsUniformState) {
 
 // Explicit schemes keep dF/d(dx/dt) where a system says that it is constant.
 TEST(Plant, RatesSaidToBeConstantAreSo) {
-  using enum film::Options::Kind;
+  using enum film::testing::Kind;
   struct Case {
-    film::Options::Kind kind;
+    film::testing::Kind kind;
     double liner_damping = 0;  // [s]
   };
   for (const Case& c :
@@ -129,7 +131,7 @@ TEST(Plant, RatesSaidToBeConstantAreSo) {
 // The force of a mass that moves along (cos, sin)(angle(t)) is minus its second derivative, here by differences.
 TEST(Plant, UnbalanceOfAnAcceleratedShaft) {
   constexpr double speed = 30, acceleration = 400, angle = 1.1, phase = 0.3, amount = 2e-6;
-  system::RotorSystem s(MPI_COMM_WORLD, rotor_in(film::Options::Kind::short_bearing), speed);
+  system::RotorSystem s(MPI_COMM_WORLD, rotor_in(film::testing::Kind::short_bearing), speed);
   s.set_acceleration(acceleration);
   const core::Vector x = s.guess(), rest = core::duplicate(x.get()), with = core::duplicate(x.get()),
                      without = core::duplicate(x.get());

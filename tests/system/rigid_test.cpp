@@ -22,7 +22,7 @@ system::Train rigid_rotor() {
   system::Support s;
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.02, 0.03, 5e-5, 0, 0, 0};
-  s.film.kind = film::Options::Kind::finite_approximate;
+  s.film = film::FiniteApproximate{};
   s.lubricant = {0.01, 850};
   s.has_pedestal = true;
   s.mass = {3, 4};

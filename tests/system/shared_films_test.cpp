@@ -25,13 +25,20 @@ system::Train on_liners() {
     s.name = "B" + std::to_string(&s - t.supports.data() + 1);
     s.geometry = {
         film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    s.film = {};
-    s.film.kind = film::Options::Kind::compliant_finite;
-    s.film.compliance = 0.05;
-    s.film.reference_speed = 377;
-    s.film.cells = {12, 5};
+    film::CompliantFinite film;
+    film.compliance = 0.05;
+    film.reference_speed = 377;
+    film.cells = {12, 5};
+    s.film = film;
   }
   return t;
+}
+
+// Makes of a film on rigid pads one that holds its content.
+void hold_content(film::Options& options) {
+  auto& film = film::as<film::Reynolds>(options);
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  film.states = film::Reynolds::States::dynamic;
 }
 
 // The reduced train in its own bearings, whose films hold their content.
@@ -39,8 +46,7 @@ system::Train on_content() {
   system::Train t = test::train({24, 6}, true);
   for (system::Support& s : t.supports) {
     s.name = "B" + std::to_string(&s - t.supports.data() + 1);
-    s.film.cavitation = film::Options::Cavitation::mass_conserving;
-    s.film.states = film::Options::States::dynamic;
+    hold_content(s.film);
   }
   return t;
 }
@@ -179,9 +185,8 @@ TEST(SharedFilms, OnPadsCarryTheSameEquilibrium) {
   system::Support support;
   support.node = 1;
   support.geometry = {film::Geometry::Bore::lemon_bore, 0.02, 0.03, 5e-5, 160 * std::numbers::pi / 180, 0.5, 0};
-  support.film.cavitation = film::Options::Cavitation::mass_conserving;
-  support.film.states = film::Options::States::dynamic;
-  support.film.cells = {40, 10};
+  hold_content(support.film);
+  film::as<film::Reynolds>(support.film).cells = {40, 10};
   support.lubricant = {0.01, 850};
   train.supports = {support, support};
   const std::vector<double> alone = heights(MPI_COMM_SELF, nullptr, train),
@@ -196,7 +201,7 @@ TEST(SharedFilms, OnPadsCarryTheSameEquilibrium) {
 // its Jacobian, on any number of ranks and with a preconditioner of another point.
 TEST(SharedFilms, FrozenEquationsAreTheJacobian) {
   system::Train train = on_liners();
-  train.supports[3].film.liner_damping = 1e-4;
+  film::as<film::Compliant>(train.supports[3].film).liner_damping = 1e-4;
   system::RotorSystem s(MPI_COMM_WORLD, train, 377);
   core::Vector x = state_of(s), rest = core::duplicate(x.get()), scale = core::duplicate(x.get()),
                rows = core::duplicate(x.get()), v = core::duplicate(x.get()), a = core::duplicate(x.get()),
@@ -265,10 +270,7 @@ TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
 TEST(ContentFilms, TrainComesToRestInFewSteps) {
   for (const std::array<int, 2> cells : {std::array{30, 8}, {60, 16}}) {
     system::Train t = test::train(cells, true);
-    for (system::Support& s : t.supports) {
-      s.film.cavitation = film::Options::Cavitation::mass_conserving;
-      s.film.states = film::Options::States::dynamic;
-    }
+    for (system::Support& s : t.supports) hold_content(s.film);
     system::RotorSystem s(MPI_COMM_WORLD, t, 377);
     core::Vector x = s.guess();
     solve::NewtonOptions newton;

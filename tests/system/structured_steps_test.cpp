@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/film_of.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
@@ -18,6 +19,7 @@
 using namespace whirl;
 using Eigen::Index;
 using Eigen::VectorXd;
+using film::testing::Kind;
 
 namespace {
 
@@ -25,9 +27,9 @@ constexpr double speed_scale = 160, speed = 2.2 * speed_scale;
 
 struct Case {
   const char* name;
-  film::Options::Kind kind;
-  film::Options::Differences differences;
-  film::Options::Quadrature quadrature;
+  Kind kind;
+  film::Compliant::Differences differences;
+  film::Compliant::Quadrature quadrature;
   bool two_films;  // the second one on a pedestal
 };
 
@@ -42,17 +44,23 @@ system::Train train(const Case& c) {
   s.name = "one";
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
-  s.film.kind = c.kind;
-  s.film.compliance = 0.1;
-  s.film.reference_speed = speed_scale;
-  s.film.cells = {20, 4};
-  s.film.differences = c.differences;
-  s.film.quadrature = c.quadrature;
+  film::testing::Elastic film;
+  film.compliance = 0.1;
+  film.reference_speed = speed_scale;
+  film.cells = {20, 4};
+  film.differences = c.differences;
+  film.quadrature = c.quadrature;
+  film.kind = c.kind;
+  if (c.kind == Kind::short_bearing)
+    s.film = film::Short{};
+  else
+    s.film = film;
   s.lubricant = {0.001, 1000};
   t.supports = {s};
   if (!c.two_films) return t;
   s.name = "two";
-  s.film.cells = {14, 4};
+  film.cells = {14, 4};
+  s.film = film;
   s.has_pedestal = true;
   for (std::size_t d = 0; d < 2; ++d) {
     s.mass[d] = 0.1;
@@ -89,9 +97,8 @@ VectorXd values(Vec v) {
   return Eigen::Map<const VectorXd>(a.data(), a.size());
 }
 
-using Kind = film::Options::Kind;
-using Differences = film::Options::Differences;
-using Quadrature = film::Options::Quadrature;
+using Differences = film::Compliant::Differences;
+using Quadrature = film::Compliant::Quadrature;
 
 const Case cases[] = {{"short", Kind::compliant_short, Differences::upwind, Quadrature::simpson, false},
                       {"short_central", Kind::compliant_short, Differences::central, Quadrature::sub_cell, false},

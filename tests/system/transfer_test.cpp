@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/film_of.hpp"
 #include "support/train_system.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -19,7 +20,7 @@
 
 using namespace whirl;
 using Complex = std::complex<double>;
-using Kind = film::Options::Kind;
+using film::testing::Kind;
 
 namespace {
 
@@ -36,10 +37,12 @@ system::Train rigid(Kind kind, std::array<int, 2> cells, double compliance) {
   s.name = "B1";
   s.node = 1;
   s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
-  s.film.kind = kind;
-  s.film.compliance = compliance;
-  s.film.reference_speed = scale;
-  s.film.cells = cells;
+  film::testing::Elastic film;
+  film.kind = kind;
+  film.compliance = compliance;
+  film.reference_speed = scale;
+  film.cells = cells;
+  s.film = film;
   s.lubricant = {0.001, 1000};
   t.supports = {s};
   return t;
@@ -48,19 +51,20 @@ system::Train rigid(Kind kind, std::array<int, 2> cells, double compliance) {
 // A liner of damped rubber, whose force depends on the rates of its states.
 system::Train damped() {
   system::Train t = rigid(Kind::compliant_short, {40, 4}, 0.3);
-  t.supports[0].film.liner_damping = 0.3 / scale;
-  t.supports[0].film.rubber_thickness = 4 * clearance;
+  auto& film = film::as<film::Compliant>(t.supports[0].film);
+  film.liner_damping = 0.3 / scale;
+  film.rubber_thickness = 4 * clearance;
   return t;
 }
 
 system::Train content() {
   system::Train t = rigid(Kind::compliant_short, {24, 6}, 0.1);
-  system::Support& s = t.supports[0];
-  s.film = {};
-  s.film.cavitation = film::Options::Cavitation::mass_conserving;
-  s.film.states = film::Options::States::dynamic;
-  s.film.cells = {24, 6};
-  s.film.grooves = {{1.57, 0.3}};
+  film::Reynolds film;
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  film.states = film::Reynolds::States::dynamic;
+  film.cells = {24, 6};
+  film.grooves = {{1.57, 0.3}};
+  t.supports[0].film = film;
   return t;
 }
 
@@ -71,11 +75,11 @@ system::Train on_liners() {
     s.name = "B" + std::to_string(&s - t.supports.data() + 1);
     s.geometry = {
         film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    s.film = {};
-    s.film.kind = Kind::compliant_finite;
-    s.film.compliance = 0.05;
-    s.film.reference_speed = 377;
-    s.film.cells = {12, 5};
+    film::CompliantFinite film;
+    film.compliance = 0.05;
+    film.reference_speed = 377;
+    film.cells = {12, 5};
+    s.film = film;
   }
   return t;
 }

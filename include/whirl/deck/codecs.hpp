@@ -54,6 +54,13 @@ struct Choice {
   std::string name;
   std::string text;
 };
+/// One of several structs inside a struct.
+struct KindAccess {
+  std::function<void*(void*)> holder;            ///< what holds one of them, of the whole struct
+  std::function<std::size_t(const void*)> kind;  ///< of the holder: which one it holds
+  std::function<void(void*, std::size_t)> hold;  ///< a new one, unless it holds one of that kind already
+  std::function<void*(void*)> value;             ///< of the holder: the one that it holds
+};
 
 [[nodiscard]] CodecPtr real_codec(Spec spec);
 [[nodiscard]] CodecPtr quantity_codec(Spec spec);
@@ -70,6 +77,8 @@ struct Choice {
 [[nodiscard]] CodecPtr name_or_codec(CodecPtr value, NameOrAccess access);
 [[nodiscard]] CodecPtr choices_codec(std::vector<ChoiceKind> kinds, ChoiceAccess access);
 [[nodiscard]] CodecPtr struct_codec(const Structure& structure);
+/// Adds to `s` the choice `chooser` among `kinds`, whose codec and value it lacks, and the options of all kinds.
+void add_kinds(Structure& s, Option chooser, const std::vector<ChoiceKind>& kinds, const KindAccess& access);
 
 template <class S>
 const Structure& structure_of() {
@@ -295,16 +304,50 @@ typename Description<S>::Line Description<S>::choices(std::string key, std::vect
 }
 
 template <class S>
-template <class T>
-void Description<S>::embed(T S::*member) {
-  const Structure& inner = structure_of<T>();
-  auto whole = [member](void* s) -> void* { return &(static_cast<S*>(s)->*member); };
+template <class... K>
+typename Description<S>::Line Description<S>::kinds(std::string key, std::variant<K...> S::*member, std::string text,
+                                                    std::string source) {
+  using V = std::variant<K...>;
+  const std::size_t at = s_.options.size();
+  Option chooser;
+  chooser.key = std::move(key);
+  chooser.text = std::move(text);
+  chooser.source = std::move(source);
+  chooser.value = &typeid(V);
+  add_kinds(s_, std::move(chooser), {{std::string(K::key), std::string(K::text), &structure_of<K>()}...},
+            {.holder = [member](void* s) -> void* { return &(static_cast<S*>(s)->*member); },
+             .kind = [](const void* v) { return static_cast<const V*>(v)->index(); },
+             .hold =
+                 [](void* v, std::size_t kind) {
+                   auto& held = *static_cast<V*>(v);
+                   std::size_t k = 0;
+                   if (kind != held.index()) ((k++ == kind ? void(held.template emplace<K>()) : void()), ...);
+                 },
+             .value = [](void* v) { return std::visit([](auto& x) -> void* { return &x; }, *static_cast<V*>(v)); }});
+  return Line(s_, at);
+}
+
+template <class S>
+void Description<S>::take_over(const Structure& inner, const std::function<void*(void*)>& part) {
   for (Option o : inner.options) {
-    o.member = [whole, f = o.member](void* s) { return f(whole(s)); };
+    o.member = [part, f = o.member](void* s) { return f(part(s)); };
+    if (const void* own = o.member(s_.defaults.get())) o.preset = own;
     s_.options.push_back(std::move(o));
   }
   for (const Structure::Checker& c : inner.checks)
-    s_.checks.push_back([member, c](const void* s, const Report& r) { c(&(static_cast<const S*>(s)->*member), r); });
+    s_.checks.push_back([part, c](const void* s, const Report& r) { c(part(const_cast<void*>(s)), r); });
+}
+
+template <class S>
+template <class T>
+void Description<S>::embed(T S::*member) {
+  take_over(structure_of<T>(), [member](void* s) -> void* { return &(static_cast<S*>(s)->*member); });
+}
+
+template <class S>
+template <class B>
+void Description<S>::inherit() {
+  take_over(structure_of<B>(), [](void* s) -> void* { return static_cast<B*>(static_cast<S*>(s)); });
 }
 
 /// find_option for a type-erased object.

@@ -20,7 +20,9 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "whirl/core/error.hpp"
@@ -131,8 +133,10 @@ struct Option {
   std::string key;
   std::string text;
   std::string source;
-  std::shared_ptr<const Codec> codec;  ///< shared with the structures that embed this one
-  std::function<void*(void*)> member;  ///< address of the option in its struct
+  std::shared_ptr<const Codec> codec;     ///< shared with the structures that embed this one
+  std::function<void*(void*)> member;     ///< address in its struct, null if that holds a kind without this option
+  const std::type_info* value = nullptr;  ///< its type
+  const void* preset = nullptr;           ///< the value if the deck is silent; lives as long as the structure
   bool required = false;
   bool continuable = false;
   std::string selector{};               ///< key of the option that decides whether this one applies, empty if always
@@ -140,7 +144,8 @@ struct Option {
   std::vector<Alias> aliases{};
 };
 
-/// The options of one struct; type-erased.
+/// The options of one struct; type-erased. Several options may have the same key if the same selector tells them apart,
+/// each for values of its own: a kind has its own `cells`.
 class Structure {
 public:
   using Checker = std::function<void(const void*, const Report&)>;
@@ -153,7 +158,10 @@ public:
   [[nodiscard]] Node write(const void* object) const;
   [[nodiscard]] Node schema(bool whole) const;
   [[nodiscard]] Access find(void* object, std::span<const std::string> path) const;
+  /// The first option with that key, null if there is none.
   [[nodiscard]] const Option* option(std::string_view key) const;
+  /// The one of them that applies to `object`, else the first.
+  [[nodiscard]] const Option* option_of(std::string_view key, const void* object) const;
   /// The option that `key` is another word for, null if none; `factor` gets its factor.
   [[nodiscard]] const Option* aliased(std::string_view key, double& factor) const;
   [[nodiscard]] std::vector<std::string> keys() const;
@@ -246,9 +254,17 @@ public:
   template <class B>
   Line choices(std::string key, std::vector<std::unique_ptr<B>> S::*member, const std::vector<Kind<B>>& kinds,
                std::string text, std::string source = {});
+  /// One of several described structs, as a variant whose alternatives K name themselves by `K::key` and `K::text`. The
+  /// option `key` of the deck chooses; the options of all stand beside it, each where its kind is chosen. The kind that
+  /// a default-constructed S holds is the default.
+  template <class... K>
+  Line kinds(std::string key, std::variant<K...> S::*member, std::string text, std::string source = {});
   /// Takes over all options of a member struct as if they were described here.
   template <class T>
   void embed(T S::*member);
+  /// The same for a base of S.
+  template <class B>
+  void inherit();
   /// A condition on several options; runs when all of them could be read.
   void check(std::function<void(const S&, const Report&)> f) {
     s_.checks.push_back(
@@ -259,9 +275,11 @@ private:
   template <class T>
   Line push(std::string key, T S::*member, std::shared_ptr<const Codec> codec, std::string text, std::string source) {
     s_.options.push_back({std::move(key), std::move(text), std::move(source), std::move(codec),
-                          [member](void* s) -> void* { return &(static_cast<S*>(s)->*member); }});
+                          [member](void* s) -> void* { return &(static_cast<S*>(s)->*member); }, &typeid(T),
+                          &(static_cast<const S*>(s_.defaults.get())->*member)});
     return Line(s_, s_.options.size() - 1);
   }
+  void take_over(const Structure& inner, const std::function<void*(void*)>& part);
   Structure& s_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Deck keys of the film room.
+// Deck keys of the film room. Those of a kind stand with the kind.
 
 #include "whirl/deck/description.hpp"
 #include "whirl/film/options.hpp"
@@ -7,18 +7,11 @@
 namespace whirl::film {
 
 [[nodiscard]] std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore);
-[[nodiscard]] std::span<const deck::Name<Options::Kind>> names(Options::Kind);
-[[nodiscard]] std::span<const deck::Name<Options::Cavitation>> names(Options::Cavitation);
-[[nodiscard]] std::span<const deck::Name<Options::States>> names(Options::States);
-[[nodiscard]] std::span<const deck::Name<Options::Turbulence>> names(Options::Turbulence);
 [[nodiscard]] std::span<const deck::Name<Inlet::Type>> names(Inlet::Type);
-[[nodiscard]] std::span<const deck::Name<Options::Quadrature>> names(Options::Quadrature);
-[[nodiscard]] std::span<const deck::Name<Options::Differences>> names(Options::Differences);
+[[nodiscard]] std::span<const deck::Name<Turbulence>> names(Turbulence);
 
 void describe(deck::Description<Geometry>& d);
-void describe(deck::Description<Liner>& d);
 void describe(deck::Description<Groove>& d);
-void describe(deck::Description<Contact>& d);
 void describe(deck::Description<Inlet>& d);
 void describe(deck::Description<Options>& d);
 void describe(deck::Description<Lubricant>& d);

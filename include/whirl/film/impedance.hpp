@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "whirl/film/options.hpp"
-
 namespace whirl::film {
+
+enum class ClosedForm { short_bearing, long_bearing, long_inlet, finite_approximate };
 
 using Pair = std::array<double, 2>;  // x, y
 
@@ -17,21 +17,21 @@ struct Impedance {
   std::array<Pair, 2> d_squeeze{};       // [i][j] = dF*_i/dv_s,j at constant e; F* = d_squeeze v_s
 };
 
-/// The film force of `kind` (short_bearing, long_bearing, long_inlet, finite_approximate).
+/// The film force of `kind`.
 ///
 /// F* is homogeneous of degree one in v_s. At v_s = 0 the force and d_eccentricity are zero and d_squeeze is that of
 /// the slowest rotation of the shaft (v_s in the direction (y, -x); +x for a centred journal). Regular for every |e| <
 /// 1; throws core::DomainError otherwise. Source: van de Vrande (2001) sec. 4.1 and (4.42) with the errata kept by this
 /// project; the closed forms in the axes of v_s are in the room's README.
-Impedance impedance(Options::Kind kind, double length_to_diameter, const Pair& eccentricity, const Pair& squeeze);
+Impedance impedance(ClosedForm kind, double length_to_diameter, const Pair& eccentricity, const Pair& squeeze);
 
 /// The inverse of impedance(): v_s at which the film gives `force` (mobility form, Booker 1971). Throws
 /// core::DomainError if |e| >= 1 or if there is none.
-Pair squeeze_under(Options::Kind kind, double length_to_diameter, const Pair& eccentricity, const Pair& force);
+Pair squeeze_under(ClosedForm kind, double length_to_diameter, const Pair& eccentricity, const Pair& force);
 
 /// p* (c/R)^2/(6 mu) in the mid-plane of the bearing at angle theta from +x, in 1/s, zero where it would be negative;
 /// the finite_approximate film has none (core::Bug).
-double mid_pressure(Options::Kind kind, double length_to_diameter, const Pair& eccentricity, const Pair& squeeze,
+double mid_pressure(ClosedForm kind, double length_to_diameter, const Pair& eccentricity, const Pair& squeeze,
                     double theta);
 
 }  // namespace whirl::film

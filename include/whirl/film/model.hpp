@@ -78,7 +78,7 @@ public:
 /// as in Motion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
 [[nodiscard]] double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position);
 
-/// The film described by the options; throws core::InputError on values outside their range.
+/// The film described by the options, which has no own states; throws core::InputError on values outside their range.
 std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film

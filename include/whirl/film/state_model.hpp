@@ -107,17 +107,8 @@ private:
 
 /// True for the films that make_state_model() makes; the others belong to make_model().
 [[nodiscard]] bool has_states(const Options& options);
-/// True for the kinds with an elastic liner, whose bore gives way to the journal.
-[[nodiscard]] bool has_liner(Options::Kind kind);
-/// True for the kinds whose mesh lies around and along the bearing.
-[[nodiscard]] bool has_mesh_along(Options::Kind kind);
-/// True for the kinds that are computed on a mesh (Options::cells), not in closed form.
-[[nodiscard]] bool has_mesh(Options::Kind kind);
 
-/// About how many own states a film has, zero for those without; nothing is made or checked.
-[[nodiscard]] int estimated_states(const Geometry& geometry, const Options& options);
-
-/// The film described by the options; throws core::InputError on values outside their range.
+/// The film described by the options, which has own states; throws core::InputError on values outside their range.
 std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Options& options,
                                              const Lubricant& lubricant);
 

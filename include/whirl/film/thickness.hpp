@@ -1,7 +1,7 @@
 #pragma once
 // How near a journal may come to its bearing.
 
-#include "whirl/film/options.hpp"
+#include "whirl/film/bore.hpp"
 
 namespace whirl::film {
 

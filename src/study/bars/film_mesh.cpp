@@ -3,52 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/film/smoothness.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/options.hpp"
 
 namespace whirl::study {
 namespace {
 
 constexpr int most_states = 4000;
 
-int cells_of(const film::Options& o, std::size_t d, double factor) {
-  if (factor == 1) return o.cells[d];
-  int cells = std::max(4, static_cast<int>(std::lround(o.cells[d] * factor)));
-  if (o.quadrature == film::Options::Quadrature::simpson) cells += cells % 2;
-  return cells;
-}
-
 }  // namespace
 
 system::Train with_film_mesh(system::Train train, const std::array<double, 2>& factor) {
-  for (auto& s : train.supports) {
-    const film::Options before = s.film;
-    for (std::size_t d = 0; d < 2; ++d) s.film.cells[d] = cells_of(before, d, factor[d]);
-  }
+  for (auto& s : train.supports) s.film = film::refined(s.film, factor);
   return train;
 }
 
 MeshLaw law_of(const system::Machine& machine) {
   MeshLaw law;
   for (const auto& b : machine.bearings) {
-    if (!film::has_mesh(b.film.kind)) continue;
-    if (b.film.differences == film::Options::Differences::upwind) law.film_order = 1;
-    const film::Smoothness smoothness = film::smoothness(b.film);
-    law.kinks |= smoothness.derivatives == 0;
-    law.piecewise |= !smoothness.smooth();
+    const film::Facts film = film::facts(b.film);
+    if (film.cells[0] == 0) continue;
+    law.film_order = std::min<double>(law.film_order, film.mesh_order);
+    law.kinks |= film.smoothness.derivatives == 0;
+    law.piecewise |= !film.smoothness.smooth();
   }
   return law;
 }
 
 double order_in_time(const system::Machine& machine, double scheme) {
-  for (const auto& b : machine.bearings) scheme = std::min(scheme, film::smoothness(b.film).derivatives + 2.0);
+  for (const auto& b : machine.bearings) scheme = std::min(scheme, film::facts(b.film).smoothness.derivatives + 2.0);
   return scheme;
 }
 
 std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
   int states = 0;
-  for (const auto& b : machine.bearings)
-    states += film::estimated_states(b.geometry.value_or(film::Geometry{}), b.film);
+  for (const auto& b : machine.bearings) states += film::facts(b.film, b.geometry.value_or(film::Geometry{})).states;
   std::vector<double> factors{0.5, 2};
   if (states > most_states)
     factors = {0.5, 2.0 / 3};
@@ -62,8 +50,9 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
       // The film whose mesh changes least speaks for all: its spacing gives the largest error.
       bool any = false;
       for (const auto& b : machine.bearings) {
-        if (!film::has_mesh(b.film.kind) || (d == 1 && !film::has_mesh_along(b.film.kind))) continue;
-        const double spacing = static_cast<double>(b.film.cells[d]) / cells_of(b.film, d, factor);
+        const int cells = film::facts(b.film).cells[d];
+        if (cells == 0) continue;
+        const double spacing = static_cast<double>(cells) / film::facts(film::refined(b.film, mesh.factor)).cells[d];
         if (!any || std::abs(std::log(spacing)) < std::abs(std::log(mesh.spacing))) mesh.spacing = spacing;
         any = true;
       }

@@ -29,13 +29,13 @@ struct FilmMesh {
 [[nodiscard]] system::Train with_film_mesh(system::Train train, const std::array<double, 2>& factor);
 
 /// Order of the films' equations (one with upwind differences, else two: cavitation limits it) and whether their forces
-/// have kinks themselves (film::smoothness: Simpson's rule, whose weights jump where the pressure changes its sign), or
-/// derivatives of them.
+/// have kinks themselves (film::Facts::smoothness: Simpson's rule, whose weights jump where the pressure changes its
+/// sign), or derivatives of them.
 [[nodiscard]] MeshLaw law_of(const system::Machine& machine);
 
 /// Order at which errors of time steps fall that a scheme of order `scheme` makes on the machine's films. A step with a
 /// jump of a force's derivative k + 1 in it leaves an error of h^(k+2), in whichever place the jump stands: a film
-/// whose force has k continuous derivatives (film::smoothness) limits the order to k + 2.
+/// whose force has k continuous derivatives (film::Facts::smoothness) limits the order to k + 2.
 [[nodiscard]] double order_in_time(const system::Machine& machine, double scheme);
 
 /// The whole state of `from` on the film meshes of `to`, distributed. Collective.

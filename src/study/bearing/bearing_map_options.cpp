@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/study/bearing/bearing_map.hpp"
 
 namespace whirl::study {
@@ -35,14 +35,13 @@ void BearingMap::validate(const system::Machine& machine, const deck::Report& re
                        fmt::format("there is no bearing '{}'{}", options.bearing,
                                    deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
   if (machine.bearings.empty()) return;
-  const film::Options& options_of_film = machine.bearings[*found].film;
-  if (options_of_film.kind == film::Options::Kind::linear)
-    report.fail(options.bearing.empty() ? "" : "bearing", "a linear film has no map");
+  const film::Facts film = film::facts(machine.bearings[*found].film);
+  if (film.coefficients) report.fail(options.bearing.empty() ? "" : "bearing", "a linear film has no map");
   if (options.frequencies.empty()) report.fail("frequencies", "the list is empty");
-  if (film::has_liner(options_of_film.kind)) return;
+  if (film.gives_way) return;
   if (!(options.max_eccentricity < 1))
     report.fail("max_eccentricity", "'max_eccentricity' of a rigid bearing must be below 1");
-  if (!film::has_states(options_of_film) && options.frequencies != std::vector<double>{1})
+  if (!film.own_states && options.frequencies != std::vector<double>{1})
     report.fail("frequencies", "stiffness and damping of a film without own states do not depend on the frequency");
 }
 

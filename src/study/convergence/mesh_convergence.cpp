@@ -23,8 +23,8 @@ namespace {
 struct Level {
   Level(Context& context, const CycleBranchOptions& options, int level)
       : machine(context.machine), here(context.with(machine)) {
-    for (auto& b : machine.bearings)
-      for (int& cells : b.film.cells) cells <<= level;
+    const double factor = 1 << level;
+    for (auto& b : machine.bearings) b.film = film::refined(b.film, {factor, factor});
     follower = std::make_unique<CycleFollower>(here, options);
   }
   system::Machine machine;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "study/common.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/study/convergence/mesh_convergence.hpp"
 #include "whirl/study/cycle/cycle_branch.hpp"
 #include "whirl/study/equilibrium/equilibrium_branch.hpp"
@@ -26,7 +26,7 @@ void describe(deck::Description<MeshConvergenceOptions>& d) {
 
 void MeshConvergence::validate(const system::Machine& machine, const deck::Report& report) const {
   const bool meshed = std::any_of(machine.bearings.begin(), machine.bearings.end(),
-                                  [](const auto& b) { return film::has_mesh(b.film.kind); });
+                                  [](const auto& b) { return film::facts(b.film).cells[0] > 0; });
   if (!meshed) report.fail("", "no film of this machine is computed on a mesh: there is nothing to refine");
 }
 

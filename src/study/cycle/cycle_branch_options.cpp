@@ -166,7 +166,8 @@ void CycleBranch::validate(const system::Machine& machine, const deck::Report& r
       options.scheme == improved_euler || options.scheme == third_order || options.scheme == classical;
   // Explicit stages take F as linear in dx/dt, which the force of a film is not where its pressure depends on rates.
   for (const system::Bearing& b : machine.bearings)
-    if (steps && explicit_stages && (b.film.liner_damping > 0 || options.parameter.path.ends_with(".liner_damping")))
+    if (steps && explicit_stages &&
+        (film::facts(b.film).force_by_rates || options.parameter.path.ends_with(".liner_damping")))
       report.fail("scheme", fmt::format("the damped liner of bearing {} wants an implicit scheme", b.name));
   for (std::size_t i = 0; i < options.at.size(); ++i) inside("at", fmt::format("at.{}", i + 1), options.at[i]);
   if (options.start) inside("start", "start", *options.start);

@@ -70,7 +70,7 @@ void Modes::validate(const system::Machine& machine, const deck::Report& report)
   for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;
   if (!at_rest) return;
   for (const system::Bearing& b : machine.bearings)
-    if (b.film.kind != film::Options::Kind::linear)
+    if (!film::facts(b.film).coefficients)
       return report.fail(options.range ? "range" : "speeds",
                          fmt::format("the film of bearing {} carries no load at rest: speeds must be positive (linear "
                                      "films have coefficients at rest, too)",

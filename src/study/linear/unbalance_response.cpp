@@ -68,8 +68,9 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
 // The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
 // gives way; there the motion counts against the clearance.
 double film_left(const system::Support& s, const std::array<double, 2>& at, const NodeMotion& m) {
-  if (s.film.kind == film::Options::Kind::linear) return std::numeric_limits<double>::infinity();
-  if (film::has_liner(s.film.kind)) return s.geometry.clearance - m.semi_major();
+  const film::Facts film = film::facts(s.film);
+  if (film.coefficients) return std::numeric_limits<double>::infinity();
+  if (film.gives_way) return s.geometry.clearance - m.semi_major();
   double least = std::numeric_limits<double>::infinity();
   constexpr int samples = 90;
   for (int k = 0; k < samples; ++k) {

@@ -1,0 +1,51 @@
+#pragma once
+// What others may ask of a film without knowing its kind.
+
+#include <array>
+#include <memory>
+#include <string_view>
+#include <variant>
+
+namespace whirl::film {
+
+class Model;
+class StateModel;
+
+/// How often the discrete force can be differentiated in the motion of the journal (and in the film's own states).
+///
+/// A film that cavitates on a mesh has a kink in one of its derivatives whenever the edge of the pressure passes a
+/// node. Between two such passages it is smooth. The kinks shrink with the mesh, but a number that needs derivatives
+/// beyond `derivatives` (a normal form needs three, an eigenvalue one and its slope in the parameter two) changes with
+/// the place of the nodes: its error bar must say more than the difference of two meshes.
+struct Smoothness {
+  static constexpr int all = 100;  // a film in closed form
+  int derivatives = all;           // of the force, that are continuous; 0: the force alone
+  std::string_view reason;         // one clause, empty if all are continuous
+  [[nodiscard]] bool smooth() const { return derivatives == all; }
+};
+
+/// Why a film does not go with every bore.
+struct CircleOnly {
+  std::string_view option;  // of the film, that wants a whole circle; empty: the film goes with any bore
+  std::string_view reason;  // what to say where the bore is none
+};
+
+/// What a film is like, from its options alone. A default one is a smooth film in closed form on a rigid bore.
+struct Facts {
+  bool coefficients = false;    // constant coefficients alone: no bore, no lubricant, no thickness, no pressure
+  bool gives_way = false;       // the bore is elastic, so that the journal may go beyond the clearance
+  bool asperities = false;      // they carry where journal and bore touch
+  bool tilts = false;           // it follows the slope of the journal
+  bool own_states = false;      // a StateModel, else a Model
+  bool force_by_rates = false;  // the force depends on the rates of the own states
+  int states = 0;               // about how many own states
+  std::array<int, 2> cells{};   // of its mesh, around and along the bearing or each pad; 0: no mesh in this direction
+  int mesh_order = 2;           // at which the error of the mesh falls
+  Smoothness smoothness{};
+  CircleOnly circle_only{};
+};
+
+/// A film without own states, or one with such.
+using Made = std::variant<std::unique_ptr<Model>, std::unique_ptr<StateModel>>;
+
+}  // namespace whirl::film

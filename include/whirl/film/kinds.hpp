@@ -1,0 +1,35 @@
+#pragma once
+// All kinds of film, in the order in which help lists them. The first is the default.
+//
+// A kind is a struct of options K with the names `K::key` (in decks) and `K::text` (in help), and beside it
+//
+//   describe(Description<K>&)             one line per option
+//   facts_of(const K&, const Geometry&)   what others may ask (Facts); of the geometry only the estimate of states
+//   make(Geometry, K, Lubricant)          the film; throws core::InputError on values outside their range
+//   refine(K&, factor)                    of a kind with a mesh: that many times as many cells around and along
+//
+// Nobody outside this room asks for the kind of a film, and no other line of the program names one.
+
+#include <variant>
+
+#include "whirl/film/closed_form.hpp"
+#include "whirl/film/elastic.hpp"
+#include "whirl/film/linear.hpp"
+#include "whirl/film/reynolds.hpp"
+
+namespace whirl::film {
+
+// clang-format off
+using Kinds = std::variant<
+    Reynolds,
+    Linear,
+    Short,
+    Long,
+    LongInlet,
+    FiniteApproximate,
+    CompliantShort,
+    CompliantLong,
+    CompliantFinite>;
+// clang-format on
+
+}  // namespace whirl::film
