@@ -124,8 +124,9 @@ TEST(ContentFilms, TrainComesToRestInFewSteps) {
   for (const std::array<int, 2> cells : {std::array{30, 8}, {60, 16}}) {
     system::Train t = test::train(cells, true);
     for (system::Support& s : t.supports) {
-      s.film.cavitation = film::Options::Cavitation::mass_conserving;
-      s.film.states = film::Options::States::dynamic;
+      auto& film = film::as<film::Reynolds>(s.film);
+      film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+      film.states = film::Reynolds::States::dynamic;
     }
     system::RotorSystem s(MPI_COMM_WORLD, t, 377);
     core::Vector x = s.guess();
