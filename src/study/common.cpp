@@ -7,6 +7,7 @@
 #include <map>
 
 #include "branch_state.hpp"
+#include "first_guess.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -49,14 +50,14 @@ Trail Walker::trail() {
 Vec Walker::at(double speed) {
   if (!x_) {
     system_.set_parameter(speed);
-    x_ = system_.guess();
+    x_ = first_guess(system_);
     // A thick film is easier to hit than a thin one: start at a higher speed if need be and come down.
     double start = speed;
     for (int k = 0; !attempt(start); ++k) {
       if (k == 12) throw core::NotConverged(fmt::format("no equilibrium near {:.6g} rad/s: {}", speed, reason_));
       start *= 1.4;
       system_.set_parameter(start);
-      x_ = system_.guess();
+      x_ = first_guess(system_);
     }
   }
   double step = speed - last_;

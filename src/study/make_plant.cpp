@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common.hpp"
+#include "first_guess.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -34,7 +35,7 @@ core::Vector find_rest(system::Plant& plant) {
     core::check(VecCopy(there, x.get()));
     return x;
   }
-  core::Vector x = plant.guess();
+  core::Vector x = first_guess(plant);
   solve::NewtonOptions newton;
   newton.max_iterations = 40;
   plant.set_forcing(false);

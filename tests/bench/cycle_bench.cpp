@@ -155,7 +155,10 @@ int run(int runs, bool alone, bool shafts) {
                                                     {"assembled matrix, MUMPS", false, true}}) {
     if ((alone || shafts) && !structured) break;
     options.use_structure = structured;
-    options.assembled = assembled;
+    if (assembled) {
+      core::check(PetscOptionsSetValue(nullptr, "-bench_pc_type", "lu"));
+      core::check(PetscOptionsSetValue(nullptr, "-bench_pc_factor_mat_solver_type", "mumps"));
+    }
     solve::CycleProblem p(MPI_COMM_WORLD, s, options, solve::uniform_mesh(kIntervals));
     const bool root = core::rank_of(MPI_COMM_WORLD) == 0;
     if (!u) u = find_cycle(s, p, options.degree);

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 
+#include "support/petsc_options.hpp"
 #include "support/train_system.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -66,9 +66,7 @@ Answer cycle_at(double grade, double speed, const solve::CycleOptions& options, 
 TEST(Cycle, G25AtServiceSpeed) {
   solve::CycleOptions o;
   o.degree = 4;
-  const auto start = std::chrono::steady_clock::now();
   const Answer a = cycle_at(2.5, 377, o, 30);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double x[] = {73.418986e-6, 57.762367e-6, 34.903346e-6, 12.25791e-6, 63.923153e-6};
   const double y[] = {26.964783e-6, 32.671942e-6, 19.961869e-6, 3.3752351e-6, 25.811979e-6};
   for (std::size_t b = 0; b < 5; ++b) {
@@ -76,8 +74,6 @@ TEST(Cycle, G25AtServiceSpeed) {
     EXPECT_NEAR(a.y[b], y[b], 6e-3 * y[b]);
   }
   EXPECT_NEAR(a.multiplier, 0.99000172, 1e-3);
-  printf("DBG %d its %d linear %g s, mult %.8f y %g %g %g %g %g\n", a.iterations, a.linear, seconds, a.multiplier,
-         a.y[0] * 1e6, a.y[1] * 1e6, a.y[2] * 1e6, a.y[3] * 1e6, a.y[4] * 1e6);
 }
 
 TEST(Cycle, AllLinearAlgebraPathsAgree) {
@@ -85,10 +81,24 @@ TEST(Cycle, AllLinearAlgebraPathsAgree) {
   const Answer structured = cycle_at(2.5, 377, o, 12);
   o.use_structure = false;
   const Answer dense = cycle_at(2.5, 377, o, 12);
-  o.assembled = true;
+  const test::WithOptions chosen(test::by_mumps());
   const Answer assembled = cycle_at(2.5, 377, o, 12);
   EXPECT_EQ(structured.iterations, dense.iterations);
   EXPECT_LE((structured.cycle.x - dense.cycle.x).cwiseAbs().maxCoeff(), 1e-9 * dense.cycle.x.cwiseAbs().maxCoeff());
   EXPECT_LE((assembled.cycle.x - dense.cycle.x).cwiseAbs().maxCoeff(), 1e-9 * dense.cycle.x.cwiseAbs().maxCoeff());
   EXPECT_NEAR(structured.multiplier, dense.multiplier, 1e-9);
+}
+
+// The border by one more Schur step over the orbit, which MUMPS solves.
+TEST(Cycle, FieldsAreSplitByOption) {
+  solve::CycleOptions o;
+  const Answer own = cycle_at(2.5, 377, o, 12);
+  const test::WithOptions chosen({{"-newton_pc_type", "fieldsplit"},
+                                  {"-newton_pc_fieldsplit_type", "schur"},
+                                  {"-newton_fieldsplit_orbit_pc_type", "lu"},
+                                  {"-newton_fieldsplit_orbit_pc_factor_mat_solver_type", "mumps"},
+                                  {"-newton_fieldsplit_border_pc_type", "none"}});
+  const Answer split = cycle_at(2.5, 377, o, 12);
+  EXPECT_EQ(own.iterations, split.iterations);
+  EXPECT_LE((split.cycle.x - own.cycle.x).cwiseAbs().maxCoeff(), 1e-9 * own.cycle.x.cwiseAbs().maxCoeff());
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "support/petsc_options.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/newton/newton.hpp"
@@ -222,7 +223,7 @@ TEST(OwnStates, AllWaysLeadToTheSameCycle) {
     o.joining = Joining::cheapest;
     o.use_structure = false;
     const Answer dense = cycle_of(PETSC_COMM_SELF, t, o);
-    o.assembled = true;
+    const test::WithOptions chosen(test::by_mumps());
     const Answer assembled = cycle_of(MPI_COMM_WORLD, t, o);
     expect_same(own, dense, "condensed");
     expect_same(sweeps, dense, "sweeps");

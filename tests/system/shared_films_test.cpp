@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/petsc_options.hpp"
 #include "support/train_system.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -97,27 +98,40 @@ TEST(SharedFilms, HaveTheEquationsOfOneRank) {
 TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
   int exact = 0, tried = 0;
   const std::vector<double> alone = heights(MPI_COMM_SELF), elimination = heights(MPI_COMM_WORLD, &exact);
-  using Options = std::vector<std::pair<std::string, const char*>>;
-  Options split = {{"-newton_pc_type", "fieldsplit"},
-                   {"-newton_pc_fieldsplit_type", "multiplicative"},
-                   {"-newton_fieldsplit_border_pc_type", "jacobi"},
-                   {"-newton_ksp_max_it", "100"}};
+  test::WithOptions::List split = {{"-newton_pc_type", "fieldsplit"},
+                                   {"-newton_pc_fieldsplit_type", "multiplicative"},
+                                   {"-newton_fieldsplit_border_pc_type", "jacobi"},
+                                   {"-newton_ksp_max_it", "100"}};
   for (const std::string field : {"machine", "B1", "B2", "B3", "B4", "B5"}) {
     split.emplace_back("-newton_fieldsplit_" + field + "_pc_type", "lu");
     split.emplace_back("-newton_fieldsplit_" + field + "_pc_factor_mat_solver_type", "mumps");
   }
-  const auto with = [&](const Options& options) {
-    for (const auto& [name, value] : options) check(PetscOptionsSetValue(nullptr, name.c_str(), value));
-    auto out = heights(MPI_COMM_WORLD, &tried);
-    for (const auto& [name, value] : options) check(PetscOptionsClearValue(nullptr, name.c_str()));
-    return out;
+  const auto with = [&](test::WithOptions::List options) {
+    const test::WithOptions chosen(std::move(options));
+    return heights(MPI_COMM_WORLD, &tried);
   };
   const std::vector<double> by_fields = with(split);
   EXPECT_GT(tried, exact);  // blocks one after another are no solution
-  const std::vector<double> by_mumps =
-      with({{"-newton_pc_type", "lu"}, {"-newton_pc_factor_mat_solver_type", "mumps"}});
+  const std::vector<double> by_mumps = with(test::by_mumps());
   for (std::size_t b = 0; b < alone.size(); ++b) {
     EXPECT_LT(alone[b], 0) << b;
     for (const auto* other : {&elimination, &by_fields, &by_mumps}) EXPECT_NEAR((*other)[b], alone[b], 1e-12) << b;
+  }
+}
+
+// Which nodes are full changes along every step from the guess: between settled points films are far out of balance.
+TEST(ContentFilms, TrainComesToRestInFewSteps) {
+  for (const std::array<int, 2> cells : {std::array{30, 8}, {60, 16}}) {
+    system::Train t = test::train(cells, true);
+    for (system::Support& s : t.supports) {
+      s.film.cavitation = film::Options::Cavitation::mass_conserving;
+      s.film.states = film::Options::States::dynamic;
+    }
+    system::RotorSystem s(MPI_COMM_WORLD, t, 377);
+    core::Vector x = s.guess();
+    solve::NewtonOptions newton;
+    newton.max_iterations = 10;
+    const auto result = solve::find_equilibrium(s, x.get(), newton);
+    EXPECT_TRUE(result.converged) << cells[0] << ": " << result.reason;
   }
 }

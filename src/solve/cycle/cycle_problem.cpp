@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solve/cycle/cycle_matrix.hpp"
 #include "solve/cycle/film_march.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -34,7 +35,7 @@ bool thin(problem::Structure& structure) {
 }  // namespace
 
 CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Structure* structure) {
-  if (!structure || options.assembled) return Way::dense;
+  if (!structure) return Way::dense;
   if (!structure->own().empty()) return Way::own_states;
   using Joining = CycleOptions::Joining;
   if (options.points == Points::radau &&
@@ -77,7 +78,11 @@ void CycleProblem::layout(std::vector<double> mesh) {
   const Index total = static_cast<Index>(mesh_.size()) - 1;
   if (total < size_) throw core::InputError("fewer collocation intervals than ranks");
   first_ = total * rank_ / size_;
-  count_ = total * (rank_ + 1) / size_ - first_;
+  const Index count = total * (rank_ + 1) / size_ - first_;
+  int same = count == count_;
+  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, comm_);
+  if (!same) matrix_.reset();
+  count_ = count;
   kept_.resize(static_cast<std::size_t>(structure_ ? count_ * scheme_.degree : 0));
   kept_valid_ = false;
   run_.intervals.clear();
@@ -291,7 +296,17 @@ void CycleProblem::linearise(Vec u, Vec row) {
   run_.corner = MatrixXd::Zero(borders_, borders_);
   run_.corner.row(borders_ - 1) = border_of(row).transpose();
   composition_->compose(run_);
-  if (options_.assembled) assembled_ = AssembledCycle(run_, first_, static_cast<Index>(mesh_.size()) - 1);
+  if (matrix_) matrix_->fill(run_);
+}
+
+Mat CycleProblem::matrix() {
+  if (run_.intervals.empty()) return nullptr;
+  if (!matrix_) matrix_ = std::make_unique<CycleMatrix>(run_, first_, static_cast<Index>(mesh_.size()) - 1);
+  return matrix_->get();
+}
+
+std::vector<problem::Field> CycleProblem::fields() const {
+  return {{"orbit", 0, static_cast<PetscInt>(count_ * scheme_.degree * n_)}};
 }
 
 bool CycleProblem::same_as_kept(const core::ReadArray& u, const VectorXd& before, const VectorXd& border) const {
@@ -321,7 +336,6 @@ void CycleProblem::multiply(Vec v, Vec y) {
 }
 
 void CycleProblem::solve(Vec rhs, Vec x) {
-  if (options_.assembled) return assembled_.solve(rhs, x);
   VectorXd border = border_of(rhs);
   const core::ReadArray ra(rhs);
   core::WriteArray xa(x);

@@ -43,14 +43,16 @@ std::vector<double> take_unknowns(const std::vector<double>& both, Vec u) {
   return {both.begin(), both.end() - size};
 }
 
+void bordered_residual(SolveContext& c, Vec u, Vec r) {
+  c.problem.residual(u, r);
+  double value = 0;
+  check(VecDot(c.row, u, &value));
+  set_last_entry(c.problem.comm(), r, value - c.offset);
+}
+
 PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
   auto& c = *static_cast<SolveContext*>(raw);
-  const PetscErrorCode code = c.gate.run([&] {
-    c.problem.residual(u, r);
-    double value = 0;
-    check(VecDot(c.row, u, &value));
-    set_last_entry(c.problem.comm(), r, value - c.offset);
-  });
+  const PetscErrorCode code = c.gate.run([&] { bordered_residual(c, u, r); });
   return c.gate.domain_error() ? SNESSetFunctionDomainError(snes) : code;
 }
 
@@ -71,14 +73,32 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
-// The whole step ends where the problem settles; the search goes there straight.
-PetscErrorCode settle_step(SNESLineSearch, Vec u, Vec step, PetscBool* changed, void* raw) {
+// The step ends where the problem settles, and the search goes there straight. On a part of the way there nothing is
+// settled, and the search would see stiff films out of balance: where the whole step does not help, shorter ones are
+// settled themselves.
+PetscErrorCode settle_step(SNESLineSearch search, Vec u, Vec step, PetscBool* changed, void* raw) {
   auto& c = *static_cast<SolveContext*>(raw);
+  SNES snes = nullptr;
+  Vec here = nullptr;
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  PetscCall(SNESGetFunction(snes, &here, nullptr, nullptr));
   return c.gate.run([&] {
-    core::Vector end = core::duplicate(u);
-    check(VecWAXPY(end.get(), -1, step, u));
-    *changed = c.problem.settle(end.get()) ? PETSC_TRUE : PETSC_FALSE;
-    if (*changed) check(VecWAXPY(step, -1, end.get(), u));
+    constexpr double shortest = 1e-3, sufficient = 1e-4;  // fall of the residual, as a line search asks for
+    const double norm = core::norm(here);
+    core::Vector end = core::duplicate(u), there = core::duplicate(u);
+    for (double part = 1; part > shortest; part /= 2) {
+      check(VecWAXPY(end.get(), -part, step, u));
+      if (!c.problem.settle(end.get())) continue;
+      try {
+        bordered_residual(c, end.get(), there.get());
+      } catch (const core::DomainError&) {
+        continue;
+      }
+      if (!(core::norm(there.get()) <= (1 - sufficient * part) * norm)) continue;
+      check(VecWAXPY(step, -1, end.get(), u));
+      *changed = PETSC_TRUE;
+      return;
+    }
   });
 }
 

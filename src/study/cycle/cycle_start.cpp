@@ -8,6 +8,7 @@
 
 #include "study/cycle/coexisting.hpp"
 #include "study/cycle/cycle_follower.hpp"
+#include "study/first_guess.hpp"
 #include "study/make_plant.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -51,7 +52,7 @@ solve::Restart CycleFollower::start_at_hopf() {
     Walker walker(*system_);
     check(VecCopy(walker.at(system_->parameter()), x.get()));
   } else {
-    x = system_->guess();
+    x = first_guess(*system_);
   }
   equilibria.from_state(x.get(), system_->parameter(), u.get());
   double parameter = 0;

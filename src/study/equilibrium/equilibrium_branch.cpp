@@ -13,6 +13,7 @@
 #include "study/common.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
+#include "study/first_guess.hpp"
 #include "study/layout.hpp"
 #include "study/located.hpp"
 #include "study/make_plant.hpp"
@@ -96,7 +97,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     Walker walker(*system);
     check(VecCopy(walker.at(range.from), x.get()));
   } else {
-    x = system->guess();
+    x = first_guess(*system);
   }
   problem.from_state(x.get(), range.from, u.get());
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "whirl/problem/system.hpp"
-#include "whirl/solve/cycle/assembled_cycle.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 #include "whirl/solve/cycle/interval.hpp"
 #include "whirl/solve/cycle/periodic_problem.hpp"
@@ -17,6 +16,7 @@
 
 namespace whirl::solve {
 
+class CycleMatrix;
 class FilmMarch;
 
 struct CycleOptions {
@@ -31,8 +31,6 @@ struct CycleOptions {
   /// time modes (Radau points, no own states of films), or by whichever is thought to cost less: of all, or of the
   /// first two, which take intervals of any kind.
   enum class Joining { cheapest, dense, sweeps, modes, one_by_one } joining = Joining::cheapest;
-  bool assembled =
-      false;  ///< solve with the assembled MPIAIJ matrix and MUMPS instead of the condensation (for comparison)
   double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
   int base_intervals = 0;     ///< adapt() never makes a mesh coarser than this uniform one; 0: its longest interval
   int max_intervals = 400;
@@ -61,6 +59,9 @@ public:
   void linearise(Vec u, Vec row) override;
   void multiply(Vec v, Vec y) override;
   void solve(Vec rhs, Vec x) override;
+  [[nodiscard]] Mat matrix() override;
+  /// "orbit": the states at all points of time.
+  [[nodiscard]] std::vector<problem::Field> fields() const override;
   bool adapt(core::Vector& u, core::Vector& tangent) override;
   void equations_changed() override { kept_valid_ = false; }
   [[nodiscard]] std::vector<double> warm_start() override { return composition_->warm_start(); }
@@ -200,7 +201,7 @@ private:
   Run run_;
   std::unique_ptr<Composition> composition_;
   std::unique_ptr<FilmMarch> march_;
-  AssembledCycle assembled_;
+  std::unique_ptr<CycleMatrix> matrix_;  // once it was asked for
 };
 
 }  // namespace whirl::solve
