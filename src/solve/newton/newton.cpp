@@ -74,7 +74,7 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
-PetscErrorCode settle_step(SNESLineSearch search, Vec u, Vec step, PetscBool* changed, void* raw) {
+PetscErrorCode settle_before_search(SNESLineSearch search, Vec u, Vec step, PetscBool* changed, void* raw) {
   auto& c = *static_cast<SolveContext*>(raw);
   SNES snes = nullptr;
   Vec here = nullptr;
@@ -253,7 +253,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, options.searches ? SNESLINESEARCHBT : SNESLINESEARCHBASIC));
   if (context.problem.settles()) {
-    check(SNESLineSearchSetPreCheck(search, settle_step, &context));
+    check(SNESLineSearchSetPreCheck(search, settle_before_search, &context));
     // It has asked for a fall of the residual already. The slope along a step that settles is none of a smooth
     // function.
     constexpr double any_fall = 1e-12;
