@@ -210,14 +210,16 @@ private:
     if (Node* found = other_word(at, step)) return static_cast<std::size_t>(found - at.items.data());
     // A part of something new beside something of nearly this name is a slip where all are of a kind: a bearing is
     // not begun by its clearance.
-    std::vector<std::string> names;
-    for (const Node& n : at.items) names.push_back(n.key);
     const bool of_a_kind =
         std::all_of(at.items.begin(), at.items.end(), [](const Node& n) { return n.kind == Node::Kind::map; });
-    if (const std::string hint = did_you_mean(step, names); i + 1 < steps_.size() && of_a_kind && !hint.empty()) {
-      const std::string whole = walked() + (path_.empty() ? "" : ".") + step;
-      throw InputError(
-          fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint, whole));
+    if (i + 1 < steps_.size() && of_a_kind) {
+      std::vector<std::string> names;
+      for (const Node& n : at.items) names.push_back(n.key);
+      if (const std::string hint = did_you_mean(step, names); !hint.empty()) {
+        const std::string whole = walked() + (path_.empty() ? "" : ".") + step;
+        throw InputError(
+            fmt::format("there is no '{}'{}; a new one is given whole: --set {}={{...}}", step, hint, whole));
+      }
     }
     require_key(step);
     Node& next = at.set(step, Node{});
