@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "solve/newton/settle_step.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/gate.hpp"
 
@@ -73,38 +74,15 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
 }
 
-// The step ends where the problem settles, and the search goes there straight. On a part of the way there nothing is
-// settled, and the search would see stiff films out of balance: where the whole step does not help, shorter ones are
-// settled themselves.
-PetscErrorCode settle_step(SNESLineSearch search, Vec u, Vec step, PetscBool* changed, void* raw) {
+PetscErrorCode settle_before_search(SNESLineSearch search, Vec u, Vec step, PetscBool* changed, void* raw) {
   auto& c = *static_cast<SolveContext*>(raw);
   SNES snes = nullptr;
   Vec here = nullptr;
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   PetscCall(SNESGetFunction(snes, &here, nullptr, nullptr));
   return c.gate.run([&] {
-    constexpr double shortest = 1e-3, sufficient = 1e-4;  // fall of the residual, as a line search asks for
-    const double norm = core::norm(here);
-    core::Vector end = core::duplicate(u), there = core::duplicate(u), longest;
-    const auto take = [&](Vec settled) {
-      check(VecWAXPY(step, -1, settled, u));
-      *changed = PETSC_TRUE;
-    };
-    for (double part = 1; part > shortest; part /= 2) {
-      check(VecWAXPY(end.get(), -part, step, u));
-      if (!c.problem.settle(end.get())) continue;
-      try {
-        bordered_residual(c, end.get(), there.get());
-      } catch (const core::DomainError&) {
-        continue;
-      }
-      if (core::norm(there.get()) <= (1 - sufficient * part) * norm) return take(end.get());
-      if (longest) continue;
-      longest = core::duplicate(u);
-      check(VecCopy(end.get(), longest.get()));
-    }
-    // None helps: the search may find something on the way to the longest of them.
-    if (longest) take(longest.get());
+    const auto residual = [&c](Vec at, Vec r) { bordered_residual(c, at, r); };
+    *changed = settle_step(c.problem, residual, u, core::norm(here), step) ? PETSC_TRUE : PETSC_FALSE;
   });
 }
 
@@ -275,7 +253,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, options.searches ? SNESLINESEARCHBT : SNESLINESEARCHBASIC));
   if (context.problem.settles()) {
-    check(SNESLineSearchSetPreCheck(search, settle_step, &context));
+    check(SNESLineSearchSetPreCheck(search, settle_before_search, &context));
     // It has asked for a fall of the residual already. The slope along a step that settles is none of a smooth
     // function.
     constexpr double any_fall = 1e-12;

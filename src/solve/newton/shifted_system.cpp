@@ -61,7 +61,10 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
   check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));
   if (std::vector<problem::Field> fields = system_.fields(); PortElimination::serves(fields)) {
-    for (problem::Field& f : fields) f = {f.name, 2 * f.begin, 2 * f.end};
+    for (problem::Field& f : fields) {
+      f.begin *= 2;
+      f.end *= 2;
+    }
     if (!ports_) ports_ = std::make_unique<PortElimination>(system_.comm(), std::move(fields));
     ports_->factorise(matrix_.get());
     return;

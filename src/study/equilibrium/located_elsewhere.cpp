@@ -12,7 +12,7 @@ namespace whirl::study {
 namespace {
 
 constexpr int most_looks = 8, most_halvings = 6;
-constexpr int most_trials = 40, most_secants = 12;
+constexpr int most_trials = 40, most_false_positions = 12;
 // A place that stands in a bar is wanted to a hundredth of what the meshes differ by.
 constexpr double place_tolerance = 1e-6,
                  difference_tolerance = 1e-2;  // of the parameter; of its change from mesh to mesh
@@ -37,8 +37,8 @@ Crossing crossing_at(system::Plant& system, Vec x, double omega) {
 // The Hopf point on the branch through x, where Newton's method for it does not arrive from the parameter of the other
 // mesh: it begins anew from where the secant on the real part of the eigenvalue crosses zero, each time nearer. The
 // equilibrium moves along, so that the frequency is that of the Hopf point and not of the other mesh's parameter.
-std::optional<solve::Refined> approach(system::Plant& system, solve::EquilibriumProblem& problem,
-                                       const EquilibriumEvent& at, Vec x) {
+std::optional<solve::Refined> approached(system::Plant& system, solve::EquilibriumProblem& problem,
+                                         const EquilibriumEvent& at, Vec x) {
   solve::LocatedEvent event = at.found;
   double p = event.parameter, slope = event.sensitivity, last_p = p, last_distance = 0;
   core::Vector u = problem.make_unknown(), trial = core::duplicate(x);
@@ -95,7 +95,7 @@ std::optional<solve::Refined> enclose(system::Plant& system, solve::EquilibriumP
     const double nearest = (p0 - here) * (p1 - here) > 0 ? std::min(std::abs(p0 - here), std::abs(p1 - here)) : 0;
     const double tolerance = std::max(place_tolerance * std::abs(here), difference_tolerance * nearest);
     if (std::abs(p1 - p0) <= tolerance) break;
-    double p = k < most_secants ? (p0 * d1 - p1 * d0) / (d1 - d0) : (p0 + p1) / 2;
+    double p = k < most_false_positions ? (p0 * d1 - p1 * d0) / (d1 - d0) : (p0 + p1) / 2;
     // A secant that has found the place does not enclose it: a step of half the tolerance beyond does.
     if (std::abs(p - p1) < tolerance / 2) p = p1 + std::copysign(tolerance / 2, p0 - p1);
     const double d = look(p);
@@ -126,7 +126,7 @@ std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array
   core::Vector u = problem.make_unknown();
   problem.from_state(out.x.get(), at.found.parameter * at.scale, u.get());
   if (hopf && !at.law.kinks) {
-    out.found = approach(system, problem, at, out.x.get());
+    out.found = approached(system, problem, at, out.x.get());
   } else {
     out.found = solve::refine(system, problem, at.found, u.get(), solve::any_tangent(problem, u.get()).get(),
                               to_refine(at.newton, at.law));
