@@ -27,7 +27,7 @@ SHORT = COARSE + [STUDIES, SWEEP]
 def plain(x):
     """Without what differs from run to run."""
     if isinstance(x, dict):
-        return {k: plain(v) for k, v in x.items() if k not in ("wall_seconds", "ranks")}
+        return {k: plain(v) for k, v in x.items() if k not in ("wall_seconds", "ranks", "layout")}
     return [plain(v) for v in x] if isinstance(x, list) else x
 
 
