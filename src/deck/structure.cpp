@@ -171,7 +171,7 @@ Node plain_schema(const Structure& s, bool whole, const std::string& selector, c
   }
   // Takes away what a base says for another choice.
   for (const Option& o : s.options)
-    if (!properties.find(o.key)) properties.set(o.key, typed_schema("null"));
+    if (!whole && !properties.find(o.key)) properties.set(o.key, typed_schema("null"));
   if (whole && !required.items.empty()) n.set("required", std::move(required));
   return n;
 }

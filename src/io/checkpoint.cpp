@@ -6,7 +6,7 @@
 namespace whirl::io {
 namespace {
 
-constexpr int format = 1;
+constexpr int format = 2;
 
 Group load_one(const std::filesystem::path& path) {
   Group whole = read_hdf5(path);

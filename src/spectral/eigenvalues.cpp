@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "spectral/rounding.hpp"
@@ -302,12 +303,13 @@ std::vector<LocalMode> modes_within(Mat a, Mat b, double target, double radius) 
       check(EPSGetConverged(eps.get(), &found));
       if (found < wanted) throw core::NotConverged("the eigenvalues of a film by itself did not converge");
       // Those that converged beside the wanted ones need not be the nearest.
-      double farthest = 0;
+      std::vector<double> distances;
       for (PetscInt i = 0; i < found; ++i) {
         const double distance = std::abs(pair_of(eps.get(), i, nullptr, nullptr, false).value - target);
-        farthest = std::max(farthest, std::isfinite(distance) ? distance : 0.0);
+        distances.push_back(std::isfinite(distance) ? distance : std::numeric_limits<double>::infinity());
       }
-      if (farthest <= radius && wanted < n - 2) {
+      std::sort(distances.begin(), distances.end());
+      if (distances[static_cast<std::size_t>(wanted) - 1] <= radius && wanted < n - 2) {
         if (wanted == most) throw core::NotConverged("a film by itself has too many eigenvalues in the region");
         continue;
       }

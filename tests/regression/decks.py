@@ -137,7 +137,7 @@ def balanced(h):
 
 
 def liners(h):
-    """On coarse films: the threshold within its bar of the value on 100 x 20 cells; the cycle by collocation, another solver."""
+    """On coarse films: the threshold within 3 % of our own value on 100 x 20 cells; the cycle by collocation, another solver."""
     coarse = "bearings.*.film.cells=[24, 6]"
     balance = h.run("liners.yaml", "balanced", [coarse, "studies=[" + ", ".join(
         ("{static: {name: at service speed, speed: 3600 rpm}}",
@@ -146,7 +146,7 @@ def liners(h):
     h.true("statics", balance["at service speed"]["status"] == "completed")
     found = hopf(balance["balanced"])
     h.true("one Hopf bifurcation", len(found) == 1)
-    h.close("threshold [rpm]", found[0]["value"], 5861, found[0]["uncertainty"] + 25)
+    h.close("threshold [rpm]", found[0]["value"], 5861, 0.03 * 5861)
     h.true("whose bar is short enough to say something", 0 < found[0]["uncertainty"] < 0.1 * 5861, f"{found[0]['uncertainty']}")
     few, common = "bearings.*.film.cells=[16, 4]", ("name: G2.5, unbalance: [gen_pair], parameter: speed, range: {from: 3600 rpm, "
         "to: 3650 rpm}, step: {initial: 50 rpm, min: 0.01 rpm, max: 50 rpm}, max_points: 1")

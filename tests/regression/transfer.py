@@ -57,10 +57,11 @@ def missed(h):
 
 def ranks(h):
     deck, where, more = CASES["finite"]
-    runs = [h.run(h.source / "inputs" / deck, f"ranks_{n}", [branch(where), *more], flags=TRANSFER,
+    runs = [h.run(h.source / "inputs" / deck, f"ranks_{n}", [branch(where), *more, "layout.machine=all_ranks"], flags=TRANSFER,
                   launcher=[*h.launcher, "-n", str(n)])["balanced"] for n in (1, 2, 3)]
     for n, s in enumerate(runs[1:], 2):
-        compare(h, f"{n} ranks", runs[0], s, 1e-9)
+        h.true(f"{n} ranks share one machine", s["layout"] == f"one machine on {n} ranks (by the deck)", s["layout"])
+        compare(h, f"{n} ranks", runs[0], s, 1e-8)
 
 
 if __name__ == "__main__":

@@ -50,7 +50,8 @@ public:
   virtual ~StatePreconditioner() = default;
   /// Takes the derivatives of this rank's share, at its places.
   virtual void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) = 0;
-  /// x = approximately A^-1 r [rows]: good to precondition only.
+  /// x = approximately A^-1 r [rows]: good to precondition only. Neither throws: the ranks that do not hold the film
+  /// would wait for the others.
   virtual void apply(std::span<const double> r, std::span<double> x) = 0;
 };
 

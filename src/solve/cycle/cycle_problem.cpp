@@ -82,6 +82,7 @@ void CycleProblem::layout(std::vector<double> mesh) {
   int same = count == count_;
   MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, comm_);
   if (!same) matrix_.reset();
+  linearised_ = false;
   count_ = count;
   kept_.resize(static_cast<std::size_t>(structure_ ? count_ * scheme_.degree : 0));
   kept_valid_ = false;
@@ -256,6 +257,7 @@ void CycleProblem::linearise(Vec u, Vec row) {
   const auto count = static_cast<std::size_t>(count_);
   const bool known = kept_valid_ && same_as_kept(ua, before, border);
   kept_valid_ = known;
+  linearised_ = false;
   run_.intervals.clear();
   run_.intervals.resize(count);
   parts_.clear();
@@ -296,11 +298,12 @@ void CycleProblem::linearise(Vec u, Vec row) {
   run_.corner = MatrixXd::Zero(borders_, borders_);
   run_.corner.row(borders_ - 1) = border_of(row).transpose();
   composition_->compose(run_);
+  linearised_ = true;
   if (matrix_) matrix_->fill(run_);
 }
 
 Mat CycleProblem::matrix() {
-  if (run_.intervals.empty()) return nullptr;
+  if (!matrix_ && !linearised_) return nullptr;
   if (!matrix_) matrix_ = std::make_unique<CycleMatrix>(run_, first_, static_cast<Index>(mesh_.size()) - 1);
   return matrix_->get();
 }

@@ -49,9 +49,9 @@ void FilmMarch::step(double length, Eigen::Ref<MatrixXd> nodes, double& largest)
     change = rows_.middleRows(film.first, film.count).transpose();
     blocks_[i]->eliminate(1, film_.data(), force_);
     nodes.middleRows(n + film.first, film.count) -= change.transpose();
-    const double moved = film_.size() > 0 ? film_.lpNorm<Eigen::Infinity>() : 0.0;
-    if (!std::isfinite(moved)) throw core::NotConverged("a film by itself is singular");
-    largest = std::max(largest, moved);
+    // Before any maximum, which may pass over what is not a number.
+    if (!film_.allFinite()) throw core::NotConverged("a film by itself is singular");
+    if (film_.size() > 0) largest = std::max(largest, film_.lpNorm<Eigen::Infinity>());
   }
 }
 

@@ -136,7 +136,7 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   const auto set = [&](const std::vector<PetscInt>& rows, core::IndexSet& is) {
     check(ISCreateGeneral(system.comm(), static_cast<PetscInt>(rows.size()), rows.data(), PETSC_COPY_VALUES, is.put()));
   };
-  const std::vector<problem::Field> fields = system.fields();
+  const std::vector<problem::Field> fields = problem::parts_of(system.fields());
   for (std::size_t f = 1; f < fields.size(); ++f) {
     auto part = std::make_unique<Part>();
     std::vector<PetscInt> rows;

@@ -312,7 +312,10 @@ void write_summary(io::Group& group, const io::StudySummary& summary) {
 void read_summary(const io::Group& group, io::StudySummary& summary) {
   const io::Summary one = io::Summary::from_json(group.strings("json").front());
   core::require(one.studies.size() == 1, "a checkpoint holds one study");
+  // How this run shares the work is not what the other one chose.
+  std::string layout = std::move(summary.layout);
   summary = one.studies.front();
+  summary.layout = std::move(layout);
 }
 
 }  // namespace whirl::study

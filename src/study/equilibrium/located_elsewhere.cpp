@@ -85,6 +85,7 @@ std::optional<solve::Refined> enclose(system::Plant& system, solve::EquilibriumP
   };
   const double here = at.found.parameter;
   double p0 = here, d0 = look(p0), p1 = p0, d1 = d0, step = -d0 / at.found.sensitivity;
+  if (!std::isfinite(step)) return {};
   for (int k = 0; k < most_looks && d1 * d0 > 0; ++k, step *= 2) {
     p0 = p1, d0 = d1;
     p1 = p0 + step;

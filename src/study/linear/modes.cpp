@@ -99,7 +99,7 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   if (options.supports == ModesOptions::Supports::pinned)
     for (const auto& b : context.machine.bearings) pinned.push_back(b.node);
   const auto frequencies =
-      rotor::natural_frequencies(plan(context, Sharing::speeds).space, shaft, pinned, options.count);
+      rotor::natural_frequencies(plan(context, Sharing::machine).space, shaft, pinned, options.count);
   auto& summary = context.results.summary();
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     summary.set(fmt::format("frequency.{}", k + 1), frequencies[k], "rad/s");
@@ -227,12 +227,13 @@ StudyResult Modes::run(Context& context) {
   // Where the chords cross, refined by solving there and following the mode.
   const auto refine = [&](std::size_t i) {
     Crossing c = crossings[i];
+    std::vector<int> missed_on_the_way;
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
       int missed_there = 0;
       const auto there =
           shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit, missed_there);
-      missed.add(missed_there);
+      missed_on_the_way.push_back(missed_there);
       const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
       const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
       if (found == pairs.before.end()) break;
@@ -244,7 +245,10 @@ StudyResult Modes::run(Context& context) {
       c.guide.lambda = m.lambda;
       if (std::abs(f) < 1e-7 * s) break;
     }
-    return std::vector<double>{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
+    // Other ranks and resumed runs see what is returned, and nothing else.
+    std::vector<double> out{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
+    out.insert(out.end(), missed_on_the_way.begin(), missed_on_the_way.end());
+    return out;
   };
   const auto refined = distribute(layout, crossings.size(), refine, pieces, "critical", walker.trail());
   struct Critical {
@@ -255,6 +259,7 @@ StudyResult Modes::run(Context& context) {
   std::vector<Critical> criticals;
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const Crossing& c = crossings[i];
+    for (std::size_t k = 3; k < refined[i].size(); ++k) missed.add(static_cast<int>(refined[i][k]));
     const auto bar = bars.at(c.guide.id, refined[i][0]);
     criticals.push_back({refined[i][0], spectral::log_decrement({refined[i][1], refined[i][2]}), c.guide.id,
                          bar[1] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)), bar[2]});

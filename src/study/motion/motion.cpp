@@ -34,7 +34,7 @@ class Player {
 public:
   Player(Context& context, const MotionOptions& given)
       : context_(context),
-        plant_(make_plant(plan(context, Sharing::machine).space, context.machine,
+        plant_(make_plant(plan(context, sharing_of(given.start)).space, context.machine,
                           {.unbalance = given.unbalance, .value = given.speed.value})),
         system_(*plant_),
         options_(limited(given, system_)),

@@ -4,6 +4,7 @@
 #include <complex>
 #include <vector>
 
+#include "study/layout.hpp"
 #include "whirl/study/motion/motion.hpp"
 #include "whirl/system/plant.hpp"
 
@@ -13,6 +14,11 @@ struct StartState {
   core::Vector x;                                 ///< SI
   std::vector<std::complex<double>> multipliers;  ///< of the cycle it lies on, the largest first; empty if on none
 };
+
+/// A cycle to start from wants the whole machine on one rank.
+[[nodiscard]] inline Sharing sharing_of(const MotionStart& start) {
+  return start.from == MotionStart::From::cycle ? Sharing::nothing : Sharing::machine;
+}
 
 /// The state at shaft angle zero. Collective on the system's communicator; throws core::NotConverged.
 [[nodiscard]] StartState start_state(system::Plant& system, const MotionStart& start);

@@ -78,7 +78,7 @@ public:
         options_(options),
         unit_(options.range.unit),
         drive_(drive_of(options)),
-        system_(plan(context, Sharing::machine).space, system::train_of(context.machine, options.unbalance),
+        system_(plan(context, sharing_of(options.start)).space, system::train_of(context.machine, options.unbalance),
                 drive_.speed),
         x_(start_state(system_, options.start).x),
         integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),

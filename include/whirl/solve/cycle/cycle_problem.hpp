@@ -201,6 +201,7 @@ private:
   Run run_;
   std::unique_ptr<Composition> composition_;
   std::unique_ptr<CycleMatrix> matrix_;  // once it was asked for
+  bool linearised_ = false;              // run_ is whole
   std::unique_ptr<FilmMarch> march_;
 };
 
