@@ -19,11 +19,12 @@ problem::SparseBlock block(Eigen::Index rows, Eigen::Index columns, const Entrie
   return out;
 }
 
-// Adds the entries of m [N x N] at (2 i, 2 j + rate).
-void scatter(Mat m, int rate, Entries& out) {
-  PetscInt rows = 0;
-  check(MatGetSize(m, &rows, nullptr));
-  for (PetscInt i = 0; i < rows; ++i) {
+}  // namespace
+
+void add_entries(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out) {
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(m, &begin, &end));
+  for (PetscInt i = begin; i < end; ++i) {
     PetscInt k = 0;
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;
@@ -34,8 +35,6 @@ void scatter(Mat m, int rate, Entries& out) {
   }
 }
 
-}  // namespace
-
 RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
   rebuild();
   find_own_states();
@@ -45,10 +44,10 @@ void RotorSystem::Blocks::rebuild() {
   const RotorSystem& system = system_;
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
   Entries rates, at_rest, gyroscopic, b, c;
-  scatter(system.mass_.get(), 1, rates);
-  scatter(system.stiffness_.get(), 0, at_rest);
-  scatter(system.damping_.get(), 1, at_rest);
-  scatter(system.gyroscopic_.get(), 1, gyroscopic);
+  add_entries(system.mass_.get(), 1, rates);
+  add_entries(system.stiffness_.get(), 0, at_rest);
+  add_entries(system.damping_.get(), 1, at_rest);
+  add_entries(system.gyroscopic_.get(), 1, gyroscopic);
   for (int i = 0; i < static_cast<int>(n / 2); ++i) {
     rates.emplace_back(2 * i + 1, 2 * i, 1);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);

@@ -9,6 +9,9 @@
 
 namespace whirl::system {
 
+/// Appends the entries (i, j) of this rank's rows of m as (2 i, 2 j + rate): a matrix of coordinates on states.
+void add_entries(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out);
+
 /// Inputs are (x, y, vx, vy) of each journal relative to its pedestal (elevation not subtracted), forces (Fx, Fy) of
 /// each film on its journal.
 class RotorSystem::Blocks : public problem::Structure {

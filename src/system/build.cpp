@@ -3,6 +3,7 @@
 #include "blocks.hpp"
 #include "film_part.hpp"
 #include "frozen.hpp"
+#include "settling.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -181,6 +182,7 @@ void RotorSystem::build() {
   if (blocks_) blocks_->rebuild();
   neighbours_ = {};
   film_solver_.reset();
+  settling_.reset();
   film_solver_tried_ = false;
   j_at_rest_.reset();
 }

@@ -2,6 +2,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 
+#include "blocks.hpp"
 #include "frozen.hpp"
 
 namespace whirl::system {
@@ -71,34 +72,15 @@ void RotorSystem::FilmSolver::make_films() {
   }
 }
 
-namespace {
-
-// The rows of a matrix that stands as a whole on the first rank; entry (i, j) goes to (2 i, 2 j + rate).
-void entries_of(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out) {
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(m, &begin, &end));
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &k, &columns, &values));
-    for (PetscInt e = 0; e < k; ++e)
-      if (values[e] != 0) out.emplace_back(2 * i, 2 * columns[e] + rate, values[e]);
-    check(MatRestoreRow(m, i, &k, &columns, &values));
-  }
-}
-
-}  // namespace
-
 // Rows (momentum, velocity) of the pairs, without films.
 void RotorSystem::FilmSolver::make_rotor() {
   const RotorSystem& s = system_;
   const Index n = state_.size(), films = static_cast<Index>(films_.size());
   std::vector<Eigen::Triplet<double>> rates, at_rest, gyroscopic, inputs, outputs;
-  entries_of(s.mass_.get(), 1, rates);
-  entries_of(s.stiffness_.get(), 0, at_rest);
-  entries_of(s.damping_.get(), 1, at_rest);
-  entries_of(s.gyroscopic_.get(), 1, gyroscopic);
+  add_entries(s.mass_.get(), 1, rates);
+  add_entries(s.stiffness_.get(), 0, at_rest);
+  add_entries(s.damping_.get(), 1, at_rest);
+  add_entries(s.gyroscopic_.get(), 1, gyroscopic);
   for (Index i = 0; i < n / 2; ++i) {
     rates.emplace_back(2 * i + 1, 2 * i, 1.0);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1.0);

@@ -185,41 +185,19 @@ std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   return bearing.part ? bearing.part->film().fields(at, bearing.part->of(x, n_)) : bearing.film->fields(at);
 }
 
-bool RotorSystem::settles() const {
-  return std::any_of(bearings_.begin(), bearings_.end(),
-                     [](const Bearing& b) { return b.part && b.part->film().whole_steps(); });
-}
-
-void RotorSystem::settle(Vec x) {
-  relax(
-      x, [](const FilmPart& part) { return part.film().whole_steps(); }, true);
-}
-
-void RotorSystem::relax_films(Vec x) {
-  relax(
-      x, [](const FilmPart&) { return true; }, false);
-}
-
 // Every rank relaxes the whole of a film that it holds a share of: a sparse LU of the film per Newton step, on each of
-// its ranks at the same time. What its ranks start from is gathered if it is cut.
-void RotorSystem::relax(Vec x, const std::function<bool(const FilmPart&)>& which, bool from_present) {
+// its ranks at the same time.
+void RotorSystem::relax_films(Vec x) {
   const std::vector<JournalState> journals = journals_of(gather_inputs(x));
-  std::vector<double> whole;
-  if (from_present && core::size_of(comm_) > 1) whole = core::gather(x);
   core::agree(comm_, [&] {
     const core::WriteArray xa(x);
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const FilmPart* part = bearings_[i].part.get();
-      if (!part || part->rows() == 0 || !which(*part)) continue;
+      if (!part || part->rows() == 0) continue;
       film::Motion at = motion(journals[i]);
+      at.velocity = {};
       std::vector<double> states(part->film().states());
-      if (!from_present) {
-        at.velocity = {};
-        part->film().unloaded(at, states);
-      } else {
-        const std::span<const double> present = part->of(whole.empty() ? xa.data() : whole.data(), n_);
-        states.assign(present.begin(), present.end());
-      }
+      part->film().unloaded(at, states);
       film::relax(part->film(), at, states);
       std::copy_n(states.begin() + part->share().begin, part->rows(), xa.data() + part->row());
     }

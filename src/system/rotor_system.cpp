@@ -8,6 +8,7 @@
 #include "blocks.hpp"
 #include "film_part.hpp"
 #include "frozen.hpp"
+#include "settling.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"

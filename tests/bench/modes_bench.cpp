@@ -24,21 +24,6 @@ namespace {
 
 constexpr std::size_t wanted = 10;
 
-system::Train on_liners(int around) {
-  system::Train t = test::train({around, around / 5}, true);
-  for (system::Support& s : t.supports) {
-    s.name = "B" + std::to_string(&s - t.supports.data() + 1);
-    s.geometry = {
-        film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    film::CompliantFinite film;
-    film.compliance = 0.3;
-    film.reference_speed = 377;
-    film.cells = {around, around / 5};
-    s.film = film;
-  }
-  return t;
-}
-
 // The least stable first, one of each pair.
 std::vector<spectral::Complex> least_stable(const std::vector<spectral::Mode>& modes) {
   std::vector<spectral::Complex> out;
@@ -55,7 +40,8 @@ struct Rest {
 };
 
 void row(int around, Rest& last) {
-  auto made = std::make_unique<system::RotorSystem>(PETSC_COMM_WORLD, on_liners(around), 377);
+  auto made =
+      std::make_unique<system::RotorSystem>(PETSC_COMM_WORLD, test::train_on_liners({around, around / 5}, 0.3), 377);
   system::RotorSystem& s = *made;
   core::Vector x = s.guess();
   if (last.system) core::fill(x.get(), s.resampled(*last.system, last.x.data()));

@@ -1,7 +1,9 @@
 #pragma once
 // The whole turbine-generator train as plain data, for tests below the deck.
 
+#include <array>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "support/turbine_train.hpp"
@@ -42,6 +44,23 @@ inline system::Train train(std::array<int, 2> cells, bool guyan) {
     s.mass = {std::stod(row["mass_x_kg"]), std::stod(row["mass_y_kg"])};
     s.stiffness = {std::stod(row["stiffness_x_N_m"]), std::stod(row["stiffness_y_N_m"])};
     s.damping = {std::stod(row["damping_x_N_s_m"]), std::stod(row["damping_y_N_s_m"])};
+  }
+  return t;
+}
+
+/// The reduced train in cylindrical bores of its clearances with liners of the given compliance B at 377 rad/s.
+inline system::Train train_on_liners(std::array<int, 2> cells, double compliance) {
+  system::Train t = train(cells, true);
+  for (std::size_t i = 0; i < t.supports.size(); ++i) {
+    system::Support& s = t.supports[i];
+    s.name = "B" + std::to_string(i + 1);
+    s.geometry = {
+        film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
+    film::CompliantFinite film;
+    film.compliance = compliance;
+    film.reference_speed = 377;
+    film.cells = cells;
+    s.film = film;
   }
   return t;
 }

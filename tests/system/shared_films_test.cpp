@@ -18,22 +18,6 @@ using core::check;
 
 namespace {
 
-// The reduced train in cylindrical bores of its clearances with soft liners.
-system::Train on_liners() {
-  system::Train t = test::train({12, 5}, true);
-  for (system::Support& s : t.supports) {
-    s.name = "B" + std::to_string(&s - t.supports.data() + 1);
-    s.geometry = {
-        film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    film::CompliantFinite film;
-    film.compliance = 0.05;
-    film.reference_speed = 377;
-    film.cells = {12, 5};
-    s.film = film;
-  }
-  return t;
-}
-
 // Makes of a film on rigid pads one that holds its content.
 void hold_content(film::Options& options) {
   auto& film = film::as<film::Reynolds>(options);
@@ -75,7 +59,8 @@ std::vector<double> residual_of(system::RotorSystem& s) {
 }
 
 // Heights of the journals above their bearings [m] at rest, and how many iterations of GMRES the solution took.
-std::vector<double> heights(MPI_Comm comm, int* iterations = nullptr, const system::Train& train = on_liners()) {
+std::vector<double> heights(MPI_Comm comm, int* iterations = nullptr,
+                            const system::Train& train = test::train_on_liners({12, 5}, 0.05)) {
   system::RotorSystem s(comm, train, 377);
   core::Vector x = s.guess();
   solve::NewtonOptions newton;
@@ -91,7 +76,7 @@ std::vector<double> heights(MPI_Comm comm, int* iterations = nullptr, const syst
 }  // namespace
 
 TEST(SharedFilms, EveryRankHoldsItsShare) {
-  system::RotorSystem s(MPI_COMM_WORLD, on_liners(), 377);
+  system::RotorSystem s(MPI_COMM_WORLD, test::train_on_liners({12, 5}, 0.05), 377);
   const auto fields = s.fields();
   ASSERT_EQ(fields.size(), 6U);
   EXPECT_EQ(fields.front().name, "machine");
@@ -129,7 +114,7 @@ TEST(SharedFilms, OnPadsAreSharedToo) {
 class SharedFilmsOf : public ::testing::TestWithParam<bool> {};
 
 TEST_P(SharedFilmsOf, HaveTheEquationsOfOneRank) {
-  const system::Train train = GetParam() ? on_content() : on_liners();
+  const system::Train train = GetParam() ? on_content() : test::train_on_liners({12, 5}, 0.05);
   system::RotorSystem shared(MPI_COMM_WORLD, train, 377), whole(MPI_COMM_SELF, train, 377);
   const std::vector<double> a = residual_of(shared), b = residual_of(whole);
   ASSERT_EQ(a.size(), b.size());
@@ -149,7 +134,7 @@ TEST_P(SharedFilmsOf, HaveTheEquationsOfOneRank) {
 
 // The Jacobian of shares is that of one rank, entry by entry.
 TEST_P(SharedFilmsOf, HaveTheJacobianOfOneRank) {
-  const system::Train train = GetParam() ? on_content() : on_liners();
+  const system::Train train = GetParam() ? on_content() : test::train_on_liners({12, 5}, 0.05);
   system::RotorSystem shared(MPI_COMM_WORLD, train, 377), whole(MPI_COMM_SELF, train, 377);
   const auto product = [](system::RotorSystem& s) {
     core::Vector x = state_of(s), rest = core::duplicate(x.get()), v = core::duplicate(x.get()),
@@ -200,7 +185,7 @@ TEST(SharedFilms, OnPadsCarryTheSameEquilibrium) {
 // Of any rotor in several films: the equations that the system solves by the films' own preconditioners are those of
 // its Jacobian, on any number of ranks and with a preconditioner of another point.
 TEST(SharedFilms, FrozenEquationsAreTheJacobian) {
-  system::Train train = on_liners();
+  system::Train train = test::train_on_liners({12, 5}, 0.05);
   film::as<film::Compliant>(train.supports[3].film).liner_damping = 1e-4;
   system::RotorSystem s(MPI_COMM_WORLD, train, 377);
   core::Vector x = state_of(s), rest = core::duplicate(x.get()), scale = core::duplicate(x.get()),

@@ -68,22 +68,6 @@ system::Train content() {
   return t;
 }
 
-// The reduced train in cylindrical bores of its clearances with soft liners.
-system::Train on_liners() {
-  system::Train t = test::train({12, 5}, true);
-  for (system::Support& s : t.supports) {
-    s.name = "B" + std::to_string(&s - t.supports.data() + 1);
-    s.geometry = {
-        film::Geometry::Bore::cylindrical, s.geometry.radius, s.geometry.length, s.geometry.clearance, 0, 0, 0};
-    film::CompliantFinite film;
-    film.compliance = 0.05;
-    film.reference_speed = 377;
-    film.cells = {12, 5};
-    s.film = film;
-  }
-  return t;
-}
-
 core::Vector rest(system::RotorSystem& s) {
   core::Vector x = system::static_guess(s);
   solve::NewtonOptions o;
@@ -142,7 +126,8 @@ void expect_the_whole_pencils(system::RotorSystem& s, const solve::TransferOptio
 
 // From the motion of the journal to minus the force on it, with what a film does at constant states.
 TEST(TransferFunction, HoldsTheCoefficientsOfItsFilms) {
-  for (const auto& train : {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), on_liners()}) {
+  for (const auto& train :
+       {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), test::train_on_liners({12, 5}, 0.05)}) {
     system::RotorSystem s(MPI_COMM_WORLD, train, train.supports.size() > 1 ? 377 : 2 * scale);
     const core::Vector x = rest(s);
     solve::TransferFunction transfer(s);
@@ -202,10 +187,11 @@ TEST(TransferModes, OfAFilmThatHoldsItsContentAreThoseOfTheWholePencil) {
 }
 
 TEST(TransferModes, OfTheTrainOnFiveLinersAreThoseOfTheWholePencil) {
-  expect_in(on_liners(), 377, {{400, 100, 4}});
+  expect_in(test::train_on_liners({12, 5}, 0.05), 377, {{400, 100, 4}});
   // Many eigenvalues, the second time with a search that begins anew on smaller circles: one rank decides all of it,
   // and others that wait would take as long again.
-  if (core::size_of(MPI_COMM_WORLD) == 1) expect_in(on_liners(), 377, {{1000, 500, 8}, {2000, 1000, 10}});
+  if (core::size_of(MPI_COMM_WORLD) == 1)
+    expect_in(test::train_on_liners({12, 5}, 0.05), 377, {{1000, 500, 8}, {2000, 1000, 10}});
 }
 
 // Each place of a damped liner has an eigenvalue of its own near -1/tau that the journal hardly sees. They are all

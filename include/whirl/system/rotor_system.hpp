@@ -142,6 +142,7 @@ private:
   };
   class Blocks;
   class FilmSolver;
+  struct Settling;
   /// The systems at p - step and p + step, for the difference quotient dF/dp.
   struct Neighbours {
     std::unique_ptr<RotorSystem> minus, plus;
@@ -160,9 +161,9 @@ private:
   /// `own` and `rates` are what this rank's films see, as gathered; no rates are zero rates.
   [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, std::span<const double> own,
                                std::span<const double> rates, film::Need need);
-  /// Gives the films that `which` names the own states at which they rest, from the present ones while the journals
-  /// move, or from those of unloaded films under still journals. Collective.
-  void relax(Vec x, const std::function<bool(const FilmPart&)>& which, bool from_present);
+  /// settle() on several ranks, and what it works with. Collective.
+  void settle_together(Vec x);
+  [[nodiscard]] Settling& settling();
   void sum_over_ranks(std::vector<film::Response>& films) const;
   /// Factors of the cosine and the sine parts of the unbalance at a shaft angle [1/s^2].
   [[nodiscard]] std::array<double, 2> unbalance_factors(double angle) const;
@@ -196,6 +197,7 @@ private:
   core::Vector inputs_;
   std::unique_ptr<Blocks> blocks_;
   Neighbours neighbours_;
+  std::unique_ptr<Settling> settling_;  // made when first wanted
   std::unique_ptr<FilmSolver> film_solver_;
   bool film_solver_tried_ = false;
 };

@@ -3,6 +3,7 @@
 #include <petscksp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "solve/newton/real_form.hpp"
@@ -270,6 +271,12 @@ TransferFunction::Sparse TransferFunction::matrix(Complex lambda, const Blocks& 
   Sparse out(hub_, hub_);
   out.setFromTriplets(entries.begin(), entries.end());
   return out;
+}
+
+double TransferFunction::magnitude(Complex lambda, const Blocks& parts) const {
+  double h = 0;
+  for (const Block& b : parts) h += b.value.squaredNorm();
+  return a_hub_.norm() + std::abs(lambda) * b_hub_.norm() + std::sqrt(h);
 }
 
 // The part adds -H to the hub's derivatives.

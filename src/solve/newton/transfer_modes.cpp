@@ -20,8 +20,8 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 
-// What a real part may owe to the solves, relative to the eigenvalue.
-constexpr double accuracy = 1e-11;
+// Tolerance of the films' own eigenvalues, relative.
+constexpr double pole_accuracy = 1e-10;
 
 // Whether `z` is one of these or a combination.
 bool in_span(const std::vector<VectorXcd>& found, const VectorXcd& z) {
@@ -33,12 +33,12 @@ bool in_span(const std::vector<VectorXcd>& found, const VectorXcd& z) {
 }
 
 // As of spectral::modes: SI, the largest entry of the scaled vector one.
-spectral::Mode mode_of(Complex lambda, std::vector<Complex> state, const std::vector<double>& scale) {
+spectral::Mode mode_of(Complex lambda, double rounding, std::vector<Complex> state, const std::vector<double>& scale) {
   Complex largest = 0;
   for (const Complex& v : state)
     if (std::abs(v) > std::abs(largest)) largest = v;
   for (std::size_t k = 0; k < state.size(); ++k) state[k] *= scale[k] / largest;
-  return {lambda, std::move(state), accuracy * std::abs(lambda)};
+  return {lambda, std::move(state), rounding};
 }
 
 }  // namespace
@@ -60,8 +60,9 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
         if (ellipse.level(pole.value) > 1) continue;
         ++out.poles;
         if (!pole.silent || pole.value.imag() < 0) continue;
-        out.modes.push_back(options.shapes ? mode_of(pole.value, machine.state(i, pole.shape), scale)
-                                           : spectral::Mode{pole.value, {}, accuracy * std::abs(pole.value)});
+        const double rounding = pole_accuracy * std::abs(pole.value);
+        out.modes.push_back(options.shapes ? mode_of(pole.value, rounding, machine.state(i, pole.shape), scale)
+                                           : spectral::Mode{pole.value, {}, rounding});
       }
     } catch (const core::NotConverged& e) {
       out.doubt = e.what();
@@ -130,13 +131,13 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
         if (r.lambda.imag() < 0 || !is_new(roots, r)) continue;
         found += number(r.lambda);
         if (!options.shapes) {
-          modes.push_back({r.lambda, {}, accuracy * std::abs(r.lambda)});
+          modes.push_back({r.lambda, {}, r.rounding});
           continue;
         }
         order = {0, 0, ahead->real(), ahead->imag(), 0, 1};
         motion = r.motion;
         together();
-        modes.push_back(mode_of(r.lambda, state, scale));
+        modes.push_back(mode_of(r.lambda, r.rounding, state, scale));
       }
     };
     if (wanted > 0)

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <Eigen/SparseLU>
+#include <limits>
 
 namespace whirl::solve {
 
@@ -212,6 +213,17 @@ std::optional<Complex> TransferSearch::step(const Sparse& t, const Sparse& slope
   return d;
 }
 
+double TransferSearch::rounding(const Sparse& t, const Sparse& slope, const VectorXcd& z, double magnitude) {
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  // One solve with a nearly singular matrix turns anything into its left null vector.
+  const Factors factors(Sparse(t.adjoint()));
+  if (!factors.regular()) return eps * magnitude;
+  VectorXcd y(z.size());
+  for (Index i = 0; i < y.size(); ++i) y(i) = std::polar(1.0, 1.7 * static_cast<double>(i * (i % 5 + 1)));
+  y = factors.solve(y);
+  return eps * magnitude * y.norm() * z.norm() / std::abs(y.dot(slope * z));
+}
+
 bool TransferSearch::refine_on_fit(Root& root) const {
   for (int k = 0; k < 30; ++k) {
     const auto d = step(fitted(root.lambda, false), fitted(root.lambda, true), root.motion);
@@ -226,11 +238,15 @@ bool TransferSearch::refine_on_fit(Root& root) const {
 std::optional<Complex> TransferSearch::refine(Root& root) {
   for (int k = 0; k < 8; ++k) {
     const Blocks h = solve_(root.lambda, true);
-    const auto d = step(machine_.matrix(root.lambda, h, false), machine_.matrix(root.lambda, h, true), root.motion);
+    const Sparse t = machine_.matrix(root.lambda, h, false), slope = machine_.matrix(root.lambda, h, true);
+    const double magnitude = machine_.magnitude(root.lambda, h);
+    const auto d = step(t, slope, root.motion);
     if (!d || std::abs(*d) > 0.1 * ellipse_.size()) return std::nullopt;
     root.lambda += *d;
     // The next step would be the square of this one.
-    if (std::abs(*d) <= 1e-8 * std::max(std::abs(root.lambda), 1e-3 * ellipse_.size())) return d;
+    if (std::abs(*d) > 1e-8 * std::max(std::abs(root.lambda), 1e-3 * ellipse_.size())) continue;
+    root.rounding = rounding(t, slope, root.motion, magnitude);
+    return d;
   }
   return std::nullopt;
 }

@@ -47,10 +47,11 @@ struct Curve {
   [[nodiscard]] double size() const { return std::max(along, across); }
 };
 
-/// An eigenvalue [1/s] and the motion of the hub, scaled.
+/// An eigenvalue [1/s], the motion of the hub, scaled, and what rounding may have done to the eigenvalue [1/s].
 struct Root {
   std::complex<double> lambda;
   Eigen::VectorXcd motion;
+  double rounding = 0;
 };
 
 /// What one rank decides; `solve` asks all ranks for H, and its slope if it is wanted. Both references have to live on.
@@ -70,7 +71,9 @@ public:
   [[nodiscard]] std::vector<Root> candidates(const Curve& curve, int points, int wanted) const;
   /// Newton's method with the fit, and with the machine.
   [[nodiscard]] bool refine_on_fit(Root& root) const;
-  /// The last step is added to `root` and returned: the solve was made where it began.
+  /// The last step is added to `root` and returned: the solve was made where it began. Rounding is eps (|A| + |lambda
+  /// B|
+  /// + |H|) |y| |z|/|y* T' z| with the left vector y, Frobenius norms (Stewart and Sun 1990, sec. VI.2, of T).
   [[nodiscard]] std::optional<Complex> refine(Root& root);
 
 private:
@@ -82,6 +85,8 @@ private:
   /// One step of Newton's method for (lambda, z) with z scaled by its own direction.
   [[nodiscard]] static std::optional<Complex> step(const TransferFunction::Sparse& t,
                                                    const TransferFunction::Sparse& slope, Eigen::VectorXcd& z);
+  [[nodiscard]] static double rounding(const TransferFunction::Sparse& t, const TransferFunction::Sparse& slope,
+                                       const Eigen::VectorXcd& z, double magnitude);
   [[nodiscard]] std::optional<double> turn(double from, double angle_from, double to, double angle_to, int depth) const;
 
   const TransferFunction& machine_;

@@ -59,6 +59,8 @@ public:
   [[nodiscard]] Blocks evaluate(Complex lambda, bool slopes);
   /// T(lambda), or with `slope` dT/dlambda, from what evaluate() gave there [hub x hub]. Not collective.
   [[nodiscard]] Sparse matrix(Complex lambda, const Blocks& parts, bool slope) const;
+  /// |A| + |lambda| |B| + |H| in the norm of Frobenius, of what T(lambda) is made of. Not collective.
+  [[nodiscard]] double magnitude(Complex lambda, const Blocks& parts) const;
   /// What part i does at lambda to rows `forces` of the hub where its states `positions` move with rates `rates`, in
   /// SI: dF/d(position) + lambda dF/d(rate) [forces x positions], from what evaluate() gave there. Not collective.
   [[nodiscard]] Eigen::MatrixXcd from_motion(std::size_t i, const Block& part, Complex lambda,
