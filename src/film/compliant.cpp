@@ -254,10 +254,10 @@ void CompliantFilm::evaluate(const Motion& motion, const Share& share, std::span
 }
 
 Made make(const Geometry& geometry, const CompliantShort& options, const Lubricant& lubricant) {
-  return std::make_unique<CompliantFilm>(geometry, options, false, lubricant);
+  return used(options, std::make_unique<CompliantFilm>(geometry, options, false, lubricant));
 }
 Made make(const Geometry& geometry, const CompliantLong& options, const Lubricant& lubricant) {
-  return std::make_unique<CompliantFilm>(geometry, options, true, lubricant);
+  return used(options, std::make_unique<CompliantFilm>(geometry, options, true, lubricant));
 }
 
 }  // namespace whirl::film

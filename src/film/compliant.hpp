@@ -70,6 +70,12 @@ private:
   std::vector<Weights> full_;
 };
 
+/// The film as its option `states` says.
+[[nodiscard]] inline Made used(const Compliant& options, std::unique_ptr<StateModel> film) {
+  if (options.states == States::condensed) return condense(std::move(film));
+  return film;
+}
+
 /// What all compliant films are made of.
 class CompliantModel : public StateModel {
 public:
@@ -84,6 +90,8 @@ public:
     static constexpr std::array<Port, 2> aligned = {Port::x, Port::y};
     return aligned;
   }
+  /// The thickness over a liner whose deflection stays.
+  [[nodiscard]] PortColumns carried_rates() const final;
   [[nodiscard]] double least_thickness(const Motion& /*motion*/, std::span<const double> states) const final {
     return *std::min_element(states.begin(), states.end());
   }

@@ -100,6 +100,21 @@ std::vector<double> CompliantModel::settled_rates(const Motion& motion, std::spa
   return rates;
 }
 
+// unloaded() gives the thickness over a liner without deflection, which is linear in the place of the journal.
+PortColumns CompliantModel::carried_rates() const {
+  PortColumns out;
+  std::vector<double> centred(states());
+  unloaded({}, centred);
+  for (std::size_t port = 0; port < ports().size(); ++port) {
+    Motion moved;
+    moved.position[port] = g_.clearance;
+    std::vector<double>& column = out.emplace_back(states());
+    unloaded(moved, column);
+    for (std::size_t k = 0; k < column.size(); ++k) column[k] = (column[k] - centred[k]) / g_.clearance;
+  }
+  return out;
+}
+
 void CompliantModel::resize(const Share& share, Need need, StateResponse& response) const {
   const bool tangents = need == Need::tangents;
   const auto rows = static_cast<std::size_t>(share.rows()), n = tangents ? rows : 0, k = ports().size();

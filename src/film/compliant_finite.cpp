@@ -315,7 +315,7 @@ void FiniteFilm::evaluate(const Motion& motion, const Share& share, std::span<co
 }
 
 Made make(const Geometry& geometry, const CompliantFinite& options, const Lubricant& lubricant) {
-  return std::make_unique<FiniteFilm>(geometry, options, lubricant);
+  return used(options, std::make_unique<FiniteFilm>(geometry, options, lubricant));
 }
 
 }  // namespace whirl::film

@@ -48,6 +48,9 @@ void describe(deck::Description<Contact>& d) {
 void describe(deck::Description<Compliant>& d) {
   d.add("cells", &Compliant::cells, deck::in(4, 2000),
         "intervals around and along the bearing; of a short or long film around only");
+  d.add("states", &Compliant::states,
+        "own states; dynamic unless given. Condensed: the deflection of the liner is that of the pressure and does not "
+        "change as the journal moves");
   d.add("liner", &Compliant::liner, "elastic layer of the bore");
   d.add("compliance", &Compliant::compliance, "1", positive,
         "B = 6 mu Omega_0 U R^2/(p c^3), instead of a liner: its deflection U under pressure p", "000 eq. 4.23")
@@ -68,6 +71,8 @@ void describe(deck::Description<Compliant>& d) {
   d.check([](const Compliant& o, const deck::Report& r) {
     for (const Groove& g : o.grooves)
       if (g.pressure != 0) r.fail("grooves", "only grooves of films with cavitation mass_conserving have a pressure");
+    if (o.states == States::condensed && o.liner_damping > 0)
+      r.fail("liner_damping", "only a film with dynamic states knows how fast its liner gives way");
     if (o.liner.has_value() == o.compliance.has_value())
       r.fail("", "a compliant film has either a 'liner' or a 'compliance'");
     if (o.compliance && !(o.reference_speed > 0))
@@ -101,10 +106,11 @@ namespace {
 // Those of a film with a mesh around the bearing alone.
 Facts facts_around(const Compliant& options) {
   Facts f;
-  f.gives_way = f.own_states = true;
+  f.gives_way = true;
+  f.own_states = options.states == States::dynamic;
   f.asperities = options.contact.has_value();
-  f.force_by_rates = options.liner_damping > 0;
-  f.states = options.cells[0];
+  f.force_by_rates = f.own_states && options.liner_damping > 0;
+  f.states = f.own_states ? options.cells[0] : 0;
   f.cells = {options.cells[0], 0};
   f.mesh_order = options.differences == Compliant::Differences::upwind ? 1 : 2;
   f.smoothness =

@@ -196,41 +196,6 @@ Impedance impedance(ClosedForm kind, double ld, const Pair& e, const Pair& v) {
   return out;
 }
 
-// The force is F* = d_squeeze(v) v, and Newton's step on it leads to d_squeeze(v)^-1 F*; shortened while the residual
-// grows. Only the harmonic sums, which are not monotone in v, ever need another start than v = -F*.
-Pair squeeze_under(ClosedForm kind, double ld, const Pair& e, const Pair& force) {
-  require_inside(e);
-  const double size = std::hypot(force[0], force[1]);
-  if (size == 0.0) return {0.0, 0.0};
-  const auto missing = [&](const Impedance& at) {
-    return std::hypot(at.force[0] - force[0], at.force[1] - force[1]) / size;
-  };
-  constexpr int kStarts = 12;
-  for (int start = 0; start < kStarts; ++start) {
-    const double turn = 2.0 * std::numbers::pi * start / kStarts, c = std::cos(turn), s = std::sin(turn);
-    Pair v = {-c * force[0] + s * force[1], -s * force[0] - c * force[1]};
-    Impedance at = impedance(kind, ld, e, v);
-    bool shrinks = true;
-    for (int k = 0; k < 100 && missing(at) > 1e-15 && shrinks; ++k) {
-      const auto& m = at.d_squeeze;
-      const double det = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-      const Pair full = {(m[1][1] * force[0] - m[0][1] * force[1]) / det,
-                         (m[0][0] * force[1] - m[1][0] * force[0]) / det};
-      shrinks = false;
-      for (double step = 1.0; step > 1e-6 && !shrinks; step *= 0.5) {
-        const Pair next = {v[0] + step * (full[0] - v[0]), v[1] + step * (full[1] - v[1])};
-        const Impedance there = impedance(kind, ld, e, next);
-        if (missing(there) >= missing(at)) continue;
-        shrinks = true;
-        v = next;
-        at = there;
-      }
-    }
-    if (missing(at) < 1e-10) return v;
-  }
-  throw core::DomainError("no squeeze velocity found that gives this film force");
-}
-
 double mid_pressure(ClosedForm kind, double ld, const Pair& e, const Pair& v, double theta) {
   require_inside(e);
   const auto h = [&](double at) { return 1.0 - e[0] * std::cos(at) - e[1] * std::sin(at); };

@@ -25,7 +25,7 @@ public:
   }
   Summary summary(const Motion&) override { return {.min_thickness = std::numeric_limits<double>::infinity()}; }
   std::vector<Field> fields(const Motion&) override { return {}; }
-  [[nodiscard]] bool linear() const override { return true; }
+  [[nodiscard]] double least_thickness(const Motion&) override { return std::numeric_limits<double>::infinity(); }
 
 private:
   std::array<double, 4> stiffness_, damping_;

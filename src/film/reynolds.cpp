@@ -42,7 +42,7 @@ void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
 class ReynoldsFilm final : public Model {
 public:
   ReynoldsFilm(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant)
-      : options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
+      : geometry_(geometry), options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
     const bool modal = !options.tilt && (options.cavitation == Reynolds::Cavitation::half_sommerfeld ||
                                          options.cavitation == Reynolds::Cavitation::none);
     for (const Pad& pad : pads_) {
@@ -70,6 +70,12 @@ public:
     return fields_of(pads_, options_, seen(motion), turn, reports(motion));
   }
 
+  [[nodiscard]] double least_thickness(const Motion& motion) override {
+    std::array<double, 4> position = motion.position;
+    if (!options_.tilt) position[2] = position[3] = 0.0;
+    return minimum_thickness(geometry_, position);
+  }
+
 private:
   [[nodiscard]] bool turns() const { return options_.inlet.type == Inlet::Type::maximum_gap; }
   // The motion seen by the pads.
@@ -84,6 +90,7 @@ private:
     return out;
   }
 
+  Geometry geometry_;
   Reynolds options_;
   Lubricant lubricant_;
   std::vector<Pad> pads_;
@@ -106,15 +113,6 @@ std::span<const deck::Name<Reynolds::Cavitation>> names(Reynolds::Cavitation) {
        "edges of pads, grooves and inlets. Loads, stiffness and flows are exact; damping is that of a cavity that "
        "neither fills nor empties, unless 'states' are dynamic"},
       {Reynolds::Cavitation::none, "none", "negative pressure stays"}};
-  return table;
-}
-
-std::span<const deck::Name<Reynolds::States>> names(Reynolds::States) {
-  static constexpr deck::Name<Reynolds::States> table[] = {
-      {Reynolds::States::condensed, "condensed", "none: what the cavity holds does not change as the journal moves"},
-      {Reynolds::States::dynamic, "dynamic",
-       "what the gap holds beyond or short of its volume, at every node: the cavity fills and empties in time, and the "
-       "oil is compressible"}};
   return table;
 }
 

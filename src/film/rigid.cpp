@@ -42,6 +42,9 @@ public:
 
   Summary summary(const Motion& motion) override;
   std::vector<Field> fields(const Motion& motion) override;
+  [[nodiscard]] double least_thickness(const Motion& motion) override {
+    return g_.clearance - std::hypot(motion.position[0], motion.position[1]);
+  }
 
 private:
   struct State {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "film/steady.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -25,10 +26,6 @@ Sparse<Scalar> matrix(const Share& all, const StateResponse& r, Scalar sigma) {
   return m;
 }
 
-double norm(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())).norm();
-}
-
 }  // namespace
 
 const Share& StateModel::whole() const {
@@ -44,37 +41,9 @@ void StateModel::evaluate(const Motion& motion, std::span<const double> states, 
   evaluate(motion, all, seen_of(all, states), seen_of(all, rates), need, response);
 }
 
-// Converged by the step and not by the residual, whose rounding error grows with the square of the mesh.
 void relax(StateModel& film, const Motion& motion, std::vector<double>& states) {
   const std::vector<double> rest(states.size(), 0.0);
-  StateResponse here, there;
-  film.evaluate(motion, states, rest, Need::tangents, here);
-  const auto n = static_cast<Eigen::Index>(states.size());
-  Eigen::VectorXd scale(n);
-  for (const StateField& f : film.state_fields()) scale.segment(f.begin, f.end - f.begin).setConstant(f.scale);
-  const double enough = 1e-10 * std::sqrt(static_cast<double>(n));
-  for (int iteration = 0; iteration < 60; ++iteration) {
-    Eigen::SparseLU<Sparse<double>> lu(matrix(film.whole(), here, 0.0));
-    if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
-    const Eigen::VectorXd step = lu.solve(Eigen::Map<const Eigen::VectorXd>(here.residual.data(), n));
-    const bool last = step.cwiseQuotient(scale).norm() <= enough;
-    for (double damping = 1.0;; damping *= 0.5) {
-      if (damping < 1e-6) throw core::NotConverged("the film by itself did not relax");
-      std::vector<double> trial = states;
-      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] -= damping * step[static_cast<Eigen::Index>(k)];
-      try {
-        film.evaluate(motion, trial, rest, Need::tangents, there);
-      } catch (const core::DomainError&) {
-        continue;
-      }
-      if (!last && !film.whole_steps() && norm(there.residual) > (1.0 - 1e-4 * damping) * norm(here.residual)) continue;
-      states = std::move(trial);
-      std::swap(here, there);
-      break;
-    }
-    if (last) return;
-  }
-  throw core::NotConverged("the film by itself did not relax");
+  Steady(film).solve(motion, rest, Steady::Until::small_step, states);
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.

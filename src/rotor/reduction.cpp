@@ -59,17 +59,24 @@ core::Matrix distribute(const Eigen::MatrixXd& a, MPI_Comm comm) {
 
 }  // namespace
 
+std::vector<int> planar_masters(const Reduction& reduction) {
+  std::vector<int> out;
+  for (const int node : reduction.masters) out.push_back(2 * (node - 1));
+  for (const int node : reduction.slopes) out.push_back(2 * (node - 1) + 1);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
 PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
   const Mat k = planar.stiffness.get();
   const MPI_Comm comm = comm_of(k);
-  std::vector<int> masters(reduction.masters);
-  std::sort(masters.begin(), masters.end());
+  const std::vector<int> masters = planar_masters(reduction);
 
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(k, &begin, &end));
   std::vector<PetscInt> m, s;
   for (PetscInt i = begin; i < end; ++i) {
-    const bool master = i % 2 == 0 && std::binary_search(masters.begin(), masters.end(), static_cast<int>(i / 2) + 1);
+    const bool master = std::binary_search(masters.begin(), masters.end(), static_cast<int>(i));
     (master ? m : s).push_back(i);
   }
   const core::IndexSet master_set = make_set(comm, m), slave_set = make_set(comm, s);

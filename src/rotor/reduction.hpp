@@ -2,13 +2,17 @@
 // Guyan and Craig-Bampton bases of one plane.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "planar.hpp"
 #include "whirl/rotor/rotor.hpp"
 
 namespace whirl::rotor {
 
-/// Basis T of one plane, columns: displacement of the masters (ascending), then fixed-interface modes.
+/// Freedoms of a plane that are kept, ascending.
+[[nodiscard]] std::vector<int> planar_masters(const Reduction& reduction);
+
+/// Basis T of one plane, columns: masters (ascending), then fixed-interface modes.
 struct PlanarBasis {
   Eigen::MatrixXd rows;    // this rank's rows of T (2 per owned node)
   Eigen::VectorXd offset;  // this rank's rows of what the exact static shape under `weight` adds to T q

@@ -39,8 +39,7 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
   core::agree(comm, [&] { validate(options); });
   Planar planar = rigid_ ? rigid_planar(comm, options.mass) : assemble_planar(comm, options);
   if (reduced_) {
-    masters_ = options.reduction.masters;
-    std::sort(masters_.begin(), masters_.end());
+    masters_ = planar_masters(options.reduction);
     const PlanarBasis basis = planar_basis(planar, options.reduction);
     quality_ = basis.quality;
     core::Vector offset = core::duplicate(planar.weight.get());
@@ -66,13 +65,22 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
   check(VecGetSize(matrices_.gravity.get(), &size_));
 }
 
-PetscInt Rotor::coordinate(int node, int direction) const {
-  core::require(node >= 1 && node <= n_nodes_ && direction >= 0 && direction < 4, "rotor coordinate out of range");
-  if (rigid_) return direction < 2 ? direction : -1;
-  if (!reduced_) return 4 * (node - 1) + direction;
-  const auto at = std::lower_bound(masters_.begin(), masters_.end(), node);
-  if (direction > 1 || at == masters_.end() || *at != node) return -1;
-  return 2 * static_cast<PetscInt>(at - masters_.begin()) + direction;
+PetscInt Rotor::coordinate(int node, Freedom freedom) const {
+  core::require(node >= 1 && node <= n_nodes_, "a node of the rotor");
+  if (rigid_) return is_slope(freedom) ? -1 : static_cast<PetscInt>(freedom);
+  const int whole = full_coordinate(node, freedom);
+  if (!reduced_) return whole;
+  // A plane has every second freedom.
+  const auto at = std::lower_bound(masters_.begin(), masters_.end(), whole / 2);
+  if (at == masters_.end() || *at != whole / 2) return -1;
+  return 2 * static_cast<PetscInt>(at - masters_.begin()) + whole % 2;
+}
+
+std::optional<Freedom> Rotor::freedom(PetscInt coordinate) const {
+  const auto pair = static_cast<std::size_t>(coordinate / 2);
+  if (reduced_ && pair >= masters_.size()) return std::nullopt;
+  const int planar = reduced_ ? masters_[pair] : static_cast<int>(coordinate / 2);
+  return freedom_at(2 * planar + static_cast<int>(coordinate % 2));
 }
 
 }  // namespace whirl::rotor

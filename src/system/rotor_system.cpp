@@ -234,8 +234,8 @@ std::vector<double> RotorSystem::film_thickness(const double* x) const {
     const Bearing& b = bearings_[i];
     if (b.part)
       out[i] = b.part->film().least_thickness(motion(at[i]), b.part->of(x, n_));
-    else if (!b.film->linear())
-      out[i] = film::minimum_thickness(train_.supports[i].geometry, {at[i].position[0], at[i].position[1], 0, 0});
+    else
+      out[i] = b.film->least_thickness(motion(at[i]));
   }
   return out;
 }

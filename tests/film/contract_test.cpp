@@ -26,6 +26,16 @@ Reynolds options(Reynolds::Cavitation cavitation, Turbulence turbulence, bool ti
   return o;
 }
 
+// On a liner whose deflection is that of the moment.
+template <class Kind>
+Options soft(Kind o, std::array<int, 2> cells) {
+  o.states = States::condensed;
+  o.compliance = 0.1;
+  o.reference_speed = 300.0;
+  o.cells = cells;
+  return o;
+}
+
 std::vector<Case> cases() {
   using C = Reynolds::Cavitation;
   using T = Turbulence;
@@ -88,6 +98,9 @@ std::vector<Case> cases() {
       {"inlet_widest_conserving", cylinder(),
        with_inlet(options(C::mass_conserving, T::constantinescu, false, {60, 16}), widest), shallow, moving},
       {"linear", arc(), linear, shallow, moving},
+      {"soft_short", cylinder(), soft(CompliantShort{}, {50, 4}), shallow, moving},
+      {"soft_long", cylinder(), soft(CompliantLong{}, {50, 4}), shallow, moving},
+      {"soft_finite", cylinder(), soft(CompliantFinite{}, {24, 8}), shallow, moving},
       {"short", cylinder(), Short{}, shallow, moving},
       {"long", cylinder(), Long{}, shallow, moving},
       {"long_inlet", cylinder(), LongInlet{}, shallow, moving},
@@ -160,10 +173,13 @@ TEST_P(Contract, ForceDoesNotDependOnNeedOrHistory) {
 TEST_P(Contract, ThicknessMustBePositive) {
   const Case& c = GetParam();
   auto model = make_model(c.geometry, c.options, oil());
-  if (model->linear()) GTEST_SKIP();
+  if (facts(c.options).coefficients) GTEST_SKIP();
   Response r;
-  EXPECT_THROW(model->evaluate(motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0), Need::force, r),
-               core::DomainError);
+  const Motion beyond = motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0);
+  if (!facts(c.options).gives_way) {
+    EXPECT_THROW(model->evaluate(beyond, Need::force, r), core::DomainError);
+    EXPECT_LT(model->least_thickness(beyond), 0.0);
+  }
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(model->evaluate(motion(c.geometry, {nan, 0.0, 0.0, 0.0}, {}, 377.0), Need::force, r), core::DomainError);
 }
@@ -171,12 +187,14 @@ TEST_P(Contract, ThicknessMustBePositive) {
 TEST_P(Contract, RestWithoutMotionGivesNoForce) {
   const Case& c = GetParam();
   auto model = make_model(c.geometry, c.options, oil());
-  if (model->linear()) GTEST_SKIP();
+  if (facts(c.options).coefficients) GTEST_SKIP();
   if (const Reynolds* reynolds = find<Reynolds>(c.options))
     for (const Groove& g : reynolds->grooves)
       if (g.pressure > 0.0) GTEST_SKIP();  // the oil fed to it carries
   const Response r = evaluate(*model, motion(c.geometry, c.position, {}, 0.0));
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(r.force[i], 0.0);
+  // The pressure on a liner is a small difference of lengths.
+  const double rounding = facts(c.options).gives_way ? 1e-6 : 0.0;
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(r.force[i], 0.0, rounding);
 }
 
 INSTANTIATE_TEST_SUITE_P(Films, Contract, ::testing::ValuesIn(cases()),

@@ -210,19 +210,6 @@ TEST(Impedance, IsRegularAtTheCentreAndAtRest) {
   }
 }
 
-TEST(Impedance, MobilityIsTheInverse) {
-  std::mt19937 g(7);
-  for (const K kind : kAll)
-    for (int n = 0; n < 100; ++n) {
-      const State s = random_state(g, 0.95);
-      const Pair force = impedance(kind, 0.8, s.e, s.v).force;
-      if (std::hypot(force[0], force[1]) < 1e-3) continue;  // an inlet that leaves hardly any film
-      const Pair v = squeeze_under(kind, 0.8, s.e, force);
-      expect_near(impedance(kind, 0.8, s.e, v).force, force, 1e-10);
-      if (kind == K::short_bearing || kind == K::long_bearing) expect_near(v, s.v, 1e-8);
-    }
-}
-
 TEST(Impedance, EccentricityIsBelowOne) {
   for (const K kind : kAll) {
     EXPECT_THROW(impedance(kind, 1, {0.8, -0.61}, {1, 0}), core::DomainError);

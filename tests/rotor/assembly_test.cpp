@@ -47,9 +47,9 @@ TEST(Assembly, FreedomsAreNodeMajor) {
   const rotor::Rotor r(MPI_COMM_WORLD, test::stepped_shaft());
   EXPECT_EQ(r.n_nodes(), 13);
   EXPECT_EQ(r.size(), 52);
-  EXPECT_EQ(r.coordinate(1, 0), 0);
-  EXPECT_EQ(r.coordinate(3, 2), 10);
-  EXPECT_EQ(r.coordinate(13, 3), 51);
+  EXPECT_EQ(r.coordinate(1, rotor::Freedom::x), 0);
+  EXPECT_EQ(r.coordinate(3, rotor::Freedom::slope_x), 10);
+  EXPECT_EQ(r.coordinate(13, rotor::Freedom::slope_y), 51);
   EXPECT_FALSE(r.matrices().basis);
   PetscInt begin = 0, end = 0;
   core::check(MatGetOwnershipRange(r.matrices().mass.get(), &begin, &end));
@@ -64,9 +64,9 @@ TEST(Assembly, RigidMotionsCostNothingAndCarryMassInertiaAndSpin) {
   const auto z = rotor::node_positions(o);
   VectorXd x = VectorXd::Zero(r.size()), y = x, tilt_x = x, tilt_y = x;
   for (int node = 1; node <= r.n_nodes(); ++node) {
-    x(r.coordinate(node, 0)) = y(r.coordinate(node, 1)) = 1;
-    tilt_x(r.coordinate(node, 0)) = tilt_y(r.coordinate(node, 1)) = z[static_cast<std::size_t>(node - 1)];
-    tilt_x(r.coordinate(node, 2)) = tilt_y(r.coordinate(node, 3)) = 1;
+    x(r.coordinate(node, rotor::Freedom::x)) = y(r.coordinate(node, rotor::Freedom::y)) = 1;
+    tilt_x(r.coordinate(node, rotor::Freedom::x)) = tilt_y(r.coordinate(node, rotor::Freedom::y)) = z[static_cast<std::size_t>(node - 1)];
+    tilt_x(r.coordinate(node, rotor::Freedom::slope_x)) = tilt_y(r.coordinate(node, rotor::Freedom::slope_y)) = 1;
   }
   for (const VectorXd& v : {x, y, tilt_x, tilt_y}) EXPECT_LT((a.k * v).norm(), 1e-13 * a.k.norm());
   const double mass = rotor::total_mass(o);

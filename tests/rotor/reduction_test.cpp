@@ -4,11 +4,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 
 #include "rotor/shafts.hpp"
 #include "support/dense.hpp"
 #include "support/turbine_train.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/rotor/rotor.hpp"
 
 using namespace whirl;
@@ -18,6 +20,8 @@ using Eigen::VectorXd;
 using Type = rotor::Reduction::Type;
 
 namespace {
+
+constexpr std::array translations{rotor::Freedom::x, rotor::Freedom::y};
 
 rotor::Options reduced(rotor::Options o, Type type, std::vector<int> masters, int modes = 0) {
   o.reduction = {type, std::move(masters), modes};
@@ -29,7 +33,7 @@ VectorXd frequencies(const rotor::Options& o, const std::vector<test::IsotropicB
   const rotor::Rotor r(MPI_COMM_WORLD, o);
   MatrixXd k = test::dense(r.matrices().stiffness.get());
   for (const auto& b : bearings)
-    for (int d = 0; d < 2; ++d) k(r.coordinate(b.node, d), r.coordinate(b.node, d)) += b.stiffness;
+    for (const auto d : translations) k(r.coordinate(b.node, d), r.coordinate(b.node, d)) += b.stiffness;
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(k, test::dense(r.matrices().mass.get()));
   return solver.eigenvalues().head(count).cwiseMax(0).cwiseSqrt();
 }
@@ -41,20 +45,56 @@ const std::vector<test::IsotropicBearing> train_bearings{{6, 2e8}, {49, 5e8}, {9
 TEST(Reduction, CoordinatesAreThePairsOfTheMastersInOrder) {
   const rotor::Rotor r(MPI_COMM_WORLD, reduced(test::stepped_shaft(), Type::craig_bampton, {9, 2, 12}, 2));
   EXPECT_EQ(r.size(), 2 * (3 + 2));
-  EXPECT_EQ(r.coordinate(2, 0), 0);
-  EXPECT_EQ(r.coordinate(9, 1), 3);
-  EXPECT_EQ(r.coordinate(12, 0), 4);
-  EXPECT_EQ(r.coordinate(9, 2), -1);
-  EXPECT_EQ(r.coordinate(5, 0), -1);
+  EXPECT_EQ(r.coordinate(2, rotor::Freedom::x), 0);
+  EXPECT_EQ(r.coordinate(9, rotor::Freedom::y), 3);
+  EXPECT_EQ(r.coordinate(12, rotor::Freedom::x), 4);
+  EXPECT_EQ(r.coordinate(9, rotor::Freedom::slope_x), -1);
+  EXPECT_EQ(r.coordinate(5, rotor::Freedom::x), -1);
   const MatrixXd t = test::dense(r.matrices().basis.get());
   ASSERT_EQ(t.rows(), 52);
   ASSERT_EQ(t.cols(), 10);
   for (int node : {2, 9, 12})
-    for (int d = 0; d < 2; ++d) {
+    for (const auto d : translations) {
       VectorXd unit = VectorXd::Zero(10);
       unit(r.coordinate(node, d)) = 1;
-      EXPECT_EQ((t.row(4 * (node - 1) + d).transpose() - unit).norm(), 0);
+      EXPECT_EQ((t.row(rotor::full_coordinate(node, d)).transpose() - unit).norm(), 0);
     }
+}
+
+// Slopes that are kept follow the translations of their node; T gives them back as they are, and under gravity the
+// exact shape has none of what slaves lose.
+TEST(Reduction, SlopesOfSomeMastersAreKept) {
+  for (const Type type : {Type::guyan, Type::craig_bampton}) {
+    rotor::Options o = reduced(test::stepped_shaft(), type, {9, 2, 12}, type == Type::guyan ? 0 : 2);
+    o.reduction.slopes = {12, 2};
+    const rotor::Rotor r(MPI_COMM_WORLD, o);
+    const int masters = 2 * (3 + 2);
+    EXPECT_EQ(r.size(), masters + 2 * o.reduction.modes);
+    using enum rotor::Freedom;
+    EXPECT_EQ(r.coordinate(2, x), 0);
+    EXPECT_EQ(r.coordinate(2, slope_y), 3);
+    EXPECT_EQ(r.coordinate(9, y), 5);
+    EXPECT_EQ(r.coordinate(9, slope_y), -1);
+    EXPECT_EQ(r.coordinate(12, slope_x), 8);
+    const MatrixXd t = test::dense(r.matrices().basis.get());
+    const VectorXd offset = test::dense(r.matrices().offset.get());
+    for (const int node : {2, 12})
+      for (const auto d : {x, y, slope_x, slope_y}) {
+        const PetscInt at = r.coordinate(node, d);
+        ASSERT_EQ(r.freedom(at), d);
+        VectorXd unit = VectorXd::Zero(r.size());
+        unit(at) = 1;
+        EXPECT_EQ((t.row(rotor::full_coordinate(node, d)).transpose() - unit).norm(), 0);
+        EXPECT_EQ(offset(rotor::full_coordinate(node, d)), 0);
+      }
+    EXPECT_GT(offset.norm(), 0);
+    if (o.reduction.modes > 0) {
+      EXPECT_FALSE(r.freedom(masters).has_value());
+    }
+  }
+  rotor::Options wrong = reduced(test::stepped_shaft(), Type::guyan, {2, 12}, 0);
+  wrong.reduction.slopes = {9};
+  EXPECT_THROW(rotor::Rotor(MPI_COMM_WORLD, wrong), core::InputError);
 }
 
 TEST(Reduction, MatricesAreTheProjectionsOfTheFullOnes) {
@@ -90,7 +130,7 @@ TEST(Reduction, StaticShapeUnderGravityIsExact) {
   const auto sag = [&](const rotor::Rotor& r) {
     MatrixXd k = test::dense(r.matrices().stiffness.get());
     for (const auto& b : bearings)
-      for (int d = 0; d < 2; ++d) k(r.coordinate(b.node, d), r.coordinate(b.node, d)) += b.stiffness;
+      for (const auto d : translations) k(r.coordinate(b.node, d), r.coordinate(b.node, d)) += b.stiffness;
     return VectorXd(k.partialPivLu().solve(9.81 * test::dense(r.matrices().gravity.get())));
   };
   const VectorXd exact = sag(rotor::Rotor(MPI_COMM_WORLD, o));

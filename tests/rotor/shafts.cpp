@@ -24,7 +24,7 @@ std::vector<Whirl> whirl_modes(const rotor::Options& options, const std::vector<
   Eigen::MatrixXd k = every_other(dense(r.matrices().stiffness.get()), 0, 0);
   Eigen::MatrixXd c = every_other(dense(r.matrices().damping.get()), 0, 0);
   for (const IsotropicBearing& b : bearings) {
-    const Eigen::Index at = r.coordinate(b.node, 0) / 2;
+    const Eigen::Index at = r.coordinate(b.node, rotor::Freedom::x) / 2;
     k(at, at) += b.stiffness;
     c(at, at) += b.damping;
   }

@@ -35,6 +35,7 @@ struct Contact {
 struct Compliant {
   enum class Quadrature { sub_cell, simpson };
   enum class Differences { central, upwind, third_order };
+  States states = States::dynamic;      // condensed: the liner gives way as the pressure of the moment asks
   std::array<int, 2> cells = {60, 16};  // -, around x along; a short or long film has no mesh along
   std::optional<Liner> liner;
   std::optional<double> compliance;                // -, B

@@ -24,6 +24,10 @@ struct Smoothness {
   [[nodiscard]] bool smooth() const { return derivatives == all; }
 };
 
+/// Whether what a film remembers, the deflection of its liner or what its gap holds, changes in time by equations of
+/// its own (dynamic) or is at every moment what the motion of the journal at that moment makes it (condensed).
+enum class States { condensed, dynamic };
+
 /// Why a film does not go with every bore.
 struct CircleOnly {
   std::string_view option;  // of the film, that wants a whole circle; empty: the film goes with any bore

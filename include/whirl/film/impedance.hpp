@@ -1,5 +1,5 @@
 #pragma once
-// Analytic films of a rigid, full, aligned bearing in impedance and mobility form, in clearances.
+// Analytic films of a rigid, full, aligned bearing in impedance form, in clearances.
 
 #include <array>
 
@@ -24,10 +24,6 @@ struct Impedance {
 /// 1; throws core::DomainError otherwise. Source: van de Vrande (2001) sec. 4.1 and (4.42) with the errata kept by this
 /// project; the closed forms in the axes of v_s are in the room's README.
 Impedance impedance(ClosedForm kind, double length_to_diameter, const Pair& eccentricity, const Pair& squeeze);
-
-/// The inverse of impedance(): v_s at which the film gives `force` (mobility form, Booker 1971). Throws
-/// core::DomainError if |e| >= 1 or if there is none.
-Pair squeeze_under(ClosedForm kind, double length_to_diameter, const Pair& eccentricity, const Pair& force);
 
 /// p* (c/R)^2/(6 mu) in the mid-plane of the bearing at angle theta from +x, in 1/s, zero where it would be negative;
 /// the finite_approximate film has none (core::Bug).

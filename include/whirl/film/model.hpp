@@ -70,8 +70,9 @@ public:
   virtual Summary summary(const Motion& motion) = 0;
   /// Pressure and thickness at the grid nodes of every pad; empty for a linear film; throws as evaluate() does.
   virtual std::vector<Field> fields(const Motion& motion) = 0;
-  /// True if the force is linear in position and velocity and independent of speed.
-  [[nodiscard]] virtual bool linear() const { return false; }
+  /// Least thickness of the film [m] over its whole length, exactly where the bore is rigid: not positive where the
+  /// surfaces touch. Infinite for a linear film. Throws as evaluate() does where the film itself has to be known.
+  [[nodiscard]] virtual double least_thickness(const Motion& motion) = 0;
 };
 
 /// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`

@@ -21,7 +21,7 @@ namespace whirl::film {
 struct Reynolds {
   static constexpr std::string_view key = "reynolds", text = "two-dimensional Reynolds equation, pressure condensed";
   enum class Cavitation { half_sommerfeld, reynolds, mass_conserving, none };
-  enum class States { condensed, dynamic };
+  using States = film::States;
   Cavitation cavitation = Cavitation::half_sommerfeld;
   double edge_fill = 1.0;             // -, part of the gap that is full of oil where it enters a pad (mass_conserving)
   States states = States::condensed;  // of a mass_conserving film: does its cavity fill and empty in time?

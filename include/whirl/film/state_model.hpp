@@ -79,6 +79,9 @@ public:
   /// True if Newton's method on a film by itself is to take whole steps even where the residual rises: a film that is
   /// linear but for the set of its full nodes, of which a whole step finds the next one.
   [[nodiscard]] virtual bool whole_steps() const { return false; }
+  /// Rates of the states per velocity of the journal, [port][state], while nothing changes that the film remembers: the
+  /// deflection of a liner, what a gap holds beyond its volume. Empty if they are zero. They do not depend on anything.
+  [[nodiscard]] virtual PortColumns carried_rates() const { return {}; }
   /// The states of a film that carries nothing, to start from. Throws as evaluate() does.
   virtual void unloaded(const Motion& motion, std::span<double> states) const = 0;
   /// Fills `response` with the rows of a share; `states` and `rates` are those it sees. Derivatives are empty or zero
@@ -115,6 +118,13 @@ std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Opt
 
 /// Own states at which g(motion, s, 0) = 0, by Newton from `states`. Throws core::NotConverged or core::DomainError.
 void relax(StateModel& film, const Motion& motion, std::vector<double>& states);
+
+/// The film without its states: they take the values at which nothing that the film remembers changes, whatever the
+/// motion, g(motion, s, s') = 0 with s' = carried_rates() times the velocity, found by Newton's method from those of the
+/// last motion to a tolerance below which the start does not show. Force, stiffness and flows of a journal at rest are
+/// those of the film with states; damping is that of a film whose memory stands still. Its evaluate() also throws
+/// core::NotConverged. Cost: a sparse LU per Newton step, and one solve for each component of the force.
+[[nodiscard]] std::unique_ptr<Model> condense(std::unique_ptr<StateModel> film);
 
 /// Stiffness K [N/m] and damping C [N s/m] (xx, xy, yx, yy) of a film about equilibrium: K + i omega C is minus the
 /// transfer function from the position to the force, with the own states eliminated at the frequency omega [rad/s].

@@ -1,9 +1,11 @@
 #pragma once
 // The matrices of a rotor, reduced if asked.
 
+#include <optional>
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/rotor/freedom.hpp"
 #include "whirl/rotor/options.hpp"
 
 namespace whirl::rotor {
@@ -31,9 +33,9 @@ struct ReductionQuality {
 
 /// A rotor assembled from beam elements and discs, or one rigid mass (x and y of node 1, owned by the first rank).
 ///
-/// Full coordinates are 4 (node - 1) + direction with directions x, y, dx/dz, dy/dz. Reduced coordinates are the pairs
-/// (x, y) of the master nodes in ascending order of nodes, then pairs of mass-normalised fixed-interface modes in
-/// ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan 1965), with modes Craig & Bampton (1968).
+/// Full coordinates are those of full_coordinate(). Reduced coordinates are the pairs (x, y) of the master nodes in
+/// ascending order of nodes, each followed by the pair (dx/dz, dy/dz) where slopes are masters too, then pairs of
+/// mass-normalised fixed-interface modes in ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan 1965), with modes Craig & Bampton (1968).
 /// Construction is collective on `comm`; throws core::InputError on all ranks together.
 class Rotor {
 public:
@@ -43,9 +45,11 @@ public:
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
   [[nodiscard]] int n_nodes() const noexcept { return n_nodes_; }
-  /// Index of the coordinate that is the displacement of `node` (1-based) in `direction` (0: x, 1: y, 2: dx/dz,
-  /// 3: dy/dz); -1 if it is not retained. Not collective; the same on all ranks.
-  [[nodiscard]] PetscInt coordinate(int node, int direction) const;
+  /// Index of the coordinate that is a freedom of `node` (1-based); -1 if it is not retained. Not collective; the same
+  /// on all ranks.
+  [[nodiscard]] PetscInt coordinate(int node, Freedom freedom) const;
+  /// The freedom of a node that a coordinate is; empty of a mode.
+  [[nodiscard]] std::optional<Freedom> freedom(PetscInt coordinate) const;
   [[nodiscard]] const ReductionQuality& quality() const noexcept { return quality_; }
 
 private:
@@ -53,7 +57,7 @@ private:
   PetscInt size_ = 0;
   int n_nodes_ = 0;
   bool rigid_ = false, reduced_ = false;
-  std::vector<int> masters_;  // ascending
+  std::vector<int> masters_;  // freedoms of a plane, ascending
   ReductionQuality quality_;
 };
 

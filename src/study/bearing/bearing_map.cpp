@@ -45,7 +45,7 @@ public:
     BearingEquilibrium last = bearing_.centred();
     for (int i = 1; i <= options_.points; ++i) {
       const auto e = bearing_.carrying(options_.max_eccentricity * i / options_.points, last);
-      if (!e && bearing_.has_states()) break;
+      if (!e && !bearing_.rigid()) break;
       if (!e) continue;
       locus.push_back(complete(*e));
       last = *e;
@@ -78,10 +78,10 @@ public:
     }
   }
 
-  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A film
-  // with own states is another one at every speed: its thresholds belong to branches of equilibria.
+  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft film
+  // or one with own states is another one at every speed: its thresholds belong to branches of equilibria.
   void find_threshold(const std::optional<system::Groups>& groups) {
-    if (!groups || bearing_.has_states()) return;
+    if (!groups || !bearing_.rigid()) return;
     const auto found = find([&](const BearingEquilibrium& e) {
       return (std::isnan(e.speed_limit) ? 1e3 : e.speed_limit) - groups->load / (groups->bearings * e.sommerfeld);
     });
@@ -89,7 +89,7 @@ public:
   }
 
   void squeeze() {
-    if (bearing_.has_states()) return;
+    if (!bearing_.rigid()) return;
     // W grows like powers of 1/(1 - e): its logarithm is all but linear in log(1 - e).
     const int last = options_.grid - 1;
     for (int i = 0; i <= last; ++i)

@@ -38,8 +38,7 @@ void BearingMap::validate(const system::Machine& machine, const deck::Report& re
   const film::Facts film = film::facts(machine.bearings[*found].film);
   if (film.coefficients) report.fail(options.bearing.empty() ? "" : "bearing", "a linear film has no map");
   if (options.frequencies.empty()) report.fail("frequencies", "the list is empty");
-  if (film.gives_way) return;
-  if (!(options.max_eccentricity < 1))
+  if (!film.gives_way && !(options.max_eccentricity < 1))
     report.fail("max_eccentricity", "'max_eccentricity' of a rigid bearing must be below 1");
   if (!film.own_states && options.frequencies != std::vector<double>{1})
     report.fail("frequencies", "stiffness and damping of a film without own states do not depend on the frequency");

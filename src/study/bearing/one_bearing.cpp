@@ -19,7 +19,7 @@ constexpr double vertical = 1e-13, vertical_relaxed = 1e-11;
 }  // namespace
 
 OneBearing::OneBearing(const system::Support& support, double speed)
-    : clearance_(support.geometry.clearance), speed_(speed) {
+    : clearance_(support.geometry.clearance), speed_(speed), soft_(film::facts(support.film).gives_way) {
   const film::Geometry& g = support.geometry;
   const double ratio = g.radius / g.clearance, shear = support.lubricant.viscosity * ratio * ratio * speed;
   load_ = shear * g.length * 2 * g.radius;
@@ -74,7 +74,7 @@ std::optional<BearingEquilibrium> OneBearing::carrying(double eccentricity, cons
     angle = before + d_before;
     for (int i = 0; i < 40 && !found; ++i) {
       d = miss(angle);
-      found = std::abs(d) < (stateful_ ? vertical_relaxed : vertical);
+      found = std::abs(d) < (rigid() ? vertical : vertical_relaxed);
       if (found || angle == before) break;
       const double slope = (d - d_before) / (angle - before);
       const double step = slope != 0 ? std::clamp(-d / slope, -0.3, 0.3) : d;

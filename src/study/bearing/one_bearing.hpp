@@ -38,7 +38,8 @@ class OneBearing {
 public:
   /// @param speed shaft speed Omega [rad/s]
   OneBearing(const system::Support& support, double speed);
-  [[nodiscard]] bool has_states() const { return stateful_ != nullptr; }
+  /// A film on a rigid bore without own states: its force does not depend on what was before.
+  [[nodiscard]] bool rigid() const { return !stateful_ && !soft_; }
   /// The journal at this eccentricity, sought from an equilibrium `near` it (attitude and states). Empty where the film
   /// does not exist: journal and bearing touch.
   [[nodiscard]] std::optional<BearingEquilibrium> carrying(double eccentricity, const BearingEquilibrium& near);
@@ -58,6 +59,7 @@ private:
   void set_border(BearingEquilibrium& e);
 
   double clearance_, speed_;
+  bool soft_;
   double load_ = 0;      // N, of F* = 1
   double pressure_ = 0;  // Pa, of p* = 1
   std::unique_ptr<film::Model> film_;

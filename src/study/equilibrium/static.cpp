@@ -129,7 +129,9 @@ StudyResult Static::run(Context& context) {
   summary.set("mass.total", rotor::total_mass(rotor), "kg");
   for (std::size_t i = 0; i + 1 < context.machine.bearings.size(); ++i) {
     const auto &a = context.machine.bearings[i], &b = context.machine.bearings[i + 1];
-    if (a.node < b.node) summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
+    if (a.node >= b.node) continue;
+    summary.set("mass." + a.name + "_" + b.name, rotor::mass_between(rotor, a.node, b.node), "kg");
+    summary.set("slenderness." + a.name + "_" + b.name, rotor::slenderness(rotor, a.node, b.node), "1");
   }
   summary.set("length.total", rotor::node_positions(rotor).back(), "m");
   std::vector<double> px, py, load;

@@ -1,0 +1,140 @@
+#include "film/condensed.hpp"
+
+#include <utility>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::film {
+
+Condensed::Condensed(std::unique_ptr<StateModel> film)
+    : film_(std::move(film)), carried_rates_(film_->carried_rates()), steady_(*film_) {}
+
+// carried_rates() times `by`, which is a velocity or a displacement.
+std::vector<double> Condensed::carried(const std::array<double, 4>& by) const {
+  std::vector<double> out(film_->states(), 0.0);
+  for (std::size_t port = 0; port < carried_rates_.size(); ++port) {
+    const double times = by[static_cast<std::size_t>(film_->ports()[port])];
+    if (times == 0.0) continue;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += times * carried_rates_[port][k];
+  }
+  return out;
+}
+
+bool Condensed::attempt(const Motion& motion, std::vector<double> states) {
+  there_ = false;
+  try {
+    steady_.solve(motion, carried(motion.velocity), Steady::Until::same_force, states);
+  } catch (const core::DomainError&) {
+    reason_ = std::current_exception();
+    return false;
+  } catch (const core::NotConverged&) {
+    reason_ = std::current_exception();
+    return false;
+  }
+  found_ = motion;
+  states_ = std::move(states);
+  return there_ = true;
+}
+
+// From the last states, with what the film remembers carried along.
+bool Condensed::follow(const Motion& motion) {
+  std::array<double, 4> moved{};
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = motion.position[i] - found_->position[i];
+  std::vector<double> states = carried(moved);
+  for (std::size_t k = 0; k < states.size(); ++k) states[k] += states_[k];
+  return attempt(motion, std::move(states));
+}
+
+bool Condensed::start_anew(const Motion& motion) {
+  std::vector<double> states(film_->states());
+  film_->unloaded(motion, states);
+  return attempt(motion, std::move(states));
+}
+
+// A journal that has gone deep into a liner is reached from the centre of the bearing by steps; the same steps from the
+// same centre, so that the way there does not show.
+void Condensed::solve(const Motion& motion) {
+  if (there_ && *found_ == motion) return;
+  if ((found_ && follow(motion)) || start_anew(motion)) return;
+  const std::exception_ptr reason = reason_;
+  const std::optional<Motion> before = found_;
+  const std::vector<double> states = states_;
+  Motion centred;
+  centred.speed = motion.speed;
+  if (!carried_rates_.empty() && start_anew(centred)) {
+    constexpr double shortest = 1.0 / 64;
+    double reached = 0.0;
+    for (double step = 0.5; reached < 1.0 && step >= shortest;) {
+      const double next = std::min(1.0, reached + step);
+      Motion way = motion;
+      for (std::size_t i = 0; i < 4; ++i) {
+        way.position[i] *= next;
+        way.velocity[i] *= next;
+      }
+      if (follow(way))
+        reached = next;
+      else
+        step *= 0.5;
+    }
+    if (reached == 1.0) return;
+  }
+  found_ = before;
+  states_ = states;
+  there_ = false;
+  std::rethrow_exception(reason);
+}
+
+void Condensed::evaluate(const Motion& motion, Need need, Response& response) {
+  solve(motion);
+  const StateResponse& at = steady_.here();
+  response = {};
+  response.force = at.journal.force;
+  response.min_thickness = at.journal.min_thickness;
+  if (need == Need::force) return;
+  response = at.journal;
+  const auto ports = film_->ports();
+  const auto n = static_cast<Eigen::Index>(states_.size());
+  const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };
+  const Share& all = film_->whole();
+  for (std::size_t f = 0; f < ports.size(); ++f) {
+    const auto i = static_cast<std::size_t>(ports[f]);
+    const Eigen::VectorXd lambda = steady_.solve_transposed(at.force_d_states[f]);
+    // What a rate of each state does to the force, all in all.
+    Eigen::VectorXd by_rates = Eigen::VectorXd::Zero(carried_rates_.empty() ? 0 : n);
+    if (!carried_rates_.empty()) {
+      for_entries(all, all.d_rates, at.d_rates,
+                  [&](int row, int column, double value) { by_rates(column) -= lambda(row) * value; });
+      if (!at.force_d_rates.empty()) by_rates += thin(at.force_d_rates[f]);
+    }
+    for (std::size_t w = 0; w < ports.size(); ++w) {
+      const auto j = static_cast<std::size_t>(ports[w]);
+      response.d_position[i][j] -= lambda.dot(thin(at.d_position[w]));
+      response.d_velocity[i][j] -= lambda.dot(thin(at.d_velocity[w]));
+      if (!carried_rates_.empty()) response.d_velocity[i][j] += by_rates.dot(thin(carried_rates_[w]));
+    }
+    response.d_speed[i] -= lambda.dot(thin(at.d_speed));
+  }
+}
+
+Summary Condensed::summary(const Motion& motion) {
+  solve(motion);
+  there_ = false;  // the film is asked on its own from here on
+  return film_->summary(motion, states_);
+}
+
+std::vector<Field> Condensed::fields(const Motion& motion) {
+  solve(motion);
+  there_ = false;
+  return film_->fields(motion, states_);
+}
+
+double Condensed::least_thickness(const Motion& motion) {
+  solve(motion);
+  return film_->least_thickness(motion, states_);
+}
+
+std::unique_ptr<Model> condense(std::unique_ptr<StateModel> film) {
+  return std::make_unique<Condensed>(std::move(film));
+}
+
+}  // namespace whirl::film

@@ -1,0 +1,44 @@
+#pragma once
+// A film with states whose steady equations are solved inside:
+//
+//     F(w, w') = f(w, w', s, r w'),   g(w, w', s, r w') = 0
+//
+// with r the rates of the states while nothing changes that the film remembers (StateModel::carried_rates). With lambda
+// = (dg/ds)^-T df/ds of each force
+//
+//     dF/dw = df/dw - lambda . dg/dw,   dF/dw' = df/dw' + df/ds' r - lambda . (dg/dw' + dg/ds' r)
+
+#include <optional>
+
+#include "film/steady.hpp"
+
+namespace whirl::film {
+
+class Condensed final : public Model {
+public:
+  explicit Condensed(std::unique_ptr<StateModel> film);
+  void evaluate(const Motion& motion, Need need, Response& response) override;
+  Summary summary(const Motion& motion) override;
+  std::vector<Field> fields(const Motion& motion) override;
+  [[nodiscard]] double least_thickness(const Motion& motion) override;
+  /// Factorisations so far.
+  [[nodiscard]] long factorisations() const { return steady_.factorisations(); }
+
+private:
+  void solve(const Motion& motion);
+  [[nodiscard]] bool follow(const Motion& motion);
+  [[nodiscard]] bool start_anew(const Motion& motion);
+  [[nodiscard]] bool attempt(const Motion& motion, std::vector<double> states);
+  [[nodiscard]] std::vector<double> carried(const std::array<double, 4>& by) const;
+
+  std::unique_ptr<StateModel> film_;
+  PortColumns carried_rates_;
+  Steady steady_;
+  // The last motion whose states were found, and whether steady_ still stands there.
+  std::optional<Motion> found_;
+  std::vector<double> states_;
+  bool there_ = false;
+  std::exception_ptr reason_;  // why the last attempt failed
+};
+
+}  // namespace whirl::film

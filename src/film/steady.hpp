@@ -1,0 +1,41 @@
+#pragma once
+// The steady equations of a film with states by Newton's method: g(motion, s, s') = 0 in s at given rates s'.
+
+#include <Eigen/SparseLU>
+#include <vector>
+
+#include "whirl/film/state_model.hpp"
+
+namespace whirl::film {
+
+class Steady {
+public:
+  explicit Steady(StateModel& film);
+  /// How small the last step must be: 1e-10 of the typical state, or so small too that it does not show in the force.
+  enum class Until { small_step, same_force };
+  /// Finds the states from those given, which it leaves as they were if it throws core::NotConverged or
+  /// core::DomainError.
+  void solve(const Motion& motion, std::span<const double> rates, Until until, std::vector<double>& states);
+  /// What the film answered at the states found, with tangents; may be taken from.
+  [[nodiscard]] StateResponse& here() { return here_; }
+  /// x = (dg/ds)^-T b at the states found.
+  [[nodiscard]] Eigen::VectorXd solve_transposed(const std::vector<double>& b);
+  /// Factorisations so far.
+  [[nodiscard]] long factorisations() const { return factorisations_; }
+
+private:
+  void factor();
+  [[nodiscard]] std::array<double, 4> effect(const Eigen::VectorXd& step) const;
+
+  StateModel& film_;
+  Eigen::VectorXd scale_;
+  StateResponse here_, there_;
+  std::vector<double> trial_;
+  Eigen::SparseMatrix<double> matrix_;
+  std::vector<std::size_t> place_;  // of each entry among the values of the matrix
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
+  std::vector<double> factored_;  // dg/ds that lu_ belongs to
+  long factorisations_ = 0;
+};
+
+}  // namespace whirl::film
