@@ -50,7 +50,7 @@ def static(study):
     ratio = [math.hypot(a, b) / c if a is not None and c > 0 else None for a, b, c in zip(x, y, clearance)] if clearance is not None else []
     out = [table_of("Bearings: loads and journal positions", names,
                     [("load", "N", load), ("x", "m", x), ("y", "m", y), ("|e|/c", "1", ratio),
-                     ("smallest film at mid-plane", "m", get("bearing.{}.min_thickness")), ("largest pressure", "Pa", get("bearing.{}.max_pressure")),
+                     ("smallest film", "m", get("bearing.{}.min_thickness")), ("largest pressure", "Pa", get("bearing.{}.max_pressure")),
                      ("side flow", "m^3/s", get("bearing.{}.side_flow")), ("inlet flow", "m^3/s", get("bearing.{}.inlet_flow")),
                      ("power loss", "W", get("bearing.{}.power_loss"))],
                     "load of the journal on the bearing, positive down; place of the journal relative to the bearing centre; c assembled clearance, "

@@ -18,16 +18,18 @@ namespace whirl::study {
 
 using core::check;
 
-std::vector<film::Coefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
-                                                  double omega) {
+std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
+                                                double omega) {
   const std::vector<film::Response> films = system.film_responses(x.data(), film::Need::tangents);
-  std::vector<film::Coefficients> out(films.size());
-  for (std::size_t b = 0; b < films.size(); ++b)
-    for (std::size_t d = 0; d < 2; ++d)
-      for (std::size_t e = 0; e < 2; ++e) {
-        out[b].stiffness[2 * d + e] = -films[b].d_position[d][e];
-        out[b].damping[2 * d + e] = -films[b].d_velocity[d][e];
+  std::vector<FilmCoefficients> out(films.size());
+  for (std::size_t b = 0; b < films.size(); ++b) {
+    out[b].ports = static_cast<std::size_t>(system.ports(static_cast<int>(b)));
+    for (std::size_t d = 0; d < out[b].ports; ++d)
+      for (std::size_t e = 0; e < out[b].ports; ++e) {
+        out[b].stiffness[d][e] = -films[b].d_position[d][e];
+        out[b].damping[d][e] = -films[b].d_velocity[d][e];
       }
+  }
   if (system.own_states() == 0) return out;
   if (!(omega > 0)) throw core::InputError("the frequency of stiffness and damping must be positive");
   const core::Vector at = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
@@ -38,14 +40,16 @@ std::vector<film::Coefficients> film_coefficients(system::RotorSystem& system, c
   std::size_t part = 0;
   for (std::size_t b = 0; b < films.size(); ++b) {
     if (!film::has_states(system.train().supports[b].film)) continue;
-    const auto bearing = static_cast<int>(b);
-    const std::vector<PetscInt> position{2 * system.journal(bearing, 0), 2 * system.journal(bearing, 1)};
-    const Eigen::MatrixXcd k =
-        transfer.from_motion(part, blocks[part], {0, omega}, position, {position[0] + 1, position[1] + 1}, position);
-    for (Eigen::Index d = 0; d < 2; ++d)
-      for (Eigen::Index e = 0; e < 2; ++e) {
-        out[b].stiffness[static_cast<std::size_t>(2 * d + e)] += k(d, e).real();
-        out[b].damping[static_cast<std::size_t>(2 * d + e)] += k(d, e).imag() / omega;
+    std::vector<PetscInt> position, rate;
+    for (int d = 0; d < system.ports(static_cast<int>(b)); ++d) {
+      position.push_back(2 * system.journal(static_cast<int>(b), d));
+      rate.push_back(position.back() + 1);
+    }
+    const Eigen::MatrixXcd k = transfer.from_motion(part, blocks[part], {0, omega}, position, rate, position);
+    for (Eigen::Index d = 0; d < k.rows(); ++d)
+      for (Eigen::Index e = 0; e < k.cols(); ++e) {
+        out[b].stiffness[static_cast<std::size_t>(d)][static_cast<std::size_t>(e)] += k(d, e).real();
+        out[b].damping[static_cast<std::size_t>(d)][static_cast<std::size_t>(e)] += k(d, e).imag() / omega;
       }
     ++part;
   }

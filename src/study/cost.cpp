@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "whirl/film/state_model.hpp"
+#include "whirl/rotor/freedom.hpp"
 
 namespace whirl::study {
 
@@ -23,11 +24,14 @@ double n_states(const system::Machine& machine) {
                nodes = static_cast<double>(r.segments.size()) + 1;
   using enum rotor::Reduction::Type;
   double freedoms = r.type == rotor::Options::Type::rigid ? 2
-                    : r.reduction.type == none            ? 4 * nodes
+                    : r.reduction.type == none            ? rotor::freedoms_per_node * nodes
                     : r.reduction.type == guyan           ? 2 * masters
                                                           : 2 * (masters + modes);
-  for (const system::Bearing& b : machine.bearings)
+  for (const system::Bearing& b : machine.bearings) {
     if (b.pedestal) freedoms += 2;
+    // Slopes that no reduction takes away.
+    if (r.type == rotor::Options::Type::shaft && r.reduction.type != none && film::facts(b.film).tilts) freedoms += 2;
+  }
   return 2 * freedoms + n_film_states(machine);
 }
 

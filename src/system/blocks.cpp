@@ -52,22 +52,25 @@ void RotorSystem::Blocks::rebuild() {
     rates.emplace_back(2 * i + 1, 2 * i, 1);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);
   }
-  for (int i = 0; i < bearings; ++i)
-    for (int d = 0; d < 2; ++d) {
-      const PetscInt j = system.journal(i, d), p = system.pedestal(i, d);
-      b.emplace_back(2 * j, 2 * i + d, 1);
-      c.emplace_back(4 * i + d, 2 * j, 1);
-      c.emplace_back(4 * i + 2 + d, 2 * j + 1, 1);
-      if (p < 0) continue;
-      b.emplace_back(2 * p, 2 * i + d, -1);
-      c.emplace_back(4 * i + d, 2 * p, -1);
-      c.emplace_back(4 * i + 2 + d, 2 * p + 1, -1);
-    }
+  Eigen::Index ports = 0;
+  ports_.clear();
+  for (int i = 0; i < bearings; ++i) {
+    const std::vector<PortEnds>& of = system.bearings_[static_cast<std::size_t>(i)].ports;
+    const auto k = static_cast<Eigen::Index>(of.size());
+    ports_.push_back({ports, k});
+    for (Eigen::Index d = 0; d < k; ++d)
+      for (const auto& [q, side] : of[static_cast<std::size_t>(d)]) {
+        b.emplace_back(2 * q, ports + d, side);
+        c.emplace_back(2 * ports + d, 2 * q, side);
+        c.emplace_back(2 * ports + k + d, 2 * q + 1, side);
+      }
+    ports += k;
+  }
   l1_ = block(n, n, rates);
   l0_at_rest_ = block(n, n, at_rest);
   gyroscopic_ = block(n, n, gyroscopic);
-  b_ = block(n, 2 * bearings, b);
-  c_ = block(4 * bearings, n, c);
+  b_ = block(n, ports, b);
+  c_ = block(2 * ports, n, c);
   l0_speed_ = -1;
 }
 
@@ -76,8 +79,8 @@ void RotorSystem::Blocks::find_own_states() {
   for (std::size_t i = 0; i < system_.bearings_.size(); ++i) {
     const FilmPart* part = system_.bearings_[i].part.get();
     if (!part) continue;
-    const auto k = static_cast<Eigen::Index>(i);
-    problem::OwnStates own{part->first(), part->count(), 4 * k, 4, 2 * k, 2, {}, {}};
+    const auto [first, k] = ports_[i];
+    problem::OwnStates own{part->first(), part->count(), 2 * first, 2 * k, first, k, {}, {}};
     const film::Share& all = part->film().whole();
     for (const auto& [from, to] : {std::pair{&all.d_states, &own.states}, std::pair{&all.d_rates, &own.rates}})
       film::for_entries(all, *from, {}, [to = to](int row, int column, double) { to->push_back({row, column}); });
@@ -118,10 +121,10 @@ void take(const film::StateResponse& response, const problem::OwnStates& at, Eig
   const auto thin = [&](const std::vector<double>& v) {
     return Eigen::Map<const Eigen::RowVectorXd>(v.data(), at.count);
   };
-  for (std::size_t d = 0; d < 2; ++d) {
-    const auto e = static_cast<Eigen::Index>(d);
+  for (Eigen::Index e = 0; e < at.forces; ++e) {
+    const auto d = static_cast<std::size_t>(e);
     out.inputs.row(e) = thin(response.d_position[d]);
-    out.inputs.row(2 + e) = thin(response.d_velocity[d]);
+    out.inputs.row(at.forces + e) = thin(response.d_velocity[d]);
     out.forces.row(e) = thin(response.force_d_states[d]);
     if (out.force_rates.rows() > 0) out.force_rates.row(e) = thin(response.force_d_rates[d]);
   }
@@ -133,11 +136,11 @@ void take(const film::StateResponse& response, const problem::OwnStates& at, Eig
 void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own, const double* rates, bool tangents,
                                 problem::Films& films) {
   const int bearings = system_.n_bearings();
-  const Eigen::Index r = 2 * bearings;
+  const Eigen::Index r = b_.cols();
   films.forces.resize(r);
   films.residual.resize(system_.n_own_);
   if (tangents) {
-    films.d_inputs.setZero(r, 4 * bearings);
+    films.d_inputs.setZero(r, 2 * r);
     films.d_speed.resize(r + system_.n_own_);
     films.own.resize(own_.size());
   }
@@ -148,17 +151,22 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
   std::size_t next = 0;  // among the films with own states
   for (int i = 0; i < bearings; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    for (int d = 0; d < 2; ++d) {
-      motion.position[static_cast<std::size_t>(d)] = inputs(4 * i + d);
-      motion.velocity[static_cast<std::size_t>(d)] = inputs(4 * i + 2 + d);
+    const auto [first, ports] = ports_[k];
+    for (Eigen::Index d = 0; d < ports; ++d) {
+      motion.position[static_cast<std::size_t>(d)] = inputs(2 * first + d);
+      motion.velocity[static_cast<std::size_t>(d)] = inputs(2 * first + ports + d);
     }
-    motion.position[1] -= system_.train_.supports[k].elevation;
     const Bearing& bearing = system_.bearings_[k];
+    motion.position[1] -= system_.train_.supports[k].elevation;
+    for (std::size_t d = 0; d < 2; ++d) {
+      if (!bearing.tilts()) motion.position[2 + d] = motion.velocity[2 + d] = 0.0;
+      motion.position[2 + d] -= bearing.slope[d];
+    }
     try {
       if (bearing.part) {
         film::StateModel& film = bearing.part->film();
-        const PetscInt first = bearing.part->first();
-        film.evaluate(motion, {own + first, film.states()}, {rates + first, film.states()}, need, responses_[k]);
+        const PetscInt at = bearing.part->first();
+        film.evaluate(motion, {own + at, film.states()}, {rates + at, film.states()}, need, responses_[k]);
       } else {
         bearing.film->evaluate(motion, need, condensed);
       }
@@ -166,18 +174,18 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
       throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
     }
     const film::Response& response = bearing.part ? responses_[k].journal : condensed;
-    for (int d = 0; d < 2; ++d) films.forces(2 * i + d) = response.force[static_cast<std::size_t>(d)];
+    for (Eigen::Index d = 0; d < ports; ++d) films.forces(first + d) = response.force[static_cast<std::size_t>(d)];
     if (bearing.part)
       films.residual.segment(bearing.part->first(), bearing.part->count()) =
           Eigen::Map<const Eigen::VectorXd>(responses_[k].residual.data(), bearing.part->count());
     if (!tangents) continue;
-    for (int d = 0; d < 2; ++d) {
+    for (Eigen::Index d = 0; d < ports; ++d) {
       const auto row = static_cast<std::size_t>(d);
-      for (int e = 0; e < 2; ++e) {
-        films.d_inputs(2 * i + d, 4 * i + e) = response.d_position[row][static_cast<std::size_t>(e)];
-        films.d_inputs(2 * i + d, 4 * i + 2 + e) = response.d_velocity[row][static_cast<std::size_t>(e)];
+      for (Eigen::Index e = 0; e < ports; ++e) {
+        films.d_inputs(first + d, 2 * first + e) = response.d_position[row][static_cast<std::size_t>(e)];
+        films.d_inputs(first + d, 2 * first + ports + e) = response.d_velocity[row][static_cast<std::size_t>(e)];
       }
-      films.d_speed(2 * i + d) = response.d_speed[row];
+      films.d_speed(first + d) = response.d_speed[row];
     }
     if (!bearing.part) continue;
     take(responses_[k], own_[next], r, films.own[next], films.d_speed);

@@ -13,7 +13,8 @@ namespace whirl::system {
 void add_entries(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out);
 
 /// Inputs are (x, y, vx, vy) of each journal relative to its pedestal (elevation not subtracted), forces (Fx, Fy) of
-/// each film on its journal.
+/// each film on its journal; with the slopes of the shaft behind x, y, their rates behind vx, vy and the moments behind
+/// Fx, Fy where a film tilts.
 class RotorSystem::Blocks : public problem::Structure {
 public:
   explicit Blocks(RotorSystem& system);
@@ -43,6 +44,10 @@ private:
   problem::SparseBlock l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
   double l0_speed_ = -1;
   std::vector<problem::OwnStates> own_;
+  struct Ports {
+    Eigen::Index first, count;
+  };
+  std::vector<Ports> ports_;  // of each bearing among the forces; positions stand at twice that, then rates
   // Work space.
   std::vector<film::StateResponse> responses_;
   problem::Films films_;

@@ -6,6 +6,7 @@
 #include "settling.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -68,17 +69,23 @@ void RotorSystem::build() {
   n_ = n_rotor_;
   for (const Support& s : train_.supports) {
     Bearing b;
-    for (int d = 0; d < 2; ++d) {
-      b.journal[static_cast<std::size_t>(d)] = rotor_->coordinate(s.node, d);
-      if (b.journal[static_cast<std::size_t>(d)] < 0)
-        throw core::InputError("a bearing's node is not a master node of the reduced rotor");
-      b.ports.push_back({{b.journal[static_cast<std::size_t>(d)], 1.0}});
-      if (!s.has_pedestal) continue;
-      b.pedestal[static_cast<std::size_t>(d)] = n_++;
-      b.ports.back().emplace_back(b.pedestal[static_cast<std::size_t>(d)], -1.0);
+    using enum rotor::Freedom;
+    for (const rotor::Freedom freedom : {x, y, slope_x, slope_y}) {
+      if (rotor::is_slope(freedom) && !film::facts(s.film).tilts) break;
+      const auto d = static_cast<std::size_t>(freedom);
+      b.journal[d] = rotor_->coordinate(s.node, freedom);
+      if (b.journal[d] < 0)
+        throw core::InputError(rotor::is_slope(freedom)
+                                   ? "a film tilts, but the slopes of its node are no coordinates of the rotor"
+                                   : "a bearing's node is not a master node of the reduced rotor");
+      b.ports.push_back({{b.journal[d], 1.0}});
+      if (!s.has_pedestal || rotor::is_slope(freedom)) continue;
+      b.pedestal[d] = n_++;
+      b.ports.back().emplace_back(b.pedestal[d], -1.0);
     }
     bearings_.push_back(std::move(b));
   }
+  align_bearings();
   n_own_ = 0;
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
@@ -125,8 +132,8 @@ void RotorSystem::build() {
     for (PetscInt i = begin_; i < std::min(end_, n_rotor_); ++i)
       load_[static_cast<std::size_t>(i - begin_)] = train_.gravity * g[static_cast<std::size_t>(i)];
   }
-  if (train_.rotor.type == rotor::Options::Type::rigid && owns(rotor_->coordinate(1, 1)))
-    load_[static_cast<std::size_t>(rotor_->coordinate(1, 1) - begin_)] -= train_.rotor.load;
+  if (train_.rotor.type == rotor::Options::Type::rigid && owns(rotor_->coordinate(1, rotor::Freedom::y)))
+    load_[static_cast<std::size_t>(rotor_->coordinate(1, rotor::Freedom::y) - begin_)] -= train_.rotor.load;
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const PetscInt row = bearings_[i].pedestal[1];
     if (row >= 0 && owns(row))
@@ -145,7 +152,9 @@ void RotorSystem::build() {
   check(VecSet(ts, 0.0));
   if (core::rank_of(comm_) == 0)
     for (const UnbalanceMass& u : train_.unbalance) {
-      const PetscInt x = reduced ? 4 * (u.node - 1) : rotor_->coordinate(u.node, 0), y = x + 1;
+      const PetscInt x = reduced ? rotor::full_coordinate(u.node, rotor::Freedom::x)
+                                 : rotor_->coordinate(u.node, rotor::Freedom::x),
+                     y = x + 1;
       check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
       check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
       check(VecSetValue(tc, y, u.amount * std::sin(u.phase), ADD_VALUES));
@@ -171,6 +180,10 @@ void RotorSystem::build() {
       for (const PetscInt q : {b.journal[d], b.pedestal[d]})
         for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * std::max<PetscInt>(q, 0) + rate);
   for (const Bearing& b : bearings_)
+    for (std::size_t d = 2; d < b.ports.size(); ++d)
+      for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * b.journal[d] + rate);
+  journal_inputs_ = wanted_.size();
+  for (const Bearing& b : bearings_)
     for (std::size_t k = 0; b.part && k < b.part->share().seen.size(); ++k)
       wanted_.push_back(2 * n_ + b.part->first() + b.part->share().seen[k]);
   core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
@@ -185,6 +198,25 @@ void RotorSystem::build() {
   settling_.reset();
   film_solver_tried_ = false;
   j_at_rest_.reset();
+}
+
+// Bearings are bored in line with the shaft as it lies on them at rest, unless the deck says how they stand.
+void RotorSystem::align_bearings() {
+  std::vector<double> line;
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    if (!bearings_[i].tilts()) continue;
+    const Support& support = train_.supports[i];
+    if (support.slope) {
+      bearings_[i].slope = *support.slope;
+      continue;
+    }
+    if (line.empty()) {
+      std::vector<rotor::Support> supports;
+      for (const Support& s : train_.supports) supports.push_back({s.node, s.elevation});
+      line = rotor::rigid_static(comm_, train_.rotor, supports, train_.gravity).slope;
+    }
+    bearings_[i].slope = {0.0, line[static_cast<std::size_t>(support.node - 1)]};
+  }
 }
 
 // Own states stand behind all pairs, film by film, in near equal shares of all.
@@ -227,7 +259,7 @@ void RotorSystem::make_constant_parts() {
       total += 2 * k;
       check(MatRestoreRow(m, begin_ + i, &k, nullptr, nullptr));
     }
-    count[static_cast<std::size_t>(2 * i)] = std::min(total + 8, size());
+    count[static_cast<std::size_t>(2 * i)] = std::min(total + 12, size());
   }
   std::vector<PetscInt> columns_to;
   std::vector<PetscScalar> scaled;

@@ -72,19 +72,25 @@ void describe(deck::Description<Pedestal>& d) {
 void describe(deck::Description<Bearing>& d) {
   d.add("node", &Bearing::node, positive, "node of the shaft that is the journal").required();
   d.add("elevation", &Bearing::elevation, "m", deck::any, "height of the bearing centre, positive up").continuable();
+  d.add("slope", &Bearing::slope, "1", deck::any,
+        "slope dx/dz, dy/dz of the bearing's axis, where its film follows the slope of the journal ('tilt'). Bored in "
+        "line with the shaft if not given: with the slope that this has at rest under gravity on rigid supports at the "
+        "elevations of all bearings")
+      .continuable();
   d.add("geometry", &Bearing::geometry, "shape of the bore");
   d.add("film", &Bearing::film, "how the film is modelled and discretised");
   d.add("lubricant", &Bearing::lubricant, "name of a lubricant of the deck, or a lubricant written in place");
   d.add("pedestal", &Bearing::pedestal, "what stands under the bearing; rigid if absent");
   d.add("minimum_film", &Bearing::minimum_film, "m", non_negative,
-        "film thickness at mid-plane below which journal and bearing touch; that of the machine if not given");
+        "film thickness below which journal and bearing touch, at mid-plane unless the film tilts; that of the machine "
+        "if not given");
   d.check([](const Bearing& b, const deck::Report& r) {
     const film::Facts film = film::facts(b.film);
+    if (b.slope && !film.tilts)
+      r.fail("slope",
+             "the film does not see the slope of its bearing: only one with 'tilt: true' follows that of the "
+             "journal");
     if (film.coefficients) return;
-    if (film.tilts)
-      r.fail("film.tilt",
-             "films of a machine do not follow the slope of its shaft: each journal stays parallel to its "
-             "bearing. Leave 'tilt' out");
     if (!b.geometry) r.fail("", "'geometry' is missing (shape of the bore)");
     const bool circle = b.geometry && b.geometry->type == film::Geometry::Bore::cylindrical;
     if (b.geometry && !circle && !film.circle_only.option.empty())
@@ -143,6 +149,14 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
     if (!rigid && reduction.type != rotor::Reduction::Type::none &&
         std::find(reduction.masters.begin(), reduction.masters.end(), b.node) == reduction.masters.end())
       r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));
+    const bool tilts = film::facts(b.film).tilts;
+    if (tilts && rigid)
+      r.fail(path + ".film.tilt",
+             "a rigid rotor has no slope: its journals stay parallel to their bearings. Leave 'tilt' out");
+    else if (tilts && !b.slope && m.bearings.size() < 2)
+      r.fail(path,
+             "one bearing alone does not hold the shaft, which then has no slope at rest: give the 'slope' of the "
+             "bearing");
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && !name->empty() && !m.lubricants.contains(*name))
       r.fail(path + ".lubricant",

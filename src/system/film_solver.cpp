@@ -14,6 +14,9 @@ using Eigen::VectorXd;
 
 std::unique_ptr<RotorSystem::FilmSolver> RotorSystem::FilmSolver::make(RotorSystem& system) {
   if (system.n_own_ == 0) return nullptr;
+  // It knows films along x and y.
+  for (const Bearing& b : system.bearings_)
+    if (b.part && b.tilts()) return nullptr;
   std::unique_ptr<FilmSolver> out(new FilmSolver(system));
   bool offered = true;
   for (const Film& film : out->films_)
@@ -53,7 +56,7 @@ void RotorSystem::FilmSolver::make_films() {
     MPI_Comm_split(s.comm_, part->rows() > 0 ? 0 : MPI_UNDEFINED, core::rank_of(s.comm_), &film.comm);
     std::copy_n(inputs.data() + 8 * b, 8, film.journal_scale.begin());
     const film::Share& share = part->share();
-    film.seen = Map<const VectorXd>(inputs.data() + 8 * s.bearings_.size() + part->gathered(),
+    film.seen = Map<const VectorXd>(inputs.data() + s.journal_inputs_ + part->gathered(),
                                     static_cast<Index>(share.seen.size()));
     film.state = Map<const VectorXd>(sa.data() + part->row(), share.rows());
     film.residual = Map<const VectorXd>(ra.data() + part->row(), share.rows());

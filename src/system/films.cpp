@@ -25,6 +25,7 @@ std::vector<double> RotorSystem::gather_inputs(Vec x) {
 
 std::vector<JournalState> RotorSystem::journals_of(std::span<const double> inputs) const {
   std::vector<JournalState> out(bearings_.size());
+  const double* slope = inputs.data() + 8 * bearings_.size();
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     for (std::size_t d = 0; d < 2; ++d) {
       const double* a = inputs.data() + 8 * i + 4 * d;
@@ -33,21 +34,23 @@ std::vector<JournalState> RotorSystem::journals_of(std::span<const double> input
       out[i].velocity[d] = a[1] - (moves ? a[3] : 0.0);
     }
     out[i].position[1] -= train_.supports[i].elevation;
+    for (std::size_t d = 0; bearings_[i].tilts() && d < 2; ++d, slope += 2) {
+      out[i].tilt[d] = slope[0] - bearings_[i].slope[d];
+      out[i].tilt_rate[d] = slope[1];
+    }
   }
   return out;
 }
 
 std::vector<JournalState> RotorSystem::journals(const double* x) const {
-  std::vector<JournalState> out(bearings_.size());
-  for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    for (std::size_t d = 0; d < 2; ++d) {
-      const PetscInt j = bearings_[i].journal[d], p = bearings_[i].pedestal[d];
-      out[i].position[d] = x[2 * j] - (p >= 0 ? x[2 * p] : 0.0);
-      out[i].velocity[d] = x[2 * j + 1] - (p >= 0 ? x[2 * p + 1] : 0.0);
-    }
-    out[i].position[1] -= train_.supports[i].elevation;
-  }
-  return out;
+  std::vector<double> inputs;
+  for (std::size_t k = 0; k < journal_inputs_; ++k) inputs.push_back(x[wanted_[k]]);
+  return journals_of(inputs);
+}
+
+std::vector<PlaceState> RotorSystem::shown(const double* x) const {
+  const std::vector<JournalState> all = journals(x);
+  return {all.begin(), all.end()};
 }
 
 film::Motion RotorSystem::motion(const JournalState& journal) const {
@@ -55,6 +58,8 @@ film::Motion RotorSystem::motion(const JournalState& journal) const {
   for (std::size_t d = 0; d < 2; ++d) {
     motion.position[d] = journal.position[d];
     motion.velocity[d] = journal.velocity[d];
+    motion.position[2 + d] = journal.tilt[d];
+    motion.velocity[2 + d] = journal.tilt_rate[d];
   }
   motion.speed = speed_;
   return motion;
@@ -73,14 +78,14 @@ std::vector<film::Response> RotorSystem::film_responses(const std::vector<Journa
 
 std::vector<film::Response> RotorSystem::film_responses(const double* x, film::Need need) {
   std::vector<double> own;
-  for (std::size_t k = 8 * bearings_.size(); k < wanted_.size(); ++k) own.push_back(x[wanted_[k]]);
+  for (std::size_t k = journal_inputs_; k < wanted_.size(); ++k) own.push_back(x[wanted_[k]]);
   return films_at(journals(x), own, {}, need).journal;
 }
 
 RotorSystem::Films RotorSystem::films_at(Vec x, Vec xdot, film::Need need) {
   const std::vector<double> inputs = gather_inputs(x),
                             rates = n_own_ > 0 ? gather_inputs(xdot) : std::vector<double>(inputs.size());
-  const auto own = static_cast<std::ptrdiff_t>(8 * bearings_.size());
+  const auto own = static_cast<std::ptrdiff_t>(journal_inputs_);
   return films_at(journals_of(inputs), {inputs.begin() + own, inputs.end()}, {rates.begin() + own, rates.end()}, need);
 }
 
@@ -111,36 +116,37 @@ RotorSystem::Films RotorSystem::films_at(const std::vector<JournalState>& journa
   return films;
 }
 
+namespace {
+
+// Calls f(number) for all of a response that add up, of its first k components.
+template <class F>
+void each(film::Response& r, std::size_t k, F&& f) {
+  for (std::size_t d = 0; d < k; ++d) {
+    f(r.force[d]);
+    for (std::size_t e = 0; e < k; ++e) {
+      f(r.d_position[d][e]);
+      f(r.d_velocity[d][e]);
+    }
+    f(r.d_speed[d]);
+  }
+}
+
+}  // namespace
+
 // Forces and tangents add up, be it over the parts of a film or because all ranks but one have none; of thicknesses the
 // least counts.
 void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
-  constexpr std::size_t width = 2 + 4 + 4 + 2;
-  std::vector<double> flat(width * films.size(), 0.0), thickness(films.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> flat, thickness;
   for (std::size_t i = 0; i < films.size(); ++i) {
-    if (!evaluates(i)) continue;
-    double* f = flat.data() + width * i;
-    for (std::size_t d = 0; d < 2; ++d) {
-      f[d] = films[i].force[d];
-      for (std::size_t e = 0; e < 2; ++e) {
-        f[2 + 2 * d + e] = films[i].d_position[d][e];
-        f[6 + 2 * d + e] = films[i].d_velocity[d][e];
-      }
-      f[10 + d] = films[i].d_speed[d];
-    }
-    thickness[i] = films[i].min_thickness;
+    const bool here = evaluates(i);
+    each(films[i], bearings_[i].ports.size(), [&](double value) { flat.push_back(here ? value : 0.0); });
+    thickness.push_back(here ? films[i].min_thickness : std::numeric_limits<double>::infinity());
   }
   MPI_Allreduce(MPI_IN_PLACE, flat.data(), static_cast<int>(flat.size()), MPI_DOUBLE, MPI_SUM, comm_);
   MPI_Allreduce(MPI_IN_PLACE, thickness.data(), static_cast<int>(thickness.size()), MPI_DOUBLE, MPI_MIN, comm_);
+  const double* from = flat.data();
   for (std::size_t i = 0; i < films.size(); ++i) {
-    const double* f = flat.data() + width * i;
-    for (std::size_t d = 0; d < 2; ++d) {
-      films[i].force[d] = f[d];
-      for (std::size_t e = 0; e < 2; ++e) {
-        films[i].d_position[d][e] = f[2 + 2 * d + e];
-        films[i].d_velocity[d][e] = f[6 + 2 * d + e];
-      }
-      films[i].d_speed[d] = f[10 + d];
-    }
+    each(films[i], bearings_[i].ports.size(), [&](double& value) { value = *from++; });
     films[i].min_thickness = thickness[i];
   }
 }

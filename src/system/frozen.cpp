@@ -232,7 +232,7 @@ VectorXd RotorSystem::FilmSolver::Equations::multiply_films(Vec v, Vec y, const 
     const std::span<double> to(ya.data() + part.row(), n);
     std::fill(to.begin(), to.end(), 0.0);
     forces.segment<2>(2 * static_cast<Index>(k)) =
-        rows(k, inputs.data() + 8 * s.bearings_.size() + part.gathered(), inputs.data(), va.data() + part.row(), to);
+        rows(k, inputs.data() + s.journal_inputs_ + part.gathered(), inputs.data(), va.data() + part.row(), to);
   }
   return forces;
 }

@@ -87,6 +87,10 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     s.name = b.name;
     s.node = b.node;
     s.elevation = b.elevation;
+    s.slope = b.slope;
+    // A film that tilts couples to slopes, which no reduction may then take away.
+    if (film::facts(b.film).tilts && t.rotor.reduction.type != rotor::Reduction::Type::none)
+      t.rotor.reduction.slopes.push_back(b.node);
     if (b.geometry) s.geometry = *b.geometry;
     s.film = b.film;
     if (const auto* own = std::get_if<film::Lubricant>(&b.lubricant))

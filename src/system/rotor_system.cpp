@@ -97,11 +97,9 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
     fa[2 * i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_c_[g] - s * unbalance_s_[g];
   }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
-    for (std::size_t d = 0; d < 2; ++d) {
-      const PetscInt j = bearings_[b].journal[d], p = bearings_[b].pedestal[d];
-      if (owns(j)) fa[2 * (j - begin_)] -= films[b].force[d];
-      if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].force[d];
-    }
+    for (std::size_t d = 0; d < bearings_[b].ports.size(); ++d)
+      for (const auto& [at, side] : bearings_[b].ports[d])
+        if (owns(at)) fa[2 * (at - begin_)] -= side * films[b].force[d];
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     if (const FilmPart* part = bearings_[b].part.get())
       std::copy_n(all.own[b].residual.begin(), part->rows(), fa.data() + part->row());
@@ -146,11 +144,9 @@ void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
     fa[2 * i] = sa[i] - c * unbalance_c_[g] - s * unbalance_s_[g];
   }
   for (std::size_t b = 0; b < bearings_.size(); ++b)
-    for (std::size_t d = 0; d < 2; ++d) {
-      const PetscInt j = bearings_[b].journal[d], p = bearings_[b].pedestal[d];
-      if (owns(j)) fa[2 * (j - begin_)] -= films[b].d_speed[d];
-      if (p >= 0 && owns(p)) fa[2 * (p - begin_)] += films[b].d_speed[d];
-    }
+    for (std::size_t d = 0; d < bearings_[b].ports.size(); ++d)
+      for (const auto& [at, side] : bearings_[b].ports[d])
+        if (owns(at)) fa[2 * (at - begin_)] -= side * films[b].d_speed[d];
   for (std::size_t b = 0; b < bearings_.size(); ++b)
     if (const FilmPart* part = bearings_[b].part.get())
       std::copy_n(all.own[b].d_speed.begin(), part->rows(), fa.data() + part->row());
@@ -172,17 +168,18 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
                force = std::max(mass * std::abs(train_.gravity) + std::abs(train_.rotor.load),
                                 mass * clearance * frequency * frequency) /
                        std::max<double>(1.0, static_cast<double>(bearings_.size()));
-  const bool reduced = static_cast<bool>(rotor_->matrices().basis);
-  const auto masters = static_cast<PetscInt>(2 * train_.rotor.reduction.masters.size());
   const core::WriteArray s(state_scale), r(residual_scale);
   for (PetscInt i = 0; i < end_ - begin_; ++i) {
     const PetscInt g = begin_ + i;
     double length = clearance, load = force;
-    if (g < n_rotor_ && !reduced && g % 4 > 1)
-      load = force * 0.1;                           // slopes: clearance per metre, moments on a lever of 0.1 m
-    if (g < n_rotor_ && reduced && g >= masters) {  // mass-normalised modes
-      length = clearance * std::sqrt(mass);
-      load = force / std::sqrt(mass);
+    if (g < n_rotor_) {
+      const std::optional<rotor::Freedom> freedom = rotor_->freedom(g);
+      if (!freedom) {  // mass-normalised modes
+        length = clearance * std::sqrt(mass);
+        load = force / std::sqrt(mass);
+      } else if (rotor::is_slope(*freedom)) {
+        load = force * 0.1;  // clearance per metre, moments on a lever of 0.1 m
+      }
     }
     s[2 * i] = length;
     s[2 * i + 1] = length * frequency;
@@ -268,7 +265,8 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
   if (!m.basis) {
     std::vector<double> out(static_cast<std::size_t>(n_rotor_));
     for (PetscInt i = 0; i < n_rotor_; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
-    out.resize(static_cast<std::size_t>(4 * rotor_->n_nodes()), 0.0);  // a rigid rotor does not tilt
+    out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor_->n_nodes()),
+               0.0);  // a rigid rotor does not tilt
     return out;
   }
   core::Vector q, full;

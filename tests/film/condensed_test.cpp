@@ -146,7 +146,8 @@ TEST_P(CondensedFilm, TheStartDoesNotShow) {
 INSTANTIATE_TEST_SUITE_P(Films, CondensedFilm, ::testing::ValuesIn(cases()),
                          [](const auto& which) { return which.param.name; });
 
-// The condensed film that conserves its mass has a solver of its own: two ways to the same force and tangents, in motion.
+// The condensed film that conserves its mass has a solver of its own: two ways to the same force and tangents, in
+// motion.
 TEST(Condensed, ContentsThatDoNotChangeAreTheCondensedFilm) {
   for (const ContentCase& c : content_films()) {
     Condensed film(make_state_model(c.geometry, c.options, oil()));
@@ -223,7 +224,8 @@ TEST(Condensed, AJournalBeyondTheClearance) {
   o.compliance = 1.0;
   o.reference_speed = 300.0;
   o.cells = {60, 4};
-  const Motion deep = motion(cylinder(), {0.0, -1.05, 0.0, 0.0}, {}, kSpeed);
+  o.differences = Compliant::Differences::third_order;  // central ones waver so deep
+  const Motion deep = motion(cylinder(), {0.0, -1.2, 0.0, 0.0}, {}, kSpeed);
   const auto direct = make_model(cylinder(), o, oil()), walked = make_model(cylinder(), o, oil());
   for (const double e : {0.5, 0.8, 0.95, 1.0}) evaluate(*walked, motion(cylinder(), {0.0, -e, 0.0, 0.0}, {}, kSpeed));
   const Response a = evaluate(*direct, deep), b = evaluate(*walked, deep);

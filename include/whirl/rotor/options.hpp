@@ -54,9 +54,9 @@ enum class Shear {
 struct Reduction {
   enum class Type { none, guyan, craig_bampton };
   Type type = Type::none;
-  std::vector<int> masters;  // 1-based nodes, at least two, any order
-  int modes = 0;             // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
-  std::vector<int> slopes;   // those of the masters whose slopes are masters too; no key of a deck
+  std::vector<int> masters;   // 1-based nodes, at least two, any order
+  int modes = 0;              // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
+  std::vector<int> slopes{};  // those of the masters whose slopes are masters too; no key of a deck
 };
 
 /// A shaft of beam elements, or a rigid body without tilt: node 1 with x and y only.

@@ -26,9 +26,10 @@ struct Pedestal {
 
 struct Bearing {
   std::string name;
-  int node = 0;                            ///< 1-based
-  double elevation = 0;                    ///< of the bearing centre, positive up [m]
-  std::optional<film::Geometry> geometry;  ///< absent only for a linear film
+  int node = 0;                                ///< 1-based
+  double elevation = 0;                        ///< of the bearing centre, positive up [m]
+  std::optional<std::array<double, 2>> slope;  ///< dx/dz, dy/dz of its axis; aligned to the shaft at rest if absent
+  std::optional<film::Geometry> geometry;      ///< absent only for a linear film
   film::Options film;
   std::variant<std::string, film::Lubricant>
       lubricant;                       ///< a name of Machine::lubricants, or its own; unused by a linear film

@@ -34,9 +34,8 @@ public:
   [[nodiscard]] virtual Places places() const = 0;
   /// The outputs at a state held as a whole [size()]. Not collective.
   [[nodiscard]] virtual std::vector<PlaceState> shown(const double* x) const = 0;
-  /// Smallest film thickness of each place in the mid-plane of its bearing at a whole state, in Places::unit; infinite
-  /// where there is no film, empty if no place has one. Films see no tilt of the shaft, and neither does this. Not
-  /// collective.
+  /// Smallest film thickness of each place at a whole state, in Places::unit: in the mid-plane of its bearing, or over
+  /// the whole length where the film tilts; infinite where there is no film, empty if no place has one. Not collective.
   [[nodiscard]] virtual std::vector<double> film_thickness(const double* /*x*/) const { return {}; }
   /// A state from which Newton's method finds an equilibrium at the present parameter.
   [[nodiscard]] virtual core::Vector guess() = 0;

@@ -25,8 +25,11 @@ struct Varying {
   double magnitude = 1;  ///< typical size, for the step of the difference quotient dF/dp
 };
 
-/// State of a journal in its bearing, journal minus pedestal minus elevation [m], [m/s].
-using JournalState = PlaceState;
+/// State of a journal in its bearing, journal minus pedestal minus elevation [m], [m/s]; and where the film sees it the
+/// slope of the shaft minus that of the bearing, dx/dz and dy/dz [-], [1/s]. Pedestals do not tilt.
+struct JournalState : PlaceState {
+  std::array<double, 2> tilt{}, tilt_rate{};
+};
 
 /// F(angle, x, xdot; p) = 0 of a train. With q = (rotor coordinates, pedestals) the state is x = (q_1, v_1, q_2, v_2,
 /// ...) and
@@ -79,8 +82,9 @@ public:
   void set_acceleration(double alpha) { acceleration_ = alpha; }
 
   [[nodiscard]] Places places() const override;
-  [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override { return journals(x); }
-  /// Of rigid bores from the place of the journal, of films with thicknesses as states the least of these.
+  [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override;
+  /// Of rigid bores from the place of the journal, over the whole length where the film sees its tilt; of films with
+  /// thicknesses as states the least of these.
   [[nodiscard]] std::vector<double> film_thickness(const double* x) const override;
   [[nodiscard]] core::Vector guess() override;
   void displace(Vec x, const std::array<double, 2>& offset) override;
@@ -94,7 +98,13 @@ public:
   [[nodiscard]] int n_bearings() const { return static_cast<int>(train_.supports.size()); }
   /// Number of coordinates q: rotor and pedestals.
   [[nodiscard]] PetscInt coordinates() const { return n_; }
-  /// Coordinate of the journal / pedestal of bearing b in direction d (0 x, 1 y); -1: no pedestal.
+  /// Number of motions that the film of bearing b sees, and of force components that it gives: x and y, and the slopes
+  /// dx/dz and dy/dz with their moments where it tilts.
+  [[nodiscard]] int ports(int b) const { return static_cast<int>(bearings_[static_cast<std::size_t>(b)].ports.size()); }
+  /// Slope dx/dz, dy/dz of the axis of bearing b: that of the deck, else that of the shaft on rigid supports at the
+  /// elevations of the bearings, at rest under gravity. Zero of a film that does not tilt.
+  [[nodiscard]] const std::array<double, 2>& slope(int b) const { return bearings_[static_cast<std::size_t>(b)].slope; }
+  /// Coordinate of the journal / pedestal of bearing b along port d / in direction d (0 x, 1 y); -1: no pedestal.
   [[nodiscard]] PetscInt journal(int b, int d) const {
     return bearings_[static_cast<std::size_t>(b)].journal[static_cast<std::size_t>(d)];
   }
@@ -129,11 +139,15 @@ public:
 
 private:
   struct Bearing {
-    std::array<PetscInt, 2> journal{-1, -1}, pedestal{-1, -1};
+    std::array<PetscInt, 4> journal{-1, -1, -1, -1};
+    std::array<PetscInt, 2> pedestal{-1, -1};
+    std::array<double, 2> slope{};
     std::unique_ptr<film::Model> film;  // null for a film with own states
     std::unique_ptr<FilmPart> part;     // null for a film without
-    // Coordinates of journal and pedestal with their signs, whose sum is what the film sees, along x and y.
+    // Coordinates of journal and pedestal with their signs, whose sum is what the film sees, along x and y, and the
+    // slopes of the journal if it tilts.
     std::vector<std::vector<std::pair<PetscInt, double>>> ports;
+    [[nodiscard]] bool tilts() const { return ports.size() > 2; }
   };
   /// Films at one state: what they do to the journals on all ranks, and this rank's rows of own states.
   struct Films {
@@ -150,6 +164,7 @@ private:
   };
 
   void build();
+  void align_bearings();
   void share_out_own_states();
   void make_constant_parts();
   /// Made when first wanted at this value of the parameter. Collective.
@@ -195,6 +210,9 @@ private:
   std::vector<PetscInt> wanted_;                          // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
+  // Before the own states among them: 8 of each bearing, position and velocity of journal and pedestal in x and y; then
+  // 4 of each that tilts, slope and rate in x and y.
+  std::size_t journal_inputs_ = 0;
   std::unique_ptr<Blocks> blocks_;
   Neighbours neighbours_;
   std::unique_ptr<Settling> settling_;  // made when first wanted

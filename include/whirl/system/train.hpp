@@ -2,6 +2,7 @@
 // A machine with every name resolved and every number in SI: what the equations are made of.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct Support {
   std::string name;      ///< for messages
   int node = 0;          ///< 1-based
   double elevation = 0;  ///< of the bearing centre, positive up [m]
+  /// dx/dz, dy/dz of the bearing's axis, of a film that tilts; that of the shaft at rest on its bearings if absent
+  std::optional<std::array<double, 2>> slope;
   film::Geometry geometry;
   film::Options film;
   film::Lubricant lubricant;

@@ -35,7 +35,7 @@ void FilmLimit::warn(const std::vector<double>& thickness, const std::string& wh
   for (std::size_t k = 0; k < limits_.size() && k < thickness.size(); ++k)
     if (thickness[k] < limits_[k] || thickness[k] <= 0)
       summary.warnings.push_back(
-          fmt::format("film of bearing {} {}: {:.3g} um at mid-plane, less than the {:.3g} um below which "
+          fmt::format("film of bearing {} {}: {:.3g} um, less than the {:.3g} um below which "
                       "the surfaces touch (minimum_film)",
                       names_[k], where, thickness[k] * 1e6, limits_[k] * 1e6));
 }

@@ -59,21 +59,24 @@ Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
 std::vector<io::Table::Column> columns(const system::Places& places, const std::string& unit, std::size_t multipliers) {
   const io::Shape b{places.names.size()}, m{multipliers};
   const std::string& length = places.unit;
-  return {{"parameter", unit, "parameter of the branch"},
-          {"period", "s", "period of the cycle"},
-          {"stable", "1", "1 if no multiplier is outside the unit circle"},
-          {"unstable_count", "1", "multipliers outside the unit circle"},
-          {"step", unit, "arclength from the previous point"},
-          {"newton_iterations", "1", "of the accepted step"},
-          {"intervals", "1", "of the time mesh"},
-          {"x_max", length, "largest x of " + places.text, b},
-          {"x_min", length, "smallest", b},
-          {"y_max", length, "largest y of " + places.text, b},
-          {"y_min", length, "smallest", b},
-          {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
-          {"film_min", length, "smallest film thickness at mid-plane over the cycle, not a number without a film", b},
-          {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
-          {"multipliers_imag", "1", "their imaginary parts", m}};
+  return {
+      {"parameter", unit, "parameter of the branch"},
+      {"period", "s", "period of the cycle"},
+      {"stable", "1", "1 if no multiplier is outside the unit circle"},
+      {"unstable_count", "1", "multipliers outside the unit circle"},
+      {"step", unit, "arclength from the previous point"},
+      {"newton_iterations", "1", "of the accepted step"},
+      {"intervals", "1", "of the time mesh"},
+      {"x_max", length, "largest x of " + places.text, b},
+      {"x_min", length, "smallest", b},
+      {"y_max", length, "largest y of " + places.text, b},
+      {"y_min", length, "smallest", b},
+      {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
+      {"film_min", length,
+       "smallest film thickness over the cycle, at mid-plane of films that do not tilt, not a number without a film",
+       b},
+      {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
+      {"multipliers_imag", "1", "their imaginary parts", m}};
 }
 
 std::vector<io::Table::Column> columns_of_birth(const system::Places& places, const std::string& unit) {

@@ -113,7 +113,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                    {"y", places.unit, places.text, {places.names.size()}},
                    {"film",
                     places.unit,
-                    "smallest film thickness at mid-plane, not a number without a film",
+                    "smallest film thickness, at mid-plane of films that do not tilt, not a number without a film",
                     {places.names.size()}}});
   std::vector<Located> located;      // one for each bifurcation of the summary
   std::vector<BorderEvent> borders;  // likewise

@@ -45,6 +45,21 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
   }
 }
 
+// K and C of the forces by the motions of the journal: xx, xy, yx, yy, and of a film that tilts the pairs with the
+// slopes and their moments, `slope_x` for dx/dz and the moment that does work with it.
+void put_coefficients(const FilmCoefficients& film, const std::string& head, io::StudySummary& summary) {
+  const char* const port[] = {"x", "y", "slope_x", "slope_y"};
+  const char* const unit[] = {"N/m", "N", "N m"};
+  const char* const rate[] = {"N s/m", "N s", "N m s"};
+  for (std::size_t d = 0; d < film.ports; ++d)
+    for (std::size_t e = 0; e < film.ports; ++e) {
+      const std::size_t slopes = (d > 1 ? 1U : 0U) + (e > 1 ? 1U : 0U);
+      const std::string pair = std::string(port[d]) + (slopes == 0 ? "" : ".") + port[e];
+      summary.set(head + "K." + pair, film.stiffness[d][e], unit[slopes]);
+      summary.set(head + "C." + pair, film.damping[d][e], rate[slopes]);
+    }
+}
+
 // What follows from the films at the state x.
 void put_values(const Context& context, system::RotorSystem& system, const std::vector<double>& x,
                 io::StudySummary& summary) {
@@ -53,7 +68,7 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
   const auto names = names_of_bearings(context.machine);
   const std::vector<double> thickness = system.film_thickness(x.data());
   // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
-  const std::vector<film::Coefficients> coefficients = film_coefficients(system, x, system.speed());
+  const std::vector<FilmCoefficients> coefficients = film_coefficients(system, x, system.speed());
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
@@ -80,12 +95,12 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
       summary.set(head + "power_loss", report.power_loss, "W");
       total_loss += report.power_loss;
     }
-    const film::Coefficients& tangents = coefficients[b];
-    for (std::size_t d = 0; d < 2; ++d)
-      for (std::size_t e = 0; e < 2; ++e) {
-        summary.set(head + "K." + axis[d] + axis[e], tangents.stiffness[2 * d + e], "N/m");
-        summary.set(head + "C." + axis[d] + axis[e], tangents.damping[2 * d + e], "N s/m");
-      }
+    put_coefficients(coefficients[b], head, summary);
+    for (std::size_t d = 0; d < 2 && coefficients[b].ports > 2; ++d) {
+      summary.set(head + "moment." + axis[d], films[b].force[2 + d], "N m");
+      summary.set(head + "tilt." + axis[d], journals[b].tilt[d], "1");
+      summary.set(head + "slope." + axis[d], system.slope(static_cast<int>(b))[d], "1");
+    }
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
       if (p >= 0) summary.set("pedestal." + names[b] + "." + axis[d], x[static_cast<std::size_t>(2 * p)], "m");

@@ -67,7 +67,8 @@ Response unpack(const std::vector<double>& flat, std::size_t n_nodes, std::size_
 
 // The journal goes round `at` as the linear response says, whatever stands in its way. The bore of an elastic liner
 // gives way; there the motion counts against the clearance.
-double film_left(const system::Support& s, const std::array<double, 2>& at, const NodeMotion& m) {
+double film_left(const system::Support& s, const system::JournalState& at, const NodeMotion& m,
+                 const std::array<Complex, 2>& tilt) {
   const film::Facts film = film::facts(s.film);
   if (film.coefficients) return std::numeric_limits<double>::infinity();
   if (film.gives_way) return s.geometry.clearance - m.semi_major();
@@ -75,8 +76,10 @@ double film_left(const system::Support& s, const std::array<double, 2>& at, cons
   constexpr int samples = 90;
   for (int k = 0; k < samples; ++k) {
     const Complex turn = std::exp(Complex(0, 2 * std::numbers::pi * k / samples));
-    least = std::min(
-        least, film::minimum_thickness(s.geometry, {at[0] + (m.x * turn).real(), at[1] + (m.y * turn).real(), 0, 0}));
+    least =
+        std::min(least, film::minimum_thickness(
+                            s.geometry, {at.position[0] + (m.x * turn).real(), at.position[1] + (m.y * turn).real(),
+                                         at.tilt[0] + (tilt[0] * turn).real(), at.tilt[1] + (tilt[1] * turn).real()}));
   }
   return least;
 }
@@ -121,20 +124,23 @@ public:
       const auto k = static_cast<std::size_t>(4 * (node - 1));
       r.nodes.push_back({{shaft[0][k], shaft[1][k]}, {shaft[0][k + 1], shaft[1][k + 1]}});
     }
+    const auto rest = system_.journals(system_.gather(x).data());
     for (int b = 0; b < system_.n_bearings(); ++b) {
+      const auto value = [&](PetscInt coordinate) {
+        const auto i = static_cast<std::size_t>(2 * coordinate);
+        return Complex(state[0][i], state[1][i]);
+      };
       Complex z[2];
+      std::array<Complex, 2> tilt{};
       for (int d = 0; d < 2; ++d) {
-        const PetscInt j = 2 * system_.journal(b, d), p = 2 * system_.pedestal(b, d);
-        const auto value = [&](PetscInt i) {
-          return Complex(state[0][static_cast<std::size_t>(i)], state[1][static_cast<std::size_t>(i)]);
-        };
-        z[d] = value(j) - (p >= 0 ? value(p) : 0.0);
+        const PetscInt p = system_.pedestal(b, d);
+        z[d] = value(system_.journal(b, d)) - (p >= 0 ? value(p) : 0.0);
+        if (system_.ports(b) > 2) tilt[static_cast<std::size_t>(d)] = value(system_.journal(b, 2 + d));
       }
       r.bearings.push_back({z[0], z[1]});
+      const auto k = static_cast<std::size_t>(b);
+      r.films.push_back(film_left(system_.train().supports[k], rest[k], r.bearings[k], tilt));
     }
-    const auto rest = system_.journals(system_.gather(x).data());
-    for (std::size_t b = 0; b < rest.size(); ++b)
-      r.films.push_back(film_left(system_.train().supports[b], rest[b].position, r.bearings[b]));
     return r;
   }
 
@@ -189,7 +195,8 @@ void put_films(io::Group& group, io::StudySummary& summary, const system::Places
   }
   group.child("bearings")
       .put("film_min", {curve.size(), places.names.size()}, all, "m",
-           "smallest film thickness at mid-plane that the linear motion leaves, not a number without a film");
+           "smallest film thickness that the linear motion leaves, at mid-plane of films that do not tilt, not a "
+           "number without a film");
   for (std::size_t b = 0; b < places.names.size(); ++b) {
     const Response *worst = nullptr, *first = nullptr, *last = nullptr;
     for (const Response& r : curve) {

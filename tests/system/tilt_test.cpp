@@ -1,0 +1,408 @@
+// Films that follow the slope of the shaft: forces and moments on x, y and both slopes of the journal.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/dense.hpp"
+#include "support/train_system.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/problem/structure.hpp"
+#include "whirl/problem/taylor.hpp"
+#include "whirl/rotor/alignment.hpp"
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/system/start.hpp"
+
+using namespace whirl;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double speed = 300;
+
+film::Reynolds pads(bool tilt, std::array<int, 2> cells = {30, 10}) {
+  film::Reynolds o;
+  o.tilt = tilt;
+  o.cells = cells;
+  return o;
+}
+
+system::Support support(const std::string& name, int node, film::Geometry::Bore bore, const film::Options& film) {
+  system::Support s;
+  s.name = name;
+  s.node = node;
+  s.geometry = {bore, 0.05, 0.08, 1e-4, 120 * std::numbers::pi / 180, 0, 0};
+  if (bore == film::Geometry::Bore::cylindrical) s.geometry.arc = 0;
+  s.film = film;
+  s.lubricant = {0.02, 860};
+  return s;
+}
+
+// A slender shaft with an overhung disc, so that its journals stand askew: arcs at nodes 1 and 5, the first on a
+// pedestal.
+system::Train overhung(bool tilt, std::array<int, 2> cells = {30, 10}) {
+  system::Train t;
+  rotor::Segment s;
+  s.length = 0.2;
+  s.outer_mass_diameter = 0.06;
+  t.rotor.segments.assign(6, s);
+  t.rotor.material.modulus = {{293.15, 2.1e11}};
+  t.rotor.stiffness_damping = 1e-5;
+  rotor::Disc disc;
+  disc.mass = 40;
+  disc.polar_inertia = 0.5;
+  disc.diametral_inertia = 0.3;
+  disc.node = 7;
+  t.rotor.discs = {disc};
+  disc.node = 3;
+  t.rotor.discs.push_back(disc);
+  using enum film::Geometry::Bore;
+  t.supports = {support("one", 1, partial_arc, pads(tilt, cells)), support("two", 5, partial_arc, pads(tilt, cells))};
+  t.supports[0].has_pedestal = true;
+  t.supports[0].mass = {20, 25};
+  t.supports[0].stiffness = {2e8, 3e8};
+  t.supports[0].damping = {1e4, 2e4};
+  t.supports[0].elevation = 3e-5;
+  t.unbalance = {{7, 4e-4, 0.3}, {3, 2e-4, 1}};
+  return t;
+}
+
+core::Vector equilibrium(system::RotorSystem& s) {
+  s.set_forcing(false);
+  core::Vector x = s.guess();
+  solve::NewtonOptions o;
+  o.max_iterations = 60;
+  const auto r = solve::find_equilibrium(s, x.get(), o);
+  EXPECT_TRUE(r.converged) << r.reason << " after " << r.iterations << ", residual " << r.residual;
+  s.set_forcing(true);
+  return x;
+}
+
+// Away from x, moving, the same on any number of ranks; displacements and slopes alike.
+void disturb(Vec x, double size) {
+  PetscInt begin = 0;
+  core::check(VecGetOwnershipRange(x, &begin, nullptr));
+  const core::WriteArray a(x);
+  for (PetscInt i = 0; i < a.size(); ++i)
+    a[i] += size * std::sin(3.7 * static_cast<double>(begin + i)) * ((begin + i) % 2 ? 300 : 1);
+}
+
+}  // namespace
+
+TEST(Tilt, DerivativesPassTheTaylorTest) {
+  for (const auto type : {rotor::Reduction::Type::none, rotor::Reduction::Type::guyan}) {
+    system::Train t = overhung(true);
+    t.rotor.reduction.type = type;
+    t.rotor.reduction.masters = {1, 3, 5, 7};
+    t.rotor.reduction.slopes = {1, 5};
+    system::RotorSystem s(MPI_COMM_WORLD, t, speed);
+    ASSERT_EQ(s.ports(0), 4);
+    core::Vector x = s.guess(), rate = core::duplicate(x.get());
+    disturb(x.get(), 3e-6);
+    core::check(VecSet(rate.get(), 0.0));
+    disturb(rate.get(), 1e-3);
+    const auto r = problem::taylor_test(s, 0.7, x.get(), rate.get(), 1e-3);
+    EXPECT_GT(r.first_difference, 1e-6);
+    EXPECT_GE(r.state_order, 1.9);
+    EXPECT_GE(r.rate_order, 1.9);
+    EXPECT_GE(r.parameter_order, 1.9);
+  }
+}
+
+// The blocks that structured solvers see give F and J of the matrices, with films with and without states.
+TEST(Tilt, BlocksAreTheSameEquations) {
+  for (const bool states : {false, true}) {
+    system::Train t = overhung(true, {12, 6});
+    if (states) {
+      film::Reynolds content = pads(true, {12, 6});
+      content.cavitation = film::Reynolds::Cavitation::mass_conserving;
+      content.states = film::States::dynamic;
+      t.supports[1].film = content;
+    }
+    system::RotorSystem s(PETSC_COMM_SELF, t, speed);
+    core::Vector x = s.guess(), rate = core::duplicate(x.get()), f = core::duplicate(x.get());
+    const Index n = 2 * s.coordinates(), all = s.size();
+    disturb(rate.get(), 1e-3);
+    {
+      const core::WriteArray a(x.get());
+      for (Index i = 0; i < n; ++i) a[i] += 3e-6 * std::sin(3.7 * static_cast<double>(i)) * (i % 2 ? 300 : 1);
+    }
+    const VectorXd at = test::dense(x.get()), dot = test::dense(rate.get());
+    problem::Structure& structure = *s.structure();
+    ASSERT_EQ(structure.n_forces(), 8);
+    ASSERT_EQ(structure.n_inputs(), 16);
+    problem::Films films;
+    VectorXd load;
+    structure.films(structure.c() * at.head(n), at.data() + n, dot.data() + n, true, films);
+    structure.load(0.7, load);
+    VectorXd expected(all);
+    expected << structure.l1() * dot.head(n) + structure.l0() * at.head(n) - load - structure.b() * films.forces,
+        films.residual;
+    s.residual(0.7, x.get(), rate.get(), f.get());
+    const VectorXd residual = test::dense(f.get());
+    EXPECT_LE((residual - expected).norm(), 1e-11 * residual.norm());
+    core::Matrix j = s.make_jacobian();
+    s.jacobian(0.7, x.get(), rate.get(), 1, 0, j.get());
+    MatrixXd jx = MatrixXd::Zero(all, all);
+    jx.topLeftCorner(n, n) =
+        MatrixXd(structure.l0()) - MatrixXd(structure.b()) * films.d_inputs * MatrixXd(structure.c());
+    for (std::size_t k = 0; k < structure.own().size(); ++k) {
+      const problem::OwnStates& own = structure.own()[k];
+      const problem::OwnTangents& tangents = films.own[k];
+      EXPECT_EQ(own.inputs, 8);
+      EXPECT_EQ(own.forces, 4);
+      const Index first = n + own.first;
+      jx.block(first, 0, own.count, n) =
+          tangents.inputs.transpose() * MatrixXd(structure.c()).middleRows(own.first_input, own.inputs);
+      jx.block(0, first, n, own.count) =
+          -MatrixXd(structure.b()).middleCols(own.first_force, own.forces) * tangents.forces;
+      for (std::size_t e = 0; e < own.states.size(); ++e)
+        jx(first + own.states[e].row, first + own.states[e].column) += tangents.states[e];
+    }
+    const MatrixXd found = test::dense(j.get());
+    for (Index row = 0; row < all; ++row)
+      EXPECT_LE((found.row(row) - jx.row(row)).norm(), 1e-11 * found.row(row).norm()) << row;
+    core::Vector dp = core::duplicate(x.get());
+    s.parameter_derivative(0.7, x.get(), rate.get(), dp.get());
+    VectorXd by_blocks;
+    structure.parameter_derivative(0.7, at, dot, films, by_blocks);
+    EXPECT_LE((test::dense(dp.get()) - by_blocks).norm(), 1e-11 * by_blocks.norm());
+  }
+}
+
+// Turned by a quarter, a machine without a direction of its own gives the turned residual.
+TEST(Tilt, TurnsWithItsFrame) {
+  system::Train t = overhung(true);
+  t.gravity = 0;
+  t.unbalance.clear();
+  for (system::Support& s : t.supports) {
+    s.geometry.type = film::Geometry::Bore::cylindrical;
+    s.geometry.arc = 0;
+    s.film = pads(true, {32, 10});
+    s.elevation = 0;
+    s.has_pedestal = false;
+    s.slope = {{0, 0}};
+  }
+  system::RotorSystem s(MPI_COMM_WORLD, t, speed);
+  core::Vector x = core::make_vector(s.comm(), s.local_size(), PETSC_DETERMINE), rate = core::duplicate(x.get()),
+               f = core::duplicate(x.get());
+  disturb(x.get(), 2e-5);
+  disturb(rate.get(), 1e-3);
+  // Pairs (x, y), (dx/dz, dy/dz), each a pair of value and rate.
+  const auto turned = [](const VectorXd& v) {
+    VectorXd out(v.size());
+    for (Index i = 0; i < v.size(); i += 4)
+      for (Index k = 0; k < 2; ++k) {
+        out(i + k) = -v(i + 2 + k);
+        out(i + 2 + k) = v(i + k);
+      }
+    return out;
+  };
+  const auto residual = [&](const VectorXd& at, const VectorXd& dot) {
+    core::fill(x.get(), {at.begin(), at.end()});
+    core::fill(rate.get(), {dot.begin(), dot.end()});
+    s.residual(0, x.get(), rate.get(), f.get());
+    return test::dense(f.get());
+  };
+  const VectorXd at = test::dense(x.get()), dot = test::dense(rate.get());
+  const VectorXd here = residual(at, dot), there = residual(turned(at), turned(dot));
+  EXPECT_LE((there - turned(here)).norm(), 1e-9 * here.norm());
+  // It feels the tilt: without it the moments are missing.
+  for (system::Support& bearing : t.supports) bearing.film = pads(false, {32, 10});
+  system::RotorSystem without(MPI_COMM_WORLD, t, speed);
+  core::fill(x.get(), {at.begin(), at.end()});
+  core::fill(rate.get(), {dot.begin(), dot.end()});
+  without.residual(0, x.get(), rate.get(), f.get());
+  EXPECT_GT((test::dense(f.get()) - here).norm(), 1e-6 * here.norm());
+}
+
+// Forces and moments of the films hold the weight: sum of F_y and of z F_y + M_y. Their values are integrals of the
+// pressure.
+TEST(Tilt, ForcesAndMomentsCarryTheShaft) {
+  const system::Train t = overhung(true, {80, 40});
+  system::RotorSystem s(MPI_COMM_WORLD, t, speed);
+  const core::Vector x = equilibrium(s);
+  const std::vector<double> whole = s.gather(x.get());
+  const auto films = s.film_responses(whole.data(), film::Need::force);
+  const auto journals = s.journals(whole.data());
+  const std::vector<double> z = rotor::node_positions(t.rotor), mass = rotor::node_masses(t.rotor);
+  double force = 0, moment = 0, weight = 0, lever = 0;
+  for (std::size_t k = 0; k < z.size(); ++k) {
+    weight += t.gravity * mass[k];
+    lever += t.gravity * mass[k] * z[k];
+  }
+  for (std::size_t b = 0; b < films.size(); ++b) {
+    force += films[b].force[1];
+    moment += films[b].force[1] * z[static_cast<std::size_t>(t.supports[b].node - 1)] + films[b].force[3];
+    EXPECT_GT(std::abs(films[b].force[3]), 1e-3 * films[b].force[1] * t.supports[b].geometry.length) << "no moment";
+    EXPECT_GT(std::abs(journals[b].tilt[1]), 1e-6);
+    // The tilt turns the journal against the moment.
+    EXPECT_LT(films[b].force[3] * journals[b].tilt[1], 0.0);
+  }
+  EXPECT_NEAR(force, weight, 1e-6 * weight);
+  EXPECT_NEAR(moment, lever, 1e-6 * lever);
+  for (std::size_t b = 0; b < films.size(); ++b) {
+    const auto fields = s.film_fields(static_cast<int>(b), whole.data());
+    const auto field = [&](const char* name) -> const film::Field& {
+      for (const film::Field& f : fields)
+        if (f.name == name) return f;
+      throw core::Bug("no such field");
+    };
+    const film::Field &theta = field("theta"), &along = field("z"), &p = field("pressure");
+    const std::size_t m = along.values.size();
+    const double area =
+        t.supports[b].geometry.radius * (theta.values[1] - theta.values[0]) * (along.values[1] - along.values[0]);
+    std::array<double, 4> sum{};
+    for (std::size_t i = 0; i < theta.values.size(); ++i)
+      for (std::size_t j = 0; j < m; ++j) {
+        const double each = -area * p.values[i * m + j], at = along.values[j];
+        sum[0] += each * std::cos(theta.values[i]);
+        sum[1] += each * std::sin(theta.values[i]);
+        sum[2] += each * at * std::cos(theta.values[i]);
+        sum[3] += each * at * std::sin(theta.values[i]);
+      }
+    const double load = std::hypot(sum[0], sum[1]), moments = std::hypot(sum[2], sum[3]);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(sum[k], films[b].force[k], 5e-3 * (k < 2 ? load : moments)) << k;
+    // Thickness over the whole length: least at an end.
+    const auto at_mid =
+        film::minimum_thickness(t.supports[b].geometry, {journals[b].position[0], journals[b].position[1], 0, 0});
+    const auto& h = field("thickness").values;
+    const double least = *std::min_element(h.begin(), h.end()), found = s.film_thickness(whole.data())[b];
+    EXPECT_LT(found, at_mid);
+    EXPECT_LE(found, least);
+    EXPECT_NEAR(found, least, 1e-3 * least);
+  }
+}
+
+// A bearing is bored in line with the shaft at rest, or stands as the deck says.
+TEST(Tilt, BearingsAreAlignedToTheShaft) {
+  system::Train t = overhung(true);
+  const system::RotorSystem aligned(MPI_COMM_WORLD, t, speed);
+  const auto line = rotor::rigid_static(MPI_COMM_WORLD, t.rotor, {{1, 3e-5}, {5, 0}}, t.gravity).slope;
+  for (int b = 0; b < 2; ++b) {
+    EXPECT_EQ(aligned.slope(b)[0], 0);
+    EXPECT_EQ(aligned.slope(b)[1], line[b == 0 ? 0 : 4]);
+    EXPECT_GT(std::abs(aligned.slope(b)[1]), 1e-5);
+  }
+  t.supports[1].slope = {{1e-4, -2e-4}};
+  system::RotorSystem given(MPI_COMM_WORLD, t, speed);
+  EXPECT_EQ(given.slope(1), *t.supports[1].slope);
+  const core::Vector x = given.guess();
+  const std::vector<double> whole = given.gather(x.get()), shaft = given.shaft(whole.data(), 0, true);
+  const auto journal = given.journals(whole.data())[1];
+  for (std::size_t d = 0; d < 2; ++d)
+    EXPECT_DOUBLE_EQ(journal.tilt[d],
+                     shaft[static_cast<std::size_t>(rotor::full_coordinate(5, rotor::Freedom::slope_x)) + d] -
+                         (*t.supports[1].slope)[d]);
+}
+
+// Static condensation is exact where slopes of tilting films stay: loads, moments and tilts of the whole shaft.
+TEST(Tilt, AReductionKeepsTheSlopes) {
+  system::Train t = overhung(true);
+  system::RotorSystem full(MPI_COMM_WORLD, t, speed);
+  const std::vector<double> a = full.gather(equilibrium(full).get());
+  t.rotor.reduction.type = rotor::Reduction::Type::guyan;
+  t.rotor.reduction.masters = {1, 3, 5, 7};
+  EXPECT_THROW(system::RotorSystem(MPI_COMM_WORLD, t, speed), core::InputError) << "without its slopes";
+  t.rotor.reduction.slopes = {1, 5};
+  system::RotorSystem small(MPI_COMM_WORLD, t, speed);
+  EXPECT_EQ(small.coordinates(), 2 * (4 + 2) + 2);
+  const std::vector<double> b = small.gather(equilibrium(small).get());
+  const auto fa = full.film_responses(a.data(), film::Need::force),
+             fb = small.film_responses(b.data(), film::Need::force);
+  const auto ja = full.journals(a.data()), jb = small.journals(b.data());
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t d = 0; d < 2; ++d) {
+      EXPECT_NEAR(fa[k].force[d], fb[k].force[d], 1e-6 * fa[k].force[1]);
+      EXPECT_NEAR(fa[k].force[2 + d], fb[k].force[2 + d], 1e-6 * fa[k].force[1] * 0.08);
+      EXPECT_NEAR(ja[k].tilt[d], jb[k].tilt[d], 1e-6 * std::abs(ja[k].tilt[1]));
+    }
+}
+
+// A film in the middle of a shaft that is the same on both sides does not tilt, and answers as one that cannot.
+TEST(Tilt, VanishesBySymmetry) {
+  const auto solve_with = [](bool tilt) {
+    system::Train t = overhung(false);
+    t.rotor.discs.resize(1);
+    t.rotor.discs[0].node = 4;
+    using enum film::Geometry::Bore;
+    t.supports = {support("left", 1, partial_arc, film::Linear{.stiffness = {1e7, 0, 0, 1e7}}),
+                  support("middle", 4, partial_arc, pads(tilt)),
+                  support("right", 7, partial_arc, film::Linear{.stiffness = {1e7, 0, 0, 1e7}})};
+    system::RotorSystem s(MPI_COMM_WORLD, t, speed);
+    const std::vector<double> x = s.gather(equilibrium(s).get());
+    const auto film = s.film_responses(x.data(), film::Need::tangents)[1];
+    const auto at = s.journals(x.data())[1];
+    EXPECT_LT(std::hypot(at.tilt[0], at.tilt[1]), 1e-14);
+    return std::pair{at.position, film};
+  };
+  const auto [on, film_on] = solve_with(true);
+  const auto [off, film_off] = solve_with(false);
+  for (std::size_t d = 0; d < 2; ++d) {
+    EXPECT_NEAR(on[d], off[d], 1e-10 * 1e-4);
+    EXPECT_NEAR(film_on.force[d], film_off.force[d], 1e-10 * film_off.force[1]);
+    EXPECT_NEAR(film_on.force[2 + d], 0, 1e-10 * film_off.force[1] * 0.08);
+    for (std::size_t e = 0; e < 2; ++e) {
+      EXPECT_NEAR(film_on.d_position[d][e], film_off.d_position[d][e], 1e-10 * std::abs(film_off.d_position[1][1]));
+      EXPECT_NEAR(film_on.d_velocity[d][e], film_off.d_velocity[d][e], 1e-10 * std::abs(film_off.d_velocity[1][1]));
+    }
+  }
+  // Against a slope it stands.
+  EXPECT_GT(-film_on.d_position[3][3], 0);
+  EXPECT_GT(-film_on.d_velocity[3][3], 0);
+}
+
+// Cycles by the elimination that knows of four ports, and by the general one.
+TEST(Tilt, CyclesByEveryWay) {
+  for (const bool states : {false, true}) {
+    system::Train t = overhung(true, {12, 6});
+    if (states) {
+      film::Reynolds content = pads(true, {12, 6});
+      content.cavitation = film::Reynolds::Cavitation::mass_conserving;
+      content.states = film::States::dynamic;
+      t.supports[1].film = content;
+      t.rotor.reduction.type = rotor::Reduction::Type::guyan;
+      t.rotor.reduction.masters = {1, 5, 7};
+      t.rotor.reduction.slopes = {1, 5};
+    }
+    const auto cycle = [&](bool structured) {
+      system::RotorSystem s(PETSC_COMM_SELF, t, speed);
+      const core::Vector x = equilibrium(s);
+      solve::CycleOptions o;
+      o.degree = 3;
+      o.points = solve::Points::radau;
+      o.use_structure = structured;
+      constexpr int intervals = 8;
+      solve::CycleProblem p(MPI_COMM_WORLD, s, o, solve::uniform_mesh(intervals));
+      solve::Cycle guess{p.mesh(), {}, 2 * M_PI / speed, speed};
+      const auto whole = s.gather(x.get());
+      guess.x = Eigen::Map<const VectorXd>(whole.data(), s.size()).replicate(1, intervals * o.degree);
+      core::Vector u = p.scatter(guess), row = core::duplicate(u.get());
+      solve::parameter_row(p, row.get());
+      solve::NewtonOptions newton;
+      newton.max_iterations = 60;
+      const auto r = solve::newton(p, u.get(), row.get(), speed / o.parameter_scale, newton);
+      EXPECT_TRUE(r.converged) << r.reason << " " << r.residual;
+      p.linearise(u.get(), row.get());
+      return std::pair{p.gather(u.get()).x, std::abs(spectral::eigenvalues(p.monodromy())[0])};
+    };
+    const auto [a, first] = cycle(true);
+    const auto [b, second] = cycle(false);
+    const Index machine =
+        a.rows() - (states ? static_cast<Index>(film::make_state_model(t.supports[1].geometry, t.supports[1].film,
+                                                                       t.supports[1].lubricant)
+                                                    ->states())
+                           : 0);
+    EXPECT_LE((a - b).topRows(machine).cwiseAbs().maxCoeff(), 1e-8 * a.topRows(machine).cwiseAbs().maxCoeff());
+    EXPECT_NEAR(first, second, 1e-7);
+    // The journal moves, and tilts as it does.
+    EXPECT_GT((a.row(2).array() - a.row(2).mean()).abs().maxCoeff(), 1e-7);
+  }
+}
