@@ -37,8 +37,8 @@ std::vector<film::Coefficients> film_coefficients(system::RotorSystem& system, c
   const auto blocks = transfer.evaluate({0, omega}, false);
   std::size_t part = 0;
   for (std::size_t b = 0; b < films.size(); ++b) {
-    if (!film::has_states(system.train().supports[b].film)) continue;
     const auto bearing = static_cast<int>(b);
+    if (system.own_states(bearing) == 0) continue;
     const std::vector<PetscInt> position{2 * system.journal(bearing, 0), 2 * system.journal(bearing, 1)};
     const Eigen::MatrixXcd k =
         transfer.from_motion(part, blocks[part], {0, omega}, position, {position[0] + 1, position[1] + 1}, position);

@@ -36,8 +36,6 @@ public:
 
 private:
   void find_own_states();
-  /// (F, G) at a whole state.
-  void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::VectorXd& out);
 
   RotorSystem& system_;
   problem::SparseBlock l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
@@ -45,8 +43,6 @@ private:
   std::vector<problem::OwnStates> own_;
   // Work space.
   std::vector<film::StateResponse> responses_;
-  problem::Films films_;
-  Eigen::VectorXd load_, minus_;
 };
 
 }  // namespace whirl::system

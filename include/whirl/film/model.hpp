@@ -70,6 +70,9 @@ public:
   virtual Summary summary(const Motion& motion) = 0;
   /// Pressure and thickness at the grid nodes of every pad; empty for a linear film; throws as evaluate() does.
   virtual std::vector<Field> fields(const Motion& motion) = 0;
+  /// Starts the search for its pressure from where `other` ended, a film of the same mesh with other numbers. Without
+  /// effect on a film that searches nothing, or if the meshes differ.
+  virtual void start_from(const Model& /*other*/) {}
   /// True if the force is linear in position and velocity and independent of speed.
   [[nodiscard]] virtual bool linear() const { return false; }
 };

@@ -106,6 +106,9 @@ private:
   mutable std::unique_ptr<const Share> whole_;
 };
 
+/// The film described by the options, of either sort; throws core::InputError on values outside their range.
+Made make_film(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
+
 /// True for the films that make_state_model() makes; the others belong to make_model().
 [[nodiscard]] bool has_states(const Options& options);
 

@@ -40,6 +40,8 @@ public:
   Rotor(MPI_Comm comm, const Options& options);
 
   [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
+  /// C = `value` K [s]; all else stays. Collective.
+  void set_stiffness_damping(double value);
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
   [[nodiscard]] int n_nodes() const noexcept { return n_nodes_; }
