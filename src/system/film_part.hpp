@@ -63,7 +63,8 @@ public:
   [[nodiscard]] bool constant_rates() const { return !states_ || states_->constant_rates(); }
   /// It finds its states by whole steps of Newton's method while the machine stays where it is.
   [[nodiscard]] bool settles() const { return states_ && states_->whole_steps(); }
-  /// Least thickness [m]; of a film without states that of its rigid bore; infinite without a bore.
+  /// Least thickness [m] at some of its states (StateModel::least_thickness); of a film without states that of its
+  /// rigid bore; infinite without a bore.
   [[nodiscard]] double least_thickness(const film::Motion& motion, std::span<const double> states) const;
   [[nodiscard]] film::Summary summary(const film::Motion& motion, std::span<const double> states) const;
   [[nodiscard]] std::vector<film::Field> report(const film::Motion& motion, std::span<const double> states) const;

@@ -12,6 +12,12 @@ namespace whirl::system {
 
 using core::check;
 
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 void RotorSystem::scatter_inputs(Vec x) {
   check(VecScatterBegin(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
@@ -115,7 +121,7 @@ RotorSystem::Films RotorSystem::films_at(const FilmInputs& in, film::Need need) 
 // least counts.
 void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
   constexpr std::size_t width = 2 + 4 + 4 + 2;
-  std::vector<double> flat(width * films.size(), 0.0), thickness(films.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> flat(width * films.size(), 0.0), thickness(films.size(), infinite);
   for (std::size_t i = 0; i < films.size(); ++i) {
     if (!bearings_[i].part->here()) continue;
     double* f = flat.data() + width * i;
@@ -163,6 +169,22 @@ void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigm
   }
   check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
+}
+
+Observed RotorSystem::observe(Vec x) {
+  Observed out{journals_of(gather_inputs(x)), std::vector<double>(bearings_.size(), infinite)};
+  core::agree(comm_, [&] {
+    const core::ReadArray xa(x);
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      const FilmPart& part = *bearings_[i].part;
+      if (part.here())
+        out.film_thickness[i] =
+            part.least_thickness(motion(out.shown[i]), {xa.data() + part.row(), static_cast<std::size_t>(part.rows())});
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, out.film_thickness.data(), static_cast<int>(bearings_.size()), MPI_DOUBLE, MPI_MIN,
+                comm_);
+  return out;
 }
 
 PetscInt RotorSystem::own_states(int b) const {

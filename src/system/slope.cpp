@@ -66,7 +66,7 @@ RotorSystem::Slope::Slope(RotorSystem& system, const Train& minus, const Train& 
   }
   for (std::size_t i = 0; i < minus.supports.size(); ++i) {
     const Support &a = minus.supports[i], &b = plus.supports[i];
-    if (a.elevation != b.elevation) elevations_.emplace_back(i, rate(a.elevation, b.elevation));
+    if (a.elevation != b.elevation) places_.push_back({i, {0, rate(a.elevation, b.elevation), 0, 0}});
     for (std::size_t d = 0; change.pedestals && d < 2; ++d)
       if (const PetscInt row = system.bearings_[i].pedestal[d]; row >= 0 && system.owns(row))
         pedestals_.push_back(
@@ -130,7 +130,7 @@ void RotorSystem::Slope::derivative(double angle, Vec x, Vec xdot, Vec f) const 
       for (PetscInt i = 0; i < sa.size(); ++i) fa[2 * i] += sa[i];
     }
   }
-  if (films_.empty() && elevations_.empty()) return;
+  if (films_.empty() && places_.empty()) return;
 
   const FilmInputs in = s.film_inputs(x, xdot);
   std::vector<FilmRate> rates;
@@ -139,14 +139,17 @@ void RotorSystem::Slope::derivative(double angle, Vec x, Vec xdot, Vec f) const 
       s.evaluate(b, part, in, film::Need::force, r);
     });
     film::StateResponse here;
-    for (const auto& [b, up] : elevations_) {
+    for (const auto& [b, moves] : places_) {
       const FilmPart& part = *s.bearings_[b].part;
       if (!part.here()) continue;
       s.evaluate(b, part, in, film::Need::tangents, here);
-      for (std::size_t d = 0; d < here.journal.force.size(); ++d)
-        rates[b].force[d] -= up * here.journal.d_position[d][1];
       rates[b].residual.resize(here.residual.size(), 0.0);
-      for (std::size_t k = 0; k < here.residual.size(); ++k) rates[b].residual[k] -= up * here.d_position[1][k];
+      for (std::size_t port = 0; port < s.bearings_[b].ports.size(); ++port) {
+        for (std::size_t d = 0; d < here.journal.force.size(); ++d)
+          rates[b].force[d] -= moves[port] * here.journal.d_position[d][port];
+        for (std::size_t k = 0; k < here.residual.size(); ++k)
+          rates[b].residual[k] -= moves[port] * here.d_position[port][k];
+      }
     }
   });
   std::vector<std::array<double, 4>> forces;

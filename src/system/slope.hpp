@@ -16,9 +16,9 @@ namespace whirl::system {
 ///     dF/dp = dM v' + (dC + Omega dG) v + dK q - d(load) - d(unbalance) - B df,   and dg of own states
 ///
 /// F is linear in the entries of pedestals, in gravity, load and amounts of unbalance: what is differenced there are
-/// the numbers of T, so that dF/dp is exact to rounding. A bearing's elevation moves its journal the other way, through
-/// the tangents of its film. All else is a central difference of what depends on p, the matrices of a rotor or the
-/// response of a film. What does not depend on p is neither made nor evaluated.
+/// the numbers of T, so that dF/dp is exact to rounding. A bearing that moves (its elevation) moves its journal the
+/// other way, through the tangents of its film. All else is a central difference of what depends on p, the matrices of
+/// a rotor or the response of a film. What does not depend on p is neither made nor evaluated.
 class RotorSystem::Slope {
 public:
   /// `step` is p+ - p-. Collective; throws core::InputError where a part refuses its numbers.
@@ -34,6 +34,11 @@ private:
   struct Film {
     std::size_t bearing;
     FilmPart minus, plus;
+  };
+  /// Of a bearing, along the ports of its film.
+  struct Place {
+    std::size_t bearing;
+    std::array<double, 4> rate;
   };
   struct FilmRate {
     std::array<double, 4> force{};
@@ -52,7 +57,7 @@ private:
   std::vector<Pedestal> pedestals_;   // on this rank, that do
   std::vector<double> load_;          // empty: it does not
   std::optional<Unbalances> unbalance_;
-  std::vector<std::pair<std::size_t, double>> elevations_;  // by bearing
+  std::vector<Place> places_;
   std::vector<Film> films_;
 };
 

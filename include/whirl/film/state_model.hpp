@@ -97,7 +97,8 @@ public:
   /// Own states on this mesh from those of `other`, the same film on another one.
   virtual void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
                         std::span<double> to) const = 0;
-  /// Least thickness of the film [m].
+  /// Least thickness of the film [m]. From some of its states alone it is that of these or of the whole film: the least
+  /// over all shares is the film's.
   [[nodiscard]] virtual double least_thickness(const Motion& motion, std::span<const double> states) const = 0;
   virtual Summary summary(const Motion& motion, std::span<const double> states) = 0;
   virtual std::vector<Field> fields(const Motion& motion, std::span<const double> states) = 0;

@@ -26,6 +26,12 @@ struct Places {
   std::vector<double> least_films{};  ///< thickness below which the surfaces touch, in `unit`; empty: there are none
 };
 
+/// What results show of one state, small and the same on all ranks.
+struct Observed {
+  std::vector<PlaceState> shown;       ///< as Plant::shown()
+  std::vector<double> film_thickness;  ///< as Plant::film_thickness()
+};
+
 /// A system that branches of equilibria and cycles and motions can be computed of, whatever it is made of. All members
 /// are collective on comm() unless they say not.
 class Plant : public problem::System {
@@ -38,6 +44,11 @@ public:
   /// where there is no film, empty if no place has one. Films see no tilt of the shaft, and neither does this. Not
   /// collective.
   [[nodiscard]] virtual std::vector<double> film_thickness(const double* /*x*/) const { return {}; }
+  /// Both at a distributed state.
+  [[nodiscard]] virtual Observed observe(Vec x) {
+    const std::vector<double> whole = gather(x);
+    return {shown(whole.data()), film_thickness(whole.data())};
+  }
   /// A state from which Newton's method finds an equilibrium at the present parameter.
   [[nodiscard]] virtual core::Vector guess() = 0;
   /// Moves x away from an equilibrium by `offset` in both directions, per clearance; own states follow.

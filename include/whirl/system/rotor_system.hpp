@@ -87,6 +87,8 @@ public:
   [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override { return journals(x); }
   /// Of rigid bores from the place of the journal, of films with thicknesses as states the least of these.
   [[nodiscard]] std::vector<double> film_thickness(const double* x) const override;
+  /// Each rank looks at the films and shares of films that it holds: no state is gathered.
+  [[nodiscard]] Observed observe(Vec x) override;
   [[nodiscard]] core::Vector guess() override;
   void displace(Vec x, const std::array<double, 2>& offset) override;
   [[nodiscard]] bool has_film_mesh() const override;
