@@ -53,6 +53,7 @@ void BandedPad::solve() {
   if (cavitation_ == Reynolds::Cavitation::mass_conserving) return solve_conserving();
   assemble();
   band_.factor();
+  ++factorisations_;
   for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = cavitated_[k] ? 0.0 : -source_[k];
   band_.solve(x_);
 }
@@ -186,6 +187,14 @@ void BandedPad::add(const Motion& motion, Need need, Response& response) {
   integrate(need, response);
   response.min_thickness = std::min(response.min_thickness, h_min_);
   if (need == Need::tangents) adjoint(motion, response);
+}
+
+void BandedPad::start_from(const PadSolver& other) {
+  const auto* pad = dynamic_cast<const BandedPad*>(&other);
+  if (!pad || pad->cavitation_ != cavitation_ || pad->grid_.n_theta != grid_.n_theta || pad->rows_ != rows_) return;
+  solved_.reset();
+  u_ = pad->u_;
+  full_ = pad->full_;
 }
 
 std::vector<double> BandedPad::pressure(const Motion& motion) {

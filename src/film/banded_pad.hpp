@@ -19,9 +19,12 @@ class BandedPad final : public PadSolver, private PadEquations {
 public:
   BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   void add(const Motion& motion, Need need, Response& response) override;
+  void start_from(const PadSolver& other) override;
   std::vector<double> pressure(const Motion& motion) override;
   std::vector<double> fill(const Motion& motion) override;
   std::optional<Flows> flows(const Motion& motion) override;
+  /// Factorisations so far.
+  [[nodiscard]] long factorisations() const { return factorisations_; }
 
 private:
   void assemble();
@@ -69,8 +72,9 @@ private:
   std::vector<double> deficit_;   // s of the others, rad/s
   std::vector<double> diagonal_;  // of A
   double void_at_edge_ = 0.0;     // 1 - edge_fill
-  int mark_ = 0;                  // rows from here on change while the rupture moves (Band::factor)
-  bool stale_ = false;            // the rupture has moved since band_ was factorised
+  long factorisations_ = 0;
+  int mark_ = 0;        // rows from here on change while the rupture moves (Band::factor)
+  bool stale_ = false;  // the rupture has moved since band_ was factorised
   // What x_ and band_ belong to: solvers ask for the force first, then for the tangents at the same place.
   std::optional<Motion> solved_;
 };

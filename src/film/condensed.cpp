@@ -133,6 +133,14 @@ double Condensed::least_thickness(const Motion& motion) {
   return film_->least_thickness(motion, states_);
 }
 
+void Condensed::start_from(const Model& other) {
+  const auto* film = dynamic_cast<const Condensed*>(&other);
+  if (!film || film->film_->states() != film_->states()) return;
+  found_ = film->found_;
+  states_ = film->states_;
+  there_ = false;
+}
+
 std::unique_ptr<Model> condense(std::unique_ptr<StateModel> film) {
   return std::make_unique<Condensed>(std::move(film));
 }

@@ -21,6 +21,7 @@ public:
   Summary summary(const Motion& motion) override;
   std::vector<Field> fields(const Motion& motion) override;
   [[nodiscard]] double least_thickness(const Motion& motion) override;
+  void start_from(const Model& other) override;
   /// Factorisations so far.
   [[nodiscard]] long factorisations() const { return steady_.factorisations(); }
 

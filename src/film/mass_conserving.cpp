@@ -55,6 +55,7 @@ void BandedPad::solve_conserving() {
     }
     assemble_conserving();
     general_->factor();
+    ++factorisations_;
     general_->solve(x_);
     changed = 0;
     double largest = 0.0;

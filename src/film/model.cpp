@@ -8,13 +8,17 @@ namespace {
 
 template <class Wanted>
 std::unique_ptr<Wanted> made(const Geometry& geometry, const Options& options, const Lubricant& lubricant) {
-  Made film = std::visit([&](const auto& k) { return make(geometry, k, lubricant); }, options.kind);
+  Made film = make_film(geometry, options, lubricant);
   auto* wanted = std::get_if<std::unique_ptr<Wanted>>(&film);
   core::require(wanted != nullptr, "a film is made with own states if and only if it has any");
   return std::move(*wanted);
 }
 
 }  // namespace
+
+Made make_film(const Geometry& geometry, const Options& options, const Lubricant& lubricant) {
+  return std::visit([&](const auto& k) { return make(geometry, k, lubricant); }, options.kind);
+}
 
 std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& options, const Lubricant& lubricant) {
   return made<Model>(geometry, options, lubricant);

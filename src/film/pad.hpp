@@ -63,6 +63,8 @@ public:
   virtual ~PadSolver() = default;
   /// Adds force and derivatives of this pad to `response` and lowers its min_thickness.
   virtual void add(const Motion& motion, Need need, Response& response) = 0;
+  /// As Model::start_from().
+  virtual void start_from(const PadSolver& /*other*/) {}
   /// Truncated nodal pressure [n_theta + 1][n_z + 1], Pa.
   virtual std::vector<double> pressure(const Motion& motion) = 0;
   /// Part of the gap that is full of oil at the nodes [n_theta + 1][n_z + 1]; empty of a film that does not know it.

@@ -62,6 +62,12 @@ public:
     for (auto& solver : solvers_) solver->add(motion, need, response);
   }
 
+  void start_from(const Model& other) override {
+    const auto* film = dynamic_cast<const ReynoldsFilm*>(&other);
+    for (std::size_t k = 0; film && k < std::min(solvers_.size(), film->solvers_.size()); ++k)
+      solvers_[k]->start_from(*film->solvers_[k]);
+  }
+
   Summary summary(const Motion& motion) override {
     return summarise(pads_, options_, lubricant_, seen(motion), reports(motion));
   }

@@ -55,6 +55,7 @@ double BandedPad::move_rupture() {
 void BandedPad::factor_ruptured() {
   constexpr double kOut = std::numeric_limits<double>::infinity();
   stale_ = false;
+  ++factorisations_;
   int first = static_cast<int>(u_.size()), changed = first;
   for (int i = first_; i < grid_.n_theta; ++i) {
     if (wall(i)) continue;

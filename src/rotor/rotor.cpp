@@ -59,10 +59,15 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
   matrices_.mass = doubled(planar.mass.get(), both_planes);
   matrices_.gyroscopic = doubled(planar.gyroscopic.get(), across_planes);
   matrices_.stiffness = doubled(planar.stiffness.get(), both_planes);
-  check(MatDuplicate(matrices_.stiffness.get(), MAT_COPY_VALUES, matrices_.damping.put()));
-  check(MatScale(matrices_.damping.get(), options.stiffness_damping));
+  check(MatDuplicate(matrices_.stiffness.get(), MAT_DO_NOT_COPY_VALUES, matrices_.damping.put()));
+  set_stiffness_damping(options.stiffness_damping);
   matrices_.gravity = doubled_vertical(planar.weight.get(), -1);
   check(VecGetSize(matrices_.gravity.get(), &size_));
+}
+
+void Rotor::set_stiffness_damping(double value) {
+  check(MatCopy(matrices_.stiffness.get(), matrices_.damping.get(), SAME_NONZERO_PATTERN));
+  check(MatScale(matrices_.damping.get(), value));
 }
 
 PetscInt Rotor::coordinate(int node, Freedom freedom) const {

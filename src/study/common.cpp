@@ -39,10 +39,11 @@ std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, con
   const auto blocks = transfer.evaluate({0, omega}, false);
   std::size_t part = 0;
   for (std::size_t b = 0; b < films.size(); ++b) {
-    if (!film::has_states(system.train().supports[b].film)) continue;
+    const auto bearing = static_cast<int>(b);
+    if (system.own_states(bearing) == 0) continue;
     std::vector<PetscInt> position, rate;
-    for (int d = 0; d < system.ports(static_cast<int>(b)); ++d) {
-      position.push_back(2 * system.journal(static_cast<int>(b), d));
+    for (int d = 0; d < system.ports(bearing); ++d) {
+      position.push_back(2 * system.journal(bearing, d));
       rate.push_back(position.back() + 1);
     }
     const Eigen::MatrixXcd k = transfer.from_motion(part, blocks[part], {0, omega}, position, rate, position);

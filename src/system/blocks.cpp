@@ -4,6 +4,7 @@
 #include <span>
 
 #include "film_part.hpp"
+#include "slope.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -44,10 +45,10 @@ void RotorSystem::Blocks::rebuild() {
   const RotorSystem& system = system_;
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
   Entries rates, at_rest, gyroscopic, b, c;
-  add_entries(system.mass_.get(), 1, rates);
-  add_entries(system.stiffness_.get(), 0, at_rest);
-  add_entries(system.damping_.get(), 1, at_rest);
-  add_entries(system.gyroscopic_.get(), 1, gyroscopic);
+  add_entries(system.matrices_.mass.get(), 1, rates);
+  add_entries(system.matrices_.stiffness.get(), 0, at_rest);
+  add_entries(system.matrices_.damping.get(), 1, at_rest);
+  add_entries(system.matrices_.gyroscopic.get(), 1, gyroscopic);
   for (int i = 0; i < static_cast<int>(n / 2); ++i) {
     rates.emplace_back(2 * i + 1, 2 * i, 1);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);
@@ -77,14 +78,14 @@ void RotorSystem::Blocks::rebuild() {
 void RotorSystem::Blocks::find_own_states() {
   responses_.resize(system_.bearings_.size());
   for (std::size_t i = 0; i < system_.bearings_.size(); ++i) {
-    const FilmPart* part = system_.bearings_[i].part.get();
-    if (!part) continue;
+    const FilmPart& part = *system_.bearings_[i].part;
+    if (part.count() == 0) continue;
     const auto [first, k] = ports_[i];
-    problem::OwnStates own{part->first(), part->count(), 2 * first, 2 * k, first, k, {}, {}};
-    const film::Share& all = part->film().whole();
+    problem::OwnStates own{part.first(), part.count(), 2 * first, 2 * k, first, k, {}, {}};
+    const film::Share& all = part.film().whole();
     for (const auto& [from, to] : {std::pair{&all.d_states, &own.states}, std::pair{&all.d_rates, &own.rates}})
       film::for_entries(all, *from, {}, [to = to](int row, int column, double) { to->push_back({row, column}); });
-    own.settles = part->film().whole_steps();
+    own.settles = part.settles();
     own_.push_back(std::move(own));
   }
 }
@@ -102,7 +103,7 @@ void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load) {
   load.setZero(size());
   for (Eigen::Index i = 0; i < size() / 2; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    load(2 * i) = system_.load_[k] + c * system_.unbalance_c_[k] + s * system_.unbalance_s_[k];
+    load(2 * i) = system_.load_[k] + c * system_.unbalance_.cosine[k] + s * system_.unbalance_.sine[k];
   }
 }
 
@@ -145,7 +146,6 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
     films.own.resize(own_.size());
   }
   film::Motion motion;
-  film::Response condensed;
   motion.speed = system_.speed_;
   const film::Need need = tangents ? film::Need::tangents : film::Need::force;
   std::size_t next = 0;  // among the films with own states
@@ -156,28 +156,22 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
       motion.position[static_cast<std::size_t>(d)] = inputs(2 * first + d);
       motion.velocity[static_cast<std::size_t>(d)] = inputs(2 * first + ports + d);
     }
-    const Bearing& bearing = system_.bearings_[k];
     motion.position[1] -= system_.train_.supports[k].elevation;
     for (std::size_t d = 0; d < 2; ++d) {
-      if (!bearing.tilts()) motion.position[2 + d] = motion.velocity[2 + d] = 0.0;
-      motion.position[2 + d] -= bearing.slope[d];
+      if (ports == 2) motion.position[2 + d] = motion.velocity[2 + d] = 0.0;
+      motion.position[2 + d] -= system_.axes_[k][d];
     }
+    const FilmPart& part = *system_.bearings_[k].part;
+    film::StateResponse& here = responses_[k];
     try {
-      if (bearing.part) {
-        film::StateModel& film = bearing.part->film();
-        const PetscInt at = bearing.part->first();
-        film.evaluate(motion, {own + at, film.states()}, {rates + at, film.states()}, need, responses_[k]);
-      } else {
-        bearing.film->evaluate(motion, need, condensed);
-      }
+      part.evaluate(motion, own, rates, need, here);
     } catch (const core::DomainError& e) {
-      throw core::DomainError("bearing " + std::to_string(i + 1) + ": " + e.what());
+      throw core::DomainError("bearing " + system_.train_.supports[k].name + ": " + e.what());
     }
-    const film::Response& response = bearing.part ? responses_[k].journal : condensed;
+    const film::Response& response = here.journal;
     for (Eigen::Index d = 0; d < ports; ++d) films.forces(first + d) = response.force[static_cast<std::size_t>(d)];
-    if (bearing.part)
-      films.residual.segment(bearing.part->first(), bearing.part->count()) =
-          Eigen::Map<const Eigen::VectorXd>(responses_[k].residual.data(), bearing.part->count());
+    films.residual.segment(part.first(), part.count()) =
+        Eigen::Map<const Eigen::VectorXd>(here.residual.data(), part.count());
     if (!tangents) continue;
     for (Eigen::Index d = 0; d < ports; ++d) {
       const auto row = static_cast<std::size_t>(d);
@@ -187,36 +181,23 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
       }
       films.d_speed(first + d) = response.d_speed[row];
     }
-    if (!bearing.part) continue;
-    take(responses_[k], own_[next], r, films.own[next], films.d_speed);
+    if (part.count() == 0) continue;
+    take(here, own_[next], r, films.own[next], films.d_speed);
     ++next;
   }
-}
-
-void RotorSystem::Blocks::residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
-                                   Eigen::VectorXd& out) {
-  const Eigen::Index n = size(), k = system_.n_own_;
-  films(c_ * x.head(n), x.data() + n, xdot.data() + n, false, films_);
-  load(angle, load_);
-  out.resize(n + k);
-  out.head(n) = l1_ * xdot.head(n);
-  out.head(n) += l0() * x.head(n);
-  out.head(n) -= b_ * films_.forces;
-  out.head(n) -= load_;
-  out.tail(k) = films_.residual;
 }
 
 void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
                                                const problem::Films& films, Eigen::VectorXd& out) {
   const Eigen::Index n = size(), k = system_.n_own_;
   if (!system_.parameter_is_speed()) {
-    const Neighbours& at = system_.neighbours();
-    (void)at.plus->structure();
-    (void)at.minus->structure();
-    at.plus->blocks_->residual(angle, x, xdot, out);
-    at.minus->blocks_->residual(angle, x, xdot, minus_);
-    out = (out - minus_) / (2 * at.step);
-    return;
+    out.resize(n + k);
+    const auto vector = [&](const Eigen::VectorXd& v) {
+      core::Vector wrapped;
+      check(VecCreateSeqWithArray(system_.comm_, 1, static_cast<PetscInt>(v.size()), v.data(), wrapped.put()));
+      return wrapped;
+    };
+    return system_.slope().derivative(angle, vector(x).get(), vector(xdot).get(), vector(out).get());
   }
   out.resize(n + k);
   out.head(n) = gyroscopic_ * x.head(n);
@@ -226,7 +207,7 @@ void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::Vector
   const double c = 2 * system_.speed_ * std::cos(angle), s = 2 * system_.speed_ * std::sin(angle);
   for (Eigen::Index i = 0; i < n / 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
-    out(2 * i) -= c * system_.unbalance_c_[j] + s * system_.unbalance_s_[j];
+    out(2 * i) -= c * system_.unbalance_.cosine[j] + s * system_.unbalance_.sine[j];
   }
 }
 

@@ -37,8 +37,6 @@ public:
 
 private:
   void find_own_states();
-  /// (F, G) at a whole state.
-  void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::VectorXd& out);
 
   RotorSystem& system_;
   problem::SparseBlock l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
@@ -50,8 +48,6 @@ private:
   std::vector<Ports> ports_;  // of each bearing among the forces; positions stand at twice that, then rates
   // Work space.
   std::vector<film::StateResponse> responses_;
-  problem::Films films_;
-  Eigen::VectorXd load_, minus_;
 };
 
 }  // namespace whirl::system

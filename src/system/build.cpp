@@ -1,25 +1,26 @@
 #include <algorithm>
 
 #include "blocks.hpp"
+#include "change.hpp"
 #include "film_part.hpp"
 #include "frozen.hpp"
 #include "settling.hpp"
+#include "slope.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/system/rotor_system.hpp"
 
-// How a train becomes matrices: everything that is made once and does not change with the state.
+// How a train becomes matrices and films: what is made once, and what is made anew where the train changes.
 
 namespace whirl::system {
 namespace {
 
 using core::check;
 
-// `m` of the rotor with the pedestals' diagonal appended behind it; `local` rows on this rank.
-core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
-                            const std::vector<std::pair<PetscInt, double>>& diagonal) {
+// `m` of the rotor with a diagonal of zeros for the pedestals behind it; `local` rows on this rank.
+core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor) {
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(m, &begin, &end));
   std::vector<PetscInt> count(static_cast<std::size_t>(local), 1);
@@ -38,8 +39,8 @@ core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor,
     check(MatSetValues(out.get(), 1, &i, k, columns, values, INSERT_VALUES));
     check(MatRestoreRow(m, i, &k, &columns, &values));
   }
-  if (end == n_rotor && local > end - begin)
-    for (const auto& [row, value] : diagonal) check(MatSetValue(out.get(), row, row, value, INSERT_VALUES));
+  for (PetscInt i = std::max(end, n_rotor); i < begin + local; ++i)
+    check(MatSetValue(out.get(), i, i, 0.0, INSERT_VALUES));
   check(MatAssemblyBegin(out.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(out.get(), MAT_FINAL_ASSEMBLY));
   return out;
@@ -60,12 +61,10 @@ core::Matrix on_first(Mat m) {
 }  // namespace
 
 void RotorSystem::build() {
-  rotor_ = std::make_unique<rotor::Rotor>(comm_, train_.rotor);
-  const rotor::Matrices& m = rotor_->matrices();
+  rotor_ = make_rotor(train_.rotor);
   n_rotor_ = rotor_->size();
 
   // Pedestals come behind the rotor's coordinates.
-  bearings_.clear();
   n_ = n_rotor_;
   for (const Support& s : train_.supports) {
     Bearing b;
@@ -85,62 +84,152 @@ void RotorSystem::build() {
     }
     bearings_.push_back(std::move(b));
   }
-  align_bearings();
-  n_own_ = 0;
+  axes_ = axes_of(train_);
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      const Support& s = train_.supports[i];
-      if (film::has_states(s.film)) {
-        bearings_[i].part = std::make_unique<FilmPart>(film::make_state_model(s.geometry, s.film, s.lubricant), n_own_);
-        n_own_ = bearings_[i].part->end();
-      } else {
-        bearings_[i].film = film::make_model(s.geometry, s.film, s.lubricant);
-      }
+      bearings_[i].part = std::make_unique<FilmPart>(train_.supports[i], n_own_);
+      n_own_ = bearings_[i].part->end();
+      ++made_.films;
     }
   });
-  PetscInt rotor_begin = 0, rotor_end = 0, rotor_here = 0;
-  check(MatGetLocalSize(m.mass.get(), &rotor_here, nullptr));
-  first_holds_rotor_ =
-      std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.part != nullptr; });
-  core::Matrix moved[4];
-  Mat parts[] = {m.mass.get(), m.damping.get(), m.stiffness.get(), m.gyroscopic.get()};
-  for (std::size_t k = 0; k < 4 && first_holds_rotor_ && core::size_of(comm_) > 1; ++k) {
-    moved[k] = on_first(parts[k]);
-    parts[k] = moved[k].get();
+  PetscInt begin = 0, end = 0;
+  check(MatGetOwnershipRange(rotor_->matrices().mass.get(), &begin, &end));
+  const int rank = core::rank_of(comm_);
+  if (first_holds_rotor()) {
+    begin = rank == 0 ? 0 : n_rotor_;
+    end = n_rotor_;
   }
-  check(MatGetOwnershipRange(parts[0], &rotor_begin, &rotor_end));
-  const int rank = core::rank_of(comm_), with_pedestals_on = first_holds_rotor_ ? 0 : core::size_of(comm_) - 1;
-  begin_ = rank > with_pedestals_on ? n_ : rotor_begin;
-  end_ = rank >= with_pedestals_on ? n_ : rotor_end;
+  const int with_pedestals_on = first_holds_rotor() ? 0 : core::size_of(comm_) - 1;
+  begin_ = rank > with_pedestals_on ? n_ : begin;
+  end_ = rank >= with_pedestals_on ? n_ : end;
   share_out_own_states();
-  std::vector<std::pair<PetscInt, double>> pm, pc, pk, pg;
-  for (std::size_t i = 0; i < bearings_.size(); ++i)
+  make_matrices();
+  load_ = load_of(*rotor_, weights_of(train_));
+  unbalance_ = unbalance_of(*rotor_, train_.unbalance);
+
+  // Which entries of the state the films see: journal and pedestal positions and velocities, and own states.
+  for (const Bearing& b : bearings_)
     for (std::size_t d = 0; d < 2; ++d)
-      if (bearings_[i].pedestal[d] >= 0) {
-        pm.emplace_back(bearings_[i].pedestal[d], train_.supports[i].mass[d]);
-        pc.emplace_back(bearings_[i].pedestal[d], train_.supports[i].damping[d]);
-        pk.emplace_back(bearings_[i].pedestal[d], train_.supports[i].stiffness[d]);
-      }
-  mass_ = with_pedestals(parts[0], end_ - begin_, n_rotor_, pm);
-  damping_ = with_pedestals(parts[1], end_ - begin_, n_rotor_, pc);
-  stiffness_ = with_pedestals(parts[2], end_ - begin_, n_rotor_, pk);
-  gyroscopic_ = with_pedestals(parts[3], end_ - begin_, n_rotor_, pg);
+      for (const PetscInt q : {b.journal[d], b.pedestal[d]})
+        for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * std::max<PetscInt>(q, 0) + rate);
+  for (const Bearing& b : bearings_)
+    for (std::size_t d = 2; d < b.ports.size(); ++d)
+      for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * b.journal[d] + rate);
+  journal_inputs_ = wanted_.size();
+  for (const Bearing& b : bearings_)
+    for (const int k : b.part->share().seen) wanted_.push_back(2 * n_ + b.part->first() + k);
+  core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
+  core::IndexSet from;
+  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), wanted_.data(), PETSC_COPY_VALUES,
+                        from.put()));
+  inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), PETSC_DETERMINE);
+  check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
+}
 
-  load_.assign(static_cast<std::size_t>(end_ - begin_), 0.0);
-  {
-    const std::vector<double> g = core::gather(m.gravity.get());
-    for (PetscInt i = begin_; i < std::min(end_, n_rotor_); ++i)
-      load_[static_cast<std::size_t>(i - begin_)] = train_.gravity * g[static_cast<std::size_t>(i)];
+// What may refuse its values comes before anything changes.
+void RotorSystem::set_train(Train train) {
+  const Change change = change_between(train_, train);
+  std::unique_ptr<rotor::Rotor> rotor = change.shaft ? make_rotor(train.rotor) : nullptr;
+  std::vector<FilmPart> films = parts_at(train, change.films);
+  axes_ = axes_of(train);
+  train_ = std::move(train);
+  for (std::size_t k = 0; k < films.size(); ++k) *bearings_[change.films[k]].part = std::move(films[k]);
+  if (rotor)
+    rotor_ = std::move(rotor);
+  else if (change.damping)
+    rotor_->set_stiffness_damping(train_.rotor.stiffness_damping);
+  const bool matrices = change.shaft || change.damping;
+  if (matrices) {
+    make_matrices();
+    if (j_at_rest_) fill_constant_parts();
+  } else if (change.pedestals) {
+    set_pedestals();
   }
-  if (train_.rotor.type == rotor::Options::Type::rigid && owns(rotor_->coordinate(1, rotor::Freedom::y)))
-    load_[static_cast<std::size_t>(rotor_->coordinate(1, rotor::Freedom::y) - begin_)] -= train_.rotor.load;
-  for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    const PetscInt row = bearings_[i].pedestal[1];
-    if (row >= 0 && owns(row))
-      load_[static_cast<std::size_t>(row - begin_)] -= train_.gravity * train_.supports[i].mass[1];
-  }
+  if (blocks_ && (matrices || change.pedestals)) blocks_->rebuild();
+  if (change.load) load_ = load_of(*rotor_, weights_of(train_));
+  if (change.unbalance) unbalance_ = unbalance_of(*rotor_, train_.unbalance);
+  slope_.reset();
+  film_solver_.reset();
+  film_solver_tried_ = false;
+}
 
-  // U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
+std::unique_ptr<rotor::Rotor> RotorSystem::make_rotor(const rotor::Options& options) {
+  ++made_.rotors;
+  return std::make_unique<rotor::Rotor>(comm_, options);
+}
+
+std::vector<FilmPart> RotorSystem::parts_at(const Train& train, const std::vector<std::size_t>& bearings) {
+  std::vector<FilmPart> out;
+  core::agree(comm_, [&] {
+    for (const std::size_t b : bearings) {
+      out.push_back(bearings_[b].part->with(train.supports[b]));
+      ++made_.films;
+    }
+  });
+  return out;
+}
+
+RotorSystem::Matrices RotorSystem::matrices_of(const rotor::Rotor& rotor) const {
+  const rotor::Matrices& m = rotor.matrices();
+  const auto made = [&](Mat from) {
+    const core::Matrix moved = first_holds_rotor() ? on_first(from) : core::Matrix();
+    return with_pedestals(moved ? moved.get() : from, end_ - begin_, n_rotor_);
+  };
+  return {made(m.mass.get()), made(m.damping.get()), made(m.gyroscopic.get()), made(m.stiffness.get())};
+}
+
+void RotorSystem::make_matrices() {
+  matrices_ = matrices_of(*rotor_);
+  set_pedestals();
+}
+
+// They stand on diagonals, in the matrices and in the parts of the Jacobian made of these.
+void RotorSystem::set_pedestals() {
+  for (std::size_t i = 0; i < bearings_.size(); ++i)
+    for (std::size_t d = 0; d < 2; ++d) {
+      const PetscInt row = bearings_[i].pedestal[d];
+      if (row < 0 || !owns(row)) continue;
+      const Support& s = train_.supports[i];
+      check(MatSetValue(matrices_.mass.get(), row, row, s.mass[d], INSERT_VALUES));
+      check(MatSetValue(matrices_.damping.get(), row, row, s.damping[d], INSERT_VALUES));
+      check(MatSetValue(matrices_.stiffness.get(), row, row, s.stiffness[d], INSERT_VALUES));
+      if (!j_at_rest_) continue;
+      check(MatSetValue(j_at_rest_.get(), 2 * row, 2 * row, s.stiffness[d], INSERT_VALUES));
+      check(MatSetValue(j_at_rest_.get(), 2 * row, 2 * row + 1, s.damping[d], INSERT_VALUES));
+      check(MatSetValue(j_rates_.get(), 2 * row, 2 * row + 1, s.mass[d], INSERT_VALUES));
+    }
+  for (const core::Matrix* m : {&matrices_.mass, &matrices_.damping, &matrices_.stiffness, &j_at_rest_, &j_rates_})
+    if (*m) {
+      check(MatAssemblyBegin(m->get(), MAT_FINAL_ASSEMBLY));
+      check(MatAssemblyEnd(m->get(), MAT_FINAL_ASSEMBLY));
+    }
+}
+
+RotorSystem::Weights RotorSystem::weights_of(const Train& train) {
+  Weights w{train.gravity, train.rotor.type == rotor::Options::Type::rigid ? train.rotor.load : 0.0, {}};
+  for (const Support& s : train.supports) w.pedestals.push_back(s.has_pedestal ? train.gravity * s.mass[1] : 0.0);
+  return w;
+}
+
+std::vector<double> RotorSystem::load_of(const rotor::Rotor& rotor, const Weights& weights) const {
+  std::vector<double> load(static_cast<std::size_t>(end_ - begin_), 0.0);
+  const std::vector<double> g = core::gather(rotor.matrices().gravity.get());
+  for (PetscInt i = begin_; i < std::min(end_, n_rotor_); ++i)
+    load[static_cast<std::size_t>(i - begin_)] = weights.gravity * g[static_cast<std::size_t>(i)];
+  const auto take = [&](PetscInt row, double weight) {
+    if (weight != 0 && owns(row)) load[static_cast<std::size_t>(row - begin_)] -= weight;
+  };
+  take(rotor.coordinate(1, rotor::Freedom::y), weights.rotor_load);
+  for (std::size_t i = 0; i < bearings_.size(); ++i) take(bearings_[i].pedestal[1], weights.pedestals[i]);
+  return load;
+}
+
+// U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
+RotorSystem::Unbalances RotorSystem::unbalance_of(const rotor::Rotor& rotor,
+                                                  const std::vector<UnbalanceMass>& masses) const {
+  const rotor::Matrices& m = rotor.matrices();
+  PetscInt rotor_here = 0;
+  check(MatGetLocalSize(m.mass.get(), &rotor_here, nullptr));
   core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_here, PETSC_DETERMINE), s = core::duplicate(c.get());
   const bool reduced = static_cast<bool>(m.basis);
   if (reduced) {
@@ -151,9 +240,9 @@ void RotorSystem::build() {
   check(VecSet(tc, 0.0));
   check(VecSet(ts, 0.0));
   if (core::rank_of(comm_) == 0)
-    for (const UnbalanceMass& u : train_.unbalance) {
+    for (const UnbalanceMass& u : masses) {
       const PetscInt x = reduced ? rotor::full_coordinate(u.node, rotor::Freedom::x)
-                                 : rotor_->coordinate(u.node, rotor::Freedom::x),
+                                 : rotor.coordinate(u.node, rotor::Freedom::x),
                      y = x + 1;
       check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
       check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
@@ -168,55 +257,31 @@ void RotorSystem::build() {
     check(MatMultTranspose(m.basis.get(), tc, c.get()));
     check(MatMultTranspose(m.basis.get(), ts, s.get()));
   }
-  unbalance_c_ = core::gather(c.get());
-  unbalance_s_ = core::gather(s.get());
-  unbalance_c_.resize(static_cast<std::size_t>(n_), 0.0);
-  unbalance_s_.resize(static_cast<std::size_t>(n_), 0.0);
-
-  // Which entries of the state the films see: journal and pedestal positions and velocities, and own states.
-  wanted_.clear();
-  for (const Bearing& b : bearings_)
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const PetscInt q : {b.journal[d], b.pedestal[d]})
-        for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * std::max<PetscInt>(q, 0) + rate);
-  for (const Bearing& b : bearings_)
-    for (std::size_t d = 2; d < b.ports.size(); ++d)
-      for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * b.journal[d] + rate);
-  journal_inputs_ = wanted_.size();
-  for (const Bearing& b : bearings_)
-    for (std::size_t k = 0; b.part && k < b.part->share().seen.size(); ++k)
-      wanted_.push_back(2 * n_ + b.part->first() + b.part->share().seen[k]);
-  core::Vector state = core::make_vector(comm_, local_size(), PETSC_DETERMINE);
-  core::IndexSet from;
-  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), wanted_.data(), PETSC_COPY_VALUES,
-                        from.put()));
-  inputs_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(wanted_.size()), PETSC_DETERMINE);
-  check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
-  if (blocks_) blocks_->rebuild();
-  neighbours_ = {};
-  film_solver_.reset();
-  settling_.reset();
-  film_solver_tried_ = false;
-  j_at_rest_.reset();
+  Unbalances out{core::gather(c.get()), core::gather(s.get())};
+  out.cosine.resize(static_cast<std::size_t>(n_), 0.0);
+  out.sine.resize(static_cast<std::size_t>(n_), 0.0);
+  return out;
 }
 
 // Bearings are bored in line with the shaft as it lies on them at rest, unless the deck says how they stand.
-void RotorSystem::align_bearings() {
+std::vector<std::array<double, 2>> RotorSystem::axes_of(const Train& train) const {
+  std::vector<std::array<double, 2>> out(bearings_.size());
   std::vector<double> line;
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     if (!bearings_[i].tilts()) continue;
-    const Support& support = train_.supports[i];
+    const Support& support = train.supports[i];
     if (support.slope) {
-      bearings_[i].slope = *support.slope;
+      out[i] = *support.slope;
       continue;
     }
     if (line.empty()) {
       std::vector<rotor::Support> supports;
-      for (const Support& s : train_.supports) supports.push_back({s.node, s.elevation});
-      line = rotor::rigid_static(comm_, train_.rotor, supports, train_.gravity).slope;
+      for (const Support& s : train.supports) supports.push_back({s.node, s.elevation});
+      line = rotor::rigid_static(comm_, train.rotor, supports, train.gravity).slope;
     }
-    bearings_[i].slope = {0.0, line[static_cast<std::size_t>(support.node - 1)]};
+    out[i] = {0.0, line[static_cast<std::size_t>(support.node - 1)]};
   }
+  return out;
 }
 
 // Own states stand behind all pairs, film by film, in near equal shares of all.
@@ -225,28 +290,26 @@ void RotorSystem::share_out_own_states() {
   const auto cut = [&](int r) -> PetscInt {
     const PetscInt wanted = n_own_ * r / size;
     for (const Bearing& b : bearings_)
-      if (b.part && wanted < b.part->end())
-        return b.part->first() + b.part->film().cut(static_cast<int>(wanted - b.part->first()));
+      if (wanted < b.part->end()) return b.part->cut(wanted);
     return n_own_;
   };
   const PetscInt begin = cut(rank), end = cut(rank + 1);
   own_here_ = end - begin;
   std::size_t gathered = 0;
-  for (const Bearing& b : bearings_) {
-    if (!b.part) continue;
-    b.part->hold(begin, end, 2 * (end_ - begin_), gathered);
-    gathered += b.part->share().seen.size();
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    FilmPart& part = *bearings_[i].part;
+    part.hold(begin, end, 2 * (end_ - begin_), gathered, static_cast<int>(i) % size == rank);
+    gathered += part.share().seen.size();
   }
 }
 
-// The parts of the Jacobian that are constant between builds, all in the pattern of make_jacobian(): so a Jacobian is a
-// sum of arrays plus the few entries of the films.
+// The parts of the Jacobian that do not change with the state, all in the pattern of make_jacobian(): so a Jacobian is
+// a sum of arrays plus the few entries of the films.
 void RotorSystem::make_constant_parts() {
   const PetscInt rows = end_ - begin_, local_rows = local_size();
   std::vector<PetscInt> count(static_cast<std::size_t>(std::max<PetscInt>(local_rows, 1)), 2);
   std::vector<PetscInt> coupled(static_cast<std::size_t>(n_), 0);  // own states that act on a coordinate
   for (const Bearing& b : bearings_) {
-    if (!b.part) continue;
     for (const PortEnds& port : b.ports)
       for (const auto& [q, side] : port) coupled[static_cast<std::size_t>(q)] += b.part->count();
     b.part->count_entries(b.ports, count);
@@ -254,18 +317,23 @@ void RotorSystem::make_constant_parts() {
   for (PetscInt& c : count) c = std::min(c, size());
   for (PetscInt i = 0; i < rows; ++i) {
     PetscInt k = 0, total = coupled[static_cast<std::size_t>(begin_ + i)];
-    for (Mat m : {mass_.get(), damping_.get(), stiffness_.get(), gyroscopic_.get()}) {
+    for (Mat m :
+         {matrices_.mass.get(), matrices_.damping.get(), matrices_.stiffness.get(), matrices_.gyroscopic.get()}) {
       check(MatGetRow(m, begin_ + i, &k, nullptr, nullptr));
       total += 2 * k;
       check(MatRestoreRow(m, begin_ + i, &k, nullptr, nullptr));
     }
     count[static_cast<std::size_t>(2 * i)] = std::min(total + 12, size());
   }
+  for (core::Matrix* j : {&j_at_rest_, &j_gyroscopic_, &j_rates_}) *j = core::make_matrix(comm_, local_rows, count);
+  fill_constant_parts();
+}
+
+void RotorSystem::fill_constant_parts() {
   std::vector<PetscInt> columns_to;
   std::vector<PetscScalar> scaled;
   // Every part sets every entry, if need be to zero.
-  const auto make = [&](double at_rest, double gyroscopic, double rates) {
-    core::Matrix j = core::make_matrix(comm_, local_rows, count);
+  const auto fill = [&](Mat j, double at_rest, double gyroscopic, double rates) {
     const auto add = [&](Mat m, PetscInt rate, double factor) {
       for (PetscInt i = begin_; i < end_; ++i) {
         PetscInt k = 0;
@@ -279,26 +347,26 @@ void RotorSystem::make_constant_parts() {
           scaled[static_cast<std::size_t>(e)] *= factor;
         }
         const PetscInt row = 2 * i;
-        check(MatSetValues(j.get(), 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
+        check(MatSetValues(j, 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
         check(MatRestoreRow(m, i, &k, &columns, &values));
       }
     };
-    add(stiffness_.get(), 0, at_rest);
-    add(damping_.get(), 1, at_rest);
-    add(gyroscopic_.get(), 1, gyroscopic);
-    add(mass_.get(), 1, rates);
+    PetscBool filled = PETSC_FALSE;
+    check(MatAssembled(j, &filled));
+    if (filled) check(MatZeroEntries(j));
+    add(matrices_.stiffness.get(), 0, at_rest);
+    add(matrices_.damping.get(), 1, at_rest);
+    add(matrices_.gyroscopic.get(), 1, gyroscopic);
+    add(matrices_.mass.get(), 1, rates);
     for (PetscInt i = begin_; i < end_; ++i) {
-      check(MatSetValue(j.get(), 2 * i + 1, 2 * i, rates, ADD_VALUES));
-      check(MatSetValue(j.get(), 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
+      check(MatSetValue(j, 2 * i + 1, 2 * i, rates, ADD_VALUES));
+      check(MatSetValue(j, 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
     }
-    add_films(j.get(), nullptr, 0, 0);
-    check(MatAssemblyBegin(j.get(), MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(j.get(), MAT_FINAL_ASSEMBLY));
-    return j;
+    add_films(j, nullptr, 0, 0);
   };
-  j_at_rest_ = make(1, 0, 0);
-  j_gyroscopic_ = make(0, 1, 0);
-  j_rates_ = make(0, 0, 1);
+  fill(j_at_rest_.get(), 1, 0, 0);
+  fill(j_gyroscopic_.get(), 0, 1, 0);
+  fill(j_rates_.get(), 0, 0, 1);
 }
 
 core::Matrix RotorSystem::make_jacobian() {

@@ -8,22 +8,87 @@ namespace whirl::system {
 
 using core::check;
 
-void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered) {
+FilmPart::FilmPart(const Support& support, PetscInt first) : first_(first) {
+  film::Made made = film::make_film(support.geometry, support.film, support.lubricant);
+  if (auto* model = std::get_if<std::unique_ptr<film::Model>>(&made)) {
+    model_ = std::move(*model);
+  } else {
+    states_ = std::move(std::get<std::unique_ptr<film::StateModel>>(made));
+    count_ = static_cast<PetscInt>(states_->states());
+  }
+}
+
+FilmPart FilmPart::with(const Support& support) const {
+  FilmPart out(support, first_);
+  core::require(out.count_ == count_ && !out.model_ == !model_, "a film on the same mesh");
+  if (model_) out.model_->start_from(*model_);
+  out.row_ = row_;
+  out.gathered_ = gathered_;
+  out.here_ = here_;
+  if (rows() > 0) out.share_ = out.states_->share(share_.begin, share_.end);
+  return out;
+}
+
+film::StateModel& FilmPart::film() const {
+  core::require(states_ != nullptr, "a film with states");
+  return *states_;
+}
+
+PetscInt FilmPart::cut(PetscInt wanted) const {
+  return first_ + film().cut(static_cast<int>(wanted - first_));
+}
+
+void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered, bool without_states) {
   const PetscInt from = std::max(first_, begin), to = std::min(this->end(), end);
-  share_ = from < to ? film_->share(static_cast<int>(from - first_), static_cast<int>(to - first_)) : film::Share{};
+  share_ = from < to ? film().share(static_cast<int>(from - first_), static_cast<int>(to - first_)) : film::Share{};
   row_ = row + std::clamp<PetscInt>(first_ - begin, 0, end - begin);
   gathered_ = gathered;
+  here_ = count_ > 0 ? rows() > 0 : without_states;
 }
 
 void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
                         film::Need need, film::StateResponse& response) const {
+  if (model_) return model_->evaluate(motion, need, response.journal);
   const std::size_t n = share_.seen.size();
-  film_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
+  states_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
+}
+
+void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need,
+                        film::StateResponse& response) const {
+  if (model_) return model_->evaluate(motion, need, response.journal);
+  const auto n = static_cast<std::size_t>(count_);
+  states_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response);
+}
+
+double FilmPart::least_thickness(const film::Motion& motion, std::span<const double> states) const {
+  return states_ ? states_->least_thickness(motion, states) : model_->least_thickness(motion);
+}
+
+film::Summary FilmPart::summary(const film::Motion& motion, std::span<const double> states) const {
+  return states_ ? states_->summary(motion, states) : model_->summary(motion);
+}
+
+std::vector<film::Field> FilmPart::report(const film::Motion& motion, std::span<const double> states) const {
+  return states_ ? states_->fields(motion, states) : model_->fields(motion);
+}
+
+void FilmPart::resample(const film::Motion& motion, const FilmPart& other, std::span<const double> from,
+                        std::span<double> to) const {
+  if (states_) states_->resample(motion, other.film(), from, to);
+}
+
+std::vector<double> FilmPart::relaxed(const film::Motion& motion) const {
+  std::vector<double> states(static_cast<std::size_t>(count_));
+  if (!states_) return states;
+  states_->unloaded(motion, states);
+  film::relax(*states_, motion, states);
+  return states;
 }
 
 std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
   std::vector<problem::Field> out;
-  for (const film::StateField& f : film_->state_fields()) {
+  if (!states_) return out;
+  for (const film::StateField& f : states_->state_fields()) {
     const int begin = std::clamp(f.begin, share_.begin, share_.end), end = std::clamp(f.end, share_.begin, share_.end);
     out.push_back({name, row_ + begin - share_.begin, row_ + end - share_.begin, f.name, f.unit, f.scale});
   }
@@ -43,6 +108,7 @@ void FilmPart::count_entries(const std::vector<PortEnds>& ports, std::span<Petsc
 
 void FilmPart::add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports,
                    double alpha, double sigma) const {
+  if (rows() == 0) return;
   const PetscInt all = 2 * n + first_, begin = all + share_.begin;
   const auto matrix = [&](const film::Places& places, const std::vector<double>* values, double factor) {
     const std::span<const double> at = values ? std::span<const double>(*values) : std::span<const double>();

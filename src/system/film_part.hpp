@@ -1,6 +1,6 @@
 #pragma once
-// A film with own states among the parts of a machine: which of its rows stand on this rank, what they see of those on
-// others, and where its derivatives go.
+// A film among the parts of a machine: which of its rows stand on this rank, what they see of those on others, and
+// where its derivatives go. A film without states of its own has no rows; all else is the same.
 
 #include <petscmat.h>
 
@@ -11,41 +11,67 @@
 
 #include "whirl/film/state_model.hpp"
 #include "whirl/problem/system.hpp"
+#include "whirl/system/train.hpp"
 
 namespace whirl::system {
 
 /// Coordinates of the machine whose sum, with these signs, is a motion that a film sees: journal less pedestal. A
-/// machine has those along x and y; all others are zero.
+/// machine has those along x and y, and the slopes of a journal whose film tilts.
 using PortEnds = std::vector<std::pair<PetscInt, double>>;
 
 /// Own states of all films stand film by film behind the machine; this one's begin at `first` among them.
 class FilmPart {
 public:
-  FilmPart(std::unique_ptr<film::StateModel> film, PetscInt first) : film_(std::move(film)), first_(first) {}
+  /// Makes the film of a bearing; throws core::InputError on values outside their range.
+  FilmPart(const Support& support, PetscInt first);
+  /// The film of the same bearing with other numbers on the same mesh, held as this one is; what it searches starts
+  /// from where this one ended. Throws as the constructor does.
+  [[nodiscard]] FilmPart with(const Support& support) const;
 
-  [[nodiscard]] film::StateModel& film() const { return *film_; }
+  /// The film with its states; core::Bug if it has none.
+  [[nodiscard]] film::StateModel& film() const;
   [[nodiscard]] PetscInt first() const { return first_; }
-  [[nodiscard]] PetscInt count() const { return static_cast<PetscInt>(film_->states()); }
-  [[nodiscard]] PetscInt end() const { return first_ + count(); }
+  [[nodiscard]] PetscInt count() const { return count_; }
+  [[nodiscard]] PetscInt end() const { return first_ + count_; }
+  /// A state near `wanted` of all own states, which is one of this film's, before which it may be cut.
+  [[nodiscard]] PetscInt cut(PetscInt wanted) const;
   /// This rank holds own states [begin, end) of all films; the first of them has the local row `row`. What its films
-  /// see is gathered film by film, that of this one from `gathered` on.
-  void hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered);
+  /// see is gathered film by film, that of this one from `gathered` on. A film without states is one rank's.
+  void hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered, bool without_states);
   [[nodiscard]] const film::Share& share() const { return share_; }
   /// First local row, and their number.
   [[nodiscard]] PetscInt row() const { return row_; }
   [[nodiscard]] PetscInt rows() const { return share_.rows(); }
   /// Where what it sees begins in what is gathered.
   [[nodiscard]] std::size_t gathered() const { return gathered_; }
+  /// This rank evaluates it, or a share of it.
+  [[nodiscard]] bool here() const { return here_; }
 
-  /// `own` and `rates`: what all films of this rank see.
+  /// This rank's share; `own` and `rates`: what all films of this rank see.
   void evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates, film::Need need,
+                film::StateResponse& response) const;
+  /// The whole film; `own` and `rates`: those of all films, null if there are none.
+  void evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need,
                 film::StateResponse& response) const;
   /// Its fields on this rank; they bear the name of the part.
   [[nodiscard]] std::vector<problem::Field> fields(const std::string& name) const;
   /// The states of the film from those of a machine of n coordinates held as a whole.
   [[nodiscard]] std::span<const double> of(const double* x, PetscInt n) const {
-    return {x + 2 * n + first_, film_->states()};
+    return {x + 2 * n + first_, static_cast<std::size_t>(count_)};
   }
+
+  [[nodiscard]] bool constant_rates() const { return !states_ || states_->constant_rates(); }
+  /// It finds its states by whole steps of Newton's method while the machine stays where it is.
+  [[nodiscard]] bool settles() const { return states_ && states_->whole_steps(); }
+  /// Least thickness [m] at some of its states (StateModel::least_thickness), or of a film without states.
+  [[nodiscard]] double least_thickness(const film::Motion& motion, std::span<const double> states) const;
+  [[nodiscard]] film::Summary summary(const film::Motion& motion, std::span<const double> states) const;
+  [[nodiscard]] std::vector<film::Field> report(const film::Motion& motion, std::span<const double> states) const;
+  /// Its states from those of the same film on another mesh.
+  void resample(const film::Motion& motion, const FilmPart& other, std::span<const double> from,
+                std::span<double> to) const;
+  /// The states at which it rests with the journal where it is.
+  [[nodiscard]] std::vector<double> relaxed(const film::Motion& motion) const;
 
   /// Room for the entries of its rows, [local rows].
   void count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const;
@@ -55,9 +81,11 @@ public:
            double sigma) const;
 
 private:
-  std::unique_ptr<film::StateModel> film_;
-  PetscInt first_, row_ = 0;
+  std::unique_ptr<film::Model> model_;        // of a film without states,
+  std::unique_ptr<film::StateModel> states_;  // or of one with such
+  PetscInt first_, count_ = 0, row_ = 0;
   std::size_t gathered_ = 0;
+  bool here_ = false;
   film::Share share_;
 };
 

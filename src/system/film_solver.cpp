@@ -16,7 +16,7 @@ std::unique_ptr<RotorSystem::FilmSolver> RotorSystem::FilmSolver::make(RotorSyst
   if (system.n_own_ == 0) return nullptr;
   // It knows films along x and y.
   for (const Bearing& b : system.bearings_)
-    if (b.part && b.tilts()) return nullptr;
+    if (b.part->count() > 0 && b.tilts()) return nullptr;
   std::unique_ptr<FilmSolver> out(new FilmSolver(system));
   bool offered = true;
   for (const Film& film : out->films_)
@@ -49,7 +49,7 @@ void RotorSystem::FilmSolver::make_films() {
   residual_ = Map<const VectorXd>(ra.data(), rows);
   for (std::size_t b = 0; b < s.bearings_.size(); ++b) {
     const FilmPart* part = s.bearings_[b].part.get();
-    if (!part) continue;
+    if (part->count() == 0) continue;
     Film& film = films_.emplace_back();
     film.bearing = b;
     film.part = part;
@@ -80,10 +80,10 @@ void RotorSystem::FilmSolver::make_rotor() {
   const RotorSystem& s = system_;
   const Index n = state_.size(), films = static_cast<Index>(films_.size());
   std::vector<Eigen::Triplet<double>> rates, at_rest, gyroscopic, inputs, outputs;
-  add_entries(s.mass_.get(), 1, rates);
-  add_entries(s.stiffness_.get(), 0, at_rest);
-  add_entries(s.damping_.get(), 1, at_rest);
-  add_entries(s.gyroscopic_.get(), 1, gyroscopic);
+  add_entries(s.matrices_.mass.get(), 1, rates);
+  add_entries(s.matrices_.stiffness.get(), 0, at_rest);
+  add_entries(s.matrices_.damping.get(), 1, at_rest);
+  add_entries(s.matrices_.gyroscopic.get(), 1, gyroscopic);
   for (Index i = 0; i < n / 2; ++i) {
     rates.emplace_back(2 * i + 1, 2 * i, 1.0);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1.0);

@@ -12,6 +12,12 @@ namespace whirl::system {
 
 using core::check;
 
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
 void RotorSystem::scatter_inputs(Vec x) {
   check(VecScatterBegin(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(gather_inputs_.get(), x, inputs_.get(), INSERT_VALUES, SCATTER_FORWARD));
@@ -35,7 +41,7 @@ std::vector<JournalState> RotorSystem::journals_of(std::span<const double> input
     }
     out[i].position[1] -= train_.supports[i].elevation;
     for (std::size_t d = 0; bearings_[i].tilts() && d < 2; ++d, slope += 2) {
-      out[i].tilt[d] = slope[0] - bearings_[i].slope[d];
+      out[i].tilt[d] = slope[0] - axes_[i][d];
       out[i].tilt_rate[d] = slope[1];
     }
   }
@@ -65,51 +71,51 @@ film::Motion RotorSystem::motion(const JournalState& journal) const {
   return motion;
 }
 
-bool RotorSystem::evaluates(std::size_t bearing) const {
-  const Bearing& b = bearings_[bearing];
-  if (b.part) return b.part->rows() > 0;
-  return static_cast<int>(bearing) % core::size_of(comm_) == core::rank_of(comm_);
-}
-
 std::vector<film::Response> RotorSystem::film_responses(const std::vector<JournalState>& journals, film::Need need) {
   core::require(n_own_ == 0, "films with own states need the whole state");
-  return films_at(journals, {}, {}, need).journal;
+  return films_at({journals, {}, {}}, need).journal;
 }
 
 std::vector<film::Response> RotorSystem::film_responses(const double* x, film::Need need) {
-  std::vector<double> own;
-  for (std::size_t k = journal_inputs_; k < wanted_.size(); ++k) own.push_back(x[wanted_[k]]);
-  return films_at(journals(x), own, {}, need).journal;
+  FilmInputs in{journals(x), {}, {}};
+  for (std::size_t k = journal_inputs_; k < wanted_.size(); ++k) in.own.push_back(x[wanted_[k]]);
+  in.rates.resize(in.own.size());
+  return films_at(in, need).journal;
+}
+
+RotorSystem::FilmInputs RotorSystem::film_inputs(Vec x, Vec xdot) {
+  const std::vector<double> inputs = gather_inputs(x);
+  FilmInputs in{journals_of(inputs), {}, {}};
+  if (n_own_ == 0) return in;
+  const std::vector<double> rates = gather_inputs(xdot);
+  const auto own = static_cast<std::ptrdiff_t>(journal_inputs_);
+  in.own.assign(inputs.begin() + own, inputs.end());
+  in.rates.assign(rates.begin() + own, rates.end());
+  return in;
 }
 
 RotorSystem::Films RotorSystem::films_at(Vec x, Vec xdot, film::Need need) {
-  const std::vector<double> inputs = gather_inputs(x),
-                            rates = n_own_ > 0 ? gather_inputs(xdot) : std::vector<double>(inputs.size());
-  const auto own = static_cast<std::ptrdiff_t>(journal_inputs_);
-  return films_at(journals_of(inputs), {inputs.begin() + own, inputs.end()}, {rates.begin() + own, rates.end()}, need);
+  return films_at(film_inputs(x, xdot), need);
 }
 
-RotorSystem::Films RotorSystem::films_at(const std::vector<JournalState>& journals, std::span<const double> own,
-                                         std::span<const double> rates, film::Need need) {
+void RotorSystem::evaluate(std::size_t bearing, const FilmPart& part, const FilmInputs& in, film::Need need,
+                           film::StateResponse& response) const {
+  try {
+    part.evaluate(motion(in.journals[bearing]), in.own, in.rates, need, response);
+  } catch (const core::DomainError& e) {
+    throw core::DomainError("bearing " + train_.supports[bearing].name + ": " + e.what());
+  }
+}
+
+RotorSystem::Films RotorSystem::films_at(const FilmInputs& in, film::Need need) {
   Films films;
   films.journal.resize(bearings_.size());
   films.own.resize(bearings_.size());
-  const std::vector<double> zero(rates.empty() ? own.size() : 0, 0.0);
-  if (rates.empty()) rates = zero;
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      if (!evaluates(i)) continue;
-      const Bearing& b = bearings_[i];
-      try {
-        if (b.part) {
-          b.part->evaluate(motion(journals[i]), own, rates, need, films.own[i]);
-          films.journal[i] = films.own[i].journal;
-        } else {
-          b.film->evaluate(motion(journals[i]), need, films.journal[i]);
-        }
-      } catch (const core::DomainError& e) {
-        throw core::DomainError("bearing " + train_.supports[i].name + ": " + e.what());
-      }
+      if (!bearings_[i].part->here()) continue;
+      evaluate(i, *bearings_[i].part, in, need, films.own[i]);
+      films.journal[i] = films.own[i].journal;
     }
   });
   if (core::size_of(comm_) > 1) sum_over_ranks(films.journal);
@@ -138,9 +144,9 @@ void each(film::Response& r, std::size_t k, F&& f) {
 void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
   std::vector<double> flat, thickness;
   for (std::size_t i = 0; i < films.size(); ++i) {
-    const bool here = evaluates(i);
+    const bool here = bearings_[i].part->here();
     each(films[i], bearings_[i].ports.size(), [&](double value) { flat.push_back(here ? value : 0.0); });
-    thickness.push_back(here ? films[i].min_thickness : std::numeric_limits<double>::infinity());
+    thickness.push_back(here ? films[i].min_thickness : infinite);
   }
   MPI_Allreduce(MPI_IN_PLACE, flat.data(), static_cast<int>(flat.size()), MPI_DOUBLE, MPI_SUM, comm_);
   MPI_Allreduce(MPI_IN_PLACE, thickness.data(), static_cast<int>(thickness.size()), MPI_DOUBLE, MPI_MIN, comm_);
@@ -165,30 +171,45 @@ void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigm
             check(MatSetValue(j, 2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e], ADD_VALUES));
           }
       }
-    if (const FilmPart* part = bearings_[b].part.get(); part && part->rows() > 0)
-      part->add(j, films ? &films->own[b] : nullptr, n_, ports, alpha, sigma);
+    bearings_[b].part->add(j, films ? &films->own[b] : nullptr, n_, ports, alpha, sigma);
   }
   check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
 }
 
+Observed RotorSystem::observe(Vec x) {
+  const std::vector<JournalState> journals = journals_of(gather_inputs(x));
+  Observed out{{journals.begin(), journals.end()}, std::vector<double>(bearings_.size(), infinite)};
+  core::agree(comm_, [&] {
+    const core::ReadArray xa(x);
+    for (std::size_t i = 0; i < bearings_.size(); ++i) {
+      const FilmPart& part = *bearings_[i].part;
+      if (part.here())
+        out.film_thickness[i] =
+            part.least_thickness(motion(journals[i]), {xa.data() + part.row(), static_cast<std::size_t>(part.rows())});
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, out.film_thickness.data(), static_cast<int>(bearings_.size()), MPI_DOUBLE, MPI_MIN,
+                comm_);
+  return out;
+}
+
+PetscInt RotorSystem::own_states(int b) const {
+  return bearings_[static_cast<std::size_t>(b)].part->count();
+}
+
 bool RotorSystem::constant_rates() const {
-  return std::all_of(bearings_.begin(), bearings_.end(),
-                     [](const Bearing& b) { return !b.part || b.part->film().constant_rates(); });
+  return std::all_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.part->constant_rates(); });
 }
 
 film::Summary RotorSystem::film_summary(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
-  const Bearing& bearing = bearings_[i];
-  const film::Motion at = motion(journals(x)[i]);
-  return bearing.part ? bearing.part->film().summary(at, bearing.part->of(x, n_)) : bearing.film->summary(at);
+  return bearings_[i].part->summary(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
 }
 
 std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
-  const Bearing& bearing = bearings_[i];
-  const film::Motion at = motion(journals(x)[i]);
-  return bearing.part ? bearing.part->film().fields(at, bearing.part->of(x, n_)) : bearing.film->fields(at);
+  return bearings_[i].part->report(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
 }
 
 // Every rank relaxes the whole of a film that it holds a share of: a sparse LU of the film per Newton step, on each of
@@ -198,14 +219,12 @@ void RotorSystem::relax_films(Vec x) {
   core::agree(comm_, [&] {
     const core::WriteArray xa(x);
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      const FilmPart* part = bearings_[i].part.get();
-      if (!part || part->rows() == 0) continue;
+      const FilmPart& part = *bearings_[i].part;
+      if (part.rows() == 0) continue;
       film::Motion at = motion(journals[i]);
       at.velocity = {};
-      std::vector<double> states(part->film().states());
-      part->film().unloaded(at, states);
-      film::relax(part->film(), at, states);
-      std::copy_n(states.begin() + part->share().begin, part->rows(), xa.data() + part->row());
+      const std::vector<double> states = part.relaxed(at);
+      std::copy_n(states.begin() + part.share().begin, part.rows(), xa.data() + part.row());
     }
   });
 }
@@ -217,10 +236,9 @@ std::vector<double> RotorSystem::resampled(const Plant& of, const double* x) con
   out.resize(static_cast<std::size_t>(size()));
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    const FilmPart *to = bearings_[i].part.get(), *from = other.bearings_[i].part.get();
-    if (to)
-      to->film().resample(motion(at[i]), from->film(), from->of(x, n_),
-                          {out.data() + 2 * n_ + to->first(), to->film().states()});
+    const FilmPart &to = *bearings_[i].part, &from = *other.bearings_[i].part;
+    to.resample(motion(at[i]), from, from.of(x, n_),
+                {out.data() + 2 * n_ + to.first(), static_cast<std::size_t>(to.count())});
   }
   return out;
 }

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "blocks.hpp"
 #include "film_part.hpp"
 #include "frozen.hpp"
 #include "settling.hpp"
-#include "whirl/core/agree.hpp"
+#include "slope.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/system/start.hpp"
@@ -30,22 +29,22 @@ RotorSystem::RotorSystem(MPI_Comm comm, Varying varying, double speed)
 
 RotorSystem::~RotorSystem() = default;
 
-void RotorSystem::set_train(Train train) {
-  train_ = std::move(train);
-  build();
-}
-
-// Everything that depends on the option is rebuilt on both sides of the parameter, once for all points at one value;
-// meshes and masters stay.
-RotorSystem::Neighbours& RotorSystem::neighbours() {
-  if (!neighbours_.plus) {
-    neighbours_.step = 1e-5 * varying_.magnitude;
-    const auto at = [&](double p) { return std::make_unique<RotorSystem>(comm_, varying_.train(p), speed_); };
-    neighbours_.minus = at(varying_.value - neighbours_.step);
-    neighbours_.plus = at(varying_.value + neighbours_.step);
-  }
-  for (RotorSystem* side : {neighbours_.minus.get(), neighbours_.plus.get()}) side->set_forcing(forcing_);
-  return neighbours_;
+// Where the option ends at p, the difference is one-sided.
+const RotorSystem::Slope& RotorSystem::slope() {
+  if (slope_) return *slope_;
+  const double p = varying_.value, step = 1e-5 * varying_.magnitude;
+  const auto beside = [&](double there) -> std::pair<double, Train> {
+    try {
+      return {there, varying_.train(there)};
+    } catch (const core::DomainError&) {
+      return {p, train_};
+    }
+  };
+  const auto [below, minus] = beside(p - step);
+  const auto [above, plus] = beside(p + step);
+  if (above == below) throw core::DomainError("an option without room on either side of its value");
+  slope_ = std::make_unique<Slope>(*this, minus, plus, above - below);
+  return *slope_;
 }
 
 void RotorSystem::set_parameter(double p) {
@@ -68,10 +67,8 @@ std::array<double, 2> RotorSystem::unbalance_factors(double angle) const {
   return {inward * c + acceleration_ * s, inward * s - acceleration_ * c};
 }
 
-void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
-  const Films all = films_at(x, xdot, film::Need::force);
-  const std::vector<film::Response>& films = all.journal;
-  // q, v and their rates as vectors of coordinates, for the matrix products.
+core::Vector RotorSystem::products(const Matrices& m, Vec x, Vec xdot) const {
+  // q, v and their rates as vectors of coordinates.
   core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()),
                a = core::duplicate(q.get()), sum = core::duplicate(q.get());
   {
@@ -83,26 +80,37 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
       aa[i] = da[2 * i + 1];
     }
   }
-  check(MatMult(stiffness_.get(), q.get(), sum.get()));
-  check(MatMultAdd(damping_.get(), v.get(), sum.get(), sum.get()));
-  check(MatMultAdd(mass_.get(), a.get(), sum.get(), sum.get()));
-  check(MatMult(gyroscopic_.get(), v.get(), a.get()));
+  check(MatMult(m.stiffness.get(), q.get(), sum.get()));
+  check(MatMultAdd(m.damping.get(), v.get(), sum.get(), sum.get()));
+  check(MatMultAdd(m.mass.get(), a.get(), sum.get(), sum.get()));
+  check(MatMult(m.gyroscopic.get(), v.get(), a.get()));
   check(VecAXPY(sum.get(), speed_, a.get()));
+  return sum;
+}
+
+void RotorSystem::subtract(const std::vector<std::array<double, 4>>& forces, double* rows) const {
+  for (std::size_t b = 0; b < bearings_.size(); ++b)
+    for (std::size_t port = 0; port < bearings_[b].ports.size(); ++port)
+      for (const auto& [q, side] : bearings_[b].ports[port])
+        if (owns(q)) rows[2 * (q - begin_)] -= side * forces[b][port];
+}
+
+void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
+  const Films films = films_at(x, xdot, film::Need::force);
+  const core::Vector sum = products(matrices_, x, xdot);
   const core::ReadArray xa(x), da(xdot), sa(sum.get());
   const core::WriteArray fa(f);
   const auto [c, s] = unbalance_factors(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
     fa[2 * i + 1] = da[2 * i] - xa[2 * i + 1];
-    fa[2 * i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_c_[g] - s * unbalance_s_[g];
+    fa[2 * i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_.cosine[g] - s * unbalance_.sine[g];
   }
+  std::vector<std::array<double, 4>> forces;
+  for (const film::Response& r : films.journal) forces.push_back(r.force);
+  subtract(forces, fa.data());
   for (std::size_t b = 0; b < bearings_.size(); ++b)
-    for (std::size_t d = 0; d < bearings_[b].ports.size(); ++d)
-      for (const auto& [at, side] : bearings_[b].ports[d])
-        if (owns(at)) fa[2 * (at - begin_)] -= side * films[b].force[d];
-  for (std::size_t b = 0; b < bearings_.size(); ++b)
-    if (const FilmPart* part = bearings_[b].part.get())
-      std::copy_n(all.own[b].residual.begin(), part->rows(), fa.data() + part->row());
+    std::copy(films.own[b].residual.begin(), films.own[b].residual.end(), fa.data() + bearings_[b].part->row());
 }
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
@@ -118,38 +126,28 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, doub
 }
 
 void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
-  if (varying_.train) {
-    const Neighbours& at = neighbours();
-    core::Vector minus = core::duplicate(f);
-    at.plus->residual(angle, x, xdot, f);
-    at.minus->residual(angle, x, xdot, minus.get());
-    check(VecAXPBY(f, -1 / (2 * at.step), 1 / (2 * at.step), minus.get()));
-    return;
-  }
-  const Films all = films_at(x, xdot, film::Need::tangents);
-  const std::vector<film::Response>& films = all.journal;
+  if (varying_.train) return slope().derivative(angle, x, xdot, f);
+  const Films films = films_at(x, xdot, film::Need::tangents);
   core::Vector v = core::make_vector(comm_, end_ - begin_, n_), sum = core::duplicate(v.get());
   {
     const core::ReadArray xa(x);
     const core::WriteArray va(v.get());
     for (PetscInt i = 0; i < va.size(); ++i) va[i] = xa[2 * i + 1];
   }
-  check(MatMult(gyroscopic_.get(), v.get(), sum.get()));
+  check(MatMult(matrices_.gyroscopic.get(), v.get(), sum.get()));
   const core::ReadArray sa(sum.get());
   const core::WriteArray fa(f);
   const double force = forcing_ ? 2 * speed_ : 0.0, c = force * std::cos(angle), s = force * std::sin(angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
     const auto g = static_cast<std::size_t>(begin_ + i);
     fa[2 * i + 1] = 0;
-    fa[2 * i] = sa[i] - c * unbalance_c_[g] - s * unbalance_s_[g];
+    fa[2 * i] = sa[i] - c * unbalance_.cosine[g] - s * unbalance_.sine[g];
   }
+  std::vector<std::array<double, 4>> forces;
+  for (const film::Response& r : films.journal) forces.push_back(r.d_speed);
+  subtract(forces, fa.data());
   for (std::size_t b = 0; b < bearings_.size(); ++b)
-    for (std::size_t d = 0; d < bearings_[b].ports.size(); ++d)
-      for (const auto& [at, side] : bearings_[b].ports[d])
-        if (owns(at)) fa[2 * (at - begin_)] -= side * films[b].d_speed[d];
-  for (std::size_t b = 0; b < bearings_.size(); ++b)
-    if (const FilmPart* part = bearings_[b].part.get())
-      std::copy_n(all.own[b].d_speed.begin(), part->rows(), fa.data() + part->row());
+    std::copy(films.own[b].d_speed.begin(), films.own[b].d_speed.end(), fa.data() + bearings_[b].part->row());
 }
 
 // Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the
@@ -196,8 +194,7 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
 std::vector<problem::Field> RotorSystem::fields() const {
   std::vector<problem::Field> out{{"machine", 0, 2 * (end_ - begin_)}};
   for (std::size_t i = 0; i < bearings_.size(); ++i)
-    if (const FilmPart* part = bearings_[i].part.get())
-      for (problem::Field& f : part->fields(train_.supports[i].name)) out.push_back(std::move(f));
+    for (problem::Field& f : bearings_[i].part->fields(train_.supports[i].name)) out.push_back(std::move(f));
   return out;
 }
 
@@ -225,14 +222,11 @@ Places RotorSystem::places() const {
 }
 
 std::vector<double> RotorSystem::film_thickness(const double* x) const {
-  std::vector<double> out(bearings_.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> out;
   const std::vector<JournalState> at = journals(x);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Bearing& b = bearings_[i];
-    if (b.part)
-      out[i] = b.part->film().least_thickness(motion(at[i]), b.part->of(x, n_));
-    else
-      out[i] = b.film->least_thickness(motion(at[i]));
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    const FilmPart& part = *bearings_[i].part;
+    out.push_back(part.least_thickness(motion(at[i]), part.of(x, n_)));
   }
   return out;
 }

@@ -14,16 +14,8 @@ namespace whirl::system {
 
 using core::check;
 
-namespace {
-
-bool settles_itself(const FilmPart* part) {
-  return part && part->film().whole_steps();
-}
-
-}  // namespace
-
 bool RotorSystem::settles() const {
-  return std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return settles_itself(b.part.get()); });
+  return std::any_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.part->settles(); });
 }
 
 void RotorSystem::settle(Vec x) {
@@ -33,7 +25,7 @@ void RotorSystem::settle(Vec x) {
     const core::WriteArray xa(x);
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const FilmPart* part = bearings_[i].part.get();
-      if (!settles_itself(part)) continue;
+      if (!part->settles()) continue;
       const std::span<const double> present = part->of(xa.data(), n_);
       std::vector<double> states(present.begin(), present.end());
       film::relax(part->film(), motion(journals[i]), states);
@@ -49,7 +41,7 @@ RotorSystem::Settling& RotorSystem::settling() {
   const PetscInt machine = local_size() - own_here_;
   std::vector<PetscInt> count(static_cast<std::size_t>(local_size()), 1);
   for (const Bearing& b : bearings_)
-    if (settles_itself(b.part.get())) b.part->count_entries({}, count);
+    if (b.part->settles()) b.part->count_entries({}, count);
   count.erase(count.begin(), count.begin() + machine);
   s.matrix = core::make_matrix(comm_, own_here_, std::move(count));
   s.residual = core::make_vector(comm_, own_here_, PETSC_DETERMINE);
@@ -75,9 +67,9 @@ void RotorSystem::settle_together(Vec x) {
       std::fill_n(r.data(), own_here_, 0.0);
       for (std::size_t i = 0; i < bearings_.size(); ++i) {
         const FilmPart* part = bearings_[i].part.get();
-        if (!part || part->rows() == 0) continue;
+        if (part->rows() == 0) continue;
         const PetscInt row = part->row() - machine;
-        if (!settles_itself(part)) {
+        if (!part->settles()) {
           for (PetscInt j = first + row; j < first + row + part->rows(); ++j)
             check(MatSetValue(s.matrix.get(), j, j, 1, ADD_VALUES));
           continue;
@@ -103,7 +95,7 @@ void RotorSystem::settle_together(Vec x) {
       const core::ReadArray step(s.step.get());
       for (std::size_t i = 0; i < bearings_.size(); ++i) {
         const FilmPart* part = bearings_[i].part.get();
-        if (!settles_itself(part)) continue;
+        if (!part->settles()) continue;
         for (const problem::Field& f : part->fields({}))
           for (PetscInt j = f.begin; j < f.end; ++j) {
             xa[j] -= step[j - machine];
@@ -114,7 +106,7 @@ void RotorSystem::settle_together(Vec x) {
     MPI_Allreduce(MPI_IN_PLACE, moved.data(), static_cast<int>(moved.size()), MPI_DOUBLE, MPI_SUM, comm_);
     bool all = true;
     for (std::size_t i = 0; i < bearings_.size(); ++i)
-      if (const FilmPart* part = bearings_[i].part.get(); settles_itself(part))
+      if (const FilmPart* part = bearings_[i].part.get(); part->settles())
         all = all && std::sqrt(moved[i]) <= enough * std::sqrt(static_cast<double>(part->count()));
     if (all) return;
   }

@@ -132,6 +132,24 @@ TEST_P(SharedFilmsOf, HaveTheEquationsOfOneRank) {
   EXPECT_GT(taylor.parameter_order, 1.9);
 }
 
+// What results show comes from the shares: the same as from the whole state.
+TEST_P(SharedFilmsOf, AreSeenAsFromTheWholeState) {
+  const system::Train train = GetParam() ? on_content() : test::train_on_liners({12, 5}, 0.05);
+  system::RotorSystem s(MPI_COMM_WORLD, train, 377);
+  const core::Vector x = state_of(s);
+  const system::Observed seen = s.observe(x.get());
+  const std::vector<double> whole = s.gather(x.get()), thickness = s.film_thickness(whole.data());
+  const auto shown = s.shown(whole.data());
+  ASSERT_EQ(seen.shown.size(), 5U);
+  ASSERT_EQ(seen.film_thickness.size(), 5U);
+  for (std::size_t b = 0; b < 5; ++b) {
+    EXPECT_EQ(seen.shown[b].position, shown[b].position);
+    EXPECT_EQ(seen.shown[b].velocity, shown[b].velocity);
+    EXPECT_EQ(seen.film_thickness[b], thickness[b]);
+    EXPECT_LT(thickness[b], train.supports[b].geometry.clearance);
+  }
+}
+
 // The Jacobian of shares is that of one rank, entry by entry.
 TEST_P(SharedFilmsOf, HaveTheJacobianOfOneRank) {
   const system::Train train = GetParam() ? on_content() : test::train_on_liners({12, 5}, 0.05);

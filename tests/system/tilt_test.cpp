@@ -116,6 +116,36 @@ TEST(Tilt, DerivativesPassTheTaylorTest) {
   }
 }
 
+// Parameters that move the axes of bearings: an elevation, with which the line of the shaft turns, and a slope given.
+TEST(Tilt, AxesAsParameters) {
+  for (const bool elevation : {true, false}) {
+    system::Varying varying;
+    varying.train = [elevation](double p) {
+      system::Train t = overhung(true);
+      if (elevation)
+        t.supports[0].elevation = p;
+      else
+        t.supports[1].slope = {{1e-5, p}};
+      return t;
+    };
+    varying.value = elevation ? 3e-5 : 4e-4;
+    varying.magnitude = 1e-4;
+    system::RotorSystem s(MPI_COMM_WORLD, varying, speed);
+    const double before = s.axis(1)[1];
+    core::Vector x = s.guess(), rate = core::duplicate(x.get());
+    disturb(x.get(), 3e-6);
+    core::check(VecSet(rate.get(), 0.0));
+    disturb(rate.get(), 1e-3);
+    const auto r = problem::taylor_test(s, 0.7, x.get(), rate.get(), 1e-3);
+    EXPECT_GE(r.state_order, 1.9);
+    EXPECT_GE(r.parameter_order, 1.9);
+    s.set_parameter(elevation ? 8e-5 : -1e-4);
+    const system::RotorSystem anew(MPI_COMM_WORLD, varying.train(s.parameter()), speed);
+    EXPECT_EQ(s.axis(1), anew.axis(1));
+    EXPECT_NE(s.axis(1)[1], before);
+  }
+}
+
 // The blocks that structured solvers see give F and J of the matrices, with films with and without states.
 TEST(Tilt, BlocksAreTheSameEquations) {
   for (const bool states : {false, true}) {
@@ -287,13 +317,13 @@ TEST(Tilt, BearingsAreAlignedToTheShaft) {
   const system::RotorSystem aligned(MPI_COMM_WORLD, t, speed);
   const auto line = rotor::rigid_static(MPI_COMM_WORLD, t.rotor, {{1, 3e-5}, {5, 0}}, t.gravity).slope;
   for (int b = 0; b < 2; ++b) {
-    EXPECT_EQ(aligned.slope(b)[0], 0);
-    EXPECT_EQ(aligned.slope(b)[1], line[b == 0 ? 0 : 4]);
-    EXPECT_GT(std::abs(aligned.slope(b)[1]), 1e-5);
+    EXPECT_EQ(aligned.axis(b)[0], 0);
+    EXPECT_EQ(aligned.axis(b)[1], line[b == 0 ? 0 : 4]);
+    EXPECT_GT(std::abs(aligned.axis(b)[1]), 1e-5);
   }
   t.supports[1].slope = {{1e-4, -2e-4}};
   system::RotorSystem given(MPI_COMM_WORLD, t, speed);
-  EXPECT_EQ(given.slope(1), *t.supports[1].slope);
+  EXPECT_EQ(given.axis(1), *t.supports[1].slope);
   const core::Vector x = given.guess();
   const std::vector<double> whole = given.gather(x.get()), shaft = given.shaft(whole.data(), 0, true);
   const auto journal = given.journals(whole.data())[1];

@@ -16,6 +16,7 @@ struct Geometry {
   double arc = 0.0;        // rad, angular extent of each pad
   double preload = 0.0;    // -, m = 1 - c_b/c_p with c_p the machined (pad) clearance
   double offset = 0.0;     // m, horizontal distance between the lobe centres: lower +offset/2, upper -offset/2
+  friend bool operator==(const Geometry&, const Geometry&) = default;
 };
 
 /// An axial groove of a bore, full of lubricant at a given pressure over the whole length.
@@ -23,6 +24,7 @@ struct Groove {
   double angle = 0.0;     // rad, of its middle
   double width = 0.0;     // rad, 0: a single line of nodes
   double pressure = 0.0;  // Pa, of the lubricant in it
+  friend bool operator==(const Groove&, const Groove&) = default;
 };
 
 /// Where the film of a full circle without grooves starts, at pressure zero over the whole length.
@@ -33,12 +35,14 @@ struct Inlet {
   enum class Type { free, maximum_gap, line };
   Type type = Type::free;
   double angle = 0.5 * std::numbers::pi;  // rad, of the line
+  friend bool operator==(const Inlet&, const Inlet&) = default;
 };
 
 /// Isoviscous incompressible lubricant.
 struct Lubricant {
   double viscosity = 0.0;  // Pa s, dynamic
   double density = 0.0;    // kg/m^3, enters only the Reynolds number of the turbulent film
+  friend bool operator==(const Lubricant&, const Lubricant&) = default;
 };
 
 }  // namespace whirl::film

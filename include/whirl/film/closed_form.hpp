@@ -14,20 +14,24 @@ namespace whirl::film {
 
 struct Short {
   static constexpr std::string_view key = "short", text = "closed form without flow around the bearing (L/D below 1/2)";
+  friend bool operator==(const Short&, const Short&) = default;
 };
 struct Long {
   static constexpr std::string_view key = "long",
                                     text = "closed form without side flow, periodic pressure, half of it positive";
+  friend bool operator==(const Long&, const Long&) = default;
 };
 struct LongInlet {
   static constexpr std::string_view key = "long_inlet",
                                     text = "closed form without side flow, pressure zero at the top (90 deg)";
+  friend bool operator==(const LongInlet&, const LongInlet&) = default;
 };
 struct FiniteApproximate {
   static constexpr std::string_view key = "finite_approximate",
                                     text =
                                         "harmonic sum of the short and the long film, along and across the "
                                         "eccentricity";
+  friend bool operator==(const FiniteApproximate&, const FiniteApproximate&) = default;
 };
 
 void describe(deck::Description<Short>& d);

@@ -22,6 +22,7 @@ struct Liner {
   double thickness = 0.0;  // m, d
   double modulus = 0.0;    // Pa, E
   double poisson = 0.0;    // -, nu
+  friend bool operator==(const Liner&, const Liner&) = default;
 };
 
 /// Contact of rough surfaces: the asperities carry p_c = K E' F(h/sigma), F(x) = 4.4086e-5 (4 - x)^6.804 below x = 4,
@@ -29,6 +30,7 @@ struct Liner {
 struct Contact {
   double roughness = 0.0;  // m, sigma: standard deviation of the heights of both surfaces
   double pressure = 0.0;   // Pa, K E'
+  friend bool operator==(const Contact&, const Contact&) = default;
 };
 
 /// What all of them have. The liner is given, or B = 6 mu Omega_0 U R^2/(p c^3) with the speed Omega_0 that scales it.
@@ -46,21 +48,25 @@ struct Compliant {
   std::vector<Groove> grooves;                     // at pressure zero
   Quadrature quadrature = Quadrature::sub_cell;    // of the force
   Differences differences = Differences::central;  // of dh/dtheta
+  friend bool operator==(const Compliant&, const Compliant&) = default;
 };
 
 struct CompliantShort : Compliant {
   static constexpr std::string_view key = "compliant_short",
                                     text = "short film on an elastic liner, thickness as state";
+  friend bool operator==(const CompliantShort&, const CompliantShort&) = default;
 };
 struct CompliantLong : Compliant {
   static constexpr std::string_view key = "compliant_long",
                                     text =
                                         "film without side flow on an elastic liner, thickness as state, pressure "
                                         "zero at the top (90 deg)";
+  friend bool operator==(const CompliantLong&, const CompliantLong&) = default;
 };
 struct CompliantFinite : Compliant {
   static constexpr std::string_view key = "compliant_finite",
                                     text = "two-dimensional film on an elastic liner, thickness on a mesh as states";
+  friend bool operator==(const CompliantFinite&, const CompliantFinite&) = default;
 };
 
 void describe(deck::Description<Compliant>& d);

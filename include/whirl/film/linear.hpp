@@ -18,6 +18,7 @@ struct Linear {
   static constexpr std::string_view key = "linear", text = "constant stiffness and damping";
   std::array<double, 4> stiffness{};  // N/m, xx xy yx yy
   std::array<double, 4> damping{};    // N s/m, xx xy yx yy
+  friend bool operator==(const Linear&, const Linear&) = default;
 };
 
 void describe(deck::Description<Linear>& d);

@@ -73,6 +73,9 @@ public:
   /// Least thickness of the film [m] over its whole length, exactly where the bore is rigid: not positive where the
   /// surfaces touch. Infinite for a linear film. Throws as evaluate() does where the film itself has to be known.
   [[nodiscard]] virtual double least_thickness(const Motion& motion) = 0;
+  /// Starts the search for its pressure from where `other` ended, a film of the same mesh with other numbers. Without
+  /// effect on a film that searches nothing, or if the meshes differ.
+  virtual void start_from(const Model& /*other*/) {}
 };
 
 /// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`

@@ -23,6 +23,7 @@ struct Options {
   /// A film of kind K: `Options film = Short{};`
   template <class K>
   requires(is_one_of<K>(static_cast<const Kinds*>(nullptr))) Options(K options) : kind(std::move(options)) {}
+  friend bool operator==(const Options&, const Options&) = default;
 };
 
 /// The options as T, which is a kind or what several kinds have in common (Compliant); null if they are none.

@@ -100,7 +100,8 @@ public:
   /// Own states on this mesh from those of `other`, the same film on another one.
   virtual void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
                         std::span<double> to) const = 0;
-  /// Least thickness of the film [m].
+  /// Least thickness of the film [m]. From some of its states alone it is that of these or of the whole film: the least
+  /// over all shares is the film's.
   [[nodiscard]] virtual double least_thickness(const Motion& motion, std::span<const double> states) const = 0;
   virtual Summary summary(const Motion& motion, std::span<const double> states) = 0;
   virtual std::vector<Field> fields(const Motion& motion, std::span<const double> states) = 0;
@@ -108,6 +109,9 @@ public:
 private:
   mutable std::unique_ptr<const Share> whole_;
 };
+
+/// The film described by the options, of either sort; throws core::InputError on values outside their range.
+Made make_film(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 
 /// True for the films that make_state_model() makes; the others belong to make_model().
 [[nodiscard]] bool has_states(const Options& options);
@@ -120,9 +124,9 @@ std::unique_ptr<StateModel> make_state_model(const Geometry& geometry, const Opt
 void relax(StateModel& film, const Motion& motion, std::vector<double>& states);
 
 /// The film without its states: they take the values at which nothing that the film remembers changes, whatever the
-/// motion, g(motion, s, s') = 0 with s' = carried_rates() times the velocity, found by Newton's method from those of the
-/// last motion to a tolerance below which the start does not show. Force, stiffness and flows of a journal at rest are
-/// those of the film with states; damping is that of a film whose memory stands still. Its evaluate() also throws
+/// motion, g(motion, s, s') = 0 with s' = carried_rates() times the velocity, found by Newton's method from those of
+/// the last motion to a tolerance below which the start does not show. Force, stiffness and flows of a journal at rest
+/// are those of the film with states; damping is that of a film whose memory stands still. Its evaluate() also throws
 /// core::NotConverged. Cost: a sparse LU per Newton step, and one solve for each component of the force.
 [[nodiscard]] std::unique_ptr<Model> condense(std::unique_ptr<StateModel> film);
 

@@ -21,6 +21,7 @@ struct Segment {
   double added_mass_inner_diameter = 0;  // m, annulus of the added mass
   double added_mass_outer_diameter = 0;  // m
   double temperature = 293.15;           // K
+  friend bool operator==(const Segment&, const Segment&) = default;
 };
 
 /// A rigid disc at a node. Inertias are given directly, by geometry (outer_diameter > 0), or both: then they add.
@@ -33,6 +34,7 @@ struct Disc {
   double inner_diameter = 0;     // m, bore
   double thickness = 0;          // m
   double density = 0;            // kg/m^3; 0: that of the shaft material
+  friend bool operator==(const Disc&, const Disc&) = default;
 };
 
 /// Material of the shaft. The modulus is linear between the points of the table; one point means a constant.
@@ -41,6 +43,7 @@ struct Material {
   double poisson = 0.3;                            // -
   std::vector<std::pair<double, double>> modulus;  // (K, Pa), temperatures ascending
   double shear_modulus = 0;                        // Pa, at every temperature; 0: E(T) / (2 (1 + poisson))
+  friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// Which shear coefficient kappa enters Phi = 12 E I / (kappa G A L^2).
@@ -57,6 +60,7 @@ struct Reduction {
   std::vector<int> masters;   // 1-based nodes, at least two, any order
   int modes = 0;              // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
   std::vector<int> slopes{};  // those of the masters whose slopes are masters too; no key of a deck
+  friend bool operator==(const Reduction&, const Reduction&) = default;
 };
 
 /// A shaft of beam elements, or a rigid body without tilt: node 1 with x and y only.
@@ -71,6 +75,7 @@ struct Options {
   Shear shear = Shear::cowper_solid;
   double stiffness_damping = 0;  // s, C = stiffness_damping * K in the stationary frame
   Reduction reduction;
+  friend bool operator==(const Options&, const Options&) = default;
 };
 
 }  // namespace whirl::rotor

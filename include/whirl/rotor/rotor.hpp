@@ -35,13 +35,16 @@ struct ReductionQuality {
 ///
 /// Full coordinates are those of full_coordinate(). Reduced coordinates are the pairs (x, y) of the master nodes in
 /// ascending order of nodes, each followed by the pair (dx/dz, dy/dz) where slopes are masters too, then pairs of
-/// mass-normalised fixed-interface modes in ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan 1965), with modes Craig & Bampton (1968).
-/// Construction is collective on `comm`; throws core::InputError on all ranks together.
+/// mass-normalised fixed-interface modes in ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan
+/// 1965), with modes Craig & Bampton (1968). Construction is collective on `comm`; throws core::InputError on all ranks
+/// together.
 class Rotor {
 public:
   Rotor(MPI_Comm comm, const Options& options);
 
   [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
+  /// C = `value` K [s]; all else stays. Collective.
+  void set_stiffness_damping(double value);
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
   [[nodiscard]] int n_nodes() const noexcept { return n_nodes_; }

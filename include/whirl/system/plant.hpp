@@ -26,6 +26,12 @@ struct Places {
   std::vector<double> least_films{};  ///< thickness below which the surfaces touch, in `unit`; empty: there are none
 };
 
+/// What results show of one state, small and the same on all ranks.
+struct Observed {
+  std::vector<PlaceState> shown;       ///< as Plant::shown()
+  std::vector<double> film_thickness;  ///< as Plant::film_thickness()
+};
+
 /// A system that branches of equilibria and cycles and motions can be computed of, whatever it is made of. All members
 /// are collective on comm() unless they say not.
 class Plant : public problem::System {
@@ -37,6 +43,11 @@ public:
   /// Smallest film thickness of each place at a whole state, in Places::unit: in the mid-plane of its bearing, or over
   /// the whole length where the film tilts; infinite where there is no film, empty if no place has one. Not collective.
   [[nodiscard]] virtual std::vector<double> film_thickness(const double* /*x*/) const { return {}; }
+  /// Both at a distributed state.
+  [[nodiscard]] virtual Observed observe(Vec x) {
+    const std::vector<double> whole = gather(x);
+    return {shown(whole.data()), film_thickness(whole.data())};
+  }
   /// A state from which Newton's method finds an equilibrium at the present parameter.
   [[nodiscard]] virtual core::Vector guess() = 0;
   /// Moves x away from an equilibrium by `offset` in both directions, per clearance; own states follow.

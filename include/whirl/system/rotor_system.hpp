@@ -17,8 +17,8 @@ namespace whirl::system {
 
 class FilmPart;
 
-/// A parameter other than the speed: the train as a function of it, from which everything that depends on it is
-/// rebuilt.
+/// A parameter other than the speed: the train as a function of it. Of the system, what depends on it is made anew at
+/// every value, and nothing else.
 struct Varying {
   std::function<Train(double)> train;
   double value = 0;      ///< start value, SI
@@ -72,9 +72,14 @@ public:
   [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
                                                         const problem::Frozen* similar) override;
 
-  /// Another train of the same shape (nodes, masters, film meshes): everything is rebuilt, the active parameter and the
-  /// speed stay. Collective.
+  /// Another train of the same shape (nodes, masters, pedestals, film meshes): parts whose numbers differ are made
+  /// anew, the active parameter and the speed stay. If a part refuses its numbers, nothing changes. Collective.
   void set_train(Train train);
+  /// Rotors and films made so far, those for dF/dp among them. Not collective.
+  struct Made {
+    long rotors = 0, films = 0;
+  };
+  [[nodiscard]] const Made& made() const { return made_; }
 
   /// The forces of unbalance.
   void set_forcing(bool on) override { forcing_ = on; }
@@ -86,6 +91,8 @@ public:
   /// Of rigid bores from the place of the journal, over the whole length where the film sees its tilt; of films with
   /// thicknesses as states the least of these.
   [[nodiscard]] std::vector<double> film_thickness(const double* x) const override;
+  /// Each rank looks at the films and shares of films that it holds: no state is gathered.
+  [[nodiscard]] Observed observe(Vec x) override;
   [[nodiscard]] core::Vector guess() override;
   void displace(Vec x, const std::array<double, 2>& offset) override;
   [[nodiscard]] bool has_film_mesh() const override;
@@ -103,7 +110,7 @@ public:
   [[nodiscard]] int ports(int b) const { return static_cast<int>(bearings_[static_cast<std::size_t>(b)].ports.size()); }
   /// Slope dx/dz, dy/dz of the axis of bearing b: that of the deck, else that of the shaft on rigid supports at the
   /// elevations of the bearings, at rest under gravity. Zero of a film that does not tilt.
-  [[nodiscard]] const std::array<double, 2>& slope(int b) const { return bearings_[static_cast<std::size_t>(b)].slope; }
+  [[nodiscard]] const std::array<double, 2>& axis(int b) const { return axes_[static_cast<std::size_t>(b)]; }
   /// Coordinate of the journal / pedestal of bearing b along port d / in direction d (0 x, 1 y); -1: no pedestal.
   [[nodiscard]] PetscInt journal(int b, int d) const {
     return bearings_[static_cast<std::size_t>(b)].journal[static_cast<std::size_t>(d)];
@@ -120,8 +127,9 @@ public:
   [[nodiscard]] std::vector<film::Response> film_responses(const double* x, film::Need need);
   /// False where a film has a damped liner.
   [[nodiscard]] bool constant_rates() const override;
-  /// Number of own states of all films, which stand at the end of a whole state.
+  /// Number of own states of all films, which stand at the end of a whole state; of film b.
   [[nodiscard]] PetscInt own_states() const { return n_own_; }
+  [[nodiscard]] PetscInt own_states(int b) const;
   /// Report quantities and fields of film b at a whole state [size()]. Not collective.
   [[nodiscard]] film::Summary film_summary(int b, const double* x);
   [[nodiscard]] std::vector<film::Field> film_fields(int b, const double* x);
@@ -134,16 +142,14 @@ public:
   /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
   /// Force of unbalance per Omega^2 on each coordinate as cosine and sine parts [coordinates()], whole on every rank.
-  [[nodiscard]] const std::vector<double>& unbalance_cosine() const { return unbalance_c_; }
-  [[nodiscard]] const std::vector<double>& unbalance_sine() const { return unbalance_s_; }
+  [[nodiscard]] const std::vector<double>& unbalance_cosine() const { return unbalance_.cosine; }
+  [[nodiscard]] const std::vector<double>& unbalance_sine() const { return unbalance_.sine; }
 
 private:
   struct Bearing {
     std::array<PetscInt, 4> journal{-1, -1, -1, -1};
     std::array<PetscInt, 2> pedestal{-1, -1};
-    std::array<double, 2> slope{};
-    std::unique_ptr<film::Model> film;  // null for a film with own states
-    std::unique_ptr<FilmPart> part;     // null for a film without
+    std::unique_ptr<FilmPart> part;
     // Coordinates of journal and pedestal with their signs, whose sum is what the film sees, along x and y, and the
     // slopes of the journal if it tilts.
     std::vector<std::vector<std::pair<PetscInt, double>>> ports;
@@ -157,25 +163,57 @@ private:
   class Blocks;
   class FilmSolver;
   struct Settling;
-  /// The systems at p - step and p + step, for the difference quotient dF/dp.
-  struct Neighbours {
-    std::unique_ptr<RotorSystem> minus, plus;
-    double step = 0;
+  /// Matrices of coordinates, pedestals behind the rotor.
+  struct Matrices {
+    core::Matrix mass, damping, gyroscopic, stiffness;
   };
+  /// What load is linear in: gravity [m/s^2], the load of a rigid rotor and the weights of the pedestals [N].
+  struct Weights {
+    double gravity, rotor_load;
+    std::vector<double> pedestals;
+  };
+  /// Force of unbalance per Omega^2, whole on every rank.
+  struct Unbalances {
+    std::vector<double> cosine, sine;
+  };
+  /// What the films of this rank see.
+  struct FilmInputs {
+    std::vector<JournalState> journals;
+    std::vector<double> own, rates;
+  };
+  class Slope;
 
   void build();
-  void align_bearings();
+  /// Slopes of the axes of all bearings of a train, as axis() says. Collective.
+  [[nodiscard]] std::vector<std::array<double, 2>> axes_of(const Train& train) const;
   void share_out_own_states();
+  [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
+  /// The parts of some bearings with the numbers of `train`. Collective.
+  [[nodiscard]] std::vector<FilmPart> parts_at(const Train& train, const std::vector<std::size_t>& bearings);
+  /// Those of a rotor, zero at the pedestals. Collective, as are the others.
+  [[nodiscard]] Matrices matrices_of(const rotor::Rotor& rotor) const;
+  void make_matrices();
+  void set_pedestals();
+  [[nodiscard]] static Weights weights_of(const Train& train);
+  [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
+  [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
   void make_constant_parts();
+  void fill_constant_parts();
   /// Made when first wanted at this value of the parameter. Collective.
-  [[nodiscard]] Neighbours& neighbours();
+  [[nodiscard]] const Slope& slope();
+  /// K q + (C + Omega G) v + M v' on this rank's coordinates. Collective.
+  [[nodiscard]] core::Vector products(const Matrices& m, Vec x, Vec xdot) const;
+  /// Takes forces on journals, by ports, from this rank's rows: B f in the equation above.
+  void subtract(const std::vector<std::array<double, 4>>& forces, double* rows) const;
   /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates; zeros at their
   /// places without films. Collective: assembles j.
   void add_films(Mat j, const Films* films, double alpha, double sigma) const;
+  [[nodiscard]] FilmInputs film_inputs(Vec x, Vec xdot);
   [[nodiscard]] Films films_at(Vec x, Vec xdot, film::Need need);
-  /// `own` and `rates` are what this rank's films see, as gathered; no rates are zero rates.
-  [[nodiscard]] Films films_at(const std::vector<JournalState>& journals, std::span<const double> own,
-                               std::span<const double> rates, film::Need need);
+  [[nodiscard]] Films films_at(const FilmInputs& in, film::Need need);
+  /// Film `bearing`, or another one in its place; a core::DomainError says which.
+  void evaluate(std::size_t bearing, const FilmPart& part, const FilmInputs& in, film::Need need,
+                film::StateResponse& response) const;
   /// settle() on several ranks, and what it works with. Collective.
   void settle_together(Vec x);
   [[nodiscard]] Settling& settling();
@@ -183,8 +221,8 @@ private:
   /// Factors of the cosine and the sine parts of the unbalance at a shaft angle [1/s^2].
   [[nodiscard]] std::array<double, 2> unbalance_factors(double angle) const;
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
-  /// This rank evaluates film `bearing`, or a part of it.
-  [[nodiscard]] bool evaluates(std::size_t bearing) const;
+  /// Films with own states are shared out over all ranks, and the rotor stands on the first one.
+  [[nodiscard]] bool first_holds_rotor() const { return n_own_ > 0 && core::size_of(comm_) > 1; }
   [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
   [[nodiscard]] std::vector<double> gather_inputs(Vec x);
@@ -198,23 +236,24 @@ private:
   double speed_;
   bool forcing_ = true;
   double acceleration_ = 0;
+  Made made_;
   std::unique_ptr<rotor::Rotor> rotor_;
   std::vector<Bearing> bearings_;
-  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;    // coordinates: all, of the rotor, this rank's range
-  PetscInt n_own_ = 0, own_here_ = 0;                     // own states of films: all, on this rank
-  bool first_holds_rotor_ = false;                        // because films with own states are shared out over all
-  core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
-  core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
-  std::vector<double> load_;                              // gravity on this rank's coordinates [N]
-  std::vector<double> unbalance_c_, unbalance_s_;         // whole, per Omega^2
-  std::vector<PetscInt> wanted_;                          // entries of a state that gather_inputs() gathers
+  std::vector<std::array<double, 2>> axes_;
+  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;  // coordinates: all, of the rotor, this rank's range
+  PetscInt n_own_ = 0, own_here_ = 0;                   // own states of films: all, on this rank
+  Matrices matrices_;
+  core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;  // constant parts of the Jacobian, made when first wanted
+  std::vector<double> load_;                         // gravity on this rank's coordinates [N]
+  Unbalances unbalance_;
+  std::vector<PetscInt> wanted_;  // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   // Before the own states among them: 8 of each bearing, position and velocity of journal and pedestal in x and y; then
   // 4 of each that tilts, slope and rate in x and y.
   std::size_t journal_inputs_ = 0;
   std::unique_ptr<Blocks> blocks_;
-  Neighbours neighbours_;
+  std::unique_ptr<Slope> slope_;        // at this value of the parameter, made when first wanted
   std::unique_ptr<Settling> settling_;  // made when first wanted
   std::unique_ptr<FilmSolver> film_solver_;
   bool film_solver_tried_ = false;

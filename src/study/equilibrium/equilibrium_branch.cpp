@@ -59,7 +59,7 @@ std::vector<MarginThere> margins_there(const Context& context, const Equilibrium
       other->set_parameter(parameter);
       const core::Vector x = resampled(*other, system, whole);
       if (solve::find_equilibrium(*other, x.get(), newton).converged)
-        out.back().margin = FilmLimit(other->places()).margin(other->film_thickness(other->gather(x.get()).data()));
+        out.back().margin = FilmLimit(other->places()).margin(other->observe(x.get()).film_thickness);
     });
   }
   return out;
@@ -138,13 +138,13 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   callbacks.on_point = [&](const solve::BranchPoint& point, Vec v) {
     problem.to_state(v, x.get());
     std::vector<double> px, py;
-    const std::vector<double> whole = system->gather(x.get());
-    for (const auto& j : system->shown(whole.data())) {
+    const system::Observed seen = system->observe(x.get());
+    for (const auto& j : seen.shown) {
       px.push_back(j.position[0]);
       py.push_back(j.position[1]);
     }
     const auto& s = point.stability;
-    margins.add(point.parameter, films.margin(system->film_thickness(whole.data())));
+    margins.add(point.parameter, films.margin(seen.film_thickness));
     verdict.add(class_of(s));
     missed.add(s.missed);
     std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
@@ -158,7 +158,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                   {std::abs(leading.imag())},
                   px,
                   py,
-                  film_column(system->film_thickness(whole.data()), places.names.size())});
+                  film_column(seen.film_thickness, places.names.size())});
     results.progress(fmt::format(
         "{}: point {}, {} {:.2f} {}, step {:.3g}, {} Newton iterations, leading eigenvalue {:.3f} {:+.2f}i, {:.1f} s",
         results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
@@ -197,7 +197,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   if (films.exists()) {
     const auto thickness = [&](Vec v) {
       problem.to_state(v, x.get());
-      return system->film_thickness(system->gather(x.get()).data());
+      return system->observe(x.get()).film_thickness;
     };
     callbacks.limit = [&, thickness](Vec v) { return films.margin(thickness(v)); };
     callbacks.why = [&, thickness](Vec v) { return films.reason(thickness(v)); };

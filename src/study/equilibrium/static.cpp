@@ -99,7 +99,7 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
     for (std::size_t d = 0; d < 2 && coefficients[b].ports > 2; ++d) {
       summary.set(head + "moment." + axis[d], films[b].force[2 + d], "N m");
       summary.set(head + "tilt." + axis[d], journals[b].tilt[d], "1");
-      summary.set(head + "slope." + axis[d], system.slope(static_cast<int>(b))[d], "1");
+      summary.set(head + "slope." + axis[d], system.axis(static_cast<int>(b))[d], "1");
     }
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));

@@ -68,7 +68,7 @@ std::vector<double> LocusFollower::films(Vec whole) const {
   if (cycles_) return least_films(cycles_->gather(u.get()), *system_);
   core::Vector x = core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE);
   rest_->to_state(u.get(), x.get());
-  return system_->film_thickness(system_->gather(x.get()).data());
+  return system_->observe(x.get()).film_thickness;
 }
 
 }  // namespace whirl::study

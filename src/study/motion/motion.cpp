@@ -76,10 +76,9 @@ private:
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
       }
       integrator_.state(start_.x.get());
-      const std::vector<double> whole = system_.gather(start_.x.get());
-      if (const auto thickness = system_.film_thickness(whole.data()); !(films_.margin(thickness) > 0))
-        throw core::DomainError(films_.reason(thickness));
-      if (record) record_.sample(system_.shown(whole.data()), system_.gather(integrator_.scaled()));
+      const system::Observed seen = system_.observe(start_.x.get());
+      if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
+      if (record) record_.sample(seen.shown, system_.gather(integrator_.scaled()));
     }
     if (record) record_.close(growth, period);
     integrator_.restart(0, integrator_.step());

@@ -123,13 +123,11 @@ private:
     for (int k = 1; k <= options_.samples; ++k) {
       integrator_.advance(drive_.time_of(2 * std::numbers::pi * (done_ + static_cast<double>(k) / options_.samples)));
       integrator_.state(x_.get());
-      const std::vector<double> whole = system_.gather(x_.get());
-      if (const auto thickness = system_.film_thickness(whole.data()); !(films_.margin(thickness) > 0))
-        throw core::DomainError(films_.reason(thickness));
-      const auto shown = system_.shown(whole.data());
-      for (std::size_t b = 0; b < n; ++b) r.samples[b].push_back(shown[b].position);
+      const system::Observed seen = system_.observe(x_.get());
+      if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
+      for (std::size_t b = 0; b < n; ++b) r.samples[b].push_back(seen.shown[b].position);
       if (options_.nodes.empty()) continue;
-      const std::vector<double> shaft = system_.shaft(whole.data(), 0, false);
+      const std::vector<double> shaft = system_.shaft(system_.gather(x_.get()).data(), 0, false);
       for (std::size_t i = 0; i < options_.nodes.size(); ++i) {
         const auto at = static_cast<std::size_t>(4 * (options_.nodes[i] - 1));
         r.samples[n + i].push_back({shaft[at], shaft[at + 1]});

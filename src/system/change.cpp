@@ -1,0 +1,41 @@
+#include "change.hpp"
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::system {
+namespace {
+
+bool same_film(const Support& a, const Support& b) {
+  return a.geometry == b.geometry && a.film == b.film && a.lubricant == b.lubricant;
+}
+
+// Without what Rotor does not need to be made anew for.
+rotor::Options shaft_of(rotor::Options o) {
+  o.stiffness_damping = o.load = 0;
+  return o;
+}
+
+}  // namespace
+
+Change change_between(const Train& from, const Train& to) {
+  const rotor::Options &a = from.rotor, &b = to.rotor;
+  core::require(a.type == b.type && a.segments.size() == b.segments.size() && a.reduction == b.reduction &&
+                    from.supports.size() == to.supports.size(),
+                "trains of the same shape");
+  Change out;
+  out.shaft = shaft_of(a) != shaft_of(b);
+  out.damping = a.stiffness_damping != b.stiffness_damping;
+  out.load = out.shaft || from.gravity != to.gravity || a.load != b.load;
+  out.unbalance = out.shaft || from.unbalance != to.unbalance;
+  for (std::size_t i = 0; i < from.supports.size(); ++i) {
+    const Support &s = from.supports[i], &t = to.supports[i];
+    core::require(s.node == t.node && s.has_pedestal == t.has_pedestal, "bearings at the same places");
+    if (!same_film(s, t)) out.films.push_back(i);
+    if (!s.has_pedestal) continue;
+    out.pedestals = out.pedestals || s.mass != t.mass || s.stiffness != t.stiffness || s.damping != t.damping;
+    out.load = out.load || s.mass != t.mass;
+  }
+  return out;
+}
+
+}  // namespace whirl::system
