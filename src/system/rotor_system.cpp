@@ -42,7 +42,7 @@ const RotorSystem::Slope& RotorSystem::slope() {
   };
   const auto [below, minus] = beside(p - step);
   const auto [above, plus] = beside(p + step);
-  if (above == below) throw core::DomainError("an option without room on either side of its value");
+  core::require(above > below, "an option may vary on one side of its value");
   slope_ = std::make_unique<Slope>(*this, minus, plus, above - below);
   return *slope_;
 }
