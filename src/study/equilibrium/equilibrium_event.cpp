@@ -86,9 +86,7 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
   double doubt = finer.empty() ? unknown : std::abs(finer[0] - curvature);
   Bars bars({curvature}, at.law);
   for (std::size_t k = 0; k < at.meshes.size(); ++k) {
-    // The bar of a film with kinks is that of its worst mesh: more of them do not make it smaller.
-    const double worst = at.law.kinks && k > 0 ? bars[0].total() : 0;
-    if (!decided(curvature, spread + doubt + (std::isfinite(worst) ? worst : 0))) break;
+    if (!decided(curvature, spread + doubt)) break;
     const FilmMesh& mesh = at.meshes[k];
     const double c = kept(at, fmt::format("cycles on mesh {}", k), [&] {
                        return std::vector<double>{curvature_on(at, mesh.factor, there[k], largest)};
