@@ -116,26 +116,33 @@ TEST(ErrorBar, StudentsQuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(student_quantile(0.99, 7), 3.49948, 1e-5);
 }
 
-// Weights that jump with the edge: first order, and nothing but oscillation; or as large on every mesh.
+// Weights that jump with the edge: first order, and nothing but oscillation; or as large on every mesh. How fast it
+// oscillates is chance, too: otherwise the meshes of a direction would see one and the same.
 TEST(ErrorBar, CoversKinksWhenToldOfThem) {
   const MeshLaw kinks{2, 2, true};
-  const std::vector<double> four{0.5, 0.75, 1.5, 2}, coarser{2, 1.6, 4.0 / 3, 8.0 / 7};
+  const std::vector<double> four{0.5, 2.0 / 3, 4.0 / 3, 2}, coarser{2, 1.6, 4.0 / 3, 8.0 / 7};
   const auto falling = [](double phase) -> Law {
-    return [phase](double h, double) { return h * h * 0.2 + h * std::sin(37 / h + phase); };
-  };
-  const Coverage c = coverage(falling, kinks, four);
-  EXPECT_GE(c.share, 0.9);
-  EXPECT_LE(c.median, 6);
-  EXPECT_LT(coverage(falling, {}, {0.5, 2}).share, c.share) << "without the word it would cover less";
-  EXPECT_GE(coverage(falling, kinks, coarser).share, 0.95);
-  // The limit has none: error_of() would see it there.
-  const auto both = [](double phase) -> Law {
     return [phase](double h, double k) {
-      return h < 1e-6 ? 0.0 : 0.3 * h * h - 0.2 * k + std::sin(91 / h + phase) + 0.7 * std::sin(53 / k + 2 * phase);
+      return h * h * 0.2 + h * std::sin((30 + std::fmod(phase, 50)) / h + phase) +
+             0.5 * k * std::sin((40 + std::fmod(phase, 47)) / k + 2 * phase);
     };
   };
-  EXPECT_GE(coverage(both, kinks, four).share, 0.95);
-  EXPECT_LE(coverage(both, kinks, four).median, 10);
+  const Coverage c = coverage(falling, kinks, four);
+  EXPECT_GE(c.share, 0.95);
+  EXPECT_LE(c.median, 8);
+  EXPECT_LT(coverage(falling, {}, {0.5, 2}).share, 0.95) << "without the word it would not";
+  EXPECT_GE(coverage(falling, kinks, coarser).share, 0.95);
+  // The limit has none: error_of() would see it there.
+  const auto equal = [](double phase) -> Law {
+    return [phase](double h, double k) {
+      if (h < 1e-6) return 0.0;
+      return 0.3 * h * h - 0.2 * k + std::sin((50 + std::fmod(phase, 61)) / h + phase) +
+             0.7 * std::sin((40 + std::fmod(phase, 47)) / k + 2 * phase);
+    };
+  };
+  const Coverage e = coverage(equal, kinks, four);
+  EXPECT_GE(e.share, 0.95);
+  EXPECT_LE(e.median, 8);
 }
 
 TEST(ErrorBar, OfKinksIsNoLongerThanTheScatter) {
@@ -145,7 +152,7 @@ TEST(ErrorBar, OfKinksIsNoLongerThanTheScatter) {
     const Law law = [order](double h, double k) { return 3 + 0.2 * std::pow(h, order) - 0.05 * std::pow(k, order); };
     const Bar bar = bar_of(law, kinks, {0.5, 0.75, 1.5, 2});
     EXPECT_GE(bar.total(), 0.25 * (1 - 1e-12)) << order;
-    EXPECT_LE(bar.total(), order == 1 ? 0.3 : 1.5) << order;
+    EXPECT_LE(bar.total(), order == 1 ? 0.3 : 2) << order;
   }
   // Two neighbouring meshes that differ by as much as any others do not make it long: what counts is not their
   // distance.
@@ -153,7 +160,7 @@ TEST(ErrorBar, OfKinksIsNoLongerThanTheScatter) {
   for (const Axis axis : {Axis::around, Axis::along})
     for (const auto& [spacing, value] : {std::pair{2.0, 0.5}, {10.0 / 9, 1.0}, {0.9, -1.0}, {0.5, -0.5}})
       samples.push_back({axis, spacing, value});
-  EXPECT_LT(error_bar(0, samples, kinks).total(), 3);
+  EXPECT_LT(error_bar(0, samples, kinks).total(), 6);
   EXPECT_GT(error_bar(0, samples, kinks).total(), 1);
 }
 
