@@ -91,8 +91,10 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
       kept(at, "cycles with more harmonics", [&] { return birth_here(at, omega, more_harmonics, largest); });
   double doubt = finer.empty() ? unknown : std::abs(finer[0] - curvature);
   Bars bars({curvature}, at.law);
+  bool open = false;  // whatever other meshes say
   for (std::size_t k = 0; k < at.meshes.size(); ++k) {
-    if (!decided(curvature, smaller + doubt)) break;
+    open = !decided(curvature, smaller + doubt);
+    if (open) break;
     const FilmMesh& mesh = at.meshes[k];
     const double c = kept(at, fmt::format("cycles on mesh {}", k), [&] {
                        return std::vector<double>{curvature_on(at, mesh.factor, there[k], largest)};
@@ -106,7 +108,7 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
     b.more[fmt::format("lyapunov_{}", name)] = b.more[fmt::format("criticality_{}", name)];
   // Cycles that live where the equilibrium is unstable are supercritical.
   const double sign = at.found.sensitivity > 0 ? -1 : 1;
-  put_criticality(b, sign * curvature, smaller + bars[0].total() + doubt, "supercritical", "subcritical",
+  put_criticality(b, sign * curvature, smaller + doubt + (open ? 0 : bars[0].total()), "supercritical", "subcritical",
                   fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance, change of the parameter per "
                               "clearance^2",
                               found[2], found[3], found[4]));
