@@ -16,7 +16,7 @@ BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& l
   const std::size_t size = source_.size();
   cavitated_.assign(size, 0);
   for (int i = first_; i < grid_.n_theta; ++i)
-    for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = wall(i);
+    for (int j = 0; j < rows_; ++j) cavitated_[at(i, j)] = held(i, j);
   if (cavitation_ == Reynolds::Cavitation::reynolds) enter_ruptured();
   x_.assign(size, 0.0);
   load_.assign(size, Quad::zero());
@@ -76,7 +76,7 @@ void BandedPad::integrate(Need need, Response& response) {
                                                                            : edge      ? strip - 1
                                                                                        : strip + 1);
     for (int j = 0; j < rows_; ++j) {
-      const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
+      const double times = whole_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
       Quad &load_first = load_[at(first, j)], &load_second = load_[at(second, j)];
       const double p = x_[at(first, j)], q = x_[at(second, j)];
@@ -104,6 +104,10 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
   const bool ruptured = cavitation_ == Reynolds::Cavitation::reynolds;
   const bool conserving = cavitation_ == Reynolds::Cavitation::mass_conserving;
   conserving ? general_->solve_transposed(load_) : band_.solve(load_);
+  // The equation of a node that is held has no derivative; nodes in walls are left out below.
+  if (conserving && !holes_.empty())
+    for (std::size_t k = 0; k < load_.size(); ++k)
+      if (cavitated_[k]) load_[k] = Quad::zero();
   if (ruptured) weigh_ruptured();
   const auto lambda = [&](int i, int j) {
     return wall(i) || j < 0 || j >= rows_ ? Quad::zero() : load_[at(wrap(i), j)];
@@ -206,7 +210,7 @@ std::vector<double> BandedPad::pressure(const Motion& motion) {
   std::vector<double> values;
   for (int i = 0; i <= grid_.n_theta; ++i) {
     for (int j = 0; j <= grid_.n_z; ++j) {
-      const int row = (tilt_ ? j : std::min(j, grid_.n_z - j)) - 1;
+      const int row = row_of(j);
       const double p = pressure_at(i, row);
       values.push_back(truncated ? std::max(p, 0.0) : p);
     }
@@ -222,7 +226,7 @@ std::vector<double> BandedPad::fill(const Motion& motion) {
   for (int i = 0; i <= grid_.n_theta; ++i) {
     for (int j = 0; j <= grid_.n_z; ++j) {
       // The sides have what stands beside them.
-      const int row = std::clamp((tilt_ ? j : std::min(j, grid_.n_z - j)) - 1, 0, rows_ - 1);
+      const int row = std::clamp(row_of(j), 0, rows_ - 1);
       values.push_back(speed_ == 0.0 ? 1.0 : 1.0 - deficit_at(i, row) / std::abs(speed_));
     }
   }

@@ -58,7 +58,7 @@ private:
   // The parabola in front of the rupture is seen by cells that are short against the length of the pad; where they are
   // not, 1 + (dx/(L/4))^4 flattens it and whole cells remain.
   double stiffen_;
-  std::vector<char> cavitated_;  // nodes that are held at p = 0: in a groove
+  std::vector<char> cavitated_;  // nodes whose pressure is held: in a groove or a hole
   Band band_, base_;             // factorised; of ruptured films the equations of a full one
   std::vector<double> x_;        // pressure
   std::vector<Quad> load_;       // adjoint variables of F_x, F_y, M_x, M_y

@@ -15,6 +15,9 @@ ContentPad::ContentPad(const Pad& pad, const Reynolds& options, const Lubricant&
       empty_at_edge_(1.0 - options.edge_fill),
       column_of_(static_cast<std::size_t>(grid_.n_theta + 1), -1),
       nodes_(static_cast<std::size_t>((grid_.n_theta + 1) * rows_)) {
+  const double step = pad.radius * grid_.dtheta;
+  in_holes_ = bulk_modulus_ * pad.clearance * pad.clearance / (12.0 * lubricant.viscosity) *
+              (2.0 / (step * step) + 2.0 / (grid_.dz * grid_.dz));
   int start = 0;
   while (pad.closed && !wall(start)) ++start;
   for (int k = 0; k < grid_.n_theta; ++k) {
@@ -53,8 +56,8 @@ void ContentPad::read(int i, int j, const double* value) {
   here.cosine = grid_.mean * grid_.node_cos[k];
   here.sine = grid_.mean * grid_.node_sin[k];
   here.h = pad_.clearance - (X_ + here.z * tx_) * here.cosine - (Y_ + here.z * ty_) * here.sine;
-  if (!value) {
-    here.p = wall_pressure(i);
+  if (!value || hole_at(i, j) > 0) {
+    here.p = held_pressure(i, j);
     if (!pad_.closed && i == (ahead_ > 0 ? 0 : grid_.n_theta)) here.empty = empty_at_edge_;
   } else if (*value >= 0.0) {
     here.p_q = bulk_modulus_ / here.h;
@@ -121,6 +124,22 @@ void ContentPad::add_thickness(double by, double cosine, double sine, double z, 
   to[3] -= by * z * sine;
 }
 
+// A node in a hole is no part of the film. Its state goes to zero as fast as pressures spread to the next node.
+void ContentPad::row_in_hole(int i, int j, double value, double rate, std::size_t k, const PadShare& share, Need need,
+                             StateResponse& response) const {
+  response.residual[k] = rate + in_holes_ * value;
+  if (need == Need::force) return;
+  const std::array<std::size_t, places>& to = share.at[k - static_cast<std::size_t>(share.row)];
+  const std::array<Side, 4> around_it = sides(i, j);
+  for (std::size_t place = 0; place < around_it.size(); ++place)
+    if (around_it[place].state) response.d_states[to[place]] = 0.0;
+  response.d_states[to[4]] = in_holes_;
+  response.d_rates[k] = 1.0;
+  for (std::size_t port = 0; port < response.d_position.size(); ++port)
+    response.d_position[port][k] = response.d_velocity[port][k] = 0.0;
+  response.d_speed[k] = 0.0;
+}
+
 void ContentPad::row(int i, int j, double rate, std::size_t k, const PadShare& share, Need need,
                      StateResponse& response) const {
   const Node& here = node(i, j);
@@ -178,7 +197,7 @@ void ContentPad::integrate(int i, int k, Need need, StateResponse& response) con
   const auto column = static_cast<std::size_t>(i);
   for (int j = 0; j < rows_; ++j) {
     const Node& here = node(i, j);
-    const double times = -area * (tilt_ ? 1.0 : 2.0 * PadEquations::share(j)), lever = tilt_ ? here.z : 0.0;
+    const double times = -area * (whole_ ? 1.0 : 2.0 * PadEquations::share(j)), lever = tilt_ ? here.z : 0.0;
     const double x = times * grid_.node_cos[column], y = times * grid_.node_sin[column];
     const std::array<double, 4> weight = {x, y, lever * x, lever * y};
     std::array<double, 4> by_position{};
@@ -216,8 +235,13 @@ void ContentPad::evaluate(const Motion& motion, const PadShare& share, std::span
     const int i = column(c);
     source(motion, i);
     integrate(i, k, need, response);
-    for (int j = 0; j < rows_; ++j, ++k)
-      row(i, j, *value(rates, i, j), static_cast<std::size_t>(k), share, need, response);
+    for (int j = 0; j < rows_; ++j, ++k) {
+      const double rate = *value(rates, i, j);
+      if (hole_at(i, j) > 0)
+        row_in_hole(i, j, *value(q, i, j), rate, static_cast<std::size_t>(k), share, need, response);
+      else
+        row(i, j, rate, static_cast<std::size_t>(k), share, need, response);
+    }
   }
   if (share.begin > 0) return;
   // What is given in grooves counts once.
@@ -262,6 +286,10 @@ void ContentPad::resample(const Motion& motion, ContentPad& other, std::span<con
                s * ((1.0 - t) * v[first + columns] + t * v[first + columns + 1]);
       };
       const auto own = static_cast<std::size_t>(column_at(i) * rows_ + j);
+      if (hole_at(i, j) > 0) {
+        to[own] = 0.0;
+        continue;
+      }
       const double h = node(i, j).h, p = between(there.pressure);
       to[own] = p > 0.0 ? h * p / bulk_modulus_ : -h * (1.0 - between(there.fill));
     }

@@ -72,6 +72,8 @@ private:
   [[nodiscard]] std::array<Side, 4> sides(int i, int j) const;
   // Row k of the share.
   void row(int i, int j, double rate, std::size_t k, const PadShare& share, Need need, StateResponse& response) const;
+  void row_in_hole(int i, int j, double value, double rate, std::size_t k, const PadShare& share, Need need,
+                   StateResponse& response) const;
   // Column i, whose states are rows from k on; -1: it has none.
   void integrate(int i, int k, Need need, StateResponse& response) const;
   // A thickness that falls as `by` with the position of the journal at the angle of (cosine, sine).
@@ -83,6 +85,7 @@ private:
   [[nodiscard]] int column_at(int i) const { return wall(i) ? -1 : column_of_[static_cast<std::size_t>(wrap(i))]; }
 
   double bulk_modulus_, empty_at_edge_;
+  double in_holes_ = 0.0;                 // 1/s, at which states of nodes in holes go to zero
   std::vector<int> columns_, column_of_;  // of unknowns, in the order of the states, and the inverse
   std::vector<Node> nodes_;               // [n_theta + 1][rows_]
 };

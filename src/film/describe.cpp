@@ -101,6 +101,18 @@ void describe(deck::Description<Groove>& d) {
       .continuable();
 }
 
+void describe(deck::Description<Hole>& d) {
+  d.add("angle", &Hole::angle, "rad", deck::any, "middle of the hole, from +x counter-clockwise").required();
+  d.add("z", &Hole::z, "m", deck::any, "its place along the shaft, from the mid-plane of the bearing");
+  d.add("diameter", &Hole::diameter, "m", positive,
+        "diameter; nodes within the rim hold the pressure, and faces that the rim cuts are shortened to it",
+        "Gibou et al. 2002")
+      .required();
+  d.add("pressure", &Hole::pressure, "Pa", deck::non_negative,
+        "of the lubricant in it; other than zero where cavitation is mass_conserving")
+      .continuable();
+}
+
 void describe(deck::Description<Inlet>& d) {
   d.add("type", &Inlet::type, "where pressure zero is held");
   d.add("angle", &Inlet::angle, "rad", deck::any, "of the line, from +x counter-clockwise; the top if not given")

@@ -30,7 +30,7 @@ void BandedPad::enter_conserving(double edge_fill) {
   void_at_edge_ = 1.0 - edge_fill;
 }
 
-// s at a node: of a column in a groove zero, at the edge where the oil enters what is given.
+// s at a node: of a column in a groove zero, as in a hole, at the edge where the oil enters what is given.
 double BandedPad::deficit_at(int i, int j) const {
   if (!wall(i)) return deficit_[at(wrap(i), j)];
   return !pad_.closed && i == (ahead_ > 0 ? 0 : grid_.n_theta) ? std::abs(speed_) * void_at_edge_ : 0.0;
@@ -44,7 +44,7 @@ void BandedPad::solve_conserving() {
     for (int j = 0; j < rows_; ++j) {
       const double around_it = a_.value[around(wrap(i - 1), j)] + a_.value[around(i, j)];
       const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
-      diagonal_[at(i, j)] = wall(i) ? 1.0 : share(j) * around_it + b_.value[along(i, j)] + up;
+      diagonal_[at(i, j)] = held(i, j) ? 1.0 : share(j) * around_it + b_.value[along(i, j)] + up;
     }
   int iteration = 0;
   std::size_t changed = 0;
@@ -89,7 +89,7 @@ void BandedPad::assemble_conserving() {
       row[0] = diagonal_[here];
       x_[here] = 0.0;
       if (cavitated_[here]) {
-        x_[here] = groove_pressure_[static_cast<std::size_t>(i)];
+        x_[here] = held_pressure(i, j);
         continue;
       }
       x_[here] -= source_[here];
@@ -128,7 +128,7 @@ void BandedPad::integrate_conserving(Need need, Response& response) {
     const double cosine = -area * grid_.node_cos[node], sine = -area * grid_.node_sin[node];
     for (int j = 0; j < rows_; ++j) {
       const std::size_t k = at(i, j);
-      const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
+      const double times = whole_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
       force += x_[k] * weight;
       if (need == Need::tangents && full_[k]) load_[k] = weight;

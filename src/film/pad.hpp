@@ -48,10 +48,12 @@ private:
 };
 
 /// Volume flows of a pad in m^3/s: through its first edge in the sense of theta, out of its last one, out of both
-/// sides, and the volume that the moving journal presses out of the gap less what it draws in. In and out balance if
-/// the film conserves its mass: enters - leaves - sides = squeezed.
+/// sides, out of each hole of the film into this pad, and the volume that the moving journal presses out of the gap
+/// less what it draws in. In and out balance if the film conserves its mass: enters + (sum of holes) - leaves - sides =
+/// squeezed.
 struct Flows {
   double enters = 0.0, leaves = 0.0, sides = 0.0, squeezed = 0.0;
+  std::vector<double> holes = {};
 };
 
 /// Part of a film that answers for one pad.

@@ -12,17 +12,20 @@ PadEquations::PadEquations(const Pad& pad, const Reynolds& options, const Lubric
       grid_(pad, options.cells),
       least_(pad),
       tilt_(options.tilt),
+      whole_(options.tilt || !options.holes.empty()),
       resistance_around_(resistance_around(options.turbulence)),
       resistance_along_(resistance_along(options.turbulence)),
       viscosity_(lubricant.viscosity),
       density_(lubricant.density),
-      rows_(tilt_ ? grid_.n_z - 1 : grid_.n_z / 2),
-      z_faces_(tilt_ ? rows_ + 1 : rows_),
-      last_share_(!tilt_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
-      first_(pad.closed ? 0 : 1) {
+      rows_(whole_ ? grid_.n_z - 1 : grid_.n_z / 2),
+      z_faces_(whole_ ? rows_ + 1 : rows_),
+      last_share_(!whole_ && grid_.n_z % 2 == 0 ? 0.5 : 1.0),
+      first_(pad.closed ? 0 : 1),
+      holes_(pad_, grid_, options.holes) {
+  for (const Hole& hole : options.holes) hole_pressure_.push_back(hole.pressure);
   const auto n = static_cast<std::size_t>(grid_.n_theta);
-  a_.resize(tilt_ ? n * static_cast<std::size_t>(rows_) : n);
-  b_.resize(tilt_ ? n * static_cast<std::size_t>(z_faces_) : n);
+  a_.resize(whole_ ? n * static_cast<std::size_t>(rows_) : n);
+  b_.resize(whole_ ? n * static_cast<std::size_t>(z_faces_) : n);
   source_.assign((n - static_cast<std::size_t>(first_)) * static_cast<std::size_t>(rows_), 0.0);
   if (!pad.closed) return;
   grooves_ = grooved(grid_.n_theta, options.grooves);
@@ -46,7 +49,7 @@ void PadEquations::conductances(const Motion& motion) {
   h_min_ = least_(X_, Y_, tx_, ty_);
   require_thickness(h_min_);
 
-  const int a_columns = tilt_ ? rows_ : 1, b_columns = tilt_ ? z_faces_ : 1;
+  const int a_columns = whole_ ? rows_ : 1, b_columns = whole_ ? z_faces_ : 1;
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     for (int j = 0; j < a_columns; ++j) {
@@ -67,6 +70,11 @@ void PadEquations::conductances(const Motion& motion) {
   };
   mobilities(a_, resistance_around_, step);
   mobilities(b_, resistance_along_, grid_.dz);
+  const auto shorten = [](Faces& f, std::size_t face, double longer) {
+    for (auto* v : {&f.value, &f.d_h, &f.d_speed}) (*v)[face] *= longer;
+  };
+  for (const HoleMesh::Cut& cut : holes_.around()) shorten(a_, around(cut.i, cut.j), cut.longer);
+  for (const HoleMesh::Cut& cut : holes_.along()) shorten(b_, along(cut.i, cut.j), cut.longer);
 }
 
 // Exact cell means of (Omega/2) dh/dtheta + dh/dt.

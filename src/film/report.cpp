@@ -85,6 +85,8 @@ Summary summarise(const std::vector<Pad>& pads, const Reynolds& options, const L
       total.enters += flows->enters;
       total.leaves += flows->leaves;
       total.sides += flows->sides;
+      result.hole_flows.resize(flows->holes.size(), 0.0);
+      for (std::size_t k = 0; k < flows->holes.size(); ++k) result.hole_flows[k] += flows->holes[k];
       total.squeezed += flows->squeezed;
     } else {
       known = false;
@@ -94,6 +96,9 @@ Summary summarise(const std::vector<Pad>& pads, const Reynolds& options, const L
   if (known) {
     result.outlet_flow = total.leaves;
     result.imbalance = total.enters - total.leaves - total.sides - total.squeezed;
+    for (const double flow : result.hole_flows) result.imbalance += flow;
+  } else {
+    result.hole_flows.clear();
   }
   if (options.cavitation == Reynolds::Cavitation::mass_conserving) {
     result.inlet_flow = total.enters;

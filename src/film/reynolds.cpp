@@ -4,6 +4,7 @@
 #include <string>
 
 #include "film/content_pad.hpp"
+#include "film/hole.hpp"
 #include "film/pad.hpp"
 #include "film/refine.hpp"
 #include "film/report.hpp"
@@ -18,6 +19,14 @@ void demand(bool condition, const char* what) {
   if (!condition) throw core::InputError(std::string("film: ") + what);
 }
 
+// Its columns would have no end, and the films that settle along a cycle are bands.
+constexpr const char* kRing =
+    "in a whole circle fed by holes alone a film cannot have dynamic states: add a groove or an inlet";
+bool is_ring(const Reynolds& o, const Geometry& g) {
+  return o.states == Reynolds::States::dynamic && g.type == Geometry::Bore::cylindrical && o.grooves.empty() &&
+         o.inlet.type == Inlet::Type::free;
+}
+
 void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
   demand(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
   const double limit = (g.type == Geometry::Bore::lemon_bore ? 1.0 : 2.0) * std::numbers::pi;
@@ -26,9 +35,9 @@ void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
   demand(closed || o.grooves.empty(), "only a cylindrical bore has grooves");
   demand(o.inlet.type == Inlet::Type::free || (closed && o.grooves.empty()),
          "only a cylindrical bore without grooves has an inlet");
-  demand(o.cavitation != Reynolds::Cavitation::mass_conserving || !closed || !o.grooves.empty() ||
+  demand(o.cavitation != Reynolds::Cavitation::mass_conserving || !closed || !o.grooves.empty() || !o.holes.empty() ||
              o.inlet.type != Inlet::Type::free,
-         "a film that conserves its mass must be fed: a cylindrical bore needs 'grooves' or an 'inlet'");
+         "a film that conserves its mass must be fed: a cylindrical bore needs 'grooves', 'holes' or an 'inlet'");
   demand(o.edge_fill == 1.0 || !closed || o.inlet.type != Inlet::Type::free,
          "'edge_fill' is of the edges of pads and inlets: a groove is full");
   demand(g.preload < 1.0, "the preload must be below 1");
@@ -37,14 +46,20 @@ void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
   demand(l.viscosity > 0.0, "the viscosity must be positive");
   demand(l.density >= 0.0 && (l.density > 0.0 || o.turbulence == Turbulence::laminar),
          "a turbulent film needs a positive density");
+  if (const auto hole = misplaced_hole(o, g))
+    throw core::InputError("film: hole " + std::to_string(hole->hole + 1) + ": " + hole->reason);
+  demand(!is_ring(o, g), kRing);
+  demand(o.holes.empty() || o.inlet.type != Inlet::Type::maximum_gap,
+         "holes do not turn with an inlet at the maximum gap");
 }
 
 class ReynoldsFilm final : public Model {
 public:
   ReynoldsFilm(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant)
       : geometry_(geometry), options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
-    const bool modal = !options.tilt && (options.cavitation == Reynolds::Cavitation::half_sommerfeld ||
-                                         options.cavitation == Reynolds::Cavitation::none);
+    const bool modal = !options.tilt && options.holes.empty() &&
+                       (options.cavitation == Reynolds::Cavitation::half_sommerfeld ||
+                        options.cavitation == Reynolds::Cavitation::none);
     for (const Pad& pad : pads_) {
       solvers_.push_back(modal && !pad.closed ? make_modal_pad(pad, options, lubricant)
                                               : make_banded_pad(pad, options, lubricant));
@@ -142,6 +157,10 @@ void describe(deck::Description<Reynolds>& d) {
   d.add("tilt", &Reynolds::tilt, "follow the slope of the journal (bearings of a machine do not)");
   d.add("grooves", &Reynolds::grooves,
         "axial grooves of a cylindrical bore, at pressure zero unless the film conserves its mass");
+  d.add(
+      "holes", &Reynolds::holes,
+      "round supply holes, at pressure zero unless the film conserves its mass; the film is then solved over the whole "
+      "length");
   d.check([](const Reynolds& o, const deck::Report& r) {
     if (o.inlet.type != Inlet::Type::free && !o.grooves.empty())
       r.fail("inlet", "a film starts at its 'grooves' or at an 'inlet', not at both");
@@ -158,6 +177,12 @@ void describe(deck::Description<Reynolds>& d) {
     for (const Groove& g : o.grooves)
       if (!conserves && g.pressure != 0)
         r.fail("grooves", "only grooves of films with cavitation mass_conserving have a pressure");
+    for (std::size_t k = 0; k < o.holes.size(); ++k)
+      if (!conserves && o.holes[k].pressure != 0)
+        r.fail("holes." + std::to_string(k + 1) + ".pressure",
+               "only holes of films with cavitation mass_conserving have a pressure");
+    if (!o.holes.empty() && o.inlet.type == Inlet::Type::maximum_gap)
+      r.fail("inlet", "an inlet at the maximum gap turns with the journal: 'holes' do not");
   });
 }
 
@@ -179,8 +204,13 @@ Facts facts_of(const Reynolds& o, const Geometry& geometry) {
     f.smoothness = {1, "the tangents have kinks where the edge of the positive pressure passes a node"};
   f.own_states = dynamic(o);
   if (f.own_states)
-    f.states =
-        (geometry.type == Geometry::Bore::lemon_bore ? 2 : 1) * o.cells[0] * (o.tilt ? o.cells[1] : o.cells[1] / 2);
+    f.states = (geometry.type == Geometry::Bore::lemon_bore ? 2 : 1) * o.cells[0] *
+               (o.tilt || !o.holes.empty() ? o.cells[1] : o.cells[1] / 2);
+  if (o.holes.empty() || geometry.radius <= 0.0) return f;
+  if (const auto hole = misplaced_hole(o, geometry))
+    f.misplaced = {"holes." + std::to_string(hole->hole + 1), hole->reason};
+  else if (is_ring(o, geometry))
+    f.misplaced = {"holes", kRing};
   return f;
 }
 

@@ -37,7 +37,7 @@ double BandedPad::move_rupture() {
     for (int j = 0; j < rows_; ++j) {
       const std::size_t k = at(i, j);
       const double u = u_[k], source = source_[k];
-      if (u == std::numeric_limits<double>::infinity()) continue;
+      if (cavitated_[k] || u == std::numeric_limits<double>::infinity()) continue;
       const double p = x_[k], scale = source / (share(j) * mobility_at(i, j));
       const double next = rupture::in_cavity(u) ? 0.5 - residual(i, j) / source
                           : rupture::cut(u)     ? 0.5 * u + p / (scale * u)
@@ -61,6 +61,7 @@ void BandedPad::factor_ruptured() {
     if (wall(i)) continue;
     for (int j = 0; j < rows_; ++j) {
       const std::size_t k = at(i, j);
+      if (cavitated_[k]) continue;
       const double u = u_[k];
       const double more = rupture::in_cavity(u) ? kOut
                           : rupture::cut(u)     ? share(j) * mobility_at(i, j) * rupture::slope(u)
@@ -120,8 +121,8 @@ void BandedPad::integrate_ruptured(Need need, Response& response) {
     const double cosine = -area * grid_.node_cos[node], sine = -area * grid_.node_sin[node];
     for (int j = 0; j < rows_; ++j) {
       const std::size_t k = at(i, j);
-      if (rupture::in_cavity(u_[k])) continue;
-      const double times = tilt_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
+      if (cavitated_[k] || rupture::in_cavity(u_[k])) continue;
+      const double times = whole_ ? 1.0 : 2.0 * share(j), z = tilt_ ? row_z(j) : 0.0;
       const Quad weight = {Quad::Vector{times * cosine, times * sine, times * z * cosine, times * z * sine}};
       const double a = mobility_at(i, j), scale = source_[k] / (share(j) * a);
       if (rupture::cut(u_[k])) x_[k] = 0.5 * scale * u_[k] * u_[k];
@@ -142,6 +143,7 @@ void BandedPad::weigh_ruptured() {
     if (wall(i)) continue;
     for (int j = 0; j < rows_; ++j) {
       const std::size_t k = at(i, j);
+      if (cavitated_[k]) continue;
       if (rupture::in_cavity(u_[k])) {
         by_source_[k] = by_mobility_[k] = Quad::zero();
         continue;

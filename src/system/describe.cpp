@@ -95,6 +95,9 @@ void describe(deck::Description<Bearing>& d) {
     const bool circle = b.geometry && b.geometry->type == film::Geometry::Bore::cylindrical;
     if (b.geometry && !circle && !film.circle_only.option.empty())
       r.fail(fmt::format("film.{}", film.circle_only.option), std::string(film.circle_only.reason));
+    if (b.geometry)
+      if (const auto [option, reason] = film::facts(b.film, *b.geometry).misplaced; !option.empty())
+        r.fail(fmt::format("film.{}", option), reason);
     const auto* name = std::get_if<std::string>(&b.lubricant);
     if (name && name->empty()) r.fail("", "'lubricant' is missing (name of a lubricant of the deck)");
   });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/cases.hpp"
+#include "film/hole.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
@@ -43,15 +44,16 @@ inline std::vector<ContentCase> content_films() {
   tilted.edge_fill = 0.9;
   Reynolds fed = dynamic({48, 12});
   fed.grooves = {{90.0 * kDegree, 20.0 * kDegree, 2e5}, {-30.0 * kDegree, 0.0, 0.0}};
+  Reynolds holes = dynamic({40, 12});
+  holes.grooves = {{90.0 * kDegree, 0.0, 1e5}};
+  holes.holes = {{230.0 * kDegree, 0.01, 0.02, 3e5}, {-40.0 * kDegree, -0.015, 0.018, 0.0}};
   Reynolds line = dynamic({40, 10});
   line.inlet = {Inlet::Type::line, 100.0 * kDegree};
   Geometry offset = lemon();
   offset.offset = 0.4 * offset.clearance;
-  return {{"lemon", lemon(), turbulent, loaded, moving},
-          {"lemon_tilted", offset, tilted, loaded, moving},
-          {"arc_starved", arc(), starved, shallow, moving},
-          {"grooved", cylinder(), fed, shallow, moving},
-          {"inlet_line", cylinder(), line, {0.3, -0.5}, moving}};
+  return {{"lemon", lemon(), turbulent, loaded, moving},    {"lemon_tilted", offset, tilted, loaded, moving},
+          {"arc_starved", arc(), starved, shallow, moving}, {"grooved", cylinder(), fed, shallow, moving},
+          {"holes", cylinder(), holes, shallow, moving},    {"inlet_line", cylinder(), line, {0.3, -0.5}, moving}};
 }
 
 /// The states at which nothing changes while the journal moves as `m` says.
@@ -107,21 +109,25 @@ inline double step_of(const Geometry& g, int direction, double e) {
   return e * (direction == 8 ? 377.0 : direction % 4 < 2 ? g.clearance : tilt) * (direction / 4 == 1 ? 377.0 : 1.0);
 }
 
-/// Area [m^2] of the cell of every state, both halves of an aligned film.
+/// Area [m^2] of the cell of every state, both halves of an aligned film; none under holes.
 inline std::vector<double> cell_areas(const Geometry& g, const Reynolds& o) {
   const bool closed = g.type == Geometry::Bore::cylindrical, edges = !closed || o.inlet.type == Inlet::Type::line;
   const double step = (closed ? 2.0 * std::numbers::pi : g.arc) / o.cells[0];
-  const int rows = o.tilt ? o.cells[1] - 1 : o.cells[1] / 2, pads = g.type == Geometry::Bore::lemon_bore ? 2 : 1;
+  const bool whole = o.tilt || !o.holes.empty();
+  const int rows = whole ? o.cells[1] - 1 : o.cells[1] / 2, pads = g.type == Geometry::Bore::lemon_bore ? 2 : 1;
   int columns = o.cells[0] - 1;
   if (!edges) {  // grooves
     const auto film = make_state_model(g, o, oil());
     columns = static_cast<int>(film->states()) / rows;
   }
+  // Of holes in a bore with one groove, a line at the top: its columns start behind it.
+  const Pad pad = make_pads(g, o.inlet).front();
+  const HoleMesh holes = o.holes.empty() ? HoleMesh() : HoleMesh(pad, Grid(pad, o.cells), o.holes);
   std::vector<double> out;
   for (int i = 0; i < pads * columns; ++i)
     for (int j = 0; j < rows; ++j) {
-      const bool middle = !o.tilt && o.cells[1] % 2 == 0 && j == rows - 1;
-      out.push_back(g.radius * step * g.length / o.cells[1] * (o.tilt || middle ? 1.0 : 2.0));
+      const bool middle = o.cells[1] % 2 == 0 && j == rows - 1, under = !holes.empty() && holes.at(i + 1, j) > 0;
+      out.push_back(g.radius * step * g.length / o.cells[1] * (under ? 0.0 : whole || middle ? 1.0 : 2.0));
     }
   return out;
 }

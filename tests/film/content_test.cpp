@@ -101,6 +101,7 @@ TEST_P(Content, RestIsRegular) {
   const std::vector<double> q = settled(*film, rest);
   double feed = 0.0;
   for (const Groove& g : c.options.grooves) feed = std::max(feed, g.pressure);
+  for (const Hole& h : c.options.holes) feed = std::max(feed, h.pressure);
   for (const double x : q) EXPECT_TRUE(x >= 0.0 && x <= 2.0 * c.geometry.clearance * feed / c.options.bulk_modulus);
   // A cavity that is left at rest keeps what it holds.
   std::vector<double> hollow(q.size(), -0.2 * c.geometry.clearance);

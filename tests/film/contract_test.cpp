@@ -54,6 +54,15 @@ std::vector<Case> cases() {
   starved.edge_fill = 0.7;
   Reynolds fed = options(C::mass_conserving, T::laminar, false, {48, 12});
   fed.grooves = {{90.0 * kDegree, 20.0 * kDegree, 2e5}, {-30.0 * kDegree, 0.0, 0.0}};
+  Reynolds holed = fed;
+  holed.grooves.resize(1);
+  holed.holes = {{230.0 * kDegree, 0.01, 0.02, 3e5}, {-40.0 * kDegree, -0.015, 0.018, 1e5}};
+  Reynolds holed_tilted = holed;
+  holed_tilted.tilt = true;
+  Reynolds hole = options(C::half_sommerfeld, T::constantinescu, false, {48, 12});
+  hole.holes = {{250.0 * kDegree, 0.03, 0.1, 0.0}};
+  Reynolds hole_reynolds = hole;
+  hole_reynolds.cavitation = C::reynolds;
   const auto with_inlet = [](Reynolds o, Inlet inlet) {
     o.inlet = inlet;
     return o;
@@ -95,6 +104,10 @@ std::vector<Case> cases() {
       {"lemon_tilted_conserving", lemon(), options(C::mass_conserving, T::laminar, true, {41, 13}), loaded, moving},
       {"arc_starved", arc(), starved, shallow, moving},
       {"closed_grooved_conserving", cylinder(), fed, shallow, moving},
+      {"closed_holes_conserving", cylinder(), holed, shallow, moving},
+      {"closed_holes_tilted_conserving", cylinder(), holed_tilted, shallow, moving},
+      {"lemon_hole", lemon(), hole, loaded, moving},
+      {"lemon_hole_reynolds", lemon(), hole_reynolds, loaded, moving},
       {"inlet_widest_conserving", cylinder(),
        with_inlet(options(C::mass_conserving, T::constantinescu, false, {60, 16}), widest), shallow, moving},
       {"linear", arc(), linear, shallow, moving},

@@ -293,6 +293,7 @@ TEST_P(StateContract, TurnsWithItsFrame) {
   } else {
     auto& content = as<Reynolds>(turned);
     for (Groove& g : content.grooves) g.angle += turn;
+    for (Hole& h : content.holes) h.angle += turn;
     if (content.inlet.type == Inlet::Type::line) content.inlet.angle += turn;
   }
   const auto rotated = [&](double x, double y) { return std::array{cosine * x - sine * y, sine * x + cosine * y}; };

@@ -27,6 +27,15 @@ struct Groove {
   friend bool operator==(const Groove&, const Groove&) = default;
 };
 
+/// A round hole in a pad or bore through which lubricant comes under a given pressure.
+struct Hole {
+  double angle = 0.0;     // rad, of its middle
+  double z = 0.0;         // m, of its middle, from the mid-plane of the bearing
+  double diameter = 0.0;  // m
+  double pressure = 0.0;  // Pa, of the lubricant in it
+  friend bool operator==(const Hole&, const Hole&) = default;
+};
+
 /// Where the film of a full circle without grooves starts, at pressure zero over the whole length.
 struct Inlet {
   /// free: the film reforms where cavitation lets it, around the whole circle. maximum_gap: where the film of the

@@ -13,6 +13,7 @@ namespace whirl::film {
 
 void describe(deck::Description<Geometry>& d);
 void describe(deck::Description<Groove>& d);
+void describe(deck::Description<Hole>& d);
 void describe(deck::Description<Inlet>& d);
 void describe(deck::Description<Options>& d);
 void describe(deck::Description<Lubricant>& d);

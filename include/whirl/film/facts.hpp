@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -34,6 +35,12 @@ struct CircleOnly {
   std::string_view reason;  // what to say where the bore is none
 };
 
+/// An option of a film that does not fit the bore that was given, such as a hole outside all pads.
+struct Misplaced {
+  std::string option;  // its path among those of the film: "holes.2"; empty: none
+  std::string reason;
+};
+
 /// What a film is like, from its options alone. A default one is a smooth film in closed form on a rigid bore.
 struct Facts {
   bool coefficients = false;    // constant coefficients alone: no bore, no lubricant, no thickness, no pressure
@@ -47,6 +54,7 @@ struct Facts {
   int mesh_order = 2;           // at which the error of the mesh falls
   Smoothness smoothness{};
   CircleOnly circle_only{};
+  Misplaced misplaced{};  // found only if a bore was given
 };
 
 /// A film without own states, or one with such.

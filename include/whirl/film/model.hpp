@@ -42,6 +42,8 @@ struct Summary {
       0.0;  // W, friction torque on the journal times Omega; full film everywhere unless it knows its fill
   double inlet_flow = std::numeric_limits<double>::quiet_NaN();   // m^3/s, around into all pads where their films start
   double outlet_flow = std::numeric_limits<double>::quiet_NaN();  // m^3/s, around out of all pads where they end
+  // m^3/s, out of each supply hole into the film; empty if the film does not know it
+  std::vector<double> hole_flows = {};
   // m^3/s, what enters less what leaves through edges and sides and what the moving journal presses out: the volume
   // that cavitation makes or loses, zero if it conserves its mass. Films that cut off their pressure do not know it.
   double imbalance = std::numeric_limits<double>::quiet_NaN();

@@ -31,6 +31,7 @@ struct Reynolds {
   std::array<int, 2> cells = {60, 16};  // -, intervals around x along each pad
   bool tilt = false;                    // -, false: tilt is ignored and moments are zero
   std::vector<Groove> grooves;          // of a cylindrical bore
+  std::vector<Hole> holes;              // of any bore
   friend bool operator==(const Reynolds&, const Reynolds&) = default;
 };
 

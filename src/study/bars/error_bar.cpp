@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace whirl::study {
@@ -11,11 +12,11 @@ namespace {
 constexpr double least_order = 0.5;
 constexpr double least_doubt = 0.25;  // of the largest estimate: safety factor 1.25 (Roache 1994)
 constexpr double single_factor = 3;   // two meshes alone (Roache 1994)
-constexpr double kinks_factor = 3;    // of the largest estimate of first order: meshes that show no order (Roache 1994)
+constexpr double confidence = 0.95;   // of what scatters
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Estimate {
-  double error = 0, doubt = 0, largest = 0;
+  double error = 0, doubt = 0;
 };
 
 // Order that the two finest steps of halves or doubles show; theory if there are none, or they show more.
@@ -30,48 +31,118 @@ double order_of(double value, const std::vector<Sample>& samples, double theory)
   return std::clamp(std::log2(coarse / fine), least_order, theory);
 }
 
-Estimate estimate(double value, std::vector<Sample> samples, double theory, bool kinks) {
-  std::erase_if(samples, [](const Sample& s) { return !std::isfinite(s.value) || s.spacing == 1; });
-  if (samples.empty()) return {nothing, nothing, nothing};
+Estimate estimate(double value, std::vector<Sample> samples, double theory) {
+  if (samples.empty()) return {nothing, nothing};
   std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.spacing < b.spacing; });
-  const double order = kinks ? 1 : order_of(value, samples, theory);
+  const double order = order_of(value, samples, theory);
   const auto error = [&](const Sample& s, double p) { return (value - s.value) / (1 - std::pow(s.spacing, p)); };
   Estimate out;
+  double largest = 0;
   // A finer mesh is believed with the order that is seen, a coarser one with that of theory: there the regular law has
   // begun least of all, and a low order seen would blow it up.
   out.error = error(samples.front(), samples.front().spacing < 1 ? order : theory);
   for (const Sample& s : samples) {
-    const double e = error(s, s.spacing < 1 || kinks ? order : theory);
+    const double e = error(s, s.spacing < 1 ? order : theory);
     out.doubt = std::max(out.doubt, std::abs(e - out.error));
-    out.largest = std::max(out.largest, std::abs(e));
+    largest = std::max(largest, std::abs(e));
   }
-  out.doubt = std::max(out.doubt, least_doubt * out.largest);
+  out.doubt = std::max(out.doubt, least_doubt * largest);
   if (samples.size() == 1) out.doubt = (single_factor - 1) * std::abs(out.error);
   return out;
 }
 
+// Q(0) + C h^p through the numbers on all meshes of a direction.
+struct Line {
+  double slope = 0, left = 0;        // C; what it leaves at the mesh in use
+  double variance = 0, unknown = 0;  // of the scatter; of Q(0)
+  int freedoms = 0;
+  [[nodiscard]] double length() const {
+    return std::abs(slope + left) + student_quantile(confidence, freedoms) * std::sqrt(unknown);
+  }
+};
+
+// Order zero: no slope. At least one number more than the line has parameters.
+Line line_through(double value, const std::vector<Sample>& samples, double order) {
+  const auto n = static_cast<double>(samples.size() + 1);
+  double mean_x = 1, mean_y = value;
+  for (const Sample& s : samples) mean_x += std::pow(s.spacing, order), mean_y += s.value;
+  mean_x /= n, mean_y /= n;
+  double xx = (1 - mean_x) * (1 - mean_x), xy = (1 - mean_x) * (value - mean_y);
+  for (const Sample& s : samples) {
+    const double x = std::pow(s.spacing, order) - mean_x;
+    xx += x * x, xy += x * (s.value - mean_y);
+  }
+  Line out;
+  out.slope = order > 0 ? xy / xx : 0;
+  const auto left = [&](double x, double y) { return y - mean_y - out.slope * (x - mean_x); };
+  out.left = left(1, value);
+  double squares = out.left * out.left;
+  for (const Sample& s : samples) squares += std::pow(left(std::pow(s.spacing, order), s.value), 2);
+  out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 1 : 0);
+  out.variance = squares / out.freedoms;
+  out.unknown = out.variance * (1 / n + (order > 0 ? mean_x * mean_x / xx : 0));
+  return out;
+}
+
+Line best_line(double value, const std::vector<Sample>& samples, double theory) {
+  const bool agree = std::all_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.value == value; });
+  if (samples.empty() || (samples.size() < 2 && !agree)) return {nothing, nothing, nothing, nothing, 1};
+  const Line none = line_through(value, samples, 0);
+  if (samples.size() < 2) return none;
+  const Line first = line_through(value, samples, 1), other = line_through(value, samples, theory);
+  if (none.variance <= std::min(first.variance, other.variance)) return none;
+  return first.length() > other.length() ? first : other;
+}
+
 }  // namespace
+
+// P(|t| < x) = A: Abramowitz and Stegun (1964), 26.7.3 and 26.7.4, with the angle atan(x/sqrt(freedoms)).
+double student_quantile(double probability, int freedoms) {
+  const auto within = [freedoms](double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const bool odd = freedoms % 2 != 0;
+    double sum = 0, term = odd ? s * c : s;
+    for (int k = odd ? 1 : 0; k + 2 <= freedoms; k += 2) {
+      sum += term;
+      term *= c * c * (k + 1) / (k + 2);
+    }
+    return odd ? 2 / std::numbers::pi * (angle + sum) : sum;
+  };
+  double low = 0, high = std::numbers::pi / 2;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = (low + high) / 2;
+    (within(middle) < probability ? low : high) = middle;
+  }
+  return std::sqrt(freedoms) * std::tan(low);
+}
 
 Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& law) {
   Bar bar;
-  double error = 0, doubt = 0, with_kinks = 0;
+  double unknown_squares = 0, by_freedom = 0;
   for (const Axis axis : all_axes) {
     std::vector<Sample> own;
-    std::copy_if(samples.begin(), samples.end(), std::back_inserter(own),
-                 [axis](const Sample& s) { return s.axis == axis; });
-    if (own.empty()) continue;
-    if (axis == Axis::time) {
-      const Estimate e = estimate(value, own, law.time_order, false);
-      bar.time_mesh = std::abs(e.error) + e.doubt;
+    bool any = false;
+    for (const Sample& s : samples) {
+      if (s.axis != axis) continue;
+      any = true;
+      if (std::isfinite(s.value) && s.spacing != 1) own.push_back(s);
+    }
+    if (!any) continue;
+    if (axis != Axis::time && law.kinks) {
+      const Line line = best_line(value, own, law.film_order);
+      bar.film_mesh += std::abs(line.slope);
+      bar.kinks += std::abs(line.left);
+      unknown_squares += line.unknown;
+      by_freedom += line.unknown * line.unknown / line.freedoms;
       continue;
     }
-    const Estimate e = estimate(value, own, law.film_order, false);
-    error += std::abs(e.error);
-    doubt += e.doubt;
-    if (law.kinks) with_kinks += kinks_factor * estimate(value, own, law.film_order, true).largest;
+    const Estimate e = estimate(value, own, axis == Axis::time ? law.time_order : law.film_order);
+    (axis == Axis::time ? bar.time_mesh : bar.film_mesh) += std::abs(e.error) + e.doubt;
   }
-  bar.film_mesh = error + doubt;
-  if (law.kinks) bar.kinks = std::max(0.0, with_kinks - bar.film_mesh);
+  if (unknown_squares > 0) {
+    const double freedoms = unknown_squares * unknown_squares / by_freedom;
+    bar.kinks += student_quantile(confidence, static_cast<int>(freedoms * (1 + 1e-12))) * std::sqrt(unknown_squares);
+  }
   return bar;
 }
 

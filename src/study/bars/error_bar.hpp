@@ -39,7 +39,7 @@ struct MeshLaw {
 struct Bar {
   double film_mesh = 0;
   double time_mesh = 0;
-  double kinks = 0;     ///< the part of it that film_mesh would be without, had the film no kinks
+  double kinks = 0;     ///< of a film with kinks: what these scatter from mesh to mesh
   double location = 0;  ///< what an iteration left
   [[nodiscard]] double total() const { return film_mesh + time_mesh + kinks + location; }
   /// Its parts as a summary names them: uncertainty_film_mesh, ...; time only where there is such a mesh.
@@ -56,9 +56,20 @@ struct Bar {
 /// the error. What the others say differently, and a quarter of the largest of them, is the doubt. Errors of the two
 /// film directions may cancel, and do so differently on each mesh: absolute values are added, bar = sum |e| + sum
 /// doubt, which is zero only where all meshes agree. A direction with one sample cannot show its order: its bar is
-/// three times |e| (Roache 1994). With kinks p is one and the bar three times the largest |e_i| of each direction,
-/// added up.
+/// three times |e| (Roache 1994).
+///
+/// Film directions of a force with kinks: where a kink stands among the nodes is chance, on each mesh anew, so that no
+/// two meshes show how the error falls. The numbers on all n meshes of a direction, this one included, scatter by s
+/// about Q(0) + C h^p, or about Q(0) alone where a slope leaves no smaller variance; p is one or that of theory,
+/// whichever gives the longer bar. Q(0) is known but for u = s sqrt(g), with g the share of a unit of variance that the
+/// line carries to h = 0. bar = sum |C| + sum |Q(1) - Q(0) - C| + t (sum u^2)^(1/2), of which the first counts as error
+/// of the mesh and the rest as that of kinks; t is Student's quantile of 95 % (two-sided) for the degrees of freedom of
+/// Welch and Satterthwaite. Unknown with fewer than three meshes in a direction, unless they agree. Source: regression
+/// by least squares; JCGM 100:2008, G.4, for t.
 [[nodiscard]] Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& law);
+
+/// What Student's t with `freedoms` >= 1 degrees of freedom stays below in absolute value with this probability.
+[[nodiscard]] double student_quantile(double probability, int freedoms);
 
 /// Bars of many numbers at once, from the same numbers computed on one mesh after another.
 class Bars {

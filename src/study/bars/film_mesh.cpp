@@ -37,10 +37,11 @@ double order_in_time(const system::Machine& machine, double scheme) {
 std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
   int states = 0;
   for (const auto& b : machine.bearings) states += film::facts(b.film, b.geometry.value_or(film::Geometry{})).states;
+  const bool kinks = law_of(machine).kinks;
   std::vector<double> factors{0.5, 2};
   if (states > most_states)
-    factors = {0.5, 2.0 / 3};
-  else if (law_of(machine).kinks)
+    factors = kinks ? std::vector{0.5, 0.625, 0.75, 0.875} : std::vector{0.5, 2.0 / 3};
+  else if (kinks)
     factors = {0.5, 0.75, 1.5, 2};
   std::vector<FilmMesh> out;
   for (std::size_t d = 0; d < 2; ++d)

@@ -169,6 +169,16 @@ void CycleBranch::validate(const system::Machine& machine, const deck::Report& r
     if (steps && explicit_stages &&
         (film::facts(b.film).force_by_rates || options.parameter.path.ends_with(".liner_damping")))
       report.fail("scheme", fmt::format("the damped liner of bearing {} wants an implicit scheme", b.name));
+  // Films with states in a rigid bore hold their content. Their stages have kinks wherever a node becomes full: a
+  // scheme whose stages jump back and forth in time does not end (docs/mass_conserving.md).
+  for (const system::Bearing& b : machine.bearings) {
+    const film::Facts film = film::facts(b.film);
+    if (options.method == CycleBranchOptions::Method::newton_picard && options.scheme != sdirk_2 && film.own_states &&
+        !film.gives_way)
+      report.fail("scheme", fmt::format("newton_picard solves stages of films with dynamic contents, as in bearing {}, "
+                                        "by sdirk_2 only; collocation settles such films",
+                                        b.name));
+  }
   for (std::size_t i = 0; i < options.at.size(); ++i) inside("at", fmt::format("at.{}", i + 1), options.at[i]);
   if (options.start) inside("start", "start", *options.start);
 }

@@ -53,14 +53,14 @@ std::vector<double> kept(const EquilibriumEvent& at, const std::string& name,
   return at.keep ? at.keep(name, work) : work();
 }
 
-// Curvature, spread and amplitudes; empty if there are no such cycles.
+// Curvature, doubt and amplitudes; empty if there are no such cycles.
 std::vector<double> birth_here(const EquilibriumEvent& at, double omega, int harmonics, double largest) {
   const auto found = answer_of([&]() -> std::optional<BirthOfCycles> {
     return largest > 0 ? birth_of_cycles(at.system, at.x, omega, at.scale, harmonics, largest)
                        : birth_of_cycles(at.system, at.x, omega, at.scale, harmonics);
   });
   if (!found) return {};
-  std::vector<double> out{found->curvature, found->spread};
+  std::vector<double> out{found->curvature, found->doubt(at.law.kinks)};
   out.insert(out.end(), found->amplitudes.begin(), found->amplitudes.end());
   return out;
 }
@@ -77,18 +77,24 @@ void put_reduction_error(io::Bifurcation& b, const EquilibriumEvent& at, double 
 // the other meshes; these are asked as long as they can decide.
 void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double omega,
                       const std::vector<std::vector<double>>& there) {
-  if (!at.cycles) return;
+  if (!at.cycles || core::size_of(at.system.comm()) > 1) {
+    b.criticality_by += "; cycles at amplitudes are asked of machines that stand on one rank only";
+    return;
+  }
   const std::vector<double> found = kept(at, "cycles", [&] { return birth_here(at, omega, few_harmonics, 0); });
-  if (found.empty() || at.found.sensitivity == 0) return;
-  const double curvature = found[0], spread = found[1], largest = found.back();
+  if (found.empty() || at.found.sensitivity == 0) {
+    b.criticality_by += "; no cycles of 0.05 to 0.2 of a clearance, or smaller ones, were found";
+    return;
+  }
+  const double curvature = found[0], smaller = found[1], largest = found.back();
   const std::vector<double> finer =
       kept(at, "cycles with more harmonics", [&] { return birth_here(at, omega, more_harmonics, largest); });
   double doubt = finer.empty() ? unknown : std::abs(finer[0] - curvature);
   Bars bars({curvature}, at.law);
+  bool open = false;  // whatever other meshes say
   for (std::size_t k = 0; k < at.meshes.size(); ++k) {
-    // The bar of a film with kinks is that of its worst mesh: more of them do not make it smaller.
-    const double worst = at.law.kinks && k > 0 ? bars[0].total() : 0;
-    if (!decided(curvature, spread + doubt + (std::isfinite(worst) ? worst : 0))) break;
+    open = !decided(curvature, smaller + doubt);
+    if (open) break;
     const FilmMesh& mesh = at.meshes[k];
     const double c = kept(at, fmt::format("cycles on mesh {}", k), [&] {
                        return std::vector<double>{curvature_on(at, mesh.factor, there[k], largest)};
@@ -102,7 +108,7 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
     b.more[fmt::format("lyapunov_{}", name)] = b.more[fmt::format("criticality_{}", name)];
   // Cycles that live where the equilibrium is unstable are supercritical.
   const double sign = at.found.sensitivity > 0 ? -1 : 1;
-  put_criticality(b, sign * curvature, spread + bars[0].total() + doubt, "supercritical", "subcritical",
+  put_criticality(b, sign * curvature, smaller + doubt + (open ? 0 : bars[0].total()), "supercritical", "subcritical",
                   fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance, change of the parameter per "
                               "clearance^2",
                               found[2], found[3], found[4]));

@@ -68,6 +68,13 @@ CriticalMotion critical_motion(system::Plant& system, Vec x, double omega) {
   return out;
 }
 
+double BirthOfCycles::doubt(bool kinks) const {
+  const double apart = std::abs(curvature - smaller);
+  if (kinks) return smaller * curvature > 0 ? 0 : apart;
+  // p_0 + c A^2 + d A^4 has slopes c + 5/16 d and c + 5/4 d over A^2, A the largest amplitude.
+  return 4 * apart / 3;
+}
+
 std::optional<BirthOfCycles> birth_of_cycles(system::Plant& system, Vec x, double omega, double parameter_scale,
                                              int harmonics, double largest) {
   if (core::size_of(system.comm()) != 1) return {};
@@ -96,8 +103,7 @@ std::optional<BirthOfCycles> birth_of_cycles(system::Plant& system, Vec x, doubl
       return (p[k + 1] - p[k]) / (b * b - a * a);
     };
     out.curvature = slope(1);
-    // p_0 + c A^2 + d A^4 has slopes c + 5/16 d and c + 5/4 d over A^2, A the largest amplitude.
-    out.spread = 4 * std::abs(slope(1) - slope(0)) / 3;
+    out.smaller = slope(0);
     return out;
   }
   return {};

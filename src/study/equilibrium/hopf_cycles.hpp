@@ -33,8 +33,13 @@ struct CriticalMotion {
 /// reach over several cells would begin.
 struct BirthOfCycles {
   double curvature = 0;  ///< by the two larger cycles [scaled parameter]
-  double spread = 0;     ///< how far that is from c if the branch is p_0 + c A^2 + d A^4
+  double smaller = 0;    ///< by the two smaller ones
   std::array<double, 3> amplitudes{};
+
+  /// What the smaller cycles leave open of the curvature. Where forces are C1: how far it is from c if the branch is
+  /// p_0 + c A^2 + d A^4. Where they have kinks themselves there is no parabola near A = 0, and the curvature says what
+  /// cycles do that reach over several cells; only if the smaller ones do otherwise, all that lies between is open.
+  [[nodiscard]] double doubt(bool kinks) const;
 };
 /// Cycles by harmonic balance about the equilibrium x (SI), begun at A = `largest` and, where such cycles do not
 /// exist (a journal near its wall), at half, a quarter, an eighth of it. Nothing if none of them are found, or the

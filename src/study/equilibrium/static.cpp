@@ -92,6 +92,8 @@ void put_values(const Context& context, system::RotorSystem& system, const std::
       summary.set(head + "side_flow", report.side_flow, "m^3/s");
       // Only pads with a start know it; a film that reforms freely has no inlet.
       if (std::isfinite(report.inlet_flow)) summary.set(head + "inlet_flow", report.inlet_flow, "m^3/s");
+      for (std::size_t k = 0; k < report.hole_flows.size(); ++k)
+        summary.set(fmt::format("{}hole.{}.flow", head, k + 1), report.hole_flows[k], "m^3/s");
       summary.set(head + "power_loss", report.power_loss, "W");
       total_loss += report.power_loss;
     }
