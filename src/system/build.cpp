@@ -2,7 +2,6 @@
 
 #include "blocks.hpp"
 #include "film_part.hpp"
-#include "frozen.hpp"
 #include "settling.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -181,10 +180,9 @@ void RotorSystem::build() {
   check(VecScatterCreate(state.get(), from.get(), inputs_.get(), nullptr, gather_inputs_.put()));
   if (blocks_) blocks_->rebuild();
   neighbours_ = {};
-  film_solver_.reset();
   settling_.reset();
-  film_solver_tried_ = false;
   j_at_rest_.reset();
+  film_entries_ = {};
 }
 
 // Own states stand behind all pairs, film by film, in near equal shares of all.

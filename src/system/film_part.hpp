@@ -2,13 +2,12 @@
 // A film with own states among the parts of a machine: which of its rows stand on this rank, what they see of those on
 // others, and where its derivatives go.
 
-#include <petscmat.h>
-
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "whirl/core/entry_stream.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/problem/system.hpp"
 
@@ -51,8 +50,8 @@ public:
   void count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const;
   /// j += alpha times the derivatives in states and journal, sigma times those in rates; without a response the places
   /// alone. The rows of own states of all films begin at 2 n.
-  void add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports, double alpha,
-           double sigma) const;
+  void add(core::EntryStream& j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports,
+           double alpha, double sigma) const;
 
 private:
   std::unique_ptr<film::StateModel> film_;

@@ -7,7 +7,6 @@
 
 #include "blocks.hpp"
 #include "film_part.hpp"
-#include "frozen.hpp"
 #include "settling.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -208,13 +207,6 @@ problem::Structure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
   if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
   return blocks_.get();
-}
-
-std::unique_ptr<problem::Frozen> RotorSystem::freeze(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma,
-                                                     const problem::Frozen* similar) {
-  if (!film_solver_tried_) film_solver_ = FilmSolver::make(*this);
-  film_solver_tried_ = true;
-  return film_solver_ ? film_solver_->freeze(x, xdot, alpha, sigma, similar) : nullptr;
 }
 
 Places RotorSystem::places() const {

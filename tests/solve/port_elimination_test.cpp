@@ -67,7 +67,7 @@ struct Machine {
 
 TEST(PortElimination, SolvesLikeTheWholeMatrix) {
   Machine m;
-  solve::PortElimination elimination(MPI_COMM_WORLD, m.fields);
+  solve::PortElimination elimination(m.fields);
   core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), x = core::duplicate(b.get());
   {
     const core::WriteArray values(b.get());
@@ -99,7 +99,7 @@ TEST(PortElimination, TheBorderMayHoldTheHubUp) {
   const MatrixXd whole = test::dense(m.a.get());
   ASSERT_EQ(whole.topLeftCorner(24, 24).fullPivLu().rank(), 23);
   ASSERT_EQ(whole.fullPivLu().rank(), 25);
-  solve::PortElimination elimination(MPI_COMM_WORLD, m.fields);
+  solve::PortElimination elimination(m.fields);
   elimination.factorise(m.a.get());
   core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), x = core::duplicate(b.get());
   check(VecSet(b.get(), 1));

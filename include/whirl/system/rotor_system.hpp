@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "whirl/core/entry_stream.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
@@ -66,8 +67,7 @@ public:
   [[nodiscard]] std::vector<problem::Field> fields() const override;
   [[nodiscard]] problem::Structure* structure() override;
   /// Where every film with own states offers a preconditioner.
-  [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
-                                                        const problem::Frozen* similar) override;
+  [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override;
 
   /// Another train of the same shape (nodes, masters, film meshes): everything is rebuilt, the active parameter and the
   /// speed stay. Collective.
@@ -141,7 +141,7 @@ private:
     std::vector<film::StateResponse> own;
   };
   class Blocks;
-  class FilmSolver;
+  class FilmInverse;
   struct Settling;
   /// The systems at p - step and p + step, for the difference quotient dF/dp.
   struct Neighbours {
@@ -190,6 +190,7 @@ private:
   bool first_holds_rotor_ = false;                        // because films with own states are shared out over all
   core::Matrix mass_, damping_, gyroscopic_, stiffness_;  // [n x n] with pedestals
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;       // constant parts of the Jacobian, made when first wanted
+  mutable core::EntryStream film_entries_;                // of the films in matrices of make_jacobian()'s pattern
   std::vector<double> load_;                              // gravity on this rank's coordinates [N]
   std::vector<double> unbalance_c_, unbalance_s_;         // whole, per Omega^2
   std::vector<PetscInt> wanted_;                          // entries of a state that gather_inputs() gathers
@@ -198,8 +199,6 @@ private:
   std::unique_ptr<Blocks> blocks_;
   Neighbours neighbours_;
   std::unique_ptr<Settling> settling_;  // made when first wanted
-  std::unique_ptr<FilmSolver> film_solver_;
-  bool film_solver_tried_ = false;
 };
 
 }  // namespace whirl::system
