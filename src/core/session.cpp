@@ -118,6 +118,8 @@ void Session::set_options(const std::vector<std::string>& words) {
     const bool has_value = i + 1 < words.size() && !names_option(words[i + 1]);
     check(PetscOptionsSetValue(nullptr, name.c_str(), has_value ? words[++i].c_str() : nullptr));
     given_options().push_back(plain_option(name));
+    // PETSc counts from its start on, where it has not seen these words yet.
+    if (name == "-log_view") check(PetscLogDefaultBegin());
   }
 }
 

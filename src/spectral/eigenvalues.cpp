@@ -13,6 +13,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/gate.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::spectral {
@@ -86,8 +87,38 @@ void solve_dense(EigenSolver& eps, Mat a, Mat b) {
 
 constexpr double search_tolerance = 1e-10;
 
+// A ShiftInverse as the preconditioner of a KSP.
+struct InverseShell {
+  ShiftInverse& inverse;
+  core::Gate gate;
+
+  static PetscErrorCode set_up(PC pc) {
+    void* raw = nullptr;
+    Mat a = nullptr;
+    PetscCall(PCShellGetContext(pc, &raw));
+    PetscCall(PCGetOperators(pc, &a, nullptr));
+    auto& self = *static_cast<InverseShell*>(raw);
+    return self.gate.run([&] { self.inverse.factorise(a); });
+  }
+  static PetscErrorCode apply(PC pc, Vec rhs, Vec x) {
+    void* raw = nullptr;
+    PetscCall(PCShellGetContext(pc, &raw));
+    auto& self = *static_cast<InverseShell*>(raw);
+    return self.gate.run([&] { self.inverse.solve(rhs, x); });
+  }
+  void serve(KSP ksp) {
+    PC pc = nullptr;
+    check(KSPSetType(ksp, KSPPREONLY));
+    check(KSPGetPC(ksp, &pc));
+    check(PCSetType(pc, PCSHELL));
+    check(PCShellSetContext(pc, this));
+    check(PCShellSetSetUp(pc, set_up));
+    check(PCShellSetApply(pc, apply));
+  }
+};
+
 // The `wanted` eigenvalues nearest to a real target, by Krylov-Schur with shift and invert.
-void search_near(EPS eps, Mat a, double target, PetscInt wanted) {
+void search_near(EPS eps, Mat a, double target, PetscInt wanted, InverseShell* shell) {
   PetscInt n = 0;
   check(MatGetSize(a, &n, nullptr));
   check(EPSSetType(eps, EPSKRYLOVSCHUR));
@@ -100,7 +131,10 @@ void search_near(EPS eps, Mat a, double target, PetscInt wanted) {
   check(EPSGetST(eps, &st));
   check(STSetType(st, STSINVERT));
   check(STGetKSP(st, &ksp));
-  core::make_direct(ksp);
+  if (shell)
+    shell->serve(ksp);
+  else
+    core::make_direct(ksp);
   // The same start vector on any number of ranks.
   core::Vector start;
   check(MatCreateVecs(a, start.put(), nullptr));
@@ -193,6 +227,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     a = redundant_dense(a.get());
     b = redundant_dense(b.get());
   }
+  std::optional<InverseShell> shell;
   EigenSolver eps;
   check(EPSCreate(comm, eps.put()));
   check(EPSSetOptionsPrefix(eps.get(), "modes_"));
@@ -201,12 +236,17 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   if (dense) {
     check(EPSSetType(eps.get(), EPSLAPACK));
   } else {
-    search_near(eps.get(), a.get(), options.target, std::min<PetscInt>(options.count, system.size() - 2));
+    if (options.inverse) shell.emplace(*options.inverse, core::Gate(comm));
+    search_near(eps.get(), a.get(), options.target, std::min<PetscInt>(options.count, system.size() - 2),
+                shell ? &*shell : nullptr);
   }
   check(EPSSetFromOptions(eps.get()));
   std::vector<Mode> out;
   if (!dense) {
-    check(EPSSolve(eps.get()));
+    if (shell)
+      shell->gate.rethrow(EPSSolve(eps.get()));
+    else
+      check(EPSSolve(eps.get()));
     return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr);
   }
   // One rank's answer for all: how many modes there are, and which of them are unstable, decides what comes next.
@@ -296,7 +336,7 @@ std::vector<LocalMode> modes_within(Mat a, Mat b, double target, double radius) 
       EigenSolver eps;
       make(eps, comm, a, minus.get());
       wanted = std::min({wanted, most, n - 2});
-      search_near(eps.get(), a, target, wanted);
+      search_near(eps.get(), a, target, wanted, nullptr);
       check(EPSSetFromOptions(eps.get()));
       check(EPSSolve(eps.get()));
       PetscInt found = 0;

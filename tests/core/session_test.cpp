@@ -81,6 +81,14 @@ TEST(Session, WordsForPetscAreOptionsWithTheirValues) {
     EXPECT_EQ(PetscOptionsClearValue(nullptr, name), 0);
 }
 
+// It comes after PETSc's start, which is where PETSc looks for it.
+TEST(Session, LogViewHasCountedWhenItIsAskedAtTheEnd) {
+  ASSERT_EQ(PetscLogPLB, nullptr);
+  Session::set_options({"-log_view", ":/dev/null"});
+  EXPECT_NE(PetscLogPLB, nullptr);
+  EXPECT_EQ(PetscOptionsClearValue(nullptr, "-log_view"), 0);
+}
+
 TEST(Session, AForgottenDashIsAWrongInput) {
   EXPECT_THROW(Session::set_options({"newton_snes_rtol", "1e-3"}), whirl::core::InputError);
   EXPECT_THROW(Session::set_options({"-whirl_test", "1", "2"}), whirl::core::InputError);

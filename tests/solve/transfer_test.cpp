@@ -238,6 +238,49 @@ TEST(TransferModes, HoldThoseOfAPartThatExertsNoForce) {
   for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_LT(std::abs(found.modes[k].lambda - expected[k]), 1e-10);
 }
 
+// The edge passes between an eigenvalue of a part and that of the machine beside it: det T turns a whole time within so
+// small a piece of the edge that it seems not to turn at all.
+TEST(TransferModes, AreCountedWhereTheEdgePartsAPoleFromAZero) {
+  Pencil p;
+  constexpr int at = n_hub + n_first, weak = 2;  // two states of the second part, weakly coupled to the hub alone
+  for (int k = at; k < at + weak; ++k) {
+    p.a.row(k).setZero();
+    p.a.col(k).setZero();
+    p.b.row(k).setZero();
+    p.b.col(k).setZero();
+    p.a(0, k) = p.a(k, 1) = 0.02;
+    p.a(k, k) = p.b(k, k) = 1;
+  }
+  p.a(at, at + 1) = -2;
+  p.a(at + 1, at) = 2;
+  Parts system(p);
+  const core::Vector x = system.vector(VectorXd::Zero(n));
+  const auto whole = spectral::modes(system, x.get(), {});
+  const Complex pole = Complex(-1, 2);
+  const Complex zero = std::min_element(whole.begin(), whole.end(), [&](const auto& a, const auto& b) {
+                         return std::abs(a.lambda - pole) < std::abs(b.lambda - pole);
+                       })->lambda;
+  ASSERT_GT(std::abs(zero - pole), 1e-7);
+  ASSERT_LT(std::abs(zero - pole), 1e-3);
+  solve::TransferOptions o;
+  o.frequency = 4;
+  const auto level = [&](Complex z) {
+    return std::hypot((z.real() - (o.frequency - o.decay) / 2) / ((o.frequency + o.decay) / 2), z.imag() / o.frequency);
+  };
+  double least = 1, most = 10;  // decays of regions without and with the place between them
+  while (most - least > 1e-14) {
+    o.decay = 0.5 * (least + most);
+    (level(0.5 * (zero + pole)) < 1 ? most : least) = o.decay;
+  }
+  ASSERT_NE(level(zero) < 1, level(pole) < 1);
+  int number = 0;
+  for (const Complex z : inside(whole, o)) number += z.imag() != 0 ? 2 : 1;
+  const auto found = solve::transfer_modes(system, x.get(), o);
+  EXPECT_EQ(found.doubt, "");
+  EXPECT_EQ(found.counted, number);
+  EXPECT_EQ(found.missed, 0);
+}
+
 // Few points on the contour give too few candidates. The count, which needs no candidates, tells.
 TEST(TransferModes, SayWhatTheyMiss) {
   const Pencil p;

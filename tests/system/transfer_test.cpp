@@ -213,6 +213,27 @@ TEST(TransferModes, CountThoseThatHideInADampedLiner) {
   EXPECT_EQ(modes.missed, number - found);
 }
 
+// The parts of a large machine are eliminated; as one it is factorised if an option says so.
+TEST(MachineModes, OfALargeMachineAreThoseOfItsWholeMatrix) {
+  system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {48, 14}, 0.1), 2.4 * scale);
+  const core::Vector x = rest(s);
+  spectral::EigenOptions o;
+  o.count = 12;
+  ASSERT_GT(s.size(), o.dense_below);
+  const auto parts = solve::machine_modes(s, x.get(), o).modes;
+  core::check(PetscOptionsSetValue(nullptr, "-modes_st_pc_type", "lu"));
+  core::check(PetscOptionsSetValue(nullptr, "-modes_st_pc_factor_mat_solver_type", "mumps"));
+  const auto whole = solve::machine_modes(s, x.get(), o).modes;
+  PetscBool used = PETSC_FALSE;
+  core::check(PetscOptionsUsed(nullptr, "modes_st_pc_factor_mat_solver_type", &used));
+  EXPECT_TRUE(used);
+  core::check(PetscOptionsClearValue(nullptr, "-modes_st_pc_type"));
+  core::check(PetscOptionsClearValue(nullptr, "-modes_st_pc_factor_mat_solver_type"));
+  ASSERT_EQ(parts.size(), whole.size());
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    EXPECT_LT(std::abs(parts[k].lambda - whole[k].lambda), 1e-9 * std::abs(whole[k].lambda)) << whole[k].lambda;
+}
+
 TEST(MachineModes, AreFoundTheWayThatIsAskedFor) {
   system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {20, 6}, 0.1), 2.4 * scale);
   const core::Vector x = rest(s);

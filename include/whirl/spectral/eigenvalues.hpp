@@ -24,18 +24,31 @@ struct Mode {
   [[nodiscard]] bool neutral() const { return std::abs(lambda.real()) <= rounding; }
 };
 
+/// Solves with the shifted matrix of a large system, for a search by shift and invert. All members are collective.
+class ShiftInverse {
+public:
+  ShiftInverse() = default;
+  ShiftInverse(const ShiftInverse&) = delete;
+  ShiftInverse& operator=(const ShiftInverse&) = delete;
+  virtual ~ShiftInverse() = default;
+  /// Takes a new matrix, distributed like the states, rows and columns in the scales of the system.
+  virtual void factorise(Mat a) = 0;
+  virtual void solve(Vec rhs, Vec x) = 0;
+};
+
 struct EigenOptions {
   int count = 40;         ///< eigenvalues wanted (a complex pair counts twice), nearest to `target`
   double target = 0;      ///< real shift of the shift-and-invert transformation [1/s]
   int dense_below = 600;  ///< systems up to this size are solved as dense matrices (LAPACK), with all eigenvalues
   bool shapes = true;
-  bool rounding = false;  ///< estimate Mode::rounding
+  bool rounding = false;            ///< estimate Mode::rounding
+  ShiftInverse* inverse = nullptr;  ///< of systems above dense_below; null: LU by MUMPS
 };
 
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.
 ///
 /// Small systems: all modes, by LAPACK on rank 0 for all. Larger ones: Krylov-Schur with shift and invert at a real
-/// target (LU by MUMPS); such a search can miss a mode far from the target, so ask for more than are needed.
+/// target (prefix modes_); such a search can miss a mode far from the target, so ask for more than are needed.
 /// Collective; throws core::NotConverged.
 [[nodiscard]] std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options);
 

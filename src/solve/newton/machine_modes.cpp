@@ -2,10 +2,12 @@
 
 #include <petscsys.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
+#include "solve/newton/port_elimination.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
 
@@ -29,6 +31,27 @@ bool by_transfer(const problem::System& system) {
 
 constexpr int most_regions = 6;
 
+// The parts of a machine are eliminated, as everywhere else: a factorisation of the whole pencil would see rows as long
+// as a film.
+class ByPorts final : public spectral::ShiftInverse {
+public:
+  ByPorts(MPI_Comm comm, const std::vector<problem::Field>& fields) : ports_(comm, fields) {}
+  void factorise(Mat a) override { ports_.factorise(a); }
+  void solve(Vec rhs, Vec x) override { ports_.solve(rhs, x); }
+
+private:
+  PortElimination ports_;
+};
+
+std::vector<spectral::Mode> whole_modes(problem::System& system, Vec x, spectral::EigenOptions options) {
+  const std::vector<problem::Field> fields = system.fields();
+  if (system.size() <= options.dense_below || !PortElimination::serves(fields))
+    return spectral::modes(system, x, options);
+  ByPorts inverse(system.comm(), fields);
+  options.inverse = &inverse;
+  return spectral::modes(system, x, options);
+}
+
 }  // namespace
 
 MachineModes machine_modes(problem::System& system, Vec x, const spectral::EigenOptions& options,
@@ -37,13 +60,14 @@ MachineModes machine_modes(problem::System& system, Vec x, const spectral::Eigen
   const bool given = wanted.frequency > 0;
   TransferOptions region;
   region.frequency = given ? wanted.frequency / 0.94 : 2 * std::abs(system.speed());
-  if (!by_transfer(system) || region.frequency == 0) return {spectral::modes(system, x, options), 0, {}, false};
+  if (!by_transfer(system) || region.frequency == 0) return {whole_modes(system, x, options), 0, {}, false};
   region.shapes = options.shapes;
   TransferModes found;
   for (int k = 0; k < most_regions; ++k) {
     region.decay = region.frequency / 2;
     found = transfer_modes(system, x, region);
-    if (given || found.counted >= wanted.at_least) break;
+    const auto vibrates = [](const spectral::Mode& m) { return m.lambda.imag() > 1e-7 * std::abs(m.lambda); };
+    if (given || 2 * std::count_if(found.modes.begin(), found.modes.end(), vibrates) >= wanted.at_least) break;
     region.frequency *= 1.5;
   }
   return {std::move(found.modes), found.missed, std::move(found.doubt), true};

@@ -55,8 +55,10 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
     scale = core::gather(states.get());
   }
   TransferModes out;
+  std::vector<Complex> marks;  // places of det T near the edge, on both sides of it
   for (std::size_t i = 0; i < machine.ports().size(); ++i) try {
       for (const auto& pole : machine.poles(i, ellipse.target(), ellipse.radius())) {
+        if (!pole.silent && pole.value.imag() >= 0) marks.push_back(pole.value);
         if (ellipse.level(pole.value) > 1) continue;
         ++out.poles;
         if (!pole.silent || pole.value.imag() < 0) continue;
@@ -97,12 +99,14 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
     });
     out.fit = search.sample();
     if (out.fit > options.fit) out.doubt = fmt::format("the fit of the films is off by {:.1e}", out.fit);
-    const auto winding = search.winding(options.contour);
-    if (!winding) {
-      out.doubt = "an eigenvalue lies on the edge of the region";
-    } else {
-      out.counted = *winding + out.poles;
-    }
+    const auto winding = search.winding(options.contour, marks);
+    const auto count = [&](const std::optional<int>& turns) {
+      if (turns)
+        out.counted = *turns + out.poles;
+      else
+        out.doubt = "an eigenvalue lies on the edge of the region";
+    };
+    count(winding);
     const int wanted = winding ? std::max(0, out.counted - silent) : 20;
     std::vector<Root> fitted, roots;  // of the fit, of the machine
     const auto near = [&](Complex a, Complex b) { return std::abs(a - b) <= 1e-8 * ellipse.size(); };
@@ -153,6 +157,12 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
             try_all(search.candidates({centre, radius, radius, false}, 64, std::min(wanted, 16)));
         }
     }
+    // Zeros near the edge are marks as well, once they are known.
+    const double spacing = std::numbers::pi * ellipse.size() / options.contour;
+    const std::size_t poles = marks.size();
+    for (const Root& r : fitted)
+      if (std::abs(ellipse.level(r.lambda) - 1) * ellipse.size() < spacing) marks.push_back(r.lambda);
+    if (winding && marks.size() > poles) count(search.winding(options.contour, marks));
   };
   core::lead(system.comm(), 0, work, part);
   // Rank 0's for all.

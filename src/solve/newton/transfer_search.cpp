@@ -117,11 +117,13 @@ double TransferSearch::sample() {
 
 std::optional<double> TransferSearch::turn(double from, double angle_from, double to, double angle_to,
                                            int depth) const {
-  const double all = wrapped(angle_to - angle_from);
-  if (std::abs(all) < pi / 3) return all;
+  const double all = wrapped(angle_to - angle_from), middle = 0.5 * (from + to);
+  const Complex place = ellipse_.at(middle);
+  const double length = std::abs(ellipse_.at(to) - ellipse_.at(from));
+  const auto clear = [&](Complex mark) { return length <= std::abs(mark - place); };
+  if (std::abs(all) < pi / 3 && std::all_of(marks_.begin(), marks_.end(), clear)) return all;
   if (depth == 0) return std::nullopt;
-  const double middle = 0.5 * (from + to);
-  const Factors t(fitted(ellipse_.at(middle), false));
+  const Factors t(fitted(place, false));
   if (!t.regular()) return std::nullopt;
   const double angle = t.angle();
   const auto left = turn(from, angle_from, middle, angle, depth - 1);
@@ -130,7 +132,8 @@ std::optional<double> TransferSearch::turn(double from, double angle_from, doubl
 }
 
 // det T is real on the real axis and conjugate below it.
-std::optional<int> TransferSearch::winding(int points) {
+std::optional<int> TransferSearch::winding(int points, std::vector<Complex> marks) {
+  marks_ = std::move(marks);
   double sum = 0, last = 0;
   for (int k = 0; k <= points; ++k) {
     const double angle = pi * k / points;

@@ -65,8 +65,10 @@ public:
 
   /// Samples H until the fit foretells it; returns how well it did.
   double sample();
-  /// Winding number of det T about the region, or nothing if an eigenvalue lies on its edge.
-  [[nodiscard]] std::optional<int> winding(int points);
+  /// Winding number of det T about the region, or nothing if an eigenvalue lies on its edge. Poles and zeros come in
+  /// pairs, past which det T turns a whole time and seems not to turn at all: no step along the edge is longer than the
+  /// distance to those known (`marks`, Im >= 0).
+  [[nodiscard]] std::optional<int> winding(int points, std::vector<Complex> marks);
   /// Candidates with Im >= 0 for about `wanted` eigenvalues within a curve.
   [[nodiscard]] std::vector<Root> candidates(const Curve& curve, int points, int wanted) const;
   /// Newton's method with the fit, and with the machine.
@@ -94,6 +96,7 @@ private:
   Ellipse ellipse_;
   Solve solve_;
   std::optional<RationalFit> fit_;
+  std::vector<Complex> marks_;
 };
 
 }  // namespace whirl::solve

@@ -19,7 +19,7 @@ struct MachineModes {
 /// What transfer functions look for.
 struct Region {
   double frequency = 0;  ///< [rad/s] up to which vibration matters; zero: as the speed and `at_least` ask
-  int at_least = 2;      ///< eigenvalues, both of each pair, without a frequency
+  int at_least = 2;      ///< eigenvalues that vibrate, both of each pair, without a frequency
 };
 
 /// Modes at the equilibrium x. PETSc option -modes_by chooses:
@@ -28,6 +28,7 @@ struct Region {
 /// | transfer | transfer_modes() in a region |
 /// | automatic | the default: `whole` up to 100 000 states, `transfer` above |
 ///
+/// `whole` eliminates the parts of a large machine on their ports (`-modes_st_pc_type lu` factorises it as one).
 /// A system without parts or at rest has no other way than `whole`. Regions reach half as far to the
 /// left as they are high. Without a frequency the first one reaches to twice the speed, and it grows by half, at most
 /// five times, until it holds enough. Collective; throws core::NotConverged, core::InputError on another word.
