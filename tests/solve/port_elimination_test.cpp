@@ -1,6 +1,6 @@
-// Elimination of the parts of a machine on their ports against a dense solution, and preconditioners chosen by option.
+// Elimination of the parts of a machine on their ports, and products in their blocks, against dense matrices.
 
-#include "solve/newton/port_elimination.hpp"
+#include "solve/newton/port_krylov.hpp"
 
 #include <gtest/gtest.h>
 
@@ -83,6 +83,22 @@ TEST(PortElimination, SolvesLikeTheWholeMatrix) {
     EXPECT_LT((whole * test::dense(x.get()) - rhs).norm(), 1e-11);
     elimination.solve_transposed(b.get(), x.get());
     EXPECT_LT((whole.transpose() * test::dense(x.get()) - rhs).norm(), 1e-11);
+  }
+}
+
+TEST(PortMatrix, MultipliesLikeTheWholeMatrix) {
+  Machine m;
+  solve::PortMatrix blocks(std::make_shared<const solve::PortLayout>(m.a.get(), m.fields));
+  core::Vector v = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), y = core::duplicate(v.get());
+  {
+    const core::WriteArray values(v.get());
+    for (PetscInt i = 0; i < values.size(); ++i) values[i] = std::cos(2.0 * static_cast<double>(m.first + i));
+  }
+  for (const double factor : {1.0, -0.6}) {
+    m.fill(factor);
+    blocks.take(m.a.get());
+    solve::PortKrylov::multiply(blocks, v.get(), y.get());
+    EXPECT_LT((test::dense(m.a.get()) * test::dense(v.get()) - test::dense(y.get())).norm(), 1e-13);
   }
 }
 

@@ -34,13 +34,13 @@ public:
     out.take(a);
     return out;
   }
-  /// Of the matrix with `own`, by the parts' own preconditioners.
-  std::unique_ptr<solve::PortElimination> elimination(double own) {
+  /// Of such a matrix, by the parts' own preconditioners.
+  std::unique_ptr<solve::PortElimination> elimination(double alpha, double sigma) {
     auto inverse = system_.make_part_inverse();
     EXPECT_TRUE(inverse);
     auto out = std::make_unique<solve::PortElimination>(system_.fields(), std::move(inverse));
-    out->inverse()->set(0, x_.get(), rest_.get(), own, 1);
-    const core::Matrix a = matrix(own, 1);
+    out->inverse()->set(0, x_.get(), rest_.get(), alpha, sigma);
+    const core::Matrix a = matrix(alpha, sigma);
     out->factorise(a.get(), blocks(a.get()));
     return out;
   }
@@ -76,18 +76,18 @@ inline void expect_stage_is_solved(problem::System& system, Vec x, double own, d
   }
   const core::Matrix m = equations.matrix(own, 1);
   const solve::PortMatrix blocks = equations.blocks(m.get());
-  const auto near = equations.elimination(0.7 * own);
+  const auto near = equations.elimination(0.7 * own, 1);
   solve::PortKrylov krylov(*blocks.layout(), "stage_");
   krylov.solve(blocks, *near, b.get(), a.get(), 1e-12);
   EXPECT_LE((dense(a.get()) - dense(v.get())).lpNorm<Eigen::Infinity>(), error);
 }
 
-/// Krylov iterations to 1e-9.
-inline int stage_iterations(problem::System& system, Vec x, double own) {
+/// Krylov iterations to 1e-9 of alpha dF/dx + sigma dF/d(dx/dt).
+inline int iterations(problem::System& system, Vec x, double alpha, double sigma) {
   StageEquations equations(system, x);
-  const core::Matrix m = equations.matrix(own, 1);
+  const core::Matrix m = equations.matrix(alpha, sigma);
   const solve::PortMatrix blocks = equations.blocks(m.get());
-  const auto elimination = equations.elimination(own);
+  const auto elimination = equations.elimination(alpha, sigma);
   const core::Vector b = equations.some(0.7);
   core::Vector y = core::duplicate(b.get());
   solve::PortKrylov krylov(*blocks.layout(), "stage_");

@@ -6,8 +6,8 @@
 namespace whirl::problem {
 
 /// Approximate inverses of the own equations A_pp of all parts, A = alpha dF/dx + sigma dF/d(dx/dt) in the scales of
-/// System::scales(), at a cost in proportion to their states: good to precondition only. They end with the system. All
-/// members are collective on System::comm().
+/// System::scales(), at a cost in proportion to their states: good to precondition only. They outlast a change of
+/// the parameter and end with the system. All members are collective on System::comm().
 class PartInverse {
 public:
   PartInverse() = default;

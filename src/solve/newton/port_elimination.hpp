@@ -45,7 +45,6 @@ public:
   void solve(Vec rhs, Vec x);
   /// Of matrices whose parts are solved by MUMPS or by another preconditioner with a transpose.
   void solve_transposed(Vec rhs, Vec x);
-  [[nodiscard]] const std::vector<problem::Field>& fields() const { return fields_; }
 
 private:
   void make_solvers();

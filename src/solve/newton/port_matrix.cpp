@@ -148,6 +148,11 @@ PortLayout::PortLayout(Mat a, const std::vector<problem::Field>& fields)
   find_ports(scan);
   place_parts(scan);
   place_couplings(scan);
+  x_.resize(parts());
+  y_.resize(parts());
+  hub_x_.resize(hub());
+  hub_y_.resize(hub());
+  shared_.setZero(whole_hub() + static_cast<Index>(coupled_.size()));
 }
 
 // Ports get the colours of a map: those that share a part differ.
@@ -284,11 +289,6 @@ PortMatrix::PortMatrix(std::shared_ptr<const PortLayout> layout) : layout_(std::
   hub_.resize(l.hub_entries_.size());
   g_.setZero(l.parts(), l.colours());
   f_.setZero(l.parts(), static_cast<Index>(l.coupled().size()));
-  x_.resize(l.parts());
-  y_.resize(l.parts());
-  hub_x_.resize(l.hub());
-  hub_y_.resize(l.hub());
-  shared_.setZero(l.whole_hub() + f_.cols());
 }
 
 void PortMatrix::take(Mat a) {
@@ -315,26 +315,27 @@ void PortMatrix::take(Mat a) {
 
 void PortMatrix::multiply(const double* x, double* y) const {
   const PortLayout& l = *layout_;
-  l.take(x, x_.data(), hub_x_.data());
+  l.take(x, l.x_.data(), l.hub_x_.data());
   // What the hub's states are, and behind them what the parts do to it.
   const PetscInt n = l.whole_hub(), first = l.first_of_hub();
-  shared_.tail(f_.cols()).noalias() = f_.transpose() * x_;
-  l.share(hub_x_.data(), shared_);
+  l.shared_.tail(f_.cols()).noalias() = f_.transpose() * l.x_;
+  l.share(l.hub_x_.data(), l.shared_);
   const double* value = values_.data();
   const auto add = [&](const std::vector<PortLayout::Piece>& pieces, const double* from) {
     for (const PortLayout::Piece& p : pieces) {
-      const double* __restrict in = from + p.column, * __restrict factor = value;
-      double* __restrict out = y_.data() + p.row;
+      const double* __restrict in = from + p.column;
+      const double* __restrict factor = value;
+      double* __restrict out = l.y_.data() + p.row;
       for (PetscInt i = 0; i < p.count; ++i) out[i] += factor[i] * in[i];
       value += p.count;
     }
   };
-  y_.setZero();
-  add(l.pieces_, x_.data());
+  l.y_.setZero();
+  add(l.pieces_, l.x_.data());
   if (core::size_of(l.comm_) > 1) {
     {
       const core::WriteArray v(l.part_vector_.get());
-      std::copy_n(x_.data(), x_.size(), v.data());
+      std::copy_n(l.x_.data(), l.x_.size(), v.data());
     }
     check(VecScatterBegin(l.to_ghosts_.get(), l.part_vector_.get(), l.ghosts_.get(), INSERT_VALUES, SCATTER_FORWARD));
     check(VecScatterEnd(l.to_ghosts_.get(), l.part_vector_.get(), l.ghosts_.get(), INSERT_VALUES, SCATTER_FORWARD));
@@ -342,14 +343,15 @@ void PortMatrix::multiply(const double* x, double* y) const {
     add(l.ghost_pieces_, ghosts.data());
   }
   l.for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {
-    y_.segment(begin, rows) += shared_(l.ports_[static_cast<std::size_t>(port)]) * g_.col(colour).segment(begin, rows);
+    l.y_.segment(begin, rows) +=
+        l.shared_(l.ports_[static_cast<std::size_t>(port)]) * g_.col(colour).segment(begin, rows);
   });
-  hub_y_.setZero();
-  for_hub([&](PetscInt row, PetscInt column, double v) { hub_y_(row - first) += v * shared_(column); });
+  l.hub_y_.setZero();
+  for_hub([&](PetscInt row, PetscInt column, double v) { l.hub_y_(row - first) += v * l.shared_(column); });
   for (std::size_t k = 0; k < l.coupled_.size(); ++k)
     if (const PetscInt row = l.coupled_[k] - first; row >= 0 && row < l.hub())
-      hub_y_(row) += shared_(n + static_cast<Index>(k));
-  l.give(y_.data(), hub_y_.data(), y);
+      l.hub_y_(row) += l.shared_(n + static_cast<Index>(k));
+  l.give(l.y_.data(), l.hub_y_.data(), y);
 }
 
 }  // namespace whirl::solve

@@ -92,6 +92,7 @@ private:
   std::vector<PetscInt> f_sources_;             // entries of F on this rank
   core::Scatter to_f_, to_ghosts_;
   core::Vector f_values_, f_columns_, part_vector_, ghosts_;  // work space of these
+  mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_;    // and of products
 };
 
 /// A matrix in these blocks.
@@ -117,7 +118,6 @@ private:
   std::shared_ptr<const PortLayout> layout_;
   std::vector<double> values_, hub_;  // of A_pp, of A_h
   Eigen::MatrixXd g_, f_;
-  mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_;  // work space
 };
 
 }  // namespace whirl::solve
