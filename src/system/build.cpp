@@ -3,7 +3,6 @@
 #include "blocks.hpp"
 #include "change.hpp"
 #include "film_part.hpp"
-#include "frozen.hpp"
 #include "settling.hpp"
 #include "slope.hpp"
 #include "whirl/core/agree.hpp"
@@ -149,8 +148,6 @@ void RotorSystem::set_train(Train train) {
   if (change.load) load_ = load_of(*rotor_, weights_of(train_));
   if (change.unbalance) unbalance_ = unbalance_of(*rotor_, train_.unbalance);
   slope_.reset();
-  film_solver_.reset();
-  film_solver_tried_ = false;
 }
 
 std::unique_ptr<rotor::Rotor> RotorSystem::make_rotor(const rotor::Options& options) {

@@ -26,6 +26,9 @@ FilmPart FilmPart::with(const Support& support) const {
   out.gathered_ = gathered_;
   out.here_ = here_;
   if (rows() > 0) out.share_ = out.states_->share(share_.begin, share_.end);
+  // Solvers learn once which derivatives a film has.
+  if (states_ && out.states_->constant_rates() != states_->constant_rates())
+    throw core::DomainError("the damping of a liner can not come or go along a branch");
   return out;
 }
 
@@ -46,16 +49,22 @@ void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gath
   here_ = count_ > 0 ? rows() > 0 : without_states;
 }
 
+// No rows: `response` may be of another film.
+void FilmPart::evaluate_model(const film::Motion& motion, film::Need need, film::StateResponse& response) const {
+  response.residual.clear();
+  model_->evaluate(motion, need, response.journal);
+}
+
 void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
                         film::Need need, film::StateResponse& response) const {
-  if (model_) return model_->evaluate(motion, need, response.journal);
+  if (model_) return evaluate_model(motion, need, response);
   const std::size_t n = share_.seen.size();
   states_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
 }
 
 void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need,
                         film::StateResponse& response) const {
-  if (model_) return model_->evaluate(motion, need, response.journal);
+  if (model_) return evaluate_model(motion, need, response);
   const auto n = static_cast<std::size_t>(count_);
   states_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response);
 }
@@ -106,36 +115,33 @@ void FilmPart::count_entries(const std::vector<PortEnds>& ports, std::span<Petsc
   for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;
 }
 
-void FilmPart::add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports,
-                   double alpha, double sigma) const {
+void FilmPart::add(core::EntryStream& j, const film::StateResponse* response, PetscInt n,
+                   const std::vector<PortEnds>& ports, double alpha, double sigma) const {
   if (rows() == 0) return;
   const PetscInt all = 2 * n + first_, begin = all + share_.begin;
   const auto matrix = [&](const film::Places& places, const std::vector<double>* values, double factor) {
     const std::span<const double> at = values ? std::span<const double>(*values) : std::span<const double>();
-    film::for_entries(share_, places, at, [&](int row, int column, double value) {
-      check(MatSetValue(j, begin + row, all + column, factor * value, ADD_VALUES));
-    });
+    film::for_entries(share_, places, at,
+                      [&](int row, int column, double value) { j.add(begin + row, all + column, factor * value); });
   };
   matrix(share_.d_states, response ? &response->d_states : nullptr, alpha);
   matrix(share_.d_rates, response ? &response->d_rates : nullptr, sigma);
-  std::vector<PetscInt> states(static_cast<std::size_t>(rows()));
-  for (std::size_t k = 0; k < states.size(); ++k) states[k] = begin + static_cast<PetscInt>(k);
-  std::vector<double> values(states.size());
-  const auto count = static_cast<PetscInt>(states.size());
+  const PetscInt count = rows();
   for (std::size_t port = 0; port < ports.size(); ++port)
     for (const auto& [q, side] : ports[port]) {
       const auto column = [&](const film::PortColumns* from, PetscInt unknown) {
-        for (std::size_t k = 0; k < values.size(); ++k) values[k] = from ? alpha * side * (*from)[port][k] : 0.0;
-        check(MatSetValues(j, count, states.data(), 1, &unknown, values.data(), ADD_VALUES));
+        for (PetscInt k = 0; k < count; ++k)
+          j.add(begin + k, unknown, from ? alpha * side * (*from)[port][static_cast<std::size_t>(k)] : 0.0);
       };
       column(response ? &response->d_position : nullptr, 2 * q);
       column(response ? &response->d_velocity : nullptr, 2 * q + 1);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        values[k] = response ? -side * alpha * response->force_d_states[port][k] : 0.0;
-        if (response && !response->force_d_rates.empty()) values[k] -= side * sigma * response->force_d_rates[port][k];
+      const bool by_rates = response && !response->force_d_rates.empty();
+      for (PetscInt k = 0; k < count; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        double value = response ? -side * alpha * response->force_d_states[port][i] : 0.0;
+        if (by_rates) value -= side * sigma * response->force_d_rates[port][i];
+        j.add(2 * q, begin + k, value);
       }
-      const PetscInt row = 2 * q;
-      check(MatSetValues(j, 1, &row, count, states.data(), values.data(), ADD_VALUES));
     }
 }
 

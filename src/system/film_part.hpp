@@ -2,13 +2,12 @@
 // A film among the parts of a machine: which of its rows stand on this rank, what they see of those on others, and
 // where its derivatives go. A film without states of its own has no rows; all else is the same.
 
-#include <petscmat.h>
-
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "whirl/core/entry_stream.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/system/train.hpp"
@@ -77,10 +76,11 @@ public:
   void count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const;
   /// j += alpha times the derivatives in states and journal, sigma times those in rates; without a response the places
   /// alone. The rows of own states of all films begin at 2 n.
-  void add(Mat j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports, double alpha,
-           double sigma) const;
+  void add(core::EntryStream& j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports,
+           double alpha, double sigma) const;
 
 private:
+  void evaluate_model(const film::Motion& motion, film::Need need, film::StateResponse& response) const;
   std::unique_ptr<film::Model> model_;        // of a film without states,
   std::unique_ptr<film::StateModel> states_;  // or of one with such
   PetscInt first_, count_ = 0, row_ = 0;

@@ -159,6 +159,7 @@ void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
 
 void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigma) const {
   static const film::Response none;
+  film_entries_.begin(j);
   for (std::size_t b = 0; b < bearings_.size(); ++b) {
     const film::Response& r = films ? films->journal[b] : none;
     const std::vector<PortEnds>& ports = bearings_[b].ports;
@@ -167,14 +168,13 @@ void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigm
         if (!owns(row)) continue;
         for (std::size_t e = 0; e < ports.size(); ++e)
           for (const auto& [column, side] : ports[e]) {
-            check(MatSetValue(j, 2 * row, 2 * column, -alpha * to * side * r.d_position[d][e], ADD_VALUES));
-            check(MatSetValue(j, 2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e], ADD_VALUES));
+            film_entries_.add(2 * row, 2 * column, -alpha * to * side * r.d_position[d][e]);
+            film_entries_.add(2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e]);
           }
       }
-    bearings_[b].part->add(j, films ? &films->own[b] : nullptr, n_, ports, alpha, sigma);
+    bearings_[b].part->add(film_entries_, films ? &films->own[b] : nullptr, n_, ports, alpha, sigma);
   }
-  check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
+  film_entries_.end();
 }
 
 Observed RotorSystem::observe(Vec x) {

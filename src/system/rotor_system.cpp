@@ -6,7 +6,6 @@
 
 #include "blocks.hpp"
 #include "film_part.hpp"
-#include "frozen.hpp"
 #include "settling.hpp"
 #include "slope.hpp"
 #include "whirl/core/error.hpp"
@@ -54,9 +53,8 @@ void RotorSystem::set_parameter(double p) {
     speed_ = p;
     return;
   }
-  Train train = varying_.train(p);  // may refuse the value, and then nothing has changed
+  set_train(varying_.train(p));  // both may refuse the value, and then nothing has changed
   varying_.value = p;
-  set_train(std::move(train));
 }
 
 // The centre of unbalance moves along (cos, sin)(angle): its acceleration has a part towards the axis and one along the
@@ -202,13 +200,6 @@ problem::Structure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
   if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
   return blocks_.get();
-}
-
-std::unique_ptr<problem::Frozen> RotorSystem::freeze(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma,
-                                                     const problem::Frozen* similar) {
-  if (!film_solver_tried_) film_solver_ = FilmSolver::make(*this);
-  film_solver_tried_ = true;
-  return film_solver_ ? film_solver_->freeze(x, xdot, alpha, sigma, similar) : nullptr;
 }
 
 Places RotorSystem::places() const {

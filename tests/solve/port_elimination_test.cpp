@@ -1,6 +1,6 @@
-// Elimination of the parts of a machine on their ports against a dense solution, and preconditioners chosen by option.
+// Elimination of the parts of a machine on their ports, and products in their blocks, against dense matrices.
 
-#include "solve/newton/port_elimination.hpp"
+#include "solve/newton/port_krylov.hpp"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ struct Machine {
 
 TEST(PortElimination, SolvesLikeTheWholeMatrix) {
   Machine m;
-  solve::PortElimination elimination(MPI_COMM_WORLD, m.fields);
+  solve::PortElimination elimination(m.fields);
   core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), x = core::duplicate(b.get());
   {
     const core::WriteArray values(b.get());
@@ -86,6 +86,22 @@ TEST(PortElimination, SolvesLikeTheWholeMatrix) {
   }
 }
 
+TEST(PortMatrix, MultipliesLikeTheWholeMatrix) {
+  Machine m;
+  solve::PortMatrix blocks(std::make_shared<const solve::PortLayout>(m.a.get(), m.fields));
+  core::Vector v = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), y = core::duplicate(v.get());
+  {
+    const core::WriteArray values(v.get());
+    for (PetscInt i = 0; i < values.size(); ++i) values[i] = std::cos(2.0 * static_cast<double>(m.first + i));
+  }
+  for (const double factor : {1.0, -0.6}) {
+    m.fill(factor);
+    blocks.take(m.a.get());
+    solve::PortKrylov::multiply(blocks, v.get(), y.get());
+    EXPECT_LT((test::dense(m.a.get()) * test::dense(v.get()) - test::dense(y.get())).norm(), 1e-13);
+  }
+}
+
 // At a fold the machine's own matrix is singular, the bordered one is not.
 TEST(PortElimination, TheBorderMayHoldTheHubUp) {
   Machine m;
@@ -99,7 +115,7 @@ TEST(PortElimination, TheBorderMayHoldTheHubUp) {
   const MatrixXd whole = test::dense(m.a.get());
   ASSERT_EQ(whole.topLeftCorner(24, 24).fullPivLu().rank(), 23);
   ASSERT_EQ(whole.fullPivLu().rank(), 25);
-  solve::PortElimination elimination(MPI_COMM_WORLD, m.fields);
+  solve::PortElimination elimination(m.fields);
   elimination.factorise(m.a.get());
   core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), x = core::duplicate(b.get());
   check(VecSet(b.get(), 1));

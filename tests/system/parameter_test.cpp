@@ -97,6 +97,8 @@ system::Machine whole_machine() {
   thick.rubber_thickness = 5e-4;
   m.bearings.push_back(bearing("B3", 5, thick, cylindrical));
   m.bearings[2].pedestal = system::Pedestal{{50, 50}, {4e8, 4e8}, {3e4, 3e4}};
+  // Without states, behind films that have some and depend on the same oil.
+  m.bearings.push_back(bearing("B4", 4, film::Short{}, cylindrical));
   return m;
 }
 
@@ -301,6 +303,24 @@ TEST(Parameters, LinearOnesHaveExactDerivatives) {
   }
 }
 
+// Solvers know the derivatives of a film from its start: its liner may not become damped on the way, and a value that a
+// film refuses leaves everything as it was.
+TEST(Parameters, AValueThatAFilmRefusesChangesNothing) {
+  system::Machine machine = whole_machine();
+  film::as<film::CompliantFinite>(machine.bearings[1].film).liner_damping = 0;
+  system::Varying varying = along(machine, "bearings.B2.film.liner_damping", 0);
+  varying.magnitude = 1e-4;
+  system::RotorSystem s(MPI_COMM_WORLD, varying, speed);
+  const core::Vector x = state(s), rate = rates(x, 1e-3), before = core::duplicate(x.get()),
+                     after = core::duplicate(x.get());
+  s.residual(0.7, x.get(), rate.get(), before.get());
+  EXPECT_THROW(s.set_parameter(1e-4), core::DomainError);
+  EXPECT_EQ(s.parameter(), 0);
+  s.residual(0.7, x.get(), rate.get(), after.get());
+  EXPECT_EQ(relative(after, before), 0);
+  EXPECT_THROW(s.parameter_derivative(0.7, x.get(), rate.get(), after.get()), core::DomainError);
+}
+
 // A damping of zero may grow and not fall.
 TEST(Parameters, AtTheEndOfItsRangeTheDifferenceIsOneSided) {
   system::Machine machine = reduced_machine();
@@ -315,26 +335,35 @@ TEST(Parameters, AtTheEndOfItsRangeTheDifferenceIsOneSided) {
   for (std::size_t k = 0; k < slope.size(); ++k) EXPECT_EQ(slope[k], k == row ? whole[row + 1] : 0.0) << k;
 }
 
-// One rank that holds the blocks of a structured solver gets the same.
-TEST_P(Parameter, BlocksHaveTheSameDerivative) {
+// Blocks that were made at one value give F and dF/dp at another.
+TEST_P(Parameter, BlocksFollow) {
   const system::Machine machine = GetParam()();
   for (const std::string& path : continuable_paths(machine)) {
     SCOPED_TRACE(path);
-    system::RotorSystem s(MPI_COMM_SELF, along(machine, path, value_of(machine, path)), speed);
-    const core::Vector x = state(s), rate = rates(x, 1e-3), f = core::duplicate(x.get());
-    s.parameter_derivative(0.7, x.get(), rate.get(), f.get());
+    const double value = value_of(machine, path);
+    system::RotorSystem s(MPI_COMM_SELF, along(machine, path, 0.97 * value), speed);
+    (void)s.structure()->l0();
+    s.set_parameter(1.03 * value);
+    const core::Vector x = state(s), rate = rates(x, 1e-3), f = core::duplicate(x.get()), df = core::duplicate(x.get());
+    s.residual(0.7, x.get(), rate.get(), f.get());
+    s.parameter_derivative(0.7, x.get(), rate.get(), df.get());
     const auto vector = [&s](const core::Vector& v) {
       const std::vector<double> all = s.gather(v.get());
       return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(all.data(), s.size()));
     };
     problem::Structure& blocks = *s.structure();
-    const Eigen::VectorXd at = vector(x), moving = vector(rate), wanted = vector(f);
+    const Eigen::VectorXd at = vector(x), moving = vector(rate), wanted = vector(df);
     problem::Films films;
     blocks.films(blocks.c() * at.head(blocks.size()), at.data() + blocks.size(), moving.data() + blocks.size(), true,
                  films);
     Eigen::VectorXd found;
     blocks.parameter_derivative(0.7, at, moving, films, found);
     EXPECT_LE((found - wanted).norm(), 1e-14 * wanted.norm());
+    const Eigen::Index n = blocks.size();
+    Eigen::VectorXd load, sum(at.size());
+    blocks.load(0.7, load);
+    sum << blocks.l1() * moving.head(n) + blocks.l0() * at.head(n) - load - blocks.b() * films.forces, films.residual;
+    EXPECT_LE((sum - vector(f)).norm(), 1e-12 * vector(f).norm());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "support/petsc_options.hpp"
+#include "support/stage_equations.hpp"
 #include "support/train_system.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -200,49 +201,13 @@ TEST(SharedFilms, OnPadsCarryTheSameEquilibrium) {
   }
 }
 
-// Of any rotor in several films: the equations that the system solves by the films' own preconditioners are those of
-// its Jacobian, on any number of ranks and with a preconditioner of another point.
-TEST(SharedFilms, FrozenEquationsAreTheJacobian) {
+// Of any rotor in several films with damped liners.
+TEST(SharedFilms, StagesAreSolvedByPreconditionersOfTheFilms) {
   system::Train train = test::train_on_liners({12, 5}, 0.05);
   film::as<film::Compliant>(train.supports[3].film).liner_damping = 1e-4;
   system::RotorSystem s(MPI_COMM_WORLD, train, 377);
-  core::Vector x = state_of(s), rest = core::duplicate(x.get()), scale = core::duplicate(x.get()),
-               rows = core::duplicate(x.get()), v = core::duplicate(x.get()), a = core::duplicate(x.get()),
-               b = core::duplicate(x.get()), sv = core::duplicate(x.get());
-  check(VecSet(rest.get(), 0));
-  s.scales(scale.get(), rows.get());
-  PetscInt begin = 0;
-  check(VecGetOwnershipRange(x.get(), &begin, nullptr));
-  {
-    const core::WriteArray va(v.get());
-    for (PetscInt i = 0; i < va.size(); ++i) va[i] = std::sin(1.3 * static_cast<double>((begin + i) * (begin + i)));
-  }
-  check(VecPointwiseMult(sv.get(), scale.get(), v.get()));
-  const double step = 3e-5;
-  const auto near = s.freeze(0, x.get(), rest.get(), 0.7 * step, 1, nullptr);
-  const auto frozen = s.freeze(0, x.get(), rest.get(), step, 1, near.get());
-  ASSERT_TRUE(frozen);
-  core::Matrix j = s.make_jacobian();
-  for (const bool all : {false, true}) {
-    s.jacobian(0, x.get(), rest.get(), all ? step : 0, 1, j.get());
-    check(MatMult(j.get(), sv.get(), b.get()));
-    check(VecPointwiseDivide(b.get(), b.get(), rows.get()));
-    if (all)
-      frozen->multiply(v.get(), a.get());
-    else
-      frozen->multiply_rates(v.get(), a.get());
-    double size = 0, difference = 0;
-    check(VecNorm(b.get(), NORM_INFINITY, &size));
-    check(VecAXPY(a.get(), -1, b.get()));
-    check(VecNorm(a.get(), NORM_INFINITY, &difference));
-    EXPECT_GT(size, 0);
-    EXPECT_LE(difference, 1e-11 * size) << all;
-  }
-  frozen->solve(b.get(), a.get(), 1e-12);
-  check(VecAXPY(a.get(), -1, v.get()));
-  double error = 0;
-  check(VecNorm(a.get(), NORM_INFINITY, &error));
-  EXPECT_LE(error, 1e-7);
+  core::Vector x = state_of(s);
+  test::expect_stage_is_solved(s, x.get(), 3e-5, 1e-7);
 }
 
 TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
@@ -263,9 +228,13 @@ TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
   const std::vector<double> by_fields = with(split);
   EXPECT_GT(tried, exact);  // blocks one after another are no solution
   const std::vector<double> by_mumps = with(test::by_mumps());
+  // Elimination without the films' own preconditioners, and where these do not serve.
+  const std::vector<double> parts_by_lu = with({{"-parts_pc_type", "lu"}}),
+                            given_up = with({{"-equilibrium_ksp_max_it", "1"}});
   for (std::size_t b = 0; b < alone.size(); ++b) {
     EXPECT_LT(alone[b], 0) << b;
-    for (const auto* other : {&elimination, &by_fields, &by_mumps}) EXPECT_NEAR((*other)[b], alone[b], 1e-12) << b;
+    for (const auto* other : {&elimination, &by_fields, &by_mumps, &parts_by_lu, &given_up})
+      EXPECT_NEAR((*other)[b], alone[b], 1e-12) << b;
   }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
-#include "whirl/problem/frozen.hpp"
+#include "whirl/problem/part_inverse.hpp"
 
 namespace whirl::problem {
 
@@ -69,12 +69,8 @@ public:
   /// states; these do not see each other. Not collective.
   [[nodiscard]] virtual std::vector<Field> fields() const { return {{"state", 0, local_size()}}; }
 
-  /// The linearised equations at (angle, x, xdot) if the system solves them itself, else nullptr (on all ranks). What
-  /// `similar`, made by this system and still alive, has prepared may be used again. They end with the system.
-  [[nodiscard]] virtual std::unique_ptr<Frozen> freeze(double /*angle*/, Vec /*x*/, Vec /*xdot*/, double /*alpha*/,
-                                                       double /*sigma*/, const Frozen* /*similar*/) {
-    return nullptr;
-  }
+  /// A new one where every part but the hub offers an approximate inverse, else null, on all ranks. Collective.
+  [[nodiscard]] virtual std::unique_ptr<PartInverse> make_part_inverse() { return nullptr; }
 
   /// Linear blocks and thin couplings if this rank holds the whole system (communicator of size 1) and it has them,
   /// else nullptr. Not collective.

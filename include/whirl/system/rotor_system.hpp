@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "whirl/core/entry_stream.hpp"
 #include "whirl/film/state_model.hpp"
 #include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
@@ -69,8 +70,7 @@ public:
   [[nodiscard]] std::vector<problem::Field> fields() const override;
   [[nodiscard]] problem::Structure* structure() override;
   /// Where every film with own states offers a preconditioner.
-  [[nodiscard]] std::unique_ptr<problem::Frozen> freeze(double angle, Vec x, Vec xdot, double alpha, double sigma,
-                                                        const problem::Frozen* similar) override;
+  [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override;
 
   /// Another train of the same shape (nodes, masters, pedestals, film meshes): parts whose numbers differ are made
   /// anew, the active parameter and the speed stay. If a part refuses its numbers, nothing changes. Collective.
@@ -161,7 +161,7 @@ private:
     std::vector<film::StateResponse> own;
   };
   class Blocks;
-  class FilmSolver;
+  class FilmInverse;
   struct Settling;
   /// Matrices of coordinates, pedestals behind the rotor.
   struct Matrices {
@@ -244,6 +244,7 @@ private:
   PetscInt n_own_ = 0, own_here_ = 0;                   // own states of films: all, on this rank
   Matrices matrices_;
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;  // constant parts of the Jacobian, made when first wanted
+  mutable core::EntryStream film_entries_;           // of the films in matrices of make_jacobian()'s pattern
   std::vector<double> load_;                         // gravity on this rank's coordinates [N]
   Unbalances unbalance_;
   std::vector<PetscInt> wanted_;  // entries of a state that gather_inputs() gathers
@@ -255,8 +256,6 @@ private:
   std::unique_ptr<Blocks> blocks_;
   std::unique_ptr<Slope> slope_;        // at this value of the parameter, made when first wanted
   std::unique_ptr<Settling> settling_;  // made when first wanted
-  std::unique_ptr<FilmSolver> film_solver_;
-  bool film_solver_tried_ = false;
 };
 
 }  // namespace whirl::system

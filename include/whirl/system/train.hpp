@@ -24,7 +24,6 @@ struct Support {
   double minimum_film = 0;  ///< film thickness below which journal and bearing touch [m]; 0 where there is no film
   bool has_pedestal = false;
   std::array<double, 2> mass{}, stiffness{}, damping{};  ///< of the pedestal in x and y [kg, N/m, N s/m]
-  friend bool operator==(const Support&, const Support&) = default;
 };
 
 /// An unbalance U at a node: force U Omega^2 (cos, sin)(angle + phase).
@@ -40,7 +39,6 @@ struct Train {
   double gravity = 9.81;  ///< along -y [m/s^2]
   std::vector<Support> supports;
   std::vector<UnbalanceMass> unbalance;
-  friend bool operator==(const Train&, const Train&) = default;
 };
 
 }  // namespace whirl::system

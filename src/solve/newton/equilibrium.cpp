@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "solve/newton/port_elimination.hpp"
+#include "solve/newton/port_krylov.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
@@ -140,33 +140,60 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
   factorised_ = false;
+  if (std::vector<problem::Field> parts = system_.fields(); !ports_ && PortElimination::serves(parts))
+    ports_ = std::make_unique<PortElimination>(std::move(parts), system_.make_part_inverse());
+  if (ports_ && ports_->inverse()) ports_->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
 }
 
+// Parts are eliminated by their own approximate inverses where all offer them, with a Krylov method around that.
 void EquilibriumProblem::factorise() {
   if (factorised_) return;
-  if (std::vector<problem::Field> parts = system_.fields(); PortElimination::serves(parts)) {
-    if (!ports_) ports_ = std::make_unique<PortElimination>(comm(), std::move(parts));
+  factorised_ = true;
+  exact_.reset();
+  if (ports_) {
     ports_->factorise(bordered_.get());
-    factorised_ = true;
+    if (ports_->inverse() && !krylov_)
+      krylov_ = std::make_unique<PortKrylov>(*ports_->blocks().layout(), "equilibrium_");
     return;
   }
   if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
   check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
   check(KSPSetUp(solver_.get()));
-  factorised_ = true;
+}
+
+// Of parts without approximate inverses, and for what these cannot do: transposes, and where they do not serve.
+PortElimination& EquilibriumProblem::exact() {
+  if (!ports_->inverse()) return *ports_;
+  if (!exact_) {
+    exact_ = std::make_unique<PortElimination>(system_.fields());
+    exact_->factorise(bordered_.get());
+  }
+  return *exact_;
+}
+
+void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
+  constexpr double tolerance = 1e-12;
+  if (transposed) return exact().solve_transposed(rhs, x);
+  if (krylov_ && !exact_) {
+    try {
+      (void)krylov_->solve(ports_->blocks(), *ports_, rhs, x, tolerance);
+      return;
+    } catch (const core::DomainError&) {  // agreed on: it did not come that far
+    }
+  }
+  exact().solve(rhs, x);
 }
 
 // A singular matrix gives infinite answers, as those of MUMPS alone, which Newton's method and GMRES recognise.
 void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
   try {
     factorise();
-    if (!ports_)
-      check(transposed ? KSPSolveTranspose(solver_.get(), rhs, x) : KSPSolve(solver_.get(), rhs, x));
-    else if (transposed)
-      ports_->solve_transposed(rhs, x);
+    if (ports_)
+      solve_by_parts(transposed, rhs, x);
     else
-      ports_->solve(rhs, x);
+      check(transposed ? KSPSolveTranspose(solver_.get(), rhs, x) : KSPSolve(solver_.get(), rhs, x));
   } catch (const core::NotConverged&) {
+    factorised_ = false;
     check(VecSetInf(x));
   }
 }

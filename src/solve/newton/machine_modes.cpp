@@ -35,7 +35,7 @@ constexpr int most_regions = 6;
 // as a film.
 class ByPorts final : public spectral::ShiftInverse {
 public:
-  ByPorts(MPI_Comm comm, const std::vector<problem::Field>& fields) : ports_(comm, fields) {}
+  explicit ByPorts(const std::vector<problem::Field>& fields) : ports_(fields) {}
   void factorise(Mat a) override { ports_.factorise(a); }
   void solve(Vec rhs, Vec x) override { ports_.solve(rhs, x); }
 
@@ -47,7 +47,7 @@ std::vector<spectral::Mode> whole_modes(problem::System& system, Vec x, spectral
   const std::vector<problem::Field> fields = system.fields();
   if (system.size() <= options.dense_below || !PortElimination::serves(fields))
     return spectral::modes(system, x, options);
-  ByPorts inverse(system.comm(), fields);
+  ByPorts inverse(fields);
   options.inverse = &inverse;
   return spectral::modes(system, x, options);
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solve/newton/thin.hpp"
+#include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 
@@ -15,243 +15,224 @@ using Eigen::VectorXd;
 
 namespace {
 
+[[noreturn]] void fail() {
+  throw core::NotConverged("the linearised equations of the parts are singular");
+}
+
 // Fails like a factorisation whose answer is of no use.
 void require_answer(KSP ksp) {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp, &reason));
-  if (reason < 0) throw core::NotConverged("the linearised equations of the parts are singular");
+  if (reason < 0) fail();
 }
 
 }  // namespace
 
-PortElimination::PortElimination(MPI_Comm comm, const std::vector<problem::Field>& fields)
-    : comm_(comm), fields_(problem::parts_of(fields)) {
+PortElimination::PortElimination(std::vector<problem::Field> fields, std::unique_ptr<problem::PartInverse> inverse)
+    : fields_(std::move(fields)), inverse_(std::move(inverse)) {
   core::require(serves(fields_), "parts that elimination keeps apart");
 }
 
-std::size_t PortElimination::part_of(PetscInt row) const {
-  return static_cast<std::size_t>(std::upper_bound(part_ends_.begin(), part_ends_.end(), row) - part_ends_.begin());
+PetscErrorCode PortElimination::shell_apply(PC pc, Vec r, Vec y) {
+  void* raw = nullptr;
+  PetscCall(PCShellGetContext(pc, &raw));
+  auto& self = *static_cast<PortElimination*>(raw);
+  return self.gate_->run([&] {
+    const core::ReadArray ra(r);
+    const core::WriteArray ya(y);
+    self.inverse_->apply(ra.data(), ya.data());
+  });
 }
 
-void PortElimination::make_layout(Mat a) {
-  PetscInt local = 0;
-  check(MatGetLocalSize(a, &local, nullptr));
-  const PetscInt first = first_row(a);
-  std::vector<PetscInt> hub, parts;
-  std::vector<bool> taken(static_cast<std::size_t>(local), false);
-  for (std::size_t f = 1; f < fields_.size(); ++f) {
-    for (PetscInt i = fields_[f].begin; i < fields_[f].end; ++i) {
-      parts.push_back(first + i);
-      taken[static_cast<std::size_t>(i)] = true;
-    }
-    part_ends_.push_back(static_cast<PetscInt>(parts.size()));
-  }
-  for (PetscInt i = 0; i < local; ++i)
-    if (!taken[static_cast<std::size_t>(i)]) hub.push_back(first + i);
-  const auto set = [&](const std::vector<PetscInt>& rows, core::IndexSet& is) {
-    check(ISCreateGeneral(comm_, static_cast<PetscInt>(rows.size()), rows.data(), PETSC_COPY_VALUES, is.put()));
-  };
-  set(hub, hub_rows_);
-  set(parts, part_rows_);
-  core::Vector whole = core::make_vector(comm_, local, PETSC_DETERMINE);
-  part_rhs_ = core::make_vector(comm_, static_cast<PetscInt>(parts.size()), PETSC_DETERMINE);
+void PortElimination::make_solvers() {
+  const MPI_Comm comm = layout_->comm();
+  gate_ = std::make_unique<core::Gate>(comm);
+  part_rhs_ = core::make_vector(comm, layout_->parts(), PETSC_DETERMINE);
   part_answer_ = core::duplicate(part_rhs_.get());
-  hub_rhs_ = core::make_vector(comm_, static_cast<PetscInt>(hub.size()), PETSC_DETERMINE);
+  all_hub_.setZero(layout_->whole_hub());
+  check(KSPCreate(comm, part_solver_.put()));
+  KSP ksp = part_solver_.get();
+  PC pc = nullptr;
+  check(KSPSetOptionsPrefix(ksp, "parts_"));
+  core::make_direct(ksp);
+  check(KSPGetPC(ksp, &pc));
+  if (inverse_) {
+    check(PCSetType(pc, PCSHELL));
+    check(PCShellSetContext(pc, this));
+    check(PCShellSetApply(pc, shell_apply));
+  }
+  check(KSPSetFromOptions(ksp));
+  PetscBool lu = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCLU, &lu));
+  if (MatSolverType by = nullptr; lu) {
+    check(PCFactorGetMatSolverType(pc, &by));
+    if (!by) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  }
+  PetscBool shell = PETSC_FALSE, once = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCSHELL, &shell));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &once));
+  by_inverse_ = shell && once;
+
+  hub_alone_ = inverse_ && (layout_->hub() == 0 || layout_->hub() == layout_->whole_hub());
+  MPI_Allreduce(MPI_IN_PLACE, &hub_alone_, 1, MPI_CXX_BOOL, MPI_LAND, comm);
+  const MPI_Comm hub_comm = hub_alone_ ? PETSC_COMM_SELF : comm;
+  hub_rhs_ = core::make_vector(hub_comm, layout_->hub(), PETSC_DETERMINE);
   hub_answer_ = core::duplicate(hub_rhs_.get());
-  check(VecScatterCreate(whole.get(), part_rows_.get(), part_rhs_.get(), nullptr, part_scatter_.put()));
-  check(VecScatterCreate(whole.get(), hub_rows_.get(), hub_rhs_.get(), nullptr, hub_scatter_.put()));
+  check(KSPCreate(hub_comm, hub_solver_.put()));
+  check(KSPSetOptionsPrefix(hub_solver_.get(), "hub_"));
+  core::make_direct(hub_solver_.get());
+  if (hub_alone_) {
+    check(KSPGetPC(hub_solver_.get(), &pc));
+    check(PCFactorSetMatSolverType(pc, MATSOLVERKLU));
+  }
+  check(KSPSetFromOptions(hub_solver_.get()));
 }
 
-// Ports get the colours of a map: those that share a part differ.
-void PortElimination::find_ports() {
-  PetscInt n_hub = 0;
-  check(VecGetSize(hub_rhs_.get(), &n_hub));
-  std::vector<std::uint64_t> seen(static_cast<std::size_t>(n_hub), 0);
-  for_rows(to_parts_.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar*, PetscInt count) {
-    for (PetscInt k = 0; k < count; ++k) seen[static_cast<std::size_t>(columns[k])] |= std::uint64_t{1} << part_of(i);
-  });
-  std::vector<int> couples(static_cast<std::size_t>(n_hub), 0);
-  const PetscInt first = first_row(to_hub_.get());
-  for_rows(to_hub_.get(), [&](PetscInt i, const PetscInt*, const PetscScalar*, PetscInt count) {
-    couples[static_cast<std::size_t>(first + i)] = count > 0;
-  });
-  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(n_hub), MPI_UINT64_T, MPI_BOR, comm_);
-  MPI_Allreduce(MPI_IN_PLACE, couples.data(), static_cast<int>(n_hub), MPI_INT, MPI_MAX, comm_);
-  std::vector<std::uint64_t> used;
-  port_of_.assign(fields_.size() - 1, {});
-  for (PetscInt c = 0; c < n_hub; ++c) {
-    if (couples[static_cast<std::size_t>(c)]) coupled_.push_back(c);
-    const std::uint64_t mask = seen[static_cast<std::size_t>(c)];
-    if (mask == 0) continue;
-    const auto free = std::find_if(used.begin(), used.end(), [&](std::uint64_t u) { return (u & mask) == 0; });
-    const auto colour = free - used.begin();
-    if (free == used.end()) used.push_back(0);
-    used[static_cast<std::size_t>(colour)] |= mask;
-    colour_.push_back(static_cast<int>(colour));
-    ports_.push_back(c);
+void PortElimination::solve_columns(const PortMatrix& blocks) {
+  const PortLayout& l = *layout_;
+  const MatrixXd& g = blocks.to_parts();
+  x_.resize(g.rows(), g.cols());
+  if (by_inverse_) {
+    for (Index c = 0; c < g.cols(); ++c) inverse_->apply(g.col(c).data(), x_.col(c).data());
+    return;
   }
-  colours_ = static_cast<int>(used.size());
-  for (auto& of : port_of_) of.assign(used.size(), -1);
-  for (std::size_t k = 0; k < ports_.size(); ++k)
-    for (std::size_t p = 0; p < port_of_.size(); ++p)
-      if (seen[static_cast<std::size_t>(ports_[k])] >> p & 1)
-        port_of_[p][static_cast<std::size_t>(colour_[k])] = static_cast<int>(k);
-}
-
-void PortElimination::solve_columns() {
-  const PetscInt local = part_ends_.empty() ? 0 : part_ends_.back();
-  x_.resize(local, colours_);
-  if (!columns_) {
-    for (core::Matrix* m : {&columns_, &answers_})
-      check(MatCreateDense(comm_, local, PETSC_DECIDE, PETSC_DETERMINE, colours_, nullptr, m->put()));
-    for (std::size_t k = 0; k < ports_.size(); ++k) colour_of_[ports_[k]] = colour_[k];
-  }
-  const auto with_array = [&](Mat m, auto&& use) {
-    PetscScalar* a = nullptr;
-    PetscInt stride = 0;
-    check(MatDenseGetArray(m, &a));
-    check(MatDenseGetLDA(m, &stride));
-    use(Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(a, local, colours_, Eigen::OuterStride<>(stride)));
-    check(MatDenseRestoreArray(m, &a));
-  };
-  with_array(columns_.get(), [&](auto g) {
-    g.setZero();
-    for_rows(to_parts_.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
-      for (PetscInt k = 0; k < count; ++k) g(i, colour_of_.at(columns[k])) += values[k];
-    });
-  });
-  check(KSPMatSolve(part_solver_.get(), columns_.get(), answers_.get()));
+  core::Matrix columns, answers;
+  for (const auto& [m, data] : {std::pair{&columns, const_cast<double*>(g.data())}, std::pair{&answers, x_.data()}})
+    check(MatCreateDense(l.comm(), l.parts(), PETSC_DECIDE, PETSC_DETERMINE, l.colours(), data, m->put()));
+  gate_->rethrow(KSPMatSolve(part_solver_.get(), columns.get(), answers.get()));
   require_answer(part_solver_.get());
-  with_array(answers_.get(), [&](auto x) { x_ = x; });
 }
 
-// Calls f(rows of a part here, its first row, port, column of X) for all ports of all parts.
-template <class F>
-void PortElimination::for_ports(F&& f) const {
-  PetscInt begin = 0;
-  for (std::size_t p = 0; p < part_ends_.size(); ++p) {
-    for (int c = 0; c < colours_; ++c)
-      if (const int k = port_of_[p][static_cast<std::size_t>(c)]; k >= 0) f(begin, part_ends_[p] - begin, k, c);
-    begin = part_ends_[p];
-  }
-}
-
-void PortElimination::form_hub() {
-  core::Matrix transposed;
-  check(MatTranspose(to_hub_.get(), MAT_INITIAL_MATRIX, transposed.put()));
-  from_parts_ = thin(transposed.get(), coupled_);
-  const auto place = [&](PetscInt row) {  // among the coupled rows, or their number
-    const auto at = std::lower_bound(coupled_.begin(), coupled_.end(), row);
-    return at != coupled_.end() && *at == row ? at - coupled_.begin() : static_cast<Index>(coupled_.size());
-  };
-  const auto n_coupled = static_cast<Index>(coupled_.size()), n_ports = static_cast<Index>(ports_.size());
+void PortElimination::form_hub(const PortMatrix& blocks) {
+  const PortLayout& l = *layout_;
+  const auto n_coupled = static_cast<Index>(l.coupled().size()), n_ports = static_cast<Index>(l.ports().size());
+  from_parts_ = blocks.from_parts();
   MatrixXd product = MatrixXd::Zero(n_coupled, n_ports);
-  for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {
+  l.for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {
     product.col(port).noalias() +=
         from_parts_.middleRows(begin, rows).transpose() * x_.col(colour).segment(begin, rows);
   });
-  MPI_Allreduce(MPI_IN_PLACE, product.data(), static_cast<int>(product.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, product.data(), static_cast<int>(product.size()), MPI_DOUBLE, MPI_SUM, l.comm());
 
-  const PetscInt first = first_row(hub_.get());
+  const PetscInt first = l.first_of_hub();
   if (!schur_) {
-    PetscInt local = 0;
-    check(MatGetLocalSize(hub_.get(), &local, nullptr));
-    std::vector<PetscInt> count(static_cast<std::size_t>(local), 0);
-    for_rows(hub_.get(), [&](PetscInt i, const PetscInt*, const PetscScalar*, PetscInt k) {
-      const bool couples = std::binary_search(coupled_.begin(), coupled_.end(), first + i);
-      count[static_cast<std::size_t>(i)] = k + (couples ? static_cast<PetscInt>(n_ports) : 0);
-    });
-    schur_ = core::make_matrix(comm_, local, std::move(count));
+    std::vector<PetscInt> count(static_cast<std::size_t>(l.hub()), 0);
+    blocks.for_hub([&](PetscInt row, PetscInt, double) { ++count[static_cast<std::size_t>(row - first)]; });
+    for (const PetscInt row : l.coupled())
+      if (row >= first && row < first + l.hub())
+        count[static_cast<std::size_t>(row - first)] += static_cast<PetscInt>(n_ports);
+    schur_ = core::make_matrix(hub_alone_ ? PETSC_COMM_SELF : l.comm(), l.hub(), std::move(count));
   }
   check(MatZeroEntries(schur_.get()));
-  std::vector<PetscScalar> row(static_cast<std::size_t>(n_ports));
-  for_rows(hub_.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
-    const PetscInt global = first + i;
-    check(MatSetValues(schur_.get(), 1, &global, count, columns, values, ADD_VALUES));
-    if (const Index at = place(global); at < n_coupled) {
-      for (Index k = 0; k < n_ports; ++k) row[static_cast<std::size_t>(k)] = -product(at, k);
-      check(MatSetValues(schur_.get(), 1, &global, static_cast<PetscInt>(n_ports), ports_.data(), row.data(),
-                         ADD_VALUES));
-    }
+  blocks.for_hub([&](PetscInt row, PetscInt column, double value) {
+    check(MatSetValue(schur_.get(), row, column, value, ADD_VALUES));
   });
+  std::vector<PetscScalar> row(static_cast<std::size_t>(n_ports));
+  for (Index k = 0; k < n_coupled; ++k) {
+    const PetscInt at = l.coupled()[static_cast<std::size_t>(k)];
+    if (at < first || at >= first + l.hub()) continue;
+    for (Index p = 0; p < n_ports; ++p) row[static_cast<std::size_t>(p)] = -product(k, p);
+    check(MatSetValues(schur_.get(), 1, &at, static_cast<PetscInt>(n_ports), l.ports().data(), row.data(), ADD_VALUES));
+  }
   check(MatAssemblyBegin(schur_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(schur_.get(), MAT_FINAL_ASSEMBLY));
 }
 
 void PortElimination::factorise(Mat a) {
-  const bool first = !parts_;
-  if (first) make_layout(a);
-  const auto block = [&](const core::IndexSet& rows, const core::IndexSet& columns, core::Matrix& m) {
-    Mat raw = m.get();
-    check(MatCreateSubMatrix(a, rows.get(), columns.get(), first ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX,
-                             first ? m.put() : &raw));
-  };
-  block(part_rows_, part_rows_, parts_);
-  block(part_rows_, hub_rows_, to_parts_);
-  block(hub_rows_, part_rows_, to_hub_);
-  block(hub_rows_, hub_rows_, hub_);
-  if (first) {
-    find_ports();
-    part_solver_ = core::make_direct_solver(comm_, "parts_");
-    hub_solver_ = core::make_direct_solver(comm_, "hub_");
+  if (!blocks_) blocks_ = std::make_unique<PortMatrix>(std::make_shared<const PortLayout>(a, fields_));
+  blocks_->take(a);
+  factorise(a, *blocks_);
+}
+
+void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
+  layout_ = blocks.layout();
+  if (!part_solver_) make_solvers();
+  if (!by_inverse_) {
+    const bool first = !parts_;
+    Mat raw = parts_.get();
+    IS rows = layout_->part_rows().get();
+    check(
+        MatCreateSubMatrix(a, rows, rows, first ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, first ? parts_.put() : &raw));
+    check(KSPSetOperators(part_solver_.get(), parts_.get(), parts_.get()));
   }
-  check(KSPSetOperators(part_solver_.get(), parts_.get(), parts_.get()));
-  solve_columns();
-  form_hub();
+  solve_columns(blocks);
+  form_hub(blocks);
   check(KSPSetOperators(hub_solver_.get(), schur_.get(), schur_.get()));
-  check(KSPSetUp(hub_solver_.get()));
+  if (!hub_alone_) {
+    check(KSPSetUp(hub_solver_.get()));
+    return;
+  }
+  core::agree(layout_->comm(), [&] {
+    try {
+      if (layout_->hub() > 0) check(KSPSetUp(hub_solver_.get()));
+    } catch (const core::LibraryError&) {  // which is how KLU tells
+      fail();
+    }
+  });
+}
+
+// hub_answer_, and all of it on every rank.
+void PortElimination::solve_hub(bool transposed) {
+  KSP ksp = hub_solver_.get();
+  if (!hub_alone_ || layout_->hub() > 0)
+    check(transposed ? KSPSolveTranspose(ksp, hub_rhs_.get(), hub_answer_.get())
+                     : KSPSolve(ksp, hub_rhs_.get(), hub_answer_.get()));
+  if (!hub_alone_) require_answer(ksp);
+  const core::ReadArray a(hub_answer_.get());
+  layout_->share(a.data(), all_hub_);
+}
+
+void PortElimination::take_from_hub(const std::vector<PetscInt>& rows) {
+  if (core::size_of(layout_->comm()) > 1)
+    MPI_Allreduce(MPI_IN_PLACE, shares_.data(), static_cast<int>(shares_.size()), MPI_DOUBLE, MPI_SUM, layout_->comm());
+  const core::WriteArray a(hub_rhs_.get());
+  const PetscInt first = layout_->first_of_hub();
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (rows[k] >= first && rows[k] < first + a.size()) a[rows[k] - first] -= shares_(static_cast<Index>(k));
+}
+
+// part_answer_ = A_pp^-1 part_rhs_, or with the transpose.
+void PortElimination::solve_parts(bool transposed) {
+  if (by_inverse_ && !transposed) {
+    const core::ReadArray r(part_rhs_.get());
+    const core::WriteArray y(part_answer_.get());
+    inverse_->apply(r.data(), y.data());
+    return;
+  }
+  KSP ksp = part_solver_.get();
+  gate_->rethrow(transposed ? KSPSolveTranspose(ksp, part_rhs_.get(), part_answer_.get())
+                            : KSPSolve(ksp, part_rhs_.get(), part_answer_.get()));
+  require_answer(ksp);
 }
 
 void PortElimination::take(Vec whole) {
-  check(VecScatterBegin(part_scatter_.get(), whole, part_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(part_scatter_.get(), whole, part_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterBegin(hub_scatter_.get(), whole, hub_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(hub_scatter_.get(), whole, hub_rhs_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  const core::ReadArray from(whole);
+  const core::WriteArray parts(part_rhs_.get()), hub(hub_rhs_.get());
+  layout_->take(from.data(), parts.data(), hub.data());
 }
 
-void PortElimination::give(Vec whole) {
-  check(VecScatterBegin(part_scatter_.get(), part_answer_.get(), whole, INSERT_VALUES, SCATTER_REVERSE));
-  check(VecScatterEnd(part_scatter_.get(), part_answer_.get(), whole, INSERT_VALUES, SCATTER_REVERSE));
-  check(VecScatterBegin(hub_scatter_.get(), hub_answer_.get(), whole, INSERT_VALUES, SCATTER_REVERSE));
-  check(VecScatterEnd(hub_scatter_.get(), hub_answer_.get(), whole, INSERT_VALUES, SCATTER_REVERSE));
-}
-
-VectorXd PortElimination::hub_values(const std::vector<PetscInt>& rows) const {
-  VectorXd out = VectorXd::Zero(static_cast<Index>(rows.size()));
-  const core::ReadArray a(hub_answer_.get());
-  PetscInt first = 0;
-  check(VecGetOwnershipRange(hub_answer_.get(), &first, nullptr));
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (rows[k] >= first && rows[k] < first + a.size()) out(static_cast<Index>(k)) = a[rows[k] - first];
-  MPI_Allreduce(MPI_IN_PLACE, out.data(), static_cast<int>(out.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  return out;
-}
-
-void PortElimination::take_from_hub(const std::vector<PetscInt>& rows, VectorXd shares) const {
-  MPI_Allreduce(MPI_IN_PLACE, shares.data(), static_cast<int>(shares.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  const core::WriteArray a(hub_rhs_.get());
-  PetscInt first = 0;
-  check(VecGetOwnershipRange(hub_rhs_.get(), &first, nullptr));
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (rows[k] >= first && rows[k] < first + a.size()) a[rows[k] - first] -= shares(static_cast<Index>(k));
+void PortElimination::give(Vec whole) const {
+  const core::ReadArray parts(part_answer_.get()), hub(hub_answer_.get());
+  const core::WriteArray to(whole);
+  layout_->give(parts.data(), hub.data(), to.data());
 }
 
 void PortElimination::solve(Vec rhs, Vec x) {
+  const PortLayout& l = *layout_;
   take(rhs);
-  check(KSPSolve(part_solver_.get(), part_rhs_.get(), part_answer_.get()));
-  require_answer(part_solver_.get());
+  solve_parts(false);
   {
     const core::ReadArray y(part_answer_.get());
-    take_from_hub(coupled_, from_parts_.transpose() * Eigen::Map<const VectorXd>(y.data(), y.size()));
+    shares_.noalias() = from_parts_.transpose() * Eigen::Map<const VectorXd>(y.data(), y.size());
   }
-  check(KSPSolve(hub_solver_.get(), hub_rhs_.get(), hub_answer_.get()));
-  require_answer(hub_solver_.get());
-  const VectorXd at_ports = hub_values(ports_);
+  take_from_hub(l.coupled());
+  solve_hub(false);
   {
     const core::WriteArray a(part_answer_.get());
     Eigen::Map<VectorXd> y(a.data(), a.size());
-    for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
-      y.segment(first, rows) -= at_ports(port) * x_.col(colour).segment(first, rows);
+    l.for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
+      y.segment(first, rows) -=
+          all_hub_(l.ports()[static_cast<std::size_t>(port)]) * x_.col(colour).segment(first, rows);
     });
   }
   give(x);
@@ -259,25 +240,25 @@ void PortElimination::solve(Vec rhs, Vec x) {
 
 // x_p = A_pp^-T (b_p - F^T x_h),   (A_h - F X)^T x_h = b_h - X^T b_p
 void PortElimination::solve_transposed(Vec rhs, Vec x) {
+  const PortLayout& l = *layout_;
   take(rhs);
-  VectorXd seen = VectorXd::Zero(static_cast<Index>(ports_.size()));
   {
     const core::ReadArray a(part_rhs_.get());
     const Eigen::Map<const VectorXd> b(a.data(), a.size());
-    for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
-      seen(port) += x_.col(colour).segment(first, rows).dot(b.segment(first, rows));
+    shares_.setZero(static_cast<Index>(l.ports().size()));
+    l.for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
+      shares_(port) += x_.col(colour).segment(first, rows).dot(b.segment(first, rows));
     });
   }
-  take_from_hub(ports_, seen);
-  check(KSPSolveTranspose(hub_solver_.get(), hub_rhs_.get(), hub_answer_.get()));
-  require_answer(hub_solver_.get());
-  const VectorXd forces = hub_values(coupled_);
+  take_from_hub(l.ports());
+  solve_hub(true);
   {
     const core::WriteArray a(part_rhs_.get());
-    Eigen::Map<VectorXd>(a.data(), a.size()) -= from_parts_ * forces;
+    Eigen::Map<VectorXd> b(a.data(), a.size());
+    for (std::size_t k = 0; k < l.coupled().size(); ++k)
+      b -= all_hub_(l.coupled()[k]) * from_parts_.col(static_cast<Index>(k));
   }
-  check(KSPSolveTranspose(part_solver_.get(), part_rhs_.get(), part_answer_.get()));
-  require_answer(part_solver_.get());
+  solve_parts(true);
   give(x);
 }
 

@@ -2,11 +2,11 @@
 // Block elimination of the parts of a machine on their ports.
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <map>
-#include <string>
+#include <memory>
 #include <vector>
 
+#include "solve/newton/port_matrix.hpp"
+#include "whirl/core/gate.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/system.hpp"
 
@@ -17,12 +17,12 @@ namespace whirl::solve {
 ///     [ A_pp  G   ] [ x_p ]   [ b_p ]     X = A_pp^-1 G
 ///     [ F     A_h ] [ x_h ] = [ b_h ]     (A_h - F X) x_h = b_h - F A_pp^-1 b_p,   x_p = A_pp^-1 b_p - X x_h
 ///
-/// A part sees few unknowns of the hub, its ports, and the border column: G has few columns. F is held as F^T, spread
-/// like the parts, so that products with it are local; the assembled matrix has the rows of F on the hub's rank.
-/// Columns of G that no part sees both of share one right-hand side. A_pp is solved by a KSP with prefix "parts_"
-/// (MUMPS, all parts at once), what is left on the hub by one with prefix "hub_" (MUMPS). A_pp has to be regular: films
-/// at given motions are. factorise() and the solves throw core::NotConverged, on all ranks, if a matrix is singular.
-/// All members are collective on the communicator of the matrix.
+/// A_pp is solved by a KSP with prefix "parts_", what is left on the hub by one with prefix "hub_", both by MUMPS. With
+/// approximate inverses of the parts in place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a
+/// Krylov method around it, or take another preconditioner) it is a preconditioner; a hub on one rank then goes to KLU,
+/// because it is asked for often. A_pp has to be regular: films at given motions are. factorise() and the solves throw
+/// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the communicator of the
+/// matrix.
 class PortElimination {
 public:
   /// Whether there are parts, and no more of them than this keeps apart (63).
@@ -31,46 +31,45 @@ public:
     return parts > 1 && parts <= 64;
   }
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
-  PortElimination(MPI_Comm comm, const std::vector<problem::Field>& fields);
+  /// `inverse` of the parts may be null.
+  explicit PortElimination(std::vector<problem::Field> fields, std::unique_ptr<problem::PartInverse> inverse = nullptr);
 
   /// `a` has the same pattern in every call.
   void factorise(Mat a);
+  /// The same of a matrix that is in its blocks already.
+  void factorise(Mat a, const PortMatrix& blocks);
+  /// The blocks of the matrix of factorise(a).
+  [[nodiscard]] const PortMatrix& blocks() const { return *blocks_; }
+  /// The approximate inverses, for the caller to set() before factorise(); null where there are none.
+  [[nodiscard]] problem::PartInverse* inverse() const { return inverse_.get(); }
   void solve(Vec rhs, Vec x);
+  /// Of matrices whose parts are solved by MUMPS or by another preconditioner with a transpose.
   void solve_transposed(Vec rhs, Vec x);
 
 private:
-  void make_layout(Mat a);
-  void find_ports();
-  void solve_columns();
-  void form_hub();
-  /// The part of a local row of the parts.
-  [[nodiscard]] std::size_t part_of(PetscInt row) const;
-  /// Between a vector and its entries of parts and hub: into part_rhs_, hub_rhs_; from part_answer_, hub_answer_.
+  void make_solvers();
+  void solve_columns(const PortMatrix& blocks);
+  void form_hub(const PortMatrix& blocks);
   void take(Vec whole);
-  void give(Vec whole);
-  /// Entries of hub_answer_, on every rank.
-  [[nodiscard]] Eigen::VectorXd hub_values(const std::vector<PetscInt>& rows) const;
-  /// hub_rhs_ -= the sum over the ranks of their shares.
-  void take_from_hub(const std::vector<PetscInt>& rows, Eigen::VectorXd shares) const;
-  template <class F>
-  void for_ports(F&& f) const;
+  void give(Vec whole) const;
+  void solve_parts(bool transposed);
+  void solve_hub(bool transposed);
+  /// hub_rhs_ -= shares_, summed over the ranks, in these rows.
+  void take_from_hub(const std::vector<PetscInt>& rows);
+  static PetscErrorCode shell_apply(PC pc, Vec r, Vec y);
 
-  MPI_Comm comm_;
   std::vector<problem::Field> fields_;
-  core::IndexSet hub_rows_, part_rows_;
-  core::Matrix parts_, to_parts_, to_hub_, hub_, schur_;  // A_pp, G, F, A_h, A_h - F X
+  std::unique_ptr<problem::PartInverse> inverse_;
+  std::shared_ptr<const PortLayout> layout_;
+  std::unique_ptr<PortMatrix> blocks_;  // of factorise(a)
+  bool by_inverse_ = false;             // parts by one application of the inverse, without a matrix
+  bool hub_alone_ = false;              // the hub is solved by the rank that holds all of it
+  core::Matrix parts_, schur_;          // A_pp, A_h - F X
   core::Vector part_rhs_, part_answer_, hub_rhs_, hub_answer_;
-  core::Scatter part_scatter_, hub_scatter_;
   core::LinearSolver part_solver_, hub_solver_;
-  std::vector<PetscInt> ports_, coupled_;  // hub unknowns that parts see; hub rows that see parts: numbers in the hub
-  std::vector<int> colour_;                // of each port
-  std::vector<std::vector<int>> port_of_;  // [part][colour]: place among the ports, -1 for none
-  std::map<PetscInt, int> colour_of_;      // of a hub unknown
-  int colours_ = 0;
-  core::Matrix columns_, answers_;   // right-hand sides by colour, and X
-  std::vector<PetscInt> part_ends_;  // local rows of the parts, part by part
-  Eigen::MatrixXd x_;                // X in colours [local x colours]
-  Eigen::MatrixXd from_parts_;       // F^T [local x coupled]
+  Eigen::MatrixXd x_, from_parts_;    // X [parts x colours], F^T [parts x coupled]
+  Eigen::VectorXd shares_, all_hub_;  // work space: of one rank; the hub's answer
+  std::unique_ptr<core::Gate> gate_;
 };
 
 }  // namespace whirl::solve

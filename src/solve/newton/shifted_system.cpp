@@ -65,7 +65,7 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
       f.begin *= 2;
       f.end *= 2;
     }
-    if (!ports_) ports_ = std::make_unique<PortElimination>(system_.comm(), std::move(fields));
+    if (!ports_) ports_ = std::make_unique<PortElimination>(std::move(fields));
     ports_->factorise(matrix_.get());
     return;
   }

@@ -43,6 +43,7 @@ SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, boo
   system.scales(state_scale_.get(), residual_inverse_.get());
   check(VecReciprocal(residual_inverse_.get()));
   for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(x_.get()));
+  parts_ = PortStages::make(system);
   if (constant_rates) structured_ = StructuredRate::make(system);
   if (structured_ && !tableau_.is_explicit() && !structured_->narrow()) structured_.reset();
 }
@@ -68,7 +69,17 @@ void SparseRungeKutta::jacobian(double angle, Vec x, Vec k, double alpha, double
 }
 
 // Making a matrix costs more than filling a small one: where only its product with the inverse is kept, one serves all.
-StageProduct SparseRungeKutta::product_at(double angle, Vec x, Vec k, std::shared_ptr<const StageSolver> solver) {
+StageProduct SparseRungeKutta::product_at(double angle, Vec x, Vec k, double own,
+                                          std::shared_ptr<const StageSolver> solver) {
+  if (solver->blocks() && own != 0) {
+    std::shared_ptr<const PortMatrix> rates = rate_blocks_;
+    if (!rates) {
+      jacobian(angle, x, k, 0, 1, scratch_);
+      rates = parts_->blocks(scratch_.get());
+      if (constant_rates_) rate_blocks_ = rates;
+    }
+    return {std::move(solver), std::move(rates), own, x};
+  }
   if (solver->entrywise() && core::size_of(system_.comm()) == 1) {
     jacobian(angle, x, k, 1, 0, scratch_);
     return {scratch_.get(), std::move(solver)};
@@ -81,54 +92,34 @@ StageProduct SparseRungeKutta::product_at(double angle, Vec x, Vec k, std::share
 std::shared_ptr<const StageSolver> SparseRungeKutta::solver_at(double angle, Vec x, Vec k, double own) {
   const bool kept = own == 0 && constant_rates_;
   if (kept && rates_) return rates_;
+  std::shared_ptr<const StageSolver> solver;
+  if (own != 0 && parts_) {
+    jacobian(angle, x, k, own, 1, scratch_);
+    return parts_->solver(scratch_.get(), angle, x_.get(), k_.get(), own);
+  }
   core::Matrix matrix;
   jacobian(angle, x, k, own, 1, matrix);
-  auto solver = std::make_shared<const StageSolver>(std::move(matrix));
+  if (parts_ && !StageSolver::entrywise(matrix.get()))
+    solver = parts_->solver(matrix.get(), angle, x_.get(), k_.get(), own);
+  else
+    solver = std::make_shared<const StageSolver>(std::move(matrix));
   if (kept) rates_ = solver;
   return solver;
 }
 
-std::shared_ptr<const problem::Frozen> SparseRungeKutta::freeze(double angle, Vec x, Vec k, double own) {
-  check(VecPointwiseMult(x_.get(), x, state_scale_.get()));
-  check(VecPointwiseMult(k_.get(), k, state_scale_.get()));
-  return system_.freeze(angle, x_.get(), k_.get(), own, 1, frozen_.get());
-}
-
-// By chords: the equations stay frozen while every correction is at most a fifth of the last one.
-bool SparseRungeKutta::solve_frozen_stage(double angle, double own, Vec base, Vec k) {
-  constexpr double tolerance = 1e-5;
+// By chords: a matrix stays while every correction is at most a fifth of the last one.
+std::shared_ptr<const StageSolver> SparseRungeKutta::solve_stage(double angle, double own, Vec base, Vec k) {
+  const double tolerance = own == 0 ? 1e-13 : 1e-5;
   double size = 0, correction = 0, last = 0;
   check(VecNorm(base, NORM_INFINITY, &size));
-  std::shared_ptr<const problem::Frozen> frozen;
+  std::shared_ptr<const StageSolver> solver;
   for (int it = 0;; ++it) {
     check(VecWAXPY(value_.get(), own, k, base));
     residual(angle, value_.get(), k, f_.get());
-    if (!frozen || (it > 1 && correction > 0.2 * last)) {
-      frozen = freeze(angle, value_.get(), k, own);
-      if (!frozen) return false;
-      frozen_ = frozen;
-    }
-    frozen->solve(f_.get(), d_.get(), tolerance);
+    if (!solver || (it > 1 && correction > 0.2 * last)) solver = solver_at(angle, value_.get(), k, own);
+    solver->solve(f_.get(), d_.get(), tolerance);
     check(VecAXPY(k, -1, d_.get()));
     last = correction;
-    check(VecNorm(d_.get(), NORM_INFINITY, &correction));
-    if (!std::isfinite(correction)) fail();
-    if (own * correction <= 1e-9 * (1 + size)) return true;
-    if (it == 20) fail();
-  }
-}
-
-// F(angle, base + own k, k) = 0.
-std::shared_ptr<const StageSolver> SparseRungeKutta::solve_stage(double angle, double own, Vec base, Vec k) {
-  if (own != 0 && solve_frozen_stage(angle, own, base, k)) return nullptr;
-  double size = 0, correction = 0;
-  check(VecNorm(base, NORM_INFINITY, &size));
-  for (int it = 0;; ++it) {
-    check(VecWAXPY(value_.get(), own, k, base));
-    residual(angle, value_.get(), k, f_.get());
-    auto solver = solver_at(angle, value_.get(), k, own);
-    solver->solve(f_.get(), d_.get());
-    check(VecAXPY(k, -1, d_.get()));
     check(VecNorm(d_.get(), NORM_INFINITY, &correction));
     if (!std::isfinite(correction)) fail();
     // F is linear in dx/dt, so that an explicit stage is solved at once.
@@ -151,7 +142,7 @@ void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, 
   }
   const Index s = tableau_.stages();
   StepProduct::Columns lifts, loads;
-  frozen_.reset();  // a new preconditioner for every step
+  if (parts_) parts_->begin_step();
   if (product) {
     product->tableau_ = &tableau_;
     product->length_ = length;
@@ -171,12 +162,8 @@ void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, 
     auto solver = solve_stage(here, own, base_.get(), k);
     if (!product) continue;
     check(VecWAXPY(value_.get(), own, k, base_.get()));
-    if (auto frozen = own != 0 ? freeze(here, value_.get(), k, own) : nullptr) {
-      product->stages_.emplace_back(std::move(frozen), own, value_.get());
-    } else {
-      if (own != 0) solver = solver_at(here, value_.get(), k, own);
-      product->stages_.push_back(product_at(here, value_.get(), k, std::move(solver)));
-    }
+    if (own != 0) solver = solver_at(here, value_.get(), k, own);
+    product->stages_.push_back(product_at(here, value_.get(), k, own, std::move(solver)));
     check(VecAXPY(lift_.get(), tableau_.a(j, j), k));
     lifts.push_back(get(lift_.get()));
     check(VecPointwiseMult(x_.get(), value_.get(), state_scale_.get()));

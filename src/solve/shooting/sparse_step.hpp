@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "solve/shooting/port_stages.hpp"
 #include "solve/shooting/stage_solver.hpp"
 #include "solve/shooting/structured_stage.hpp"
-#include "whirl/problem/frozen.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/shooting/tableau.hpp"
 
@@ -40,8 +40,8 @@ private:
 };
 
 /// The same step as RungeKutta for schemes with sequential stages, in scaled states; each stage costs sparse solves on
-/// system.comm(): those of System::freeze() if it has them, or one pass over dF/dx where dF/d(dx/dt) of an explicit
-/// stage is inverted entry by entry; none at all on one rank where StructuredRate serves.
+/// system.comm(): by elimination of the parts of a system that has some, else by LU, or one pass over dF/dx where
+/// dF/d(dx/dt) of an explicit stage is inverted entry by entry; none at all on one rank where StructuredRate serves.
 class SparseRungeKutta {
 public:
   /// With `constant_rates`, dF/d(dx/dt) depends on nothing but the parameter. Without `by_length`, products need not
@@ -51,6 +51,7 @@ public:
   /// To be called after each change of the system's parameter.
   void refresh() {
     rates_.reset();
+    rate_blocks_.reset();
     if (structured_) structured_->refresh();
   }
   /// A step makes its product on the way, so that both are best taken together.
@@ -66,13 +67,12 @@ private:
   void residual(double angle, Vec x, Vec k, Vec f);
   /// m = alpha dF/dx + sigma dF/d(dx/dt), scaled; m is made if it is null.
   void jacobian(double angle, Vec x, Vec k, double alpha, double sigma, core::Matrix& m);
-  [[nodiscard]] StageProduct product_at(double angle, Vec x, Vec k, std::shared_ptr<const StageSolver> solver);
-  /// dF/d(dx/dt) + own dF/dx, factorised.
+  [[nodiscard]] StageProduct product_at(double angle, Vec x, Vec k, double own,
+                                        std::shared_ptr<const StageSolver> solver);
+  /// dF/d(dx/dt) + own dF/dx, ready to solve with.
   [[nodiscard]] std::shared_ptr<const StageSolver> solver_at(double angle, Vec x, Vec k, double own);
-  /// The solver of the last iteration; none where the frozen equations of the system were solved.
+  /// The solver of the last iteration.
   [[nodiscard]] std::shared_ptr<const StageSolver> solve_stage(double angle, double own, Vec base, Vec k);
-  bool solve_frozen_stage(double angle, double own, Vec base, Vec k);
-  [[nodiscard]] std::shared_ptr<const problem::Frozen> freeze(double angle, Vec x, Vec k, double own);
   void structured_step(double angle, double d_angle, double length, Eigen::Map<Eigen::VectorXd> x,
                        StepProduct& product);
   void structured_stage(double angle, double own, RateMatrix& matrix, StructuredStage& solver);
@@ -84,7 +84,8 @@ private:
   std::vector<core::Vector> slopes_;
   core::Matrix scratch_;
   std::shared_ptr<const StageSolver> rates_;       // of explicit stages with constant rates
-  std::shared_ptr<const problem::Frozen> frozen_;  // the last one of this step
+  std::unique_ptr<PortStages> parts_;              // of a system that has parts
+  std::shared_ptr<const PortMatrix> rate_blocks_;  // dF/d(dx/dt) if it is constant
   std::unique_ptr<StructuredRate> structured_;
   StepProduct unused_;                                       // of structured steps whose product nobody asks for
   Eigen::MatrixXd stage_slopes_, by_length_, by_parameter_;  // work space of structured steps

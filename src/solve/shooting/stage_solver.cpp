@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "solve/newton/port_krylov.hpp"
 #include "solve/shooting/local_part.hpp"
 
 namespace whirl::solve {
@@ -13,7 +14,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr PetscInt direct_below = 3000;
+// Of the right-hand side, of products with derivatives of steps.
+constexpr double product_tolerance = 1e-9;
 
 // Fills the places of the only entries of rows and columns, all on their own rank; false if the matrix has others.
 bool find_entries(MPI_Comm comm, Mat matrix, VectorXd& inverse, Eigen::VectorX<PetscInt>& column) {
@@ -46,48 +48,23 @@ bool find_entries(MPI_Comm comm, Mat matrix, VectorXd& inverse, Eigen::VectorX<P
   return single != 0;
 }
 
-// The block Jacobi of large matrices solves its blocks exactly.
-void exact_blocks(PC pc) {
-  PetscBool blocks = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCBJACOBI, &blocks));
-  if (!blocks) return;
-  PetscInt count = 0;
-  KSP* sub = nullptr;
-  check(PCBJacobiGetSubKSP(pc, &count, nullptr, &sub));
-  for (PetscInt i = 0; i < count; ++i) {
-    PC inner = nullptr;
-    check(KSPGetPC(sub[i], &inner));
-    check(PCSetType(inner, PCLU));
-  }
-}
-
-// Solves to rounding, so that products are exact. Small matrices are factorised, on every rank if there are several,
-// with one step of refinement for what LU without pivoting loses: no reductions, which cost more than the arithmetic.
+// Solves to rounding, so that products are exact: factorised on every rank, with one step of refinement for what LU
+// without pivoting loses. No reductions, which cost more than the arithmetic of a machine without parts.
 core::LinearSolver make_solver(MPI_Comm comm, Mat matrix) {
   core::LinearSolver solver;
   check(KSPCreate(comm, solver.put()));
   KSP ksp = solver.get();
   PC pc = nullptr;
-  PetscInt n = 0;
-  check(MatGetSize(matrix, &n, nullptr));
   check(KSPSetOptionsPrefix(ksp, "stage_"));
   check(KSPSetOperators(ksp, matrix, matrix));
   check(KSPGetPC(ksp, &pc));
-  const bool alone = core::size_of(comm) == 1;
-  if (alone || n < direct_below) {
-    check(KSPSetType(ksp, KSPRICHARDSON));
-    check(KSPSetNormType(ksp, KSP_NORM_NONE));
-    check(KSPSetConvergenceTest(ksp, KSPConvergedSkip, nullptr, nullptr));
-    check(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 2));
-    check(PCSetType(pc, alone ? PCLU : PCREDUNDANT));
-  } else {
-    check(KSPSetType(ksp, KSPGMRES));
-    check(KSPSetTolerances(ksp, 1e-13, 1e-300, PETSC_DEFAULT, 200));
-    check(PCSetType(pc, PCBJACOBI));
-  }
+  check(KSPSetType(ksp, KSPRICHARDSON));
+  check(KSPSetNormType(ksp, KSP_NORM_NONE));
+  check(KSPSetConvergenceTest(ksp, KSPConvergedSkip, nullptr, nullptr));
+  check(KSPSetTolerances(ksp, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 2));
+  check(PCSetType(pc, core::size_of(comm) == 1 ? PCLU : PCREDUNDANT));
   check(KSPSetFromOptions(ksp));
   check(KSPSetUp(ksp));
-  exact_blocks(pc);
   return solver;
 }
 
@@ -98,7 +75,17 @@ StageSolver::StageSolver(core::Matrix matrix) : matrix_(std::move(matrix)) {
   if (!find_entries(comm, matrix_.get(), inverse_, column_)) solver_ = make_solver(comm, matrix_.get());
 }
 
-void StageSolver::solve(Vec rhs, Vec x) const {
+bool StageSolver::entrywise(Mat matrix) {
+  VectorXd inverse;
+  Eigen::VectorX<PetscInt> column;
+  return find_entries(PetscObjectComm(reinterpret_cast<PetscObject>(matrix)), matrix, inverse, column);
+}
+
+void StageSolver::solve(Vec rhs, Vec x, double tolerance) const {
+  if (blocks_) {
+    (void)krylov_->solve(*blocks_, *similar_, rhs, x, tolerance);
+    return;
+  }
   if (solver_) {
     check(KSPSolve(solver_.get(), rhs, x));
     return;
@@ -126,34 +113,34 @@ StageProduct::StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver) : 
   direct_.finalize();
 }
 
-StageProduct::StageProduct(std::shared_ptr<const problem::Frozen> frozen, double own, Vec like)
-    : frozen_(std::move(frozen)), own_(own) {
+StageProduct::StageProduct(std::shared_ptr<const StageSolver> solver, std::shared_ptr<const PortMatrix> rates,
+                           double own, Vec like)
+    : solver_(std::move(solver)), rates_(std::move(rates)), own_(own) {
   check(PetscObjectReference(reinterpret_cast<PetscObject>(like)));
   *like_.put() = like;
 }
 
 // own dF/dx w = A w - dF/d(dx/dt) w.
-MatrixXd StageProduct::frozen_slope(const MatrixXd& w, const VectorXd* load) const {
-  constexpr double tolerance = 1e-9;
+MatrixXd StageProduct::slope_by_blocks(const MatrixXd& w, const VectorXd* load) const {
   MatrixXd out(w.rows(), w.cols());
   core::Vector v = core::duplicate(like_.get()), rhs = core::duplicate(like_.get()), k = core::duplicate(like_.get());
   for (Index c = 0; c < w.cols(); ++c) {
     put(w.col(c), v.get());
-    frozen_->multiply_rates(v.get(), rhs.get());
-    frozen_->multiply(v.get(), k.get());
+    PortKrylov::multiply(*rates_, v.get(), rhs.get());
+    PortKrylov::multiply(*solver_->blocks(), v.get(), k.get());
     check(VecAXPY(rhs.get(), -1, k.get()));
     if (load) {
       put(*load, v.get());
       check(VecAXPY(rhs.get(), -own_, v.get()));
     }
-    frozen_->solve(rhs.get(), k.get(), tolerance);
+    solver_->solve(rhs.get(), k.get(), product_tolerance);
     out.col(c) = get(k.get()) / own_;
   }
   return out;
 }
 
 MatrixXd StageProduct::slope(const MatrixXd& w, const VectorXd* load) const {
-  if (frozen_) return frozen_slope(w, load);
+  if (rates_) return slope_by_blocks(w, load);
   if (!jx_) {
     MatrixXd k = direct_ * w;
     for (Index i = 0; load && i < k.rows(); ++i) k(solver_->column()(i), 0) -= solver_->inverse()(i) * (*load)(i);
@@ -169,7 +156,7 @@ MatrixXd StageProduct::slope(const MatrixXd& w, const VectorXd* load) const {
       put(*load, x.get());
       check(VecAXPY(f.get(), 1, x.get()));
     }
-    solver_->solve(f.get(), x.get());
+    solver_->solve(f.get(), x.get(), product_tolerance);
     out.col(c) = -get(x.get());
   }
   return out;

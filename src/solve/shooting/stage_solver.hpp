@@ -6,27 +6,42 @@
 #include <memory>
 
 #include "whirl/core/petsc.hpp"
-#include "whirl/problem/frozen.hpp"
 
 namespace whirl::solve {
 
-/// matrix^-1, to rounding: entry by entry where each row and column has one entry (masses beside rates q'); exact LU
-/// (on each rank, for small matrices); GMRES with block Jacobi for large ones on several ranks (PETSc prefix "stage_").
-/// Collective on the matrix' communicator.
+class PortElimination;
+class PortKrylov;
+class PortMatrix;
+
+/// matrix^-1: entry by entry where each row and column has one entry (masses beside rates q'); by FGMRES and the
+/// elimination of the parts of a similar matrix; or by LU, on each rank where there are several. Both read PETSc
+/// options with the prefix "stage_". Collective on the matrix' communicator.
 class StageSolver {
 public:
+  /// Entry by entry or by LU.
   explicit StageSolver(core::Matrix matrix);
-  void solve(Vec rhs, Vec x) const;
+  StageSolver(std::shared_ptr<const PortMatrix> blocks, std::shared_ptr<PortElimination> similar,
+              std::shared_ptr<PortKrylov> krylov)
+      : blocks_(std::move(blocks)), similar_(std::move(similar)), krylov_(std::move(krylov)) {}
+  /// To the relative residual `tolerance` where it iterates, else to rounding.
+  void solve(Vec rhs, Vec x, double tolerance) const;
   /// The matrix is one entry 1/inverse()(i) in local row i at local column column()(i), on every rank.
-  [[nodiscard]] bool entrywise() const { return !solver_; }
+  [[nodiscard]] bool entrywise() const { return !solver_ && !blocks_; }
+  /// Whether a matrix is of this kind. Collective.
+  [[nodiscard]] static bool entrywise(Mat matrix);
   [[nodiscard]] const Eigen::VectorXd& inverse() const { return inverse_; }
   [[nodiscard]] const Eigen::VectorX<PetscInt>& column() const { return column_; }
+  /// The matrix in blocks; null where it is not solved by elimination.
+  [[nodiscard]] const std::shared_ptr<const PortMatrix>& blocks() const { return blocks_; }
 
 private:
   core::Matrix matrix_;
   core::LinearSolver solver_;
   Eigen::VectorXd inverse_;
   Eigen::VectorX<PetscInt> column_;
+  std::shared_ptr<const PortMatrix> blocks_;
+  std::shared_ptr<PortElimination> similar_;
+  std::shared_ptr<PortKrylov> krylov_;
 };
 
 /// k = -(dF/d(dx/dt) + H a(j,j) dF/dx)^-1 (dF/dx w + g), of one stage, for this rank's rows. Collective.
@@ -37,18 +52,19 @@ public:
       : solver_(std::move(solver)), jx_(std::move(jx)) {}
   /// Of dF/dx on one rank and a solver that inverts entry by entry: only their product is kept.
   StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver);
-  /// Of the equations A = dF/d(dx/dt) + own dF/dx, own = H a(j,j) > 0, of a system that solves them itself; `like`
-  /// gives the layout of its states.
-  StageProduct(std::shared_ptr<const problem::Frozen> frozen, double own, Vec like);
+  /// Of the blocks A = dF/d(dx/dt) + own dF/dx of `solver`, own = H a(j,j) > 0, and those of dF/d(dx/dt); `like` gives
+  /// the layout of the states.
+  StageProduct(std::shared_ptr<const StageSolver> solver, std::shared_ptr<const PortMatrix> rates, double own,
+               Vec like);
   /// All columns of w [local x k] at once; `load` g may be null, else w has one column.
   [[nodiscard]] Eigen::MatrixXd slope(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
 
 private:
-  [[nodiscard]] Eigen::MatrixXd frozen_slope(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
+  [[nodiscard]] Eigen::MatrixXd slope_by_blocks(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
   std::shared_ptr<const StageSolver> solver_;
-  std::shared_ptr<const problem::Frozen> frozen_;
+  std::shared_ptr<const PortMatrix> rates_;
   double own_ = 0;
-  core::Vector like_;  // of the frozen equations
+  core::Vector like_;  // of the blocks
   core::Matrix jx_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> direct_;  // the product, if there is neither
 };

@@ -11,12 +11,14 @@
 namespace whirl::solve {
 
 class PortElimination;
+class PortKrylov;
 
 /// R(u) = F(angle 0, x, 0; p), without forcing of order one in the angle: for balanced machines and static positions.
 ///
 /// The bordered matrix [dF/dx dF/dp; row] is assembled. Films with own states are eliminated on their ports
-/// (`port_elimination`), with the border part of what is left; a machine without any is factorised as a whole (MUMPS).
-/// Both are regular at folds.
+/// (`port_elimination`), with the border part of what is left, by their own preconditioners where all have one; a
+/// machine without any is factorised as a whole (MUMPS). All are regular at folds. The Krylov method around
+/// preconditioners, and MUMPS for the whole, have the prefix "equilibrium_".
 class EquilibriumProblem : public ExtendedProblem, public Adjoint {
 public:
   /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
@@ -51,12 +53,15 @@ public:
 private:
   void prepare(Vec u);
   void factorise();
+  void solve_by_parts(bool transposed, Vec rhs, Vec x);
+  [[nodiscard]] PortElimination& exact();
   void solve(bool transposed, Vec rhs, Vec x);
   problem::System& system_;
   double parameter_scale_;
   core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
   core::Matrix jacobian_, bordered_;
-  std::unique_ptr<PortElimination> ports_;
+  std::unique_ptr<PortElimination> ports_, exact_;  // of parts; without approximate inverses, if they have such
+  std::unique_ptr<PortKrylov> krylov_;              // around those
   core::LinearSolver solver_;
   bool factorised_ = false;
 };

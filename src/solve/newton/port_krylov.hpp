@@ -1,0 +1,35 @@
+#pragma once
+// A Krylov method for matrices in blocks, preconditioned by elimination of their parts.
+
+#include <string>
+
+#include "solve/newton/port_elimination.hpp"
+
+namespace whirl::solve {
+
+/// FGMRES for many matrices of one layout, each preconditioned by the elimination of a similar one. Collective.
+class PortKrylov {
+public:
+  /// Reads PETSc options with `prefix`.
+  PortKrylov(const PortLayout& layout, const std::string& prefix);
+  PortKrylov(const PortKrylov&) = delete;
+  PortKrylov& operator=(const PortKrylov&) = delete;
+  ~PortKrylov() = default;
+  /// a x = rhs to the relative residual `tolerance`; returns the iterations that it took. Throws core::DomainError, on
+  /// all ranks, if it does not come that far.
+  int solve(const PortMatrix& a, PortElimination& similar, Vec rhs, Vec x, double tolerance);
+  /// y = a x.
+  static void multiply(const PortMatrix& a, Vec x, Vec y);
+
+private:
+  static PetscErrorCode shell_multiply(Mat m, Vec x, Vec y);
+  static PetscErrorCode shell_precondition(PC pc, Vec r, Vec y);
+  MPI_Comm comm_;
+  core::Matrix shell_;
+  core::LinearSolver ksp_;
+  core::Gate gate_;
+  const PortMatrix* matrix_ = nullptr;  // of the present solve
+  PortElimination* similar_ = nullptr;
+};
+
+}  // namespace whirl::solve

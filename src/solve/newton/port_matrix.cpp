@@ -1,0 +1,357 @@
+#include "solve/newton/port_matrix.hpp"
+
+#include <algorithm>
+
+namespace whirl::solve {
+
+using core::check;
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// This rank's rows as PETSc holds them: columns of its own rows, then those of others.
+struct Stored {
+  Mat own = nullptr, others = nullptr;
+  const PetscInt* columns = nullptr;  // of `others`: global numbers
+
+  explicit Stored(Mat a) : own(a) {
+    PetscBool several = PETSC_FALSE;
+    check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(a), MATMPIAIJ, &several));
+    if (several) check(MatMPIAIJGetSeqAIJ(a, &own, &others, &columns));
+  }
+};
+
+class Values {
+public:
+  explicit Values(Mat m) : m_(m) {
+    if (m_) check(MatSeqAIJGetArrayRead(m_, &values_));
+  }
+  Values(const Values&) = delete;
+  Values& operator=(const Values&) = delete;
+  ~Values() {
+    if (m_) (void)MatSeqAIJRestoreArrayRead(m_, &values_);
+  }
+  [[nodiscard]] const double* data() const { return values_; }
+
+private:
+  Mat m_;
+  const PetscScalar* values_ = nullptr;
+};
+
+PetscInt entries(Mat m) {
+  MatInfo info;
+  check(MatGetInfo(m, MAT_LOCAL, &info));
+  return static_cast<PetscInt>(info.nz_used);
+}
+
+std::vector<PetscInt> offsets_of(MPI_Comm comm, PetscInt local) {
+  std::vector<PetscInt> all(static_cast<std::size_t>(core::size_of(comm)) + 1, 0);
+  MPI_Allgather(&local, 1, MPIU_INT, all.data() + 1, 1, MPIU_INT, comm);
+  for (std::size_t r = 1; r < all.size(); ++r) all[r] += all[r - 1];
+  return all;
+}
+
+}  // namespace
+
+// All entries of this rank's rows: row and column are numbers among the parts (>= 0, the row counted on this rank) or
+// in the hub (-1 - number).
+struct PortLayout::Scan {
+  struct Entry {
+    PetscInt row, column, source;
+  };
+  std::vector<Entry> list;
+
+  template <class NumberOf>
+  void read(Mat m, PetscInt first_source, const std::vector<PetscInt>& rows, const NumberOf& number_of) {
+    PetscInt n = 0;
+    const PetscInt *begin = nullptr, *columns = nullptr;
+    PetscBool done = PETSC_FALSE;
+    check(MatGetRowIJ(m, 0, PETSC_FALSE, PETSC_FALSE, &n, &begin, &columns, &done));
+    for (PetscInt i = 0; i < n; ++i)
+      for (PetscInt k = begin[i]; k < begin[i + 1]; ++k)
+        list.push_back({rows[static_cast<std::size_t>(i)], number_of(columns[k]), first_source + k});
+    check(MatRestoreRowIJ(m, 0, PETSC_FALSE, PETSC_FALSE, &n, &begin, &columns, &done));
+  }
+};
+
+PetscInt PortLayout::first_of_hub() const {
+  return hub_offsets_[static_cast<std::size_t>(core::rank_of(comm_))];
+}
+
+void PortLayout::number_rows(const std::vector<problem::Field>& fields) {
+  const std::vector<problem::Field> parts = problem::parts_of(fields);
+  std::vector<bool> taken(static_cast<std::size_t>(local_), false);
+  PetscInt at = 0;
+  for (std::size_t f = 1; f < parts.size(); ++f) {
+    const PetscInt count = parts[f].end - parts[f].begin;
+    std::fill(taken.begin() + parts[f].begin, taken.begin() + parts[f].end, true);
+    if (!runs_.empty() && runs_.back().whole + runs_.back().count == parts[f].begin)
+      runs_.back().count += count;
+    else if (count > 0)
+      runs_.push_back({parts[f].begin, at, count, true});
+    part_ends_.push_back(at += count);
+  }
+  PetscInt hub = 0;
+  for (PetscInt i = 0; i < local_; ++i) {
+    if (taken[static_cast<std::size_t>(i)]) continue;
+    if (!runs_.empty() && !runs_.back().part && runs_.back().whole + runs_.back().count == i)
+      ++runs_.back().count;
+    else
+      runs_.push_back({i, hub, 1, false});
+    ++hub;
+  }
+  part_offsets_ = offsets_of(comm_, at);
+  hub_offsets_ = offsets_of(comm_, hub);
+}
+
+PortLayout::PortLayout(Mat a, const std::vector<problem::Field>& fields)
+    : comm_(PetscObjectComm(reinterpret_cast<PetscObject>(a))) {
+  check(MatGetLocalSize(a, &local_, nullptr));
+  number_rows(fields);
+  const auto rank = static_cast<std::size_t>(core::rank_of(comm_));
+  // What every row is, of this rank's rows and of the columns that these see of others.
+  core::Vector code = core::make_vector(comm_, local_, PETSC_DETERMINE);
+  std::vector<PetscInt> rows(static_cast<std::size_t>(local_)), columns(rows.size()), part_rows;
+  PetscInt first = 0;
+  check(MatGetOwnershipRange(a, &first, nullptr));
+  {
+    const core::WriteArray values(code.get());
+    for (const Run& run : runs_)
+      for (PetscInt i = 0; i < run.count; ++i) {
+        const auto k = static_cast<std::size_t>(run.whole + i);
+        rows[k] = run.part ? run.at + i : -1 - (hub_offsets_[rank] + run.at + i);
+        columns[k] = run.part ? part_offsets_[rank] + run.at + i : rows[k];
+        values[run.whole + i] = static_cast<double>(columns[k]);
+      }
+  }
+  for (const Run& run : runs_)
+    for (PetscInt i = 0; run.part && i < run.count; ++i) part_rows.push_back(first + run.whole + i);
+  check(ISCreateGeneral(comm_, static_cast<PetscInt>(part_rows.size()), part_rows.data(), PETSC_COPY_VALUES,
+                        part_rows_.put()));
+  const Stored stored(a);
+  Scan scan;
+  scan.read(stored.own, 0, rows, [&](PetscInt c) { return columns[static_cast<std::size_t>(c)]; });
+  if (stored.others) {
+    PetscInt seen = 0;
+    check(MatGetSize(stored.others, nullptr, &seen));
+    core::IndexSet from;
+    check(ISCreateGeneral(PETSC_COMM_SELF, seen, stored.columns, PETSC_COPY_VALUES, from.put()));
+    core::Vector other = core::make_vector(PETSC_COMM_SELF, seen, PETSC_DETERMINE);
+    core::Scatter scatter;
+    check(VecScatterCreate(code.get(), from.get(), other.get(), nullptr, scatter.put()));
+    check(VecScatterBegin(scatter.get(), code.get(), other.get(), INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(scatter.get(), code.get(), other.get(), INSERT_VALUES, SCATTER_FORWARD));
+    const core::ReadArray number(other.get());
+    scan.read(stored.others, entries(stored.own), rows, [&](PetscInt c) { return static_cast<PetscInt>(number[c]); });
+  }
+  find_ports(scan);
+  place_parts(scan);
+  place_couplings(scan);
+  x_.resize(parts());
+  y_.resize(parts());
+  hub_x_.resize(hub());
+  hub_y_.resize(hub());
+  shared_.setZero(whole_hub() + static_cast<Index>(coupled_.size()));
+}
+
+// Ports get the colours of a map: those that share a part differ.
+void PortLayout::find_ports(const Scan& scan) {
+  const auto n = static_cast<std::size_t>(whole_hub());
+  std::vector<std::uint64_t> seen(n, 0);
+  std::vector<int> couples(n, 0);
+  for (const Scan::Entry& e : scan.list) {
+    if (e.row >= 0 && e.column < 0) {
+      const auto part = std::upper_bound(part_ends_.begin(), part_ends_.end(), e.row) - part_ends_.begin();
+      seen[static_cast<std::size_t>(-1 - e.column)] |= std::uint64_t{1} << part;
+    }
+    if (e.row < 0 && e.column >= 0) couples[static_cast<std::size_t>(-1 - e.row)] = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(n), MPI_UINT64_T, MPI_BOR, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, couples.data(), static_cast<int>(n), MPI_INT, MPI_MAX, comm_);
+  std::vector<std::uint64_t> used;
+  colour_of_.assign(n, -1);
+  for (std::size_t c = 0; c < n; ++c) {
+    if (couples[c]) coupled_.push_back(static_cast<PetscInt>(c));
+    if (seen[c] == 0) continue;
+    const auto free = std::find_if(used.begin(), used.end(), [&](std::uint64_t u) { return (u & seen[c]) == 0; });
+    colour_of_[c] = static_cast<int>(free - used.begin());
+    if (free == used.end()) used.push_back(0);
+    used[static_cast<std::size_t>(colour_of_[c])] |= seen[c];
+    ports_.push_back(static_cast<PetscInt>(c));
+  }
+  colours_ = static_cast<int>(used.size());
+  port_of_.assign(part_ends_.size(), std::vector<int>(used.size(), -1));
+  for (std::size_t k = 0; k < ports_.size(); ++k) {
+    const auto c = static_cast<std::size_t>(ports_[k]);
+    for (std::size_t p = 0; p < port_of_.size(); ++p)
+      if (seen[c] >> p & 1) port_of_[p][static_cast<std::size_t>(colour_of_[c])] = static_cast<int>(k);
+  }
+}
+
+// A_pp by pieces of diagonals, so that products are loops over arrays. Short gaps are filled with zeros.
+void PortLayout::place_parts(const Scan& scan) {
+  constexpr PetscInt gap = 4;
+  const auto rank = static_cast<std::size_t>(core::rank_of(comm_));
+  const PetscInt first = part_offsets_[rank], end = part_offsets_[rank + 1];
+  std::vector<Scan::Entry> own, other;
+  std::vector<PetscInt> ghosts;
+  for (const Scan::Entry& e : scan.list) {
+    if (e.row < 0 || e.column < 0) continue;
+    if (e.column >= first && e.column < end) {
+      own.push_back({e.row, e.column - first, e.source});
+    } else {
+      other.push_back(e);
+      ghosts.push_back(e.column);
+    }
+  }
+  std::sort(ghosts.begin(), ghosts.end());
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+  for (Scan::Entry& e : other)
+    e.column = static_cast<PetscInt>(std::lower_bound(ghosts.begin(), ghosts.end(), e.column) - ghosts.begin());
+  const auto cut = [&](std::vector<Scan::Entry>& all, std::vector<Piece>& pieces) {
+    std::sort(all.begin(), all.end(), [](const Scan::Entry& a, const Scan::Entry& b) {
+      return a.column - a.row != b.column - b.row ? a.column - a.row < b.column - b.row : a.row < b.row;
+    });
+    for (const Scan::Entry& e : all) {
+      Piece* last = pieces.empty() ? nullptr : &pieces.back();
+      if (!last || last->column - last->row != e.column - e.row || e.row > last->row + last->count + gap) {
+        pieces.push_back({e.row, e.column, 0});
+        last = &pieces.back();
+      }
+      for (; last->row + last->count < e.row; ++last->count) sources_.push_back(-1);
+      ++last->count;
+      sources_.push_back(e.source);
+    }
+  };
+  cut(own, pieces_);
+  cut(other, ghost_pieces_);
+  part_vector_ = core::make_vector(comm_, parts(), PETSC_DETERMINE);
+  ghosts_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(ghosts.size()), PETSC_DETERMINE);
+  core::IndexSet from;
+  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(ghosts.size()), ghosts.data(), PETSC_COPY_VALUES,
+                        from.put()));
+  check(VecScatterCreate(part_vector_.get(), from.get(), ghosts_.get(), nullptr, to_ghosts_.put()));
+}
+
+void PortLayout::place_couplings(const Scan& scan) {
+  std::vector<PetscInt> to;  // where entries of F belong among the columns F^T of all ranks
+  const auto width = static_cast<PetscInt>(coupled_.size());
+  for (const Scan::Entry& e : scan.list) {
+    if (e.row < 0 && e.column < 0) {
+      hub_entries_.push_back({-1 - e.row, -1 - e.column, e.source});
+    } else if (e.column < 0) {
+      g_sources_.push_back(e.source);
+      g_places_.push_back(colour_of_[static_cast<std::size_t>(-1 - e.column)] * parts() + e.row);
+    } else if (e.row < 0) {
+      const auto owner =
+          std::upper_bound(part_offsets_.begin(), part_offsets_.end(), e.column) - part_offsets_.begin() - 1;
+      const PetscInt begin = part_offsets_[static_cast<std::size_t>(owner)],
+                     rows = part_offsets_[static_cast<std::size_t>(owner) + 1] - begin;
+      const auto c = std::lower_bound(coupled_.begin(), coupled_.end(), -1 - e.row) - coupled_.begin();
+      f_sources_.push_back(e.source);
+      to.push_back(begin * width + static_cast<PetscInt>(c) * rows + e.column - begin);
+    }
+  }
+  const auto count = static_cast<PetscInt>(to.size());
+  f_values_ = core::make_vector(comm_, count, PETSC_DETERMINE);
+  f_columns_ = core::make_vector(comm_, parts() * width, PETSC_DETERMINE);
+  PetscInt first = 0;
+  check(VecGetOwnershipRange(f_values_.get(), &first, nullptr));
+  core::IndexSet from, into;
+  check(ISCreateStride(comm_, count, first, 1, from.put()));
+  check(ISCreateGeneral(comm_, count, to.data(), PETSC_COPY_VALUES, into.put()));
+  check(VecScatterCreate(f_values_.get(), from.get(), f_columns_.get(), into.get(), to_f_.put()));
+}
+
+void PortLayout::take(const double* whole, double* parts, double* hub) const {
+  for (const Run& r : runs_) std::copy_n(whole + r.whole, r.count, (r.part ? parts : hub) + r.at);
+}
+
+void PortLayout::give(const double* parts, const double* hub, double* whole) const {
+  for (const Run& r : runs_) std::copy_n((r.part ? parts : hub) + r.at, r.count, whole + r.whole);
+}
+
+void PortLayout::share(const double* hub, VectorXd& all) const {
+  const PetscInt n = whole_hub();
+  if (core::size_of(comm_) > 1) {
+    all.head(n).setZero();
+    std::copy_n(hub, this->hub(), all.data() + first_of_hub());
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  } else {
+    std::copy_n(hub, n, all.data());
+  }
+}
+
+PortMatrix::PortMatrix(std::shared_ptr<const PortLayout> layout) : layout_(std::move(layout)) {
+  const PortLayout& l = *layout_;
+  values_.assign(l.sources_.size(), 0.0);
+  hub_.resize(l.hub_entries_.size());
+  g_.setZero(l.parts(), l.colours());
+  f_.setZero(l.parts(), static_cast<Index>(l.coupled().size()));
+}
+
+void PortMatrix::take(Mat a) {
+  const PortLayout& l = *layout_;
+  const Stored stored(a);
+  const PetscInt n = stored.others ? entries(stored.own) : PETSC_MAX_INT;
+  const Values own(stored.own), others(stored.others);
+  const auto value = [n, here = own.data(), there = others.data()](PetscInt k) {
+    return k < n ? here[k] : there[k - n];
+  };
+  for (std::size_t k = 0; k < values_.size(); ++k)
+    if (l.sources_[k] >= 0) values_[k] = value(l.sources_[k]);
+  for (std::size_t k = 0; k < hub_.size(); ++k) hub_[k] = value(l.hub_entries_[k].source);
+  for (std::size_t k = 0; k < l.g_sources_.size(); ++k) g_.data()[l.g_places_[k]] = value(l.g_sources_[k]);
+  {
+    const core::WriteArray f(l.f_values_.get());
+    for (std::size_t k = 0; k < l.f_sources_.size(); ++k) f[static_cast<PetscInt>(k)] = value(l.f_sources_[k]);
+  }
+  check(VecPlaceArray(l.f_columns_.get(), f_.data()));
+  check(VecScatterBegin(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecScatterEnd(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
+  check(VecResetArray(l.f_columns_.get()));
+}
+
+void PortMatrix::multiply(const double* x, double* y) const {
+  const PortLayout& l = *layout_;
+  l.take(x, l.x_.data(), l.hub_x_.data());
+  // What the hub's states are, and behind them what the parts do to it.
+  const PetscInt n = l.whole_hub(), first = l.first_of_hub();
+  l.shared_.tail(f_.cols()).noalias() = f_.transpose() * l.x_;
+  l.share(l.hub_x_.data(), l.shared_);
+  const double* value = values_.data();
+  const auto add = [&](const std::vector<PortLayout::Piece>& pieces, const double* from) {
+    for (const PortLayout::Piece& p : pieces) {
+      const double* __restrict in = from + p.column;
+      const double* __restrict factor = value;
+      double* __restrict out = l.y_.data() + p.row;
+      for (PetscInt i = 0; i < p.count; ++i) out[i] += factor[i] * in[i];
+      value += p.count;
+    }
+  };
+  l.y_.setZero();
+  add(l.pieces_, l.x_.data());
+  if (core::size_of(l.comm_) > 1) {
+    {
+      const core::WriteArray v(l.part_vector_.get());
+      std::copy_n(l.x_.data(), l.x_.size(), v.data());
+    }
+    check(VecScatterBegin(l.to_ghosts_.get(), l.part_vector_.get(), l.ghosts_.get(), INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(l.to_ghosts_.get(), l.part_vector_.get(), l.ghosts_.get(), INSERT_VALUES, SCATTER_FORWARD));
+    const core::ReadArray ghosts(l.ghosts_.get());
+    add(l.ghost_pieces_, ghosts.data());
+  }
+  l.for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {
+    l.y_.segment(begin, rows) +=
+        l.shared_(l.ports_[static_cast<std::size_t>(port)]) * g_.col(colour).segment(begin, rows);
+  });
+  l.hub_y_.setZero();
+  for_hub([&](PetscInt row, PetscInt column, double v) { l.hub_y_(row - first) += v * l.shared_(column); });
+  for (std::size_t k = 0; k < l.coupled_.size(); ++k)
+    if (const PetscInt row = l.coupled_[k] - first; row >= 0 && row < l.hub())
+      l.hub_y_(row) += l.shared_(n + static_cast<Index>(k));
+  l.give(l.y_.data(), l.hub_y_.data(), y);
+}
+
+}  // namespace whirl::solve

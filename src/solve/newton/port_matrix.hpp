@@ -1,0 +1,123 @@
+#pragma once
+// A matrix of a hub and parts on its ports in blocks.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "whirl/core/petsc.hpp"
+#include "whirl/problem/system.hpp"
+
+namespace whirl::solve {
+
+/// Where the entries of an assembled matrix belong among the blocks of hub and parts, which see the hub but not each
+/// other,
+///
+///     [ A_pp  G   ]   rows of the parts, this rank's one after the other
+///     [ F     A_h ]   rows of the hub
+///
+/// A part sees few unknowns of the hub, its ports. Ports that no part sees both of share a column of G: the number of
+/// columns does not grow with that of the parts. F is held by columns, spread like the states of the parts; the
+/// assembled matrix has its rows, as long as a part, on the rank of the hub.
+class PortLayout {
+public:
+  /// `fields`: the hub first, in local rows of `a`; local rows in none of them belong to the hub. Collective.
+  PortLayout(Mat a, const std::vector<problem::Field>& fields);
+
+  [[nodiscard]] MPI_Comm comm() const { return comm_; }
+  [[nodiscard]] PetscInt local() const { return local_; }
+  /// Rows of the parts / of the hub on this rank, and of the hub on all.
+  [[nodiscard]] PetscInt parts() const { return part_ends_.empty() ? 0 : part_ends_.back(); }
+  [[nodiscard]] PetscInt hub() const { return local_ - parts(); }
+  [[nodiscard]] PetscInt whole_hub() const { return hub_offsets_.back(); }
+  [[nodiscard]] PetscInt first_of_hub() const;
+  /// Hub unknowns that parts see, and hub rows that see parts, in rising order: numbers in the hub.
+  [[nodiscard]] const std::vector<PetscInt>& ports() const { return ports_; }
+  [[nodiscard]] const std::vector<PetscInt>& coupled() const { return coupled_; }
+  [[nodiscard]] int colours() const { return colours_; }
+  [[nodiscard]] const core::IndexSet& part_rows() const { return part_rows_; }
+
+  /// Entries of a vector of the matrix to those of parts and hub on this rank, and back.
+  void take(const double* whole, double* parts, double* hub) const;
+  void give(const double* parts, const double* hub, double* whole) const;
+  /// The hub's entries of all ranks to all [whole_hub], and the sum over the ranks of what `all` holds behind them.
+  /// Collective.
+  void share(const double* hub, Eigen::VectorXd& all) const;
+  /// Calls f(first row of a part here, its rows, port, column of G) for all ports of all parts.
+  template <class F>
+  void for_ports(F&& f) const {
+    PetscInt begin = 0;
+    for (std::size_t p = 0; p < part_ends_.size(); ++p) {
+      for (int c = 0; c < colours_; ++c)
+        if (const int k = port_of_[p][static_cast<std::size_t>(c)]; k >= 0) f(begin, part_ends_[p] - begin, k, c);
+      begin = part_ends_[p];
+    }
+  }
+
+private:
+  friend class PortMatrix;
+  struct Run {  // rows that stand side by side
+    PetscInt whole, at, count;
+    bool part;
+  };
+  struct Piece {  // of a diagonal of A_pp: entries (row + i, column + i)
+    PetscInt row, column, count;
+  };
+  /// A place in a block, and the entry of this rank's rows that belongs there: diagonal block first, as PETSc stores
+  /// them; -1 is a zero.
+  struct HubEntry {
+    PetscInt row, column, source;
+  };
+  struct Scan;
+  void number_rows(const std::vector<problem::Field>& fields);
+  void find_ports(const Scan& scan);
+  void place_parts(const Scan& scan);
+  void place_couplings(const Scan& scan);
+
+  MPI_Comm comm_;
+  PetscInt local_ = 0;
+  std::vector<Run> runs_;
+  std::vector<PetscInt> part_ends_;                   // local rows of the parts, part by part
+  std::vector<PetscInt> hub_offsets_, part_offsets_;  // first of each rank's among all, and their number
+  core::IndexSet part_rows_;
+  std::vector<PetscInt> ports_, coupled_;
+  std::vector<std::vector<int>> port_of_;  // [part][colour]: place among the ports, -1 for none
+  std::vector<int> colour_of_;             // of a hub unknown, -1 for none
+  int colours_ = 0;
+  std::vector<Piece> pieces_, ghost_pieces_;  // of A_pp: columns of this rank's parts, and of others'
+  std::vector<PetscInt> sources_;             // of the values of both
+  std::vector<HubEntry> hub_entries_;
+  std::vector<PetscInt> g_sources_, g_places_;  // into G, column by column
+  std::vector<PetscInt> f_sources_;             // entries of F on this rank
+  core::Scatter to_f_, to_ghosts_;
+  core::Vector f_values_, f_columns_, part_vector_, ghosts_;  // work space of these
+  mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_;    // and of products
+};
+
+/// A matrix in these blocks.
+class PortMatrix {
+public:
+  explicit PortMatrix(std::shared_ptr<const PortLayout> layout);
+  /// The values of `a`, which has the pattern of the layout. Collective.
+  void take(Mat a);
+  /// y = A x, of this rank's rows. Collective.
+  void multiply(const double* x, double* y) const;
+  [[nodiscard]] const std::shared_ptr<const PortLayout>& layout() const { return layout_; }
+  /// G [parts x colours], F^T [parts x coupled].
+  [[nodiscard]] const Eigen::MatrixXd& to_parts() const { return g_; }
+  [[nodiscard]] const Eigen::MatrixXd& from_parts() const { return f_; }
+  /// Calls f(row, column, value) for the entries of A_h in this rank's rows; numbers in the hub.
+  template <class F>
+  void for_hub(F&& f) const {
+    for (std::size_t k = 0; k < hub_.size(); ++k)
+      f(layout_->hub_entries_[k].row, layout_->hub_entries_[k].column, hub_[k]);
+  }
+
+private:
+  std::shared_ptr<const PortLayout> layout_;
+  std::vector<double> values_, hub_;  // of A_pp, of A_h
+  Eigen::MatrixXd g_, f_;
+};
+
+}  // namespace whirl::solve
