@@ -362,7 +362,9 @@ void RotorSystem::fill_constant_parts() {
       check(MatSetValue(j, 2 * i + 1, 2 * i, rates, ADD_VALUES));
       check(MatSetValue(j, 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
     }
-    add_films(j, nullptr, 0, 0);
+    if (!filled) return add_films(j, nullptr, 0, 0);
+    check(MatAssemblyBegin(j, MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(j, MAT_FINAL_ASSEMBLY));
   };
   fill(j_at_rest_.get(), 1, 0, 0);
   fill(j_gyroscopic_.get(), 0, 1, 0);
