@@ -43,7 +43,8 @@ system::Bearing bearing(const std::string& name, int node, const film::Options& 
   return b;
 }
 
-// Reduced shaft; a pedestal, films of several kinds without states; unbalance by amount and by grade.
+// Reduced shaft; a pedestal, films of several kinds without states, of which two tilt; unbalance by amount and by
+// grade.
 system::Machine reduced_machine() {
   using enum film::Geometry::Bore;
   system::Machine m;
@@ -53,6 +54,7 @@ system::Machine reduced_machine() {
   film::Reynolds turbulent;
   turbulent.cells = {24, 6};
   turbulent.turbulence = film::Turbulence::constantinescu;
+  turbulent.tilt = true;  // in line with the shaft, which all that bends it turns
   m.bearings.push_back(bearing("B1", 1, turbulent, lemon_bore));
   m.bearings[0].geometry->preload = 0.3;
   m.bearings[0].geometry->offset = 2e-5;
@@ -61,7 +63,9 @@ system::Machine reduced_machine() {
   fed.cells = {24, 6};
   fed.cavitation = film::Reynolds::Cavitation::mass_conserving;
   fed.grooves = {{90 * degrees, 20 * degrees, 1e5}};
+  fed.tilt = true;
   m.bearings.push_back(bearing("B2", 3, fed, cylindrical));
+  m.bearings[1].slope = {{1e-4, -2e-4}};
   m.bearings.push_back(bearing("B3", 5, film::Linear{{1e8, 2e6, -3e6, 2e8}, {1e5, 2e3, 4e3, 2e5}}, cylindrical));
   m.bearings[2].geometry.reset();
   m.bearings[2].lubricant = "";
