@@ -131,7 +131,8 @@ std::span<const deck::Name<Reynolds::Cavitation>> names(Reynolds::Cavitation) {
       {Reynolds::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
       {Reynolds::Cavitation::mass_conserving, "mass_conserving",
        "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
-       "edges of pads, grooves and inlets. Loads, stiffness and flows are exact; damping is that of a cavity that "
+       "edges of pads, grooves, holes and inlets. Loads, stiffness and flows are exact; damping is that of a cavity "
+       "that "
        "neither fills nor empties, unless 'states' are dynamic"},
       {Reynolds::Cavitation::none, "none", "negative pressure stays"}};
   return table;
@@ -154,7 +155,7 @@ void describe(deck::Description<Reynolds>& d) {
   d.add("inlet", &Reynolds::inlet, "where the film of a cylindrical bore without grooves starts",
         "Raimondi and Boyd 1958");
   d.add("cells", &Reynolds::cells, deck::in(4, 2000), "intervals around and along each pad");
-  d.add("tilt", &Reynolds::tilt, "follow the slope of the journal (bearings of a machine do not)");
+  d.add("tilt", &Reynolds::tilt, "follow the slope of the journal, and turn it by moments");
   d.add("grooves", &Reynolds::grooves,
         "axial grooves of a cylindrical bore, at pressure zero unless the film conserves its mass");
   d.add(
