@@ -116,8 +116,8 @@ TEST(ErrorBar, StudentsQuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(student_quantile(0.99, 7), 3.49948, 1e-5);
 }
 
-// Weights that jump with the edge: first order, and nothing but oscillation; or as large on every mesh. How fast it
-// oscillates is chance, too: otherwise the meshes of a direction would see one and the same.
+// Weights that jump with the edge: first order, and nothing but oscillation; or, against the rule, as large on every
+// mesh. How fast it oscillates is chance, too: otherwise the meshes of a direction would see one and the same.
 TEST(ErrorBar, CoversKinksWhenToldOfThem) {
   const MeshLaw kinks{2, 2, true};
   const std::vector<double> four{0.5, 2.0 / 3, 4.0 / 3, 2}, coarser{2, 1.6, 4.0 / 3, 8.0 / 7};
@@ -129,7 +129,7 @@ TEST(ErrorBar, CoversKinksWhenToldOfThem) {
   };
   const Coverage c = coverage(falling, kinks, four);
   EXPECT_GE(c.share, 0.95);
-  EXPECT_LE(c.median, 8);
+  EXPECT_LE(c.median, 5);
   EXPECT_GE(coverage(falling, kinks, coarser).share, 0.95);
   // The limit has none: error_of() would see it there.
   const auto equal = [](double phase) -> Law {
@@ -175,7 +175,7 @@ TEST(ErrorBar, OfTheTrainsThresholdCovers) {
   add(Axis::along, {7091, 7126, 7046, 7079});
   const Bar bar = error_bar(7044, samples, {2, 2, true});
   EXPECT_GE(bar.total(), 7093 - 7044 + 16);
-  EXPECT_LE(bar.total(), 4 * 40) << "of the scatter, 40 rpm";
+  EXPECT_LE(bar.total(), 3 * 40) << "of the scatter, 40 rpm";
 }
 
 TEST(ErrorBar, OfKinksIsUnknownWhereNothingShowsTheScatter) {

@@ -61,26 +61,34 @@ struct Line {
   }
 };
 
-// Order zero: no slope. At least one number more than the line has parameters.
-Line line_through(double value, const std::vector<Sample>& samples, double order) {
-  const auto n = static_cast<double>(samples.size() + 1);
-  double mean_x = 1, mean_y = value;
-  for (const Sample& s : samples) mean_x += std::pow(s.spacing, order), mean_y += s.value;
-  mean_x /= n, mean_y /= n;
-  double xx = (1 - mean_x) * (1 - mean_x), xy = (1 - mean_x) * (value - mean_y);
+// Order zero: no slope. At least one number more than the line has parameters. Kinks are errors of first order, of a
+// factor that is chance: the scatter falls with the spacing, so that weights are its inverse square.
+Line line_through(double value, std::vector<Sample> samples, double order) {
+  samples.push_back({Axis::around, 1, value});
+  double sum = 0, mean_x = 0, mean_y = 0;
+  const auto weight = [](const Sample& s) { return 1 / (s.spacing * s.spacing); };
+  for (const Sample& s : samples) {
+    sum += weight(s);
+    mean_x += weight(s) * std::pow(s.spacing, order);
+    mean_y += weight(s) * s.value;
+  }
+  mean_x /= sum, mean_y /= sum;
+  double xx = 0, xy = 0;
   for (const Sample& s : samples) {
     const double x = std::pow(s.spacing, order) - mean_x;
-    xx += x * x, xy += x * (s.value - mean_y);
+    xx += weight(s) * x * x, xy += weight(s) * x * (s.value - mean_y);
   }
   Line out;
   out.slope = order > 0 ? xy / xx : 0;
-  const auto left = [&](double x, double y) { return y - mean_y - out.slope * (x - mean_x); };
-  out.left = left(1, value);
-  double squares = out.left * out.left;
-  for (const Sample& s : samples) squares += std::pow(left(std::pow(s.spacing, order), s.value), 2);
-  out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 1 : 0);
+  const auto left = [&](const Sample& s) {
+    return s.value - mean_y - out.slope * (std::pow(s.spacing, order) - mean_x);
+  };
+  double squares = 0;
+  for (const Sample& s : samples) squares += weight(s) * left(s) * left(s);
+  out.left = left(samples.back());
+  out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 2 : 1);
   out.variance = squares / out.freedoms;
-  out.unknown = out.variance * (1 / n + (order > 0 ? mean_x * mean_x / xx : 0));
+  out.unknown = out.variance * (1 / sum + (order > 0 ? mean_x * mean_x / xx : 0));
   return out;
 }
 
