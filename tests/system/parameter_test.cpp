@@ -376,11 +376,12 @@ TEST_P(Parameter, BlocksFollow) {
 TEST_P(Parameter, MovedIsAsMadeThere) {
   const system::Machine machine = GetParam()();
   std::vector<std::string> idle;
+  system::RotorSystem start(MPI_COMM_WORLD, system::train_of(machine), speed);
+  const core::Vector x = state(start), rate = rates(x, 1e-3);
   for (const std::string& path : continuable_paths(machine)) {
     SCOPED_TRACE(path);
     const double value = value_of(machine, path);
     system::RotorSystem moved(MPI_COMM_WORLD, along(machine, path, 0.97 * value), speed);
-    const core::Vector x = state(moved), rate = rates(x, 1e-3);
     const core::Matrix j = moved.make_jacobian();
     const auto before = answers(moved, j.get(), x.get(), rate.get());
     moved.set_parameter(1.03 * value);
@@ -394,9 +395,6 @@ TEST_P(Parameter, MovedIsAsMadeThere) {
       change = std::max(change, relative(before[k], wanted[k]));
     }
     if (change <= 1e-12) idle.push_back(path);
-    moved.set_parameter(0.97 * value);
-    const auto again = answers(moved, j.get(), x.get(), rate.get());
-    for (std::size_t k = 0; k < again.size(); ++k) EXPECT_LE(relative(again[k], before[k]), 1e-13) << k;
   }
   // Laminar films do not know how heavy their oil is, and without states none is compressible.
   std::vector<std::string> expected{"lubricants.oil.density"};
@@ -409,7 +407,7 @@ TEST_P(Parameter, DerivativePassesTheTaylorTest) {
   const system::Machine machine = GetParam()();
   for (const std::string& path : continuable_paths(machine)) {
     SCOPED_TRACE(path);
-    system::RotorSystem s(MPI_COMM_WORLD, along(machine, path, value_of(machine, path)), speed);
+    system::RotorSystem s(MPI_COMM_SELF, along(machine, path, value_of(machine, path)), speed);
     const core::Vector x = state(s), rate = rates(x, 1e-3);
     const auto r = problem::taylor_test(s, 0.7, x.get(), rate.get(), 1e-3);
     EXPECT_GE(r.parameter_order, 1.9);
