@@ -52,7 +52,7 @@ Estimate estimate(double value, std::vector<Sample> samples, double theory) {
 }
 
 // Q(0) + C h^p through the numbers on all meshes of a direction.
-struct Line {
+struct Regression {
   double slope = 0, left = 0;        // C; what it leaves at the mesh in use
   double variance = 0, unknown = 0;  // of the scatter; of Q(0)
   int freedoms = 0;
@@ -63,7 +63,7 @@ struct Line {
 
 // Order zero: no slope. At least one number more than the line has parameters. Kinks are errors of first order, of a
 // factor that is chance: the scatter falls with the spacing, so that weights are its inverse square.
-Line line_through(double value, std::vector<Sample> samples, double order) {
+Regression line_through(double value, std::vector<Sample> samples, double order) {
   samples.push_back({Axis::around, 1, value});
   double sum = 0, mean_x = 0, mean_y = 0;
   const auto weight = [](const Sample& s) { return 1 / (s.spacing * s.spacing); };
@@ -78,7 +78,7 @@ Line line_through(double value, std::vector<Sample> samples, double order) {
     const double x = std::pow(s.spacing, order) - mean_x;
     xx += weight(s) * x * x, xy += weight(s) * x * (s.value - mean_y);
   }
-  Line out;
+  Regression out;
   out.slope = order > 0 ? xy / xx : 0;
   const auto left = [&](const Sample& s) {
     return s.value - mean_y - out.slope * (std::pow(s.spacing, order) - mean_x);
@@ -92,12 +92,12 @@ Line line_through(double value, std::vector<Sample> samples, double order) {
   return out;
 }
 
-Line best_line(double value, const std::vector<Sample>& samples, double theory) {
+Regression best_line(double value, const std::vector<Sample>& samples, double theory) {
   const bool agree = std::all_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.value == value; });
   if (samples.empty() || (samples.size() < 2 && !agree)) return {nothing, nothing, nothing, nothing, 1};
-  const Line none = line_through(value, samples, 0);
+  const Regression none = line_through(value, samples, 0);
   if (samples.size() < 2) return none;
-  const Line first = line_through(value, samples, 1), other = line_through(value, samples, theory);
+  const Regression first = line_through(value, samples, 1), other = line_through(value, samples, theory);
   if (none.variance <= std::min(first.variance, other.variance)) return none;
   return first.length() > other.length() ? first : other;
 }
@@ -137,7 +137,7 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
     }
     if (!any) continue;
     if (axis != Axis::time && law.kinks) {
-      const Line line = best_line(value, own, law.film_order);
+      const Regression line = best_line(value, own, law.film_order);
       bar.film_mesh += std::abs(line.slope);
       bar.kinks += std::abs(line.left);
       unknown_squares += line.unknown;
