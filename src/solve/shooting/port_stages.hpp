@@ -22,6 +22,8 @@ public:
   /// `a` = dF/d(dx/dt) + own dF/dx, scaled, at (angle, x, xdot) in SI.
   [[nodiscard]] std::shared_ptr<const StageSolver> solver(Mat a, double angle, Vec x, Vec xdot, double own);
   [[nodiscard]] std::shared_ptr<const PortMatrix> blocks(Mat a);
+  /// The parts' own inverses serve in this step: corrections are dear.
+  [[nodiscard]] bool by_inverses() const { return similar_ && similar_->inverse(); }
 
 private:
   explicit PortStages(problem::System& system) : system_(system) {}

@@ -123,7 +123,8 @@ std::shared_ptr<const StageSolver> SparseRungeKutta::solve_stage(double angle, d
     check(VecNorm(d_.get(), NORM_INFINITY, &correction));
     if (!std::isfinite(correction)) fail();
     // F is linear in dx/dt, so that an explicit stage is solved at once.
-    if (own == 0 || own * correction <= 1e-9 * (1 + size)) return solver;
+    const double enough = parts_ && parts_->by_inverses() ? 1e-9 : 1e-11;
+    if (own == 0 || own * correction <= enough * (1 + size)) return solver;
     if (it == 20) fail();
   }
 }
