@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "film/cases.hpp"
 #include "film/content_cases.hpp"
@@ -127,6 +129,29 @@ TEST(Hole, WithoutPressureTheFilmRunsDry) {
   EXPECT_GT(std::abs(evaluate(*make_model(cylinder(), o, oil()), least).force[1]), 0.0);
 }
 
+// Two rims cut the same faces: what is left between them conducts. Along z a square of 16 cells has faces of 1.25 mm;
+// of the one between z = 0 and 1.25 mm the holes leave the way from 0.5 to 1 mm, in the columns that meet both middles.
+TEST(Hole, BesideAnotherSharesItsFaces) {
+  Geometry g;
+  g.radius = 1.0;
+  g.length = g.arc = 0.02;
+  g.clearance = 1e-4;
+  Reynolds o = conserving({16, 16});
+  o.holes = {{270.0 * kDegree, -0.0015, 0.004, 1e5}, {270.0 * kDegree, 0.003, 0.004, 0.0}};
+  ASSERT_FALSE(misplaced_hole(o, g));
+  const Pad pad = make_pads(g, o.inlet).front();
+  int shared = 0;
+  std::set<std::pair<int, int>> met;
+  const HoleMesh both(pad, Grid(pad, o.cells), o.holes);
+  for (const HoleMesh::Cut& cut : both.along()) {
+    EXPECT_TRUE(met.emplace(cut.i, cut.j).second) << "a face counts once";
+    if (cut.i != 8 || both.at(cut.i, cut.j - 1) != 1 || both.at(cut.i, cut.j) != 2) continue;
+    ++shared;
+    EXPECT_NEAR(cut.longer, 1.25 / 0.5, 1e-9);
+  }
+  EXPECT_EQ(shared, 1);
+}
+
 // A film with states of its own that has settled is the one without.
 TEST(Hole, WithStatesAndWithout) {
   Reynolds o = dynamic({40, 16});
@@ -217,6 +242,11 @@ TEST(Hole, MayNotBeAnywhere) {
             std::string::npos);
   EXPECT_NE(why(cylinder(), {good}, {{260.0 * kDegree, 0.1, 0.0}}).find("1: the hole overlaps groove 1"),
             std::string::npos);
+  // The groove has no width, but holds the node at 90 deg, which lies in the hole.
+  EXPECT_NE(why(cylinder(), {{90.0 * kDegree, 0.0, 0.004, 1e5}}, {{86.5 * kDegree, 0.0, 0.0}})
+                .find("1: the hole overlaps groove 1, whose edges are moved to the nearest nodes"),
+            std::string::npos);
+  EXPECT_EQ(why(cylinder(), {{90.0 * kDegree, 0.0, 0.004, 1e5}}, {{84.0 * kDegree, 0.0, 0.0}}), "");
   EXPECT_NE(why(arc(), {{200.0 * kDegree, 0.0, 0.02, 1e5}}).find("1: the hole does not lie on a pad"),
             std::string::npos);
   EXPECT_NE(why(arc(), {{241.0 * kDegree, 0.0, 0.02, 1e5}}).find("1: the hole does not lie on a pad"),
