@@ -54,8 +54,11 @@ Estimate estimate(double value, std::vector<Sample> samples, double theory) {
 // Q(0) + C h^p through the numbers on all meshes of a direction.
 struct Line {
   double slope = 0, left = 0;        // C; what it leaves at the mesh in use
-  double variance = 0, unknown = 0;  // of the scatter; of Q(0)
+  double of_slope = 0, unknown = 0;  // variances of C and of Q(0)
   int freedoms = 0;
+  [[nodiscard]] bool leans() const {
+    return std::abs(slope) > student_quantile(confidence, freedoms) * std::sqrt(of_slope);
+  }
   [[nodiscard]] double length() const {
     return std::abs(slope + left) + student_quantile(confidence, freedoms) * std::sqrt(unknown);
   }
@@ -79,8 +82,9 @@ Line line_through(double value, const std::vector<Sample>& samples, double order
   double squares = out.left * out.left;
   for (const Sample& s : samples) squares += std::pow(left(std::pow(s.spacing, order), s.value), 2);
   out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 1 : 0);
-  out.variance = squares / out.freedoms;
-  out.unknown = out.variance * (1 / n + (order > 0 ? mean_x * mean_x / xx : 0));
+  const double variance = squares / out.freedoms;
+  out.of_slope = order > 0 ? variance / xx : 0;
+  out.unknown = variance / n + mean_x * mean_x * out.of_slope;
   return out;
 }
 
@@ -90,7 +94,7 @@ Line best_line(double value, const std::vector<Sample>& samples, double theory) 
   const Line none = line_through(value, samples, 0);
   if (samples.size() < 2) return none;
   const Line first = line_through(value, samples, 1), other = line_through(value, samples, theory);
-  if (none.variance <= std::min(first.variance, other.variance)) return none;
+  if (!first.leans() || !other.leans()) return first.leans() ? first : other.leans() ? other : none;
   return first.length() > other.length() ? first : other;
 }
 
