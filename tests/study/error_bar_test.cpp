@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "study/bars/film_mesh.hpp"
+#include "whirl/film/options.hpp"
 
 namespace whirl::study {
 namespace {
@@ -174,6 +175,27 @@ TEST(ErrorBar, OfKinksIsNoLongerThanTheScatter) {
   EXPECT_GT(error_bar(0, samples, kinks).total(), 1);
   for (Sample& s : samples) s.value *= 1 + 0.1 * (s.spacing - 1);
   EXPECT_LT(error_bar(0, samples, kinks).total(), 1.5) << "a little change of the samples";
+}
+
+// Four cells are no fewer, and three quarters of six are those that half of eleven are: a mesh counts once.
+TEST(ErrorBar, HasEachMeshOnce) {
+  system::Machine machine;
+  film::Reynolds film;
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  const auto cells = [&](std::array<int, 2> of) {
+    film.cells = of;
+    machine.bearings.resize(1);
+    machine.bearings[0].film = film;
+    std::array<std::vector<int>, 2> out;
+    for (const FilmMesh& m : film_meshes(machine)) {
+      const std::size_t d = m.axis == Axis::around ? 0 : 1;
+      out[d].push_back(film::facts(film::refined(machine.bearings[0].film, m.factor)).cells[d]);
+      EXPECT_NEAR(m.spacing, static_cast<double>(of[d]) / out[d].back(), 1e-12);
+    }
+    return out;
+  };
+  EXPECT_EQ(cells({60, 16}), (std::array{std::vector{30, 45, 90, 120}, std::vector{8, 12, 24, 32}}));
+  EXPECT_EQ(cells({4, 5}), (std::array{std::vector{6, 8}, std::vector{4, 8, 10}}));
 }
 
 // Thresholds of the train in films that conserve their mass, on 120 x 24 cells and the eight meshes beside it
