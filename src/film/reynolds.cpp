@@ -145,8 +145,8 @@ std::span<const deck::Name<Reynolds::Cavitation>> names(Reynolds::Cavitation) {
       {Reynolds::Cavitation::reynolds, "reynolds", "complementarity: pressure and its slope vanish at the rupture"},
       {Reynolds::Cavitation::mass_conserving, "mass_conserving",
        "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
-       "edges of pads, grooves, holes and inlets. Loads, stiffness and flows are exact; damping is that of a cavity that "
-       "neither fills nor empties, unless 'states' are dynamic"},
+       "edges of pads, grooves, holes and inlets. Loads, stiffness and flows are exact; damping is that of a cavity "
+       "that neither fills nor empties, unless 'states' are dynamic"},
       {Reynolds::Cavitation::none, "none", "negative pressure stays"}};
   return table;
 }
