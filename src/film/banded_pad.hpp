@@ -43,6 +43,7 @@ private:
   void assemble_conserving();
   void integrate_conserving(Need need, Response& response);
   double deficit_at(int i, int j) const;
+  std::size_t fullest(int row) const;
 
   // A groove reaches from side to side, where the pressure is zero as everywhere.
   double pressure_at(int i, int j) const {
@@ -69,6 +70,8 @@ private:
   // Mass-conserving cavitation only.
   std::optional<GeneralBand> general_;
   std::vector<char> full_;        // nodes with pressure; kept as the start of the next evaluation
+  std::vector<char> before_;      // in the iteration before
+  std::vector<int> unheld_rows_;  // around a whole circle, without a node that is held
   std::vector<double> deficit_;   // s of the others, rad/s
   std::vector<double> diagonal_;  // of A
   double void_at_edge_ = 0.0;     // 1 - edge_fill

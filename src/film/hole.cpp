@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
+#include "film/groove.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
@@ -13,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double rim_tolerance = 1e-3;  // of a step: nodes nearer to the rim belong to the hole
+constexpr double rim_tolerance = 1e-3;  // of a step: nodes nearer to the rim belong to the hole, no way is shorter
 
 // Where a node lies as seen from the middle of a hole, on the developed bore.
 struct Place {
@@ -40,11 +43,23 @@ bool stands_on(const Pad& pad, const Hole& hole) {
   return pad.radius * behind > radius && pad.radius * (pad.arc - behind) > radius;
 }
 
+// A groove that leaves nothing of the bearing is refused for that.
+bool meets(const HoleMesh& mesh, int n, const Groove& groove) {
+  try {
+    return mesh.meets(grooved(n, {groove}));
+  } catch (const core::InputError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 HoleMesh::HoleMesh(const Pad& pad, const Grid& grid, const std::vector<Hole>& holes) : rows_(grid.n_z - 1) {
   const int n = grid.n_theta, first = pad.closed ? 0 : 1;
   const double tolerance = rim_tolerance * std::min(pad.radius * grid.dtheta, grid.dz);
+  // Part of a face outside all rims; the rims of two holes may cut the same one.
+  using Free = std::map<std::pair<int, int>, double>;
+  Free around, along;
   for (std::size_t k = 0; k < holes.size(); ++k) {
     const Hole& hole = holes[k];
     if (!stands_on(pad, hole)) continue;
@@ -65,16 +80,31 @@ HoleMesh::HoleMesh(const Pad& pad, const Grid& grid, const std::vector<Hole>& ho
         nodes_[static_cast<std::size_t>(i * rows_ + j)] = static_cast<int>(k) + 1;
         if (i == 0) nodes_[static_cast<std::size_t>(n * rows_ + j)] = static_cast<int>(k) + 1;
         const Place in = place(i, j);
-        const auto longer = [&](const Place& out) { return 1.0 / outside(out, in, radius); };
         const double step = pad.radius * grid.dtheta;
-        if (!within(i - 1, j))
-          around_.push_back({pad.closed ? (i + n - 1) % n : i - 1, j, longer({in.x - step, in.z})});
-        if (!within(i + 1, j)) around_.push_back({i, j, longer({in.x + step, in.z})});
-        if (!within(i, j - 1)) along_.push_back({i, j, longer({in.x, in.z - grid.dz})});
-        if (!within(i, j + 1)) along_.push_back({i, j + 1, longer({in.x, in.z + grid.dz})});
+        const auto cut = [&](Free& free, int face_i, int face_j, const Place& out) {
+          free.try_emplace({face_i, face_j}, 1.0).first->second -= 1.0 - outside(out, in, radius);
+        };
+        if (!within(i - 1, j)) cut(around, pad.closed ? (i + n - 1) % n : i - 1, j, {in.x - step, in.z});
+        if (!within(i + 1, j)) cut(around, i, j, {in.x + step, in.z});
+        if (!within(i, j - 1)) cut(along, i, j, {in.x, in.z - grid.dz});
+        if (!within(i, j + 1)) cut(along, i, j + 1, {in.x, in.z + grid.dz});
       }
     if (!any) throw core::InputError(fmt::format("film: no node of the mesh lies within hole {}", k + 1));
   }
+  const auto put = [tolerance](const Free& free, double length, std::vector<Cut>& cuts) {
+    for (const auto& [face, part] : free)
+      cuts.push_back({face.first, face.second, 1.0 / std::max(part, tolerance / length)});
+  };
+  put(around, pad.radius * grid.dtheta, around_);
+  put(along, grid.dz, along_);
+}
+
+bool HoleMesh::meets(const std::vector<bool>& columns) const {
+  if (empty()) return false;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    for (int j = 0; columns[i] && j < rows_; ++j)
+      if (at(static_cast<int>(i), j) > 0) return true;
+  return false;
 }
 
 std::optional<MisplacedHole> misplaced_hole(const Reynolds& o, const Geometry& g) {
@@ -95,7 +125,13 @@ std::optional<MisplacedHole> misplaced_hole(const Reynolds& o, const Geometry& g
       if (apart(o.grooves[groove].angle, hole.z) <= radius + 0.5 * g.radius * o.grooves[groove].width)
         return {{k, fmt::format("the hole overlaps groove {}", groove + 1)}};
     try {
-      (void)HoleMesh(*pad, Grid(*pad, o.cells), {hole});
+      const HoleMesh mesh(*pad, Grid(*pad, o.cells), {hole});
+      for (std::size_t groove = 0; pad->closed && groove < o.grooves.size(); ++groove)
+        if (meets(mesh, o.cells[0], o.grooves[groove]))
+          return {
+              {k, fmt::format("the hole overlaps groove {}, whose edges are moved to the nearest nodes: 'cells' are "
+                              "{:.3g} mm long",
+                              groove + 1, 1e3 * g.radius * pad->arc / o.cells[0])}};
     } catch (const core::InputError&) {
       return {{k, fmt::format("no node of the mesh lies within the hole: 'cells' are {:.3g} mm and {:.3g} mm long",
                               1e3 * g.radius * pad->arc / o.cells[0], 1e3 * g.length / o.cells[1])}};

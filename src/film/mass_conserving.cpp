@@ -11,6 +11,12 @@
 // one unknown w, whose equation is piecewise linear and is solved by Newton's method on the set of full nodes. No
 // tuning, no regularisation; two to six factorisations from nothing, one or two from a neighbouring place.
 //
+// Around a whole circle a row without a node that is held can be in the cavity as a whole: its columns sum to zero
+// within the row, the matrix is singular, and how much oil goes round is not determined. It is regular if every such
+// row has a full node: from each node the columns then lead to a side or to a node that is held. Where oil comes in, it
+// has one: what enters a row in the cavity cannot leave it. So the iteration leaves at least one node of each such row
+// full, and a row without pressure at its end runs dry.
+//
 // A film without own states does not know how fast its cavity fills: the void (1 - theta) h is taken as constant in
 // time as the journal moves. At rest this is exact.
 #include <algorithm>
@@ -28,6 +34,20 @@ void BandedPad::enter_conserving(double edge_fill) {
   deficit_.assign(n, 0.0);
   diagonal_.assign(n, 1.0);
   void_at_edge_ = 1.0 - edge_fill;
+  if (!pad_.closed) return;
+  for (int j = 0; j < rows_; ++j) {
+    bool held_anywhere = false;
+    for (int i = 0; i < grid_.n_theta; ++i) held_anywhere |= held(i, j);
+    if (!held_anywhere) unheld_rows_.push_back(j);
+  }
+}
+
+// The node of a row around a whole circle that is nearest to being full.
+std::size_t BandedPad::fullest(int row) const {
+  std::size_t best = at(0, row);
+  for (int i = 1; i < grid_.n_theta; ++i)
+    if (x_[at(i, row)] > x_[best]) best = at(i, row);
+  return best;
 }
 
 // s at a node: of a column in a groove zero, as in a hole, at the edge where the oil enters what is given.
@@ -46,27 +66,40 @@ void BandedPad::solve_conserving() {
       const double up = j + 1 < z_faces_ ? b_.value[along(i, j + 1)] : 0.0;
       diagonal_[at(i, j)] = held(i, j) ? 1.0 : share(j) * around_it + b_.value[along(i, j)] + up;
     }
+  // The next place starts from nothing.
+  const auto give_up = [this] { std::fill(full_.begin(), full_.end(), 1); };
   int iteration = 0;
-  std::size_t changed = 0;
+  double largest = 0.0;
   do {
     if (++iteration > kMost) {
-      std::fill(full_.begin(), full_.end(), 1);
+      give_up();
       throw core::NotConverged("the cavitated region of a film did not settle");
     }
     assemble_conserving();
     general_->factor();
     ++factorisations_;
     general_->solve(x_);
-    changed = 0;
-    double largest = 0.0;
-    for (const double w : x_) largest = std::max(largest, std::abs(w));
-    for (std::size_t k = 0; k < n; ++k) {
-      // Rounding alone does not move the rupture.
-      const char full = cavitated_[k] || x_[k] > (full_[k] ? -kRounding : kRounding) * largest;
-      changed += full != full_[k];
-      full_[k] = full;
+    largest = 0.0;
+    bool finite = true;
+    for (const double w : x_) {
+      largest = std::max(largest, std::abs(w));
+      finite &= std::isfinite(w);
     }
-  } while (changed > 0);
+    if (!finite) {
+      give_up();
+      throw core::NotConverged("the equations of a film that conserves its mass are singular");
+    }
+    before_ = full_;
+    // Rounding alone does not move the rupture.
+    for (std::size_t k = 0; k < n; ++k)
+      full_[k] = cavitated_[k] || x_[k] > (full_[k] ? -kRounding : kRounding) * largest;
+    for (const int j : unheld_rows_) full_[fullest(j)] = 1;
+  } while (full_ != before_);
+  for (const int j : unheld_rows_) {
+    if (x_[fullest(j)] > kRounding * largest) continue;
+    give_up();
+    throw core::DomainError("a film runs dry: what comes through its holes does not reach its whole length");
+  }
   // From w to pressure and deficit; s_k = diagonal/carried of the face downstream times -w.
   for (int i = first_; i < grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) {

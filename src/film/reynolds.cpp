@@ -1,4 +1,5 @@
 // Reynolds' equation pad by pad: chooses the solver of each pad and adds the pads up.
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -22,9 +23,22 @@ void demand(bool condition, const char* what) {
 // Its columns would have no end, and the films that settle along a cycle are bands.
 constexpr const char* kRing =
     "in a whole circle fed by holes alone a film cannot have dynamic states: add a groove or an inlet";
+// Drag alone fills no more than what lies behind a hole, and nothing unless the gap narrows there.
+constexpr const char* kDry =
+    "in a whole circle fed by holes alone a film that conserves its mass needs one under pressure: add 'pressure' to a "
+    "hole, a groove or an inlet";
+
+bool fed_by_holes_alone(const Reynolds& o, const Geometry& g) {
+  return o.cavitation == Reynolds::Cavitation::mass_conserving && !o.holes.empty() &&
+         g.type == Geometry::Bore::cylindrical && o.grooves.empty() && o.inlet.type == Inlet::Type::free;
+}
 bool is_ring(const Reynolds& o, const Geometry& g) {
-  return o.states == Reynolds::States::dynamic && g.type == Geometry::Bore::cylindrical && o.grooves.empty() &&
-         o.inlet.type == Inlet::Type::free;
+  return o.states == Reynolds::States::dynamic && fed_by_holes_alone(o, g);
+}
+// A machine begins where the journal is centred, and there it is. A branch in the pressure ends where it runs dry.
+bool is_dry(const Reynolds& o, const Geometry& g) {
+  return fed_by_holes_alone(o, g) &&
+         std::all_of(o.holes.begin(), o.holes.end(), [](const Hole& h) { return h.pressure == 0.0; });
 }
 
 void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
@@ -132,8 +146,7 @@ std::span<const deck::Name<Reynolds::Cavitation>> names(Reynolds::Cavitation) {
       {Reynolds::Cavitation::mass_conserving, "mass_conserving",
        "Jakobsson, Floberg and Olsson: pressure where the gap is full, oil carried along where it is not; it enters at "
        "edges of pads, grooves, holes and inlets. Loads, stiffness and flows are exact; damping is that of a cavity "
-       "that "
-       "neither fills nor empties, unless 'states' are dynamic"},
+       "that neither fills nor empties, unless 'states' are dynamic"},
       {Reynolds::Cavitation::none, "none", "negative pressure stays"}};
   return table;
 }
@@ -212,6 +225,8 @@ Facts facts_of(const Reynolds& o, const Geometry& geometry) {
     f.misplaced = {"holes." + std::to_string(hole->hole + 1), hole->reason};
   else if (is_ring(o, geometry))
     f.misplaced = {"holes", kRing};
+  else if (is_dry(o, geometry))
+    f.misplaced = {"holes", kDry};
   return f;
 }
 

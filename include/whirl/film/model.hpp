@@ -66,7 +66,7 @@ public:
   Model& operator=(const Model&) = delete;
   virtual ~Model() = default;
   /// Fills `response`; the derivatives are those of the discrete force, zero if only the force is needed.
-  /// Throws core::DomainError where the film thickness is not positive.
+  /// Throws core::DomainError where the film thickness is not positive, or the film runs dry.
   virtual void evaluate(const Motion& motion, Need need, Response& response) = 0;
   /// Report quantities at `motion`; throws as evaluate() does.
   virtual Summary summary(const Motion& motion) = 0;

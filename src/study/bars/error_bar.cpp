@@ -54,8 +54,11 @@ Estimate estimate(double value, std::vector<Sample> samples, double theory) {
 // Q(0) + C h^p through the numbers on all meshes of a direction.
 struct Regression {
   double slope = 0, left = 0;        // C; what it leaves at the mesh in use
-  double variance = 0, unknown = 0;  // of the scatter; of Q(0)
+  double of_slope = 0, unknown = 0;  // variances of C and of Q(0)
   int freedoms = 0;
+  [[nodiscard]] bool leans() const {
+    return std::abs(slope) > student_quantile(confidence, freedoms) * std::sqrt(of_slope);
+  }
   [[nodiscard]] double length() const {
     return std::abs(slope + left) + student_quantile(confidence, freedoms) * std::sqrt(unknown);
   }
@@ -87,8 +90,9 @@ Regression line_through(double value, std::vector<Sample> samples, double order)
   for (const Sample& s : samples) squares += weight(s) * left(s) * left(s);
   out.left = left(samples.back());
   out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 2 : 1);
-  out.variance = squares / out.freedoms;
-  out.unknown = out.variance * (1 / sum + (order > 0 ? mean_x * mean_x / xx : 0));
+  const double variance = squares / out.freedoms;
+  out.of_slope = order > 0 ? variance / xx : 0;
+  out.unknown = variance / sum + mean_x * mean_x * out.of_slope;
   return out;
 }
 
@@ -98,7 +102,7 @@ Regression best_line(double value, const std::vector<Sample>& samples, double th
   const Regression none = line_through(value, samples, 0);
   if (samples.size() < 2) return none;
   const Regression first = line_through(value, samples, 1), other = line_through(value, samples, theory);
-  if (none.variance <= std::min(first.variance, other.variance)) return none;
+  if (!first.leans() || !other.leans()) return first.leans() ? first : other.leans() ? other : none;
   return first.length() > other.length() ? first : other;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "whirl/film/options.hpp"
 
@@ -44,21 +45,31 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
   else if (kinks)
     factors = {0.5, 0.75, 1.5, 2};
   std::vector<FilmMesh> out;
-  for (std::size_t d = 0; d < 2; ++d)
+  for (std::size_t d = 0; d < 2; ++d) {
+    const auto cells_of = [&](const std::array<double, 2>& factor) {
+      std::vector<int> cells;
+      for (const auto& b : machine.bearings) cells.push_back(film::facts(film::refined(b.film, factor)).cells[d]);
+      return cells;
+    };
+    // Few cells are rounded to the same ones twice; a mesh counts once, and that in use is known.
+    std::set<std::vector<int>> met{cells_of({1, 1})};
+    const std::vector<int> in_use = *met.begin();
     for (const double factor : factors) {
       FilmMesh mesh{d == 0 ? Axis::around : Axis::along, {1, 1}, 1};
       mesh.factor[d] = factor;
+      const std::vector<int> cells = cells_of(mesh.factor);
+      if (!met.insert(cells).second) continue;
       // The film whose mesh changes least speaks for all: its spacing gives the largest error.
       bool any = false;
-      for (const auto& b : machine.bearings) {
-        const int cells = film::facts(b.film).cells[d];
-        if (cells == 0) continue;
-        const double spacing = static_cast<double>(cells) / film::facts(film::refined(b.film, mesh.factor)).cells[d];
+      for (std::size_t k = 0; k < cells.size(); ++k) {
+        if (in_use[k] == 0) continue;
+        const double spacing = static_cast<double>(in_use[k]) / cells[k];
         if (!any || std::abs(std::log(spacing)) < std::abs(std::log(mesh.spacing))) mesh.spacing = spacing;
         any = true;
       }
       if (any && mesh.spacing != 1) out.push_back(mesh);
     }
+  }
   return out;
 }
 

@@ -22,7 +22,8 @@ struct FilmMesh {
 
 /// Half and double the cells of each direction that a film of the machine has a mesh in; two more between them where
 /// forces have kinks, so that the scatter is seen; and coarser meshes only, as many of them, where films have more than
-/// 4000 states of their own: finer ones would cost more than the branch. Empty for machines without film meshes.
+/// 4000 states of their own: finer ones would cost more than the branch. Each mesh once: few cells are rounded to fewer
+/// meshes. Empty for machines without film meshes.
 [[nodiscard]] std::vector<FilmMesh> film_meshes(const system::Machine& machine);
 
 /// The train with the cells of its films multiplied and rounded: at least four, even ones for Simpson's rule.

@@ -91,10 +91,8 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
       kept(at, "cycles with more harmonics", [&] { return birth_here(at, omega, more_harmonics, largest); });
   double doubt = finer.empty() ? unknown : std::abs(finer[0] - curvature);
   Bars bars({curvature}, at.law);
-  bool open = false;  // whatever other meshes say
-  for (std::size_t k = 0; k < at.meshes.size(); ++k) {
-    open = !decided(curvature, smaller + doubt);
-    if (open) break;
+  double of_meshes = 0;  // of whole directions
+  for (std::size_t k = 0; k < at.meshes.size() && decided(curvature, smaller + doubt + of_meshes); ++k) {
     const FilmMesh& mesh = at.meshes[k];
     const double c = kept(at, fmt::format("cycles on mesh {}", k), [&] {
                        return std::vector<double>{curvature_on(at, mesh.factor, there[k], largest)};
@@ -102,13 +100,15 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
     bars.add(mesh.axis, mesh.spacing, {c});
     // A sign that changes with the mesh is none.
     if (!(c * curvature > 0)) doubt = std::max(doubt, std::abs(c - curvature));
+    // Part of a direction does not show its error.
+    if (k + 1 == at.meshes.size() || at.meshes[k + 1].axis != mesh.axis) of_meshes = bars[0].total();
   }
   const std::string before = b.criticality_by;
   for (const char* name : {"coefficient", "uncertainty"})
     b.more[fmt::format("lyapunov_{}", name)] = b.more[fmt::format("criticality_{}", name)];
   // Cycles that live where the equilibrium is unstable are supercritical.
   const double sign = at.found.sensitivity > 0 ? -1 : 1;
-  put_criticality(b, sign * curvature, smaller + doubt + (open ? 0 : bars[0].total()), "supercritical", "subcritical",
+  put_criticality(b, sign * curvature, smaller + doubt + of_meshes, "supercritical", "subcritical",
                   fmt::format("cycles at amplitudes {:.3g}, {:.3g}, {:.3g} of a clearance, change of the parameter per "
                               "clearance^2",
                               found[2], found[3], found[4]));
