@@ -7,11 +7,16 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <tuple>
 
 #include "support/dense.hpp"
+#include "support/petsc_options.hpp"
+#include "whirl/core/error.hpp"
 
 using namespace whirl;
 using core::check;
+using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -19,14 +24,14 @@ namespace {
 
 // A hub of 5 with a border behind everything, two films of 6 and 9 states that are cut where the ranks want it, one of
 // them with two fields, and one that only the last rank has. Each sees two unknowns of the hub, one of which all see,
-// and the border.
+// and the border. Without the border the hub stands on one rank.
 struct Machine {
-  static constexpr PetscInt hub = 5, n = 5 + 6 + 9 + 4 + 1;
-  PetscInt local = 0, first = 0;
+  static constexpr PetscInt hub = 5;
+  PetscInt n, local = 0, first = 0;
   std::vector<problem::Field> fields;
   core::Matrix a;
 
-  Machine() {
+  explicit Machine(bool border = true) : n(5 + 6 + 9 + 4 + (border ? 1 : 0)) {
     const int rank = core::rank_of(MPI_COMM_WORLD), size = core::size_of(MPI_COMM_WORLD);
     const auto cut = [&](int r) -> PetscInt { return r == 0 ? 0 : r == size ? n : 5 + 15 * r / size; };
     first = cut(rank);
@@ -58,21 +63,63 @@ struct Machine {
         if (port) value = entry(i, j);
         if (value != 0) check(MatSetValue(a.get(), i, j, value, INSERT_VALUES));
       }
+    assemble();
+  }
+  void assemble() {
     check(MatAssemblyBegin(a.get(), MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(a.get(), MAT_FINAL_ASSEMBLY));
   }
+  // Row 0 of the hub, which sees no part, vanishes but for its border.
+  void let_go(double border) {
+    for (PetscInt j = 0; j < hub && first == 0; ++j) check(MatSetValue(a.get(), 0, j, 0, INSERT_VALUES));
+    if (first == 0 && n > 24) check(MatSetValue(a.get(), 0, 24, border, INSERT_VALUES));
+    assemble();
+  }
 };
+
+core::Vector some(const Machine& m) {
+  core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE);
+  const core::WriteArray values(b.get());
+  for (PetscInt i = 0; i < values.size(); ++i) values[i] = std::cos(2.0 * static_cast<double>(m.first + i));
+  return b;
+}
+
+// The parts as if no rank saw the rows of others.
+class OfOwnRows : public problem::PartInverse {
+public:
+  explicit OfOwnRows(const Machine& m) {
+    const MatrixXd whole = test::dense(m.a.get());
+    std::vector<Index> rows;
+    for (PetscInt i = m.first; i < m.first + m.local; ++i)
+      if (Machine::part_of(i) != 0) rows.push_back(i);
+    if (!rows.empty()) lu_.compute(whole(rows, rows));
+  }
+  void set(double, Vec, Vec, double, double) override {}
+  void apply(const double* r, double* y) override {
+    if (const Index n = lu_.cols(); n > 0) Eigen::Map<VectorXd>(y, n) = lu_.solve(Eigen::Map<const VectorXd>(r, n));
+  }
+
+private:
+  Eigen::PartialPivLU<MatrixXd> lu_;
+};
+
+// Nobody may be left behind: every rank gets an error on which all agree.
+template <class Error, class Work>
+void expect_agreed(Work&& work) {
+  try {
+    work();
+    ADD_FAILURE() << "no error";
+  } catch (const Error& e) {
+    EXPECT_TRUE(e.agreed()) << e.what();
+  }
+}
 
 }  // namespace
 
 TEST(PortElimination, SolvesLikeTheWholeMatrix) {
   Machine m;
   solve::PortElimination elimination(m.fields);
-  core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), x = core::duplicate(b.get());
-  {
-    const core::WriteArray values(b.get());
-    for (PetscInt i = 0; i < values.size(); ++i) values[i] = std::cos(2.0 * static_cast<double>(m.first + i));
-  }
+  core::Vector b = some(m), x = core::duplicate(b.get());
   // The second time with other values in the same places.
   for (const double factor : {1.0, -0.6}) {
     m.fill(factor);
@@ -89,11 +136,7 @@ TEST(PortElimination, SolvesLikeTheWholeMatrix) {
 TEST(PortMatrix, MultipliesLikeTheWholeMatrix) {
   Machine m;
   solve::PortMatrix blocks(std::make_shared<const solve::PortLayout>(m.a.get(), m.fields));
-  core::Vector v = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), y = core::duplicate(v.get());
-  {
-    const core::WriteArray values(v.get());
-    for (PetscInt i = 0; i < values.size(); ++i) values[i] = std::cos(2.0 * static_cast<double>(m.first + i));
-  }
+  core::Vector v = some(m), y = core::duplicate(v.get());
   for (const double factor : {1.0, -0.6}) {
     m.fill(factor);
     blocks.take(m.a.get());
@@ -105,13 +148,7 @@ TEST(PortMatrix, MultipliesLikeTheWholeMatrix) {
 // At a fold the machine's own matrix is singular, the bordered one is not.
 TEST(PortElimination, TheBorderMayHoldTheHubUp) {
   Machine m;
-  // Row 0 of the hub sees no part, and vanishes but for its border.
-  if (m.first == 0) {
-    for (PetscInt j = 0; j < 5; ++j) check(MatSetValue(m.a.get(), 0, j, 0, INSERT_VALUES));
-    check(MatSetValue(m.a.get(), 0, 24, 1, INSERT_VALUES));
-  }
-  check(MatAssemblyBegin(m.a.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(m.a.get(), MAT_FINAL_ASSEMBLY));
+  m.let_go(1);
   const MatrixXd whole = test::dense(m.a.get());
   ASSERT_EQ(whole.topLeftCorner(24, 24).fullPivLu().rank(), 23);
   ASSERT_EQ(whole.fullPivLu().rank(), 25);
@@ -120,5 +157,69 @@ TEST(PortElimination, TheBorderMayHoldTheHubUp) {
   core::Vector b = core::make_vector(MPI_COMM_WORLD, m.local, PETSC_DETERMINE), x = core::duplicate(b.get());
   check(VecSet(b.get(), 1));
   elimination.solve(b.get(), x.get());
-  EXPECT_LT((whole * test::dense(x.get()) - VectorXd::Ones(Machine::n)).norm(), 1e-10);
+  EXPECT_LT((whole * test::dense(x.get()) - VectorXd::Ones(m.n)).norm(), 1e-10);
+}
+
+// On one rank and without a border the hub goes to KLU.
+TEST(PortKrylov, SolvesWithInversesOfTheParts) {
+  for (const bool border : {true, false}) {
+    Machine m(border);
+    solve::PortElimination elimination(m.fields, std::make_unique<OfOwnRows>(m));
+    elimination.factorise(m.a.get());
+    solve::PortKrylov krylov(*elimination.blocks().layout(), "similar_");
+    core::Vector b = some(m), x = core::duplicate(b.get());
+    const int iterations = krylov.solve(elimination.blocks(), elimination, b.get(), x.get(), 1e-13);
+    EXPECT_LT((test::dense(m.a.get()) * test::dense(x.get()) - test::dense(b.get())).norm(), 1e-11);
+    if (core::size_of(MPI_COMM_WORLD) == 1) {
+      EXPECT_LE(iterations, 2) << "the inverse is exact";
+    }
+  }
+}
+
+class SingularHub : public ::testing::TestWithParam<std::tuple<bool, bool>> {};
+
+// It is told where the matrix is factorised, and again to whoever uses it nevertheless.
+TEST_P(SingularHub, EndsInErrorsOfAllRanks) {
+  const auto [border, by_inverse] = GetParam();
+  Machine m(border);
+  m.let_go(0);
+  solve::PortElimination elimination(m.fields, by_inverse ? std::make_unique<OfOwnRows>(m) : nullptr);
+  expect_agreed<core::NotConverged>([&] { elimination.factorise(m.a.get()); });
+  solve::PortKrylov krylov(*elimination.blocks().layout(), "similar_");
+  core::Vector b = some(m), x = core::duplicate(b.get());
+  if (by_inverse && (!border || core::size_of(MPI_COMM_WORLD) == 1)) return;  // KLU has no factors to solve with
+  expect_agreed<core::NotConverged>([&] { elimination.solve(b.get(), x.get()); });
+  expect_agreed<core::DomainError>(
+      [&] { (void)krylov.solve(elimination.blocks(), elimination, b.get(), x.get(), 1e-9); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, SingularHub, ::testing::Combine(::testing::Bool(), ::testing::Bool()),
+                         [](const auto& which) {
+                           return std::string(std::get<0>(which.param) ? "border" : "alone") +
+                                  (std::get<1>(which.param) ? "ByInverse" : "");
+                         });
+
+// Parts that a Krylov method does not solve, and a hub that the one rank which holds it does not.
+TEST(PortKrylov, TellsAllRanksOfFailures) {
+  Machine m(false);
+  core::Vector b = some(m), x = core::duplicate(b.get());
+  const auto fails = [&](const std::string& prefix, std::unique_ptr<problem::PartInverse> inverse) {
+    const test::WithOptions options({{"-" + prefix + "_ksp_type", "gmres"},
+                                     {"-" + prefix + "_pc_type", "none"},
+                                     {"-" + prefix + "_ksp_max_it", "1"},
+                                     {"-" + prefix + "_ksp_rtol", "1e-12"}});
+    solve::PortElimination elimination(m.fields, std::move(inverse));
+    if (prefix == "parts") {
+      expect_agreed<core::NotConverged>([&] { elimination.factorise(m.a.get()); });
+    } else {
+      elimination.factorise(m.a.get());
+    }
+    solve::PortKrylov krylov(*elimination.blocks().layout(), "similar_");
+    expect_agreed<core::NotConverged>([&] { elimination.solve(b.get(), x.get()); });
+    expect_agreed<core::DomainError>(
+        [&] { (void)krylov.solve(elimination.blocks(), elimination, b.get(), x.get(), 1e-9); });
+  };
+  fails("parts", nullptr);
+  fails("hub", nullptr);
+  fails("hub", std::make_unique<OfOwnRows>(m));
 }

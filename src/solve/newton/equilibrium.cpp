@@ -3,6 +3,7 @@
 #include <petscksp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "solve/newton/port_krylov.hpp"
@@ -139,61 +140,65 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   }
   check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
-  factorised_ = false;
-  if (std::vector<problem::Field> parts = system_.fields(); !ports_ && PortElimination::serves(parts))
-    ports_ = std::make_unique<PortElimination>(std::move(parts), system_.make_part_inverse());
-  if (ports_ && ports_->inverse()) ports_->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
-}
-
-// Parts are eliminated by their own approximate inverses where all offer them, with a Krylov method around that.
-void EquilibriumProblem::factorise() {
-  if (factorised_) return;
-  factorised_ = true;
-  exact_.reset();
-  if (ports_) {
-    ports_->factorise(bordered_.get());
-    if (ports_->inverse() && !krylov_)
-      krylov_ = std::make_unique<PortKrylov>(*ports_->blocks().layout(), "equilibrium_");
-    return;
+  factorised_ = exact_factorised_ = false;
+  if (std::vector<problem::Field> parts = system_.fields(); !ports_ && !exact_ && PortElimination::serves(parts)) {
+    auto inverse = system_.make_part_inverse();
+    std::unique_ptr<PortElimination>& elimination = inverse ? ports_ : exact_;
+    elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
   }
-  if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
-  check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
-  check(KSPSetUp(solver_.get()));
+  if (ports_) ports_->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
 }
 
-// Of parts without approximate inverses, and for what these cannot do: transposes, and where they do not serve.
-PortElimination& EquilibriumProblem::exact() {
-  if (!ports_->inverse()) return *ports_;
-  if (!exact_) {
-    exact_ = std::make_unique<PortElimination>(system_.fields());
-    exact_->factorise(bordered_.get());
-  }
-  return *exact_;
-}
-
-void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
+// Elimination by the parts' own approximate inverses, with a Krylov method around that; whether it came far enough.
+bool EquilibriumProblem::solve_by_inverses(Vec rhs, Vec x) {
   constexpr double tolerance = 1e-12;
-  if (transposed) return exact().solve_transposed(rhs, x);
-  if (krylov_ && !exact_) {
-    try {
-      (void)krylov_->solve(ports_->blocks(), *ports_, rhs, x, tolerance);
-      return;
-    } catch (const core::DomainError&) {  // agreed on: it did not come that far
-    }
+  try {
+    if (!factorised_) ports_->factorise(bordered_.get());
+    factorised_ = true;
+    if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*ports_->blocks().layout(), "equilibrium_");
+    (void)krylov_->solve(ports_->blocks(), *ports_, rhs, x, tolerance);
+    return true;
+  } catch (const core::DomainError&) {  // these are agreed on
+    return false;
+  } catch (const core::NotConverged&) {
+    return false;
   }
-  exact().solve(rhs, x);
+}
+
+// Transposes, parts without approximate inverses, and those whose inverses do not serve: where these have failed once
+// on a matrix that is regular, they are not asked again.
+void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
+  const bool by_inverses = ports_ && !transposed && !exact_factorised_;
+  if (by_inverses && solve_by_inverses(rhs, x)) return;
+  if (!exact_) exact_ = std::make_unique<PortElimination>(system_.fields());
+  if (!exact_factorised_) exact_->factorise(bordered_.get());
+  exact_factorised_ = true;
+  if (transposed)
+    exact_->solve_transposed(rhs, x);
+  else
+    exact_->solve(rhs, x);
+  if (by_inverses && std::isfinite(core::norm(x))) {
+    krylov_.reset();
+    ports_.reset();
+  }
+}
+
+void EquilibriumProblem::solve_as_whole(bool transposed, Vec rhs, Vec x) {
+  if (!solver_) solver_ = core::make_direct_solver(comm(), "equilibrium_");
+  if (!factorised_) {
+    check(KSPSetOperators(solver_.get(), bordered_.get(), bordered_.get()));
+    check(KSPSetUp(solver_.get()));
+    factorised_ = true;
+  }
+  check(transposed ? KSPSolveTranspose(solver_.get(), rhs, x) : KSPSolve(solver_.get(), rhs, x));
 }
 
 // A singular matrix gives infinite answers, as those of MUMPS alone, which Newton's method and GMRES recognise.
 void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
+  if (!ports_ && !exact_) return solve_as_whole(transposed, rhs, x);
   try {
-    factorise();
-    if (ports_)
-      solve_by_parts(transposed, rhs, x);
-    else
-      check(transposed ? KSPSolveTranspose(solver_.get(), rhs, x) : KSPSolve(solver_.get(), rhs, x));
+    solve_by_parts(transposed, rhs, x);
   } catch (const core::NotConverged&) {
-    factorised_ = false;
     check(VecSetInf(x));
   }
 }

@@ -1,6 +1,7 @@
 #include "solve/newton/port_elimination.hpp"
 
 #include <algorithm>
+#include <exception>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
@@ -26,6 +27,27 @@ void require_answer(KSP ksp) {
   if (reason < 0) fail();
 }
 
+// The same on all ranks of `comm`, which see the same reason.
+void require_answer(MPI_Comm comm, KSP ksp) {
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0) core::agree(comm, fail);
+}
+
+// MUMPS tells of a singular matrix by a reason, KLU by an error.
+void require_factors(KSP ksp) {
+  PC pc = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  try {
+    check(KSPSetUp(ksp));
+    check(KSPGetPC(ksp, &pc));
+    check(PCGetFailedReason(pc, &reason));
+  } catch (const core::LibraryError&) {
+    fail();
+  }
+  if (reason != PC_NOERROR) fail();
+}
+
 }  // namespace
 
 PortElimination::PortElimination(std::vector<problem::Field> fields, std::unique_ptr<problem::PartInverse> inverse)
@@ -49,7 +71,7 @@ void PortElimination::make_solvers() {
   gate_ = std::make_unique<core::Gate>(comm);
   part_rhs_ = core::make_vector(comm, layout_->parts(), PETSC_DETERMINE);
   part_answer_ = core::duplicate(part_rhs_.get());
-  all_hub_.setZero(layout_->whole_hub());
+  all_hub_.setZero(layout_->whole_hub() + 1);
   check(KSPCreate(comm, part_solver_.put()));
   KSP ksp = part_solver_.get();
   PC pc = nullptr;
@@ -100,7 +122,7 @@ void PortElimination::solve_columns(const PortMatrix& blocks) {
   for (const auto& [m, data] : {std::pair{&columns, const_cast<double*>(g.data())}, std::pair{&answers, x_.data()}})
     check(MatCreateDense(l.comm(), l.parts(), PETSC_DECIDE, PETSC_DETERMINE, l.colours(), data, m->put()));
   gate_->rethrow(KSPMatSolve(part_solver_.get(), columns.get(), answers.get()));
-  require_answer(part_solver_.get());
+  require_answer(l.comm(), part_solver_.get());
 }
 
 void PortElimination::form_hub(const PortMatrix& blocks) {
@@ -158,28 +180,33 @@ void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
   solve_columns(blocks);
   form_hub(blocks);
   check(KSPSetOperators(hub_solver_.get(), schur_.get(), schur_.get()));
-  if (!hub_alone_) {
-    check(KSPSetUp(hub_solver_.get()));
-    return;
-  }
+  if (!hub_alone_) check(KSPSetUp(hub_solver_.get()));  // by all ranks; below, each sees what became of it
   core::agree(layout_->comm(), [&] {
-    try {
-      if (layout_->hub() > 0) check(KSPSetUp(hub_solver_.get()));
-    } catch (const core::LibraryError&) {  // which is how KLU tells
-      fail();
-    }
+    if (!hub_alone_ || layout_->hub() > 0) require_factors(hub_solver_.get());
   });
 }
 
-// hub_answer_, and all of it on every rank.
+// hub_answer_, and all of it on every rank. How many ranks failed travels behind the answer.
 void PortElimination::solve_hub(bool transposed) {
   KSP ksp = hub_solver_.get();
-  if (!hub_alone_ || layout_->hub() > 0)
-    check(transposed ? KSPSolveTranspose(ksp, hub_rhs_.get(), hub_answer_.get())
-                     : KSPSolve(ksp, hub_rhs_.get(), hub_answer_.get()));
-  if (!hub_alone_) require_answer(ksp);
-  const core::ReadArray a(hub_answer_.get());
-  layout_->share(a.data(), all_hub_);
+  std::exception_ptr failed;
+  if (!hub_alone_ || layout_->hub() > 0) try {
+      check(transposed ? KSPSolveTranspose(ksp, hub_rhs_.get(), hub_answer_.get())
+                       : KSPSolve(ksp, hub_rhs_.get(), hub_answer_.get()));
+      require_answer(ksp);
+    } catch (...) {
+      failed = std::current_exception();
+    }
+  double& failures = all_hub_(layout_->whole_hub());
+  failures = failed ? 1 : 0;
+  {
+    const core::ReadArray a(hub_answer_.get());
+    layout_->share(a.data(), all_hub_);
+  }
+  if (failures > 0)
+    core::agree(layout_->comm(), [&] {
+      if (failed) std::rethrow_exception(failed);
+    });
 }
 
 void PortElimination::take_from_hub(const std::vector<PetscInt>& rows) {
@@ -202,7 +229,7 @@ void PortElimination::solve_parts(bool transposed) {
   KSP ksp = part_solver_.get();
   gate_->rethrow(transposed ? KSPSolveTranspose(ksp, part_rhs_.get(), part_answer_.get())
                             : KSPSolve(ksp, part_rhs_.get(), part_answer_.get()));
-  require_answer(ksp);
+  require_answer(layout_->comm(), ksp);
 }
 
 void PortElimination::take(Vec whole) {

@@ -31,15 +31,22 @@ void PortKrylov::multiply(const PortMatrix& a, Vec x, Vec y) {
   a.multiply(xa.data(), ya.data());
 }
 
+void PortKrylov::fail() const {
+  core::agree(comm_, [] { throw core::DomainError("the linearised equations of the parts were not solved"); });
+}
+
 int PortKrylov::solve(const PortMatrix& a, PortElimination& similar, Vec rhs, Vec x, double tolerance) {
   matrix_ = &a;
   similar_ = &similar;
   check(KSPSetTolerances(ksp_.get(), tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  gate_.rethrow(KSPSolve(ksp_.get(), rhs, x));
+  try {
+    gate_.rethrow(KSPSolve(ksp_.get(), rhs, x));
+  } catch (const core::NotConverged&) {
+    fail();
+  }
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp_.get(), &reason));
-  if (reason < 0)
-    core::agree(comm_, [] { throw core::DomainError("the linearised equations of the parts were not solved"); });
+  if (reason < 0) fail();
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(ksp_.get(), &iterations));
   return static_cast<int>(iterations);

@@ -16,12 +16,13 @@ public:
   PortKrylov& operator=(const PortKrylov&) = delete;
   ~PortKrylov() = default;
   /// a x = rhs to the relative residual `tolerance`; returns the iterations that it took. Throws core::DomainError, on
-  /// all ranks, if it does not come that far.
+  /// all ranks, if it does not come that far or `similar` is singular.
   int solve(const PortMatrix& a, PortElimination& similar, Vec rhs, Vec x, double tolerance);
   /// y = a x.
   static void multiply(const PortMatrix& a, Vec x, Vec y);
 
 private:
+  void fail() const;
   static PetscErrorCode shell_multiply(Mat m, Vec x, Vec y);
   static PetscErrorCode shell_precondition(PC pc, Vec r, Vec y);
   MPI_Comm comm_;

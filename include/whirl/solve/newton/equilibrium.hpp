@@ -52,18 +52,18 @@ public:
 
 private:
   void prepare(Vec u);
-  void factorise();
+  [[nodiscard]] bool solve_by_inverses(Vec rhs, Vec x);
   void solve_by_parts(bool transposed, Vec rhs, Vec x);
-  [[nodiscard]] PortElimination& exact();
+  void solve_as_whole(bool transposed, Vec rhs, Vec x);
   void solve(bool transposed, Vec rhs, Vec x);
   problem::System& system_;
   double parameter_scale_;
   core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
   core::Matrix jacobian_, bordered_;
-  std::unique_ptr<PortElimination> ports_, exact_;  // of parts; without approximate inverses, if they have such
-  std::unique_ptr<PortKrylov> krylov_;              // around those
-  core::LinearSolver solver_;
-  bool factorised_ = false;
+  std::unique_ptr<PortElimination> ports_, exact_;      // by approximate inverses while these serve; by MUMPS
+  std::unique_ptr<PortKrylov> krylov_;                  // around `ports_`
+  core::LinearSolver solver_;                           // of machines without parts
+  bool factorised_ = false, exact_factorised_ = false;  // `ports_` or `solver_`, `exact_`: of the present matrix
 };
 
 /// Solves F(0, x, 0) = 0 at the system's parameter from the guess in x. Collective.

@@ -1,0 +1,123 @@
+// Equilibria of systems whose parts offer approximate inverses, good and useless ones.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "support/petsc_options.hpp"
+#include "support/small_system.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
+
+using namespace whirl;
+using test::Column;
+
+namespace {
+
+constexpr PetscInt hub = 2, n = 6;
+
+// A hub of two states on two films of two states each; `stiffness` of the hub beside that of its films.
+struct OnTwoFilms {
+  double stiffness;
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T p) const {
+    Column<T> f(n);
+    f << xdot(0) + stiffness * x(0) + x(2) - p, xdot(1) + stiffness * x(1) + x(4) - 2.0 * p,
+        xdot(2) + x(2) + x(2) * x(2) * x(2) + 0.2 * x(3) - x(0), xdot(3) + x(3) + 0.5 * x(2),
+        xdot(4) + x(4) + x(4) * x(4) * x(4) - 0.3 * x(5) - x(1), xdot(5) + 2.0 * x(5) + 0.5 * x(4);
+    return f;
+  }
+};
+
+// Cut where the ranks want it.
+class TwoFilms : public test::SmallSystem {
+public:
+  TwoFilms(double stiffness, double quality)
+      : SmallSystem(MPI_COMM_WORLD, n, 1, 1, OnTwoFilms{stiffness}), q_(quality) {}
+  [[nodiscard]] std::vector<problem::Field> fields() const override {
+    PetscInt first = 0;
+    const core::Vector like = vector(Eigen::VectorXd::Zero(n));
+    core::check(VecGetOwnershipRange(like.get(), &first, nullptr));
+    const auto here = [&](PetscInt k) { return std::clamp<PetscInt>(k - first, 0, local_size()); };
+    return {{"machine", 0, here(hub)}, {"one", here(2), here(4)}, {"two", here(4), here(6)}};
+  }
+  [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override {
+    return std::make_unique<Inverse>(*this);
+  }
+  int sets = 0, applications = 0;
+
+private:
+  // `quality` times what the diagonal of A_pp gives: nothing is of no use.
+  class Inverse : public problem::PartInverse {
+  public:
+    explicit Inverse(TwoFilms& system) : system_(system) {}
+    void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override {
+      ++system_.sets;
+      core::Matrix a = system_.make_jacobian();
+      system_.jacobian(angle, x, xdot, alpha, sigma, a.get());
+      core::Vector d = core::duplicate(x);
+      core::check(MatGetDiagonal(a.get(), d.get()));
+      const Eigen::VectorXd all = system_.gather(d.get());
+      PetscInt begin = 0, end = 0;
+      core::check(VecGetOwnershipRange(x, &begin, &end));
+      begin = std::max(begin, hub);
+      inverse_ = system_.q_ * all.segment(begin, std::max<PetscInt>(end - begin, 0)).cwiseInverse();
+    }
+    void apply(const double* r, double* y) override {
+      ++system_.applications;
+      for (Eigen::Index i = 0; i < inverse_.size(); ++i) y[i] = inverse_(i) * r[i];
+    }
+
+  private:
+    TwoFilms& system_;
+    Eigen::VectorXd inverse_;
+  };
+  double q_;
+};
+
+solve::NewtonResult rest(TwoFilms& s, Eigen::VectorXd& x) {
+  core::Vector v = s.vector(Eigen::VectorXd::Constant(n, 0.3));
+  solve::NewtonOptions options;
+  options.max_iterations = 40;
+  const solve::NewtonResult result = solve::find_equilibrium(s, v.get(), options);
+  x = s.gather(v.get());
+  return result;
+}
+
+Eigen::VectorXd residual_at(double stiffness, const Eigen::VectorXd& x) {
+  return OnTwoFilms{stiffness}(0, x, Eigen::VectorXd(Eigen::VectorXd::Zero(n)), 1.0);
+}
+
+}  // namespace
+
+TEST(PartInverses, CarryNewtonsMethod) {
+  TwoFilms s(2, 1);
+  Eigen::VectorXd x;
+  const auto result = rest(s, x);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_LT(residual_at(2, x).norm(), 1e-9);
+  EXPECT_GT(result.iterations, 2);
+  EXPECT_GE(s.sets, result.iterations);  // of every matrix
+  EXPECT_GT(s.applications, 0);
+}
+
+TEST(PartInverses, ThatDoNotServeAreAskedOnce) {
+  const test::WithOptions few(test::WithOptions::List{{"-equilibrium_ksp_max_it", "1"}});
+  TwoFilms s(2, 1);
+  Eigen::VectorXd x;
+  const auto result = rest(s, x);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_LT(residual_at(2, x).norm(), 1e-9);
+  EXPECT_GT(result.iterations, 2);
+  EXPECT_EQ(s.sets, 1);
+}
+
+// Without the films, nothing holds the hub.
+TEST(PartInverses, MayLeaveTheHubSingular) {
+  TwoFilms s(0, 0);
+  Eigen::VectorXd x;
+  const auto result = rest(s, x);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_LT(residual_at(0, x).norm(), 1e-9);
+  EXPECT_EQ(s.sets, 1);
+}
