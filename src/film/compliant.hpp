@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "film/liner.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
@@ -72,7 +73,11 @@ private:
 
 /// The film as its option `states` says.
 [[nodiscard]] inline Made used(const Compliant& options, std::unique_ptr<StateModel> film) {
-  if (options.states == States::condensed) return condense(std::move(film));
+  if (options.states == States::condensed) {
+    if (options.liner_damping > 0)
+      throw core::InputError("a liner that gives way at once (states: condensed) has no damping");
+    return condense(std::move(film));
+  }
   return film;
 }
 

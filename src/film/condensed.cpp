@@ -81,7 +81,12 @@ void Condensed::solve(const Motion& motion) {
   found_ = before;
   states_ = states;
   there_ = false;
-  std::rethrow_exception(reason);
+  // To a solver outside it is a place that the film can not be taken to: a shorter step may end where it can.
+  try {
+    std::rethrow_exception(reason);
+  } catch (const core::NotConverged& e) {
+    throw core::DomainError(e.what());
+  }
 }
 
 void Condensed::evaluate(const Motion& motion, Need need, Response& response) {

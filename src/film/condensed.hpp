@@ -8,7 +8,10 @@
 //
 //     dF/dw = df/dw - lambda . dg/dw,   dF/dw' = df/dw' + df/ds' r - lambda . (dg/dw' + dg/ds' r)
 
+#include <exception>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "film/steady.hpp"
 

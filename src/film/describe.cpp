@@ -53,10 +53,12 @@ std::span<const deck::Name<Turbulence>> names(Turbulence) {
 std::span<const deck::Name<States>> names(States) {
   static constexpr deck::Name<States> table[] = {
       {States::condensed, "condensed",
-       "none: what the cavity holds, or the deflection of the liner, is at every moment that of the journal's motion at "
+       "none: what the cavity holds, or the deflection of the liner, is at every moment that of the journal's motion "
+       "at "
        "that moment, and does not change in time. Loads, stiffness and flows are exact, damping is not"},
       {States::dynamic, "dynamic",
-       "at every node: what the gap holds beyond or short of its volume, so that the cavity fills and empties in time and "
+       "at every node: what the gap holds beyond or short of its volume, so that the cavity fills and empties in time "
+       "and "
        "the oil is compressible; or the thickness over the liner"}};
   return table;
 }

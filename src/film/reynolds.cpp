@@ -168,7 +168,7 @@ void describe(deck::Description<Reynolds>& d) {
   d.add("inlet", &Reynolds::inlet, "where the film of a cylindrical bore without grooves starts",
         "Raimondi and Boyd 1958");
   d.add("cells", &Reynolds::cells, deck::in(4, 2000), "intervals around and along each pad");
-  d.add("tilt", &Reynolds::tilt, "follow the slope of the journal (bearings of a machine do not)");
+  d.add("tilt", &Reynolds::tilt, "follow the slope of the journal, and turn it by moments");
   d.add("grooves", &Reynolds::grooves,
         "axial grooves of a cylindrical bore, at pressure zero unless the film conserves its mass");
   d.add(

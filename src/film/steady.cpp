@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "whirl/core/error.hpp"
 
@@ -33,7 +34,8 @@ Steady::Steady(StateModel& film) : film_(film) {
   lu_.analyzePattern(matrix_);
 }
 
-// Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the set.
+// Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the
+// set.
 void Steady::factor() {
   if (factored_ == here_.d_states) return;
   double* const values = matrix_.valuePtr();

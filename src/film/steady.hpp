@@ -2,6 +2,7 @@
 // The steady equations of a film with states by Newton's method: g(motion, s, s') = 0 in s at given rates s'.
 
 #include <Eigen/SparseLU>
+#include <array>
 #include <vector>
 
 #include "whirl/film/state_model.hpp"

@@ -110,7 +110,8 @@ void describe(deck::Description<Material>& d) {
 void describe(deck::Description<Reduction>& d) {
   using enum Reduction::Type;
   d.add("type", &Reduction::type, "which freedoms of the shaft are kept");
-  d.add("masters", &Reduction::masters, positive, "nodes whose translations are kept")
+  d.add("masters", &Reduction::masters, positive,
+        "nodes whose translations are kept, and whose slopes where a film there tilts")
       .required()
       .only(&Reduction::type, {guyan, craig_bampton});
   d.add("modes", &Reduction::modes, positive, "modes per plane of the shaft with its masters held")

@@ -61,7 +61,8 @@ void validate(const Reduction& r, int nodes) {
   }
   refuse_unless(r.masters.size() >= 2, "a reduction needs at least two master nodes");
   for (const int node : std::set<int>(r.slopes.begin(), r.slopes.end()))
-    refuse_unless(seen.contains(node), fmt::format("node {} has its slopes as masters, but not its translations", node));
+    refuse_unless(seen.contains(node),
+                  fmt::format("node {} has its slopes as masters, but not its translations", node));
   if (r.type != Reduction::Type::craig_bampton) return;
   const int slaves = 2 * nodes - static_cast<int>(r.masters.size() + r.slopes.size());
   refuse_unless(r.modes >= 0 && r.modes <= slaves,

@@ -130,7 +130,7 @@ void RotorSystem::set_train(Train train) {
   const Change change = change_between(train_, train);
   std::unique_ptr<rotor::Rotor> rotor = change.shaft ? make_rotor(train.rotor) : nullptr;
   std::vector<FilmPart> films = parts_at(train, change.films);
-  axes_ = axes_of(train);
+  if (change.axes) axes_ = axes_of(train);
   train_ = std::move(train);
   for (std::size_t k = 0; k < films.size(); ++k) *bearings_[change.films[k]].part = std::move(films[k]);
   if (rotor)

@@ -26,11 +26,13 @@ Change change_between(const Train& from, const Train& to) {
   out.shaft = shaft_of(a) != shaft_of(b);
   out.damping = a.stiffness_damping != b.stiffness_damping;
   out.load = out.shaft || from.gravity != to.gravity || a.load != b.load;
+  out.axes = out.shaft || from.gravity != to.gravity;
   out.unbalance = out.shaft || from.unbalance != to.unbalance;
   for (std::size_t i = 0; i < from.supports.size(); ++i) {
     const Support &s = from.supports[i], &t = to.supports[i];
     core::require(s.node == t.node && s.has_pedestal == t.has_pedestal, "bearings at the same places");
     if (!same_film(s, t)) out.films.push_back(i);
+    out.axes = out.axes || s.elevation != t.elevation || s.slope != t.slope;
     if (!s.has_pedestal) continue;
     out.pedestals = out.pedestals || s.mass != t.mass || s.stiffness != t.stiffness || s.damping != t.damping;
     out.load = out.load || s.mass != t.mass;

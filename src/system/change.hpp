@@ -14,6 +14,7 @@ struct Change {
   bool damping = false;    ///< stiffness_damping alone
   bool pedestals = false;  ///< their mass, damping or stiffness
   bool load = false;
+  bool axes = false;  ///< of bearings that are aligned to the shaft
   bool unbalance = false;
   std::vector<std::size_t> films;  ///< bearings whose film is another one; elevations do not count
 };

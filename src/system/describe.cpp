@@ -75,7 +75,7 @@ void describe(deck::Description<Bearing>& d) {
   d.add("slope", &Bearing::slope, "1", deck::any,
         "slope dx/dz, dy/dz of the bearing's axis, where its film follows the slope of the journal ('tilt'). Bored in "
         "line with the shaft if not given: with the slope that this has at rest under gravity on rigid supports at the "
-        "elevations of all bearings")
+        "elevations of all bearings, those with constant coefficients too")
       .continuable();
   d.add("geometry", &Bearing::geometry, "shape of the bore");
   d.add("film", &Bearing::film, "how the film is modelled and discretised");
@@ -166,6 +166,14 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
              fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean_one_of(*name, lubricants)));
   }
   if (rigid && m.bearings.empty()) r.fail("bearings", "a rotor needs a bearing");
+  // Slopes of journals that tilt are masters beside the nodes.
+  const auto slopes =
+      std::count_if(m.bearings.begin(), m.bearings.end(), [](const Bearing& b) { return film::facts(b.film).tilts; });
+  const auto inner = 2 * n_nodes - static_cast<std::ptrdiff_t>(reduction.masters.size()) - slopes;
+  if (!rigid && slopes > 0 && reduction.type == rotor::Reduction::Type::craig_bampton && reduction.modes > inner)
+    r.fail("rotor.reduction.modes",
+           fmt::format("the shaft with its masters and the slopes of {} journals held has {} modes per plane, not {}",
+                       slopes, inner, reduction.modes));
 }
 
 void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {

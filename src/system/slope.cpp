@@ -65,10 +65,14 @@ RotorSystem::Slope::Slope(RotorSystem& system, const Train& minus, const Train& 
     }
   }
   // Of bearings that are aligned to the shaft, the axis moves with it.
-  const auto below_axes = system.axes_of(minus), above_axes = system.axes_of(plus);
+  std::vector<std::array<double, 2>> below_axes, above_axes;
+  if (change.axes) {
+    below_axes = system.axes_of(minus);
+    above_axes = system.axes_of(plus);
+  }
   for (std::size_t i = 0; i < minus.supports.size(); ++i) {
     const Support &a = minus.supports[i], &b = plus.supports[i];
-    if (a.elevation != b.elevation || below_axes[i] != above_axes[i])
+    if (change.axes && (a.elevation != b.elevation || below_axes[i] != above_axes[i]))
       places_.push_back({i,
                          {0, rate(a.elevation, b.elevation), rate(below_axes[i][0], above_axes[i][0]),
                           rate(below_axes[i][1], above_axes[i][1])}});

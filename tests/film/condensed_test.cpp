@@ -231,7 +231,7 @@ TEST(Condensed, AJournalBeyondTheClearance) {
   const Response a = evaluate(*direct, deep), b = evaluate(*walked, deep);
   EXPECT_GT(a.force[1], 0.0);
   EXPECT_GT(a.min_thickness, 0.0);
-  EXPECT_EQ(direct->least_thickness(deep), a.min_thickness);
+  EXPECT_DOUBLE_EQ(direct->least_thickness(deep), a.min_thickness);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-12 * load_of(a));
 }
 

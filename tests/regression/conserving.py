@@ -40,6 +40,14 @@ def whole(h):
             reference = value(without, head + what)
             h.close(f"{name}: {what} as without states", value(with_states, head + what), reference,
                     within * max(abs(reference), 1 if what.startswith("ecc") else 0))
+    # A round hole beside the groove.
+    hole = "bearings.*.film.holes=[{angle: 200 deg, z: 1 mm, diameter: 3 mm, pressure: 50 kPa}]"
+    fed, still = (h.run(deck(h), name, [only(static), "bearings.*.film.cells=[48, 12]", hole, *more])["at rest"]
+                  for name, more in (("hole", []), ("hole_condensed", [CONDENSED])))
+    for what in ("eccentricity.x", "eccentricity.y", "hole.1.flow", "side_flow"):
+        a, b = (value(s, "bearing.left." + what) for s in (fed, still))
+        h.close(f"hole: {what} as without states", a, b, 1e-6 * max(abs(b), 1 if what.startswith("ecc") else 0))
+    h.true("the hole feeds", value(fed, "bearing.left.hole.1.flow") > 0.5 * value(fed, "bearing.left.side_flow"))
     run = h.run(deck(h), "deck", [coarse, "studies.1.equilibrium_branch." + NEAR, "studies.2.cycle_branch.max_points=1",
                                   "studies.3.motion.revolutions=2"])
     h.true("the branch reaches its end", run["balanced"]["status"] == "completed", run["balanced"]["status"])

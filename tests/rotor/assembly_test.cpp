@@ -65,7 +65,8 @@ TEST(Assembly, RigidMotionsCostNothingAndCarryMassInertiaAndSpin) {
   VectorXd x = VectorXd::Zero(r.size()), y = x, tilt_x = x, tilt_y = x;
   for (int node = 1; node <= r.n_nodes(); ++node) {
     x(r.coordinate(node, rotor::Freedom::x)) = y(r.coordinate(node, rotor::Freedom::y)) = 1;
-    tilt_x(r.coordinate(node, rotor::Freedom::x)) = tilt_y(r.coordinate(node, rotor::Freedom::y)) = z[static_cast<std::size_t>(node - 1)];
+    tilt_x(r.coordinate(node, rotor::Freedom::x)) = tilt_y(r.coordinate(node, rotor::Freedom::y)) =
+        z[static_cast<std::size_t>(node - 1)];
     tilt_x(r.coordinate(node, rotor::Freedom::slope_x)) = tilt_y(r.coordinate(node, rotor::Freedom::slope_y)) = 1;
   }
   for (const VectorXd& v : {x, y, tilt_x, tilt_y}) EXPECT_LT((a.k * v).norm(), 1e-13 * a.k.norm());

@@ -229,8 +229,8 @@ TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
   EXPECT_GT(tried, exact);  // blocks one after another are no solution
   const std::vector<double> by_mumps = with(test::by_mumps());
   // Elimination without the films' own preconditioners, and where these do not serve.
-  const std::vector<double> parts_by_lu = with({{"-parts_pc_type", "lu"}}),
-                            given_up = with({{"-equilibrium_ksp_max_it", "1"}});
+  const test::WithOptions::List by_lu = {{"-parts_pc_type", "lu"}}, one = {{"-equilibrium_ksp_max_it", "1"}};
+  const std::vector<double> parts_by_lu = with(by_lu), given_up = with(one);
   for (std::size_t b = 0; b < alone.size(); ++b) {
     EXPECT_LT(alone[b], 0) << b;
     for (const auto* other : {&elimination, &by_fields, &by_mumps, &parts_by_lu, &given_up})

@@ -2,88 +2,28 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "support/dense.hpp"
-#include "support/train_system.hpp"
+#include "support/overhung.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
-#include "whirl/solve/cycle/cycle_problem.hpp"
-#include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/spectral/eigenvalues.hpp"
-#include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using test::equilibrium;
+using test::overhung;
+using test::pads;
 
 namespace {
 
 constexpr double speed = 300;
-
-film::Reynolds pads(bool tilt, std::array<int, 2> cells = {30, 10}) {
-  film::Reynolds o;
-  o.tilt = tilt;
-  o.cells = cells;
-  return o;
-}
-
-system::Support support(const std::string& name, int node, film::Geometry::Bore bore, const film::Options& film) {
-  system::Support s;
-  s.name = name;
-  s.node = node;
-  s.geometry = {bore, 0.05, 0.08, 1e-4, 120 * std::numbers::pi / 180, 0, 0};
-  if (bore == film::Geometry::Bore::cylindrical) s.geometry.arc = 0;
-  s.film = film;
-  s.lubricant = {0.02, 860};
-  return s;
-}
-
-// A slender shaft with an overhung disc, so that its journals stand askew: arcs at nodes 1 and 5, the first on a
-// pedestal.
-system::Train overhung(bool tilt, std::array<int, 2> cells = {30, 10}) {
-  system::Train t;
-  rotor::Segment s;
-  s.length = 0.2;
-  s.outer_mass_diameter = 0.06;
-  t.rotor.segments.assign(6, s);
-  t.rotor.material.modulus = {{293.15, 2.1e11}};
-  t.rotor.stiffness_damping = 1e-5;
-  rotor::Disc disc;
-  disc.mass = 40;
-  disc.polar_inertia = 0.5;
-  disc.diametral_inertia = 0.3;
-  disc.node = 7;
-  t.rotor.discs = {disc};
-  disc.node = 3;
-  t.rotor.discs.push_back(disc);
-  using enum film::Geometry::Bore;
-  t.supports = {support("one", 1, partial_arc, pads(tilt, cells)), support("two", 5, partial_arc, pads(tilt, cells))};
-  t.supports[0].has_pedestal = true;
-  t.supports[0].mass = {20, 25};
-  t.supports[0].stiffness = {2e8, 3e8};
-  t.supports[0].damping = {1e4, 2e4};
-  t.supports[0].elevation = 3e-5;
-  t.unbalance = {{7, 4e-4, 0.3}, {3, 2e-4, 1}};
-  return t;
-}
-
-core::Vector equilibrium(system::RotorSystem& s) {
-  s.set_forcing(false);
-  core::Vector x = s.guess();
-  solve::NewtonOptions o;
-  o.max_iterations = 60;
-  const auto r = solve::find_equilibrium(s, x.get(), o);
-  EXPECT_TRUE(r.converged) << r.reason << " after " << r.iterations << ", residual " << r.residual;
-  s.set_forcing(true);
-  return x;
-}
 
 // Away from x, moving, the same on any number of ranks; displacements and slopes alike.
 void disturb(Vec x, double size) {
@@ -306,7 +246,7 @@ TEST(Tilt, ForcesAndMomentsCarryTheShaft) {
     const auto& h = field("thickness").values;
     const double least = *std::min_element(h.begin(), h.end()), found = s.film_thickness(whole.data())[b];
     EXPECT_LT(found, at_mid);
-    EXPECT_LE(found, least);
+    EXPECT_LE(found, least * (1 + 1e-12));
     EXPECT_NEAR(found, least, 1e-3 * least);
   }
 }
@@ -354,85 +294,4 @@ TEST(Tilt, AReductionKeepsTheSlopes) {
       EXPECT_NEAR(fa[k].force[2 + d], fb[k].force[2 + d], 1e-6 * fa[k].force[1] * 0.08);
       EXPECT_NEAR(ja[k].tilt[d], jb[k].tilt[d], 1e-6 * std::abs(ja[k].tilt[1]));
     }
-}
-
-// A film in the middle of a shaft that is the same on both sides does not tilt, and answers as one that cannot.
-TEST(Tilt, VanishesBySymmetry) {
-  const auto solve_with = [](bool tilt) {
-    system::Train t = overhung(false);
-    t.rotor.discs.resize(1);
-    t.rotor.discs[0].node = 4;
-    using enum film::Geometry::Bore;
-    t.supports = {support("left", 1, partial_arc, film::Linear{.stiffness = {1e7, 0, 0, 1e7}}),
-                  support("middle", 4, partial_arc, pads(tilt)),
-                  support("right", 7, partial_arc, film::Linear{.stiffness = {1e7, 0, 0, 1e7}})};
-    system::RotorSystem s(MPI_COMM_WORLD, t, speed);
-    const std::vector<double> x = s.gather(equilibrium(s).get());
-    const auto film = s.film_responses(x.data(), film::Need::tangents)[1];
-    const auto at = s.journals(x.data())[1];
-    EXPECT_LT(std::hypot(at.tilt[0], at.tilt[1]), 1e-14);
-    return std::pair{at.position, film};
-  };
-  const auto [on, film_on] = solve_with(true);
-  const auto [off, film_off] = solve_with(false);
-  for (std::size_t d = 0; d < 2; ++d) {
-    EXPECT_NEAR(on[d], off[d], 1e-10 * 1e-4);
-    EXPECT_NEAR(film_on.force[d], film_off.force[d], 1e-10 * film_off.force[1]);
-    EXPECT_NEAR(film_on.force[2 + d], 0, 1e-10 * film_off.force[1] * 0.08);
-    for (std::size_t e = 0; e < 2; ++e) {
-      EXPECT_NEAR(film_on.d_position[d][e], film_off.d_position[d][e], 1e-10 * std::abs(film_off.d_position[1][1]));
-      EXPECT_NEAR(film_on.d_velocity[d][e], film_off.d_velocity[d][e], 1e-10 * std::abs(film_off.d_velocity[1][1]));
-    }
-  }
-  // Against a slope it stands.
-  EXPECT_GT(-film_on.d_position[3][3], 0);
-  EXPECT_GT(-film_on.d_velocity[3][3], 0);
-}
-
-// Cycles by the elimination that knows of four ports, and by the general one.
-TEST(Tilt, CyclesByEveryWay) {
-  for (const bool states : {false, true}) {
-    system::Train t = overhung(true, {12, 6});
-    if (states) {
-      film::Reynolds content = pads(true, {12, 6});
-      content.cavitation = film::Reynolds::Cavitation::mass_conserving;
-      content.states = film::States::dynamic;
-      t.supports[1].film = content;
-      t.rotor.reduction.type = rotor::Reduction::Type::guyan;
-      t.rotor.reduction.masters = {1, 5, 7};
-      t.rotor.reduction.slopes = {1, 5};
-    }
-    const auto cycle = [&](bool structured) {
-      system::RotorSystem s(PETSC_COMM_SELF, t, speed);
-      const core::Vector x = equilibrium(s);
-      solve::CycleOptions o;
-      o.degree = 3;
-      o.points = solve::Points::radau;
-      o.use_structure = structured;
-      constexpr int intervals = 8;
-      solve::CycleProblem p(MPI_COMM_WORLD, s, o, solve::uniform_mesh(intervals));
-      solve::Cycle guess{p.mesh(), {}, 2 * M_PI / speed, speed};
-      const auto whole = s.gather(x.get());
-      guess.x = Eigen::Map<const VectorXd>(whole.data(), s.size()).replicate(1, intervals * o.degree);
-      core::Vector u = p.scatter(guess), row = core::duplicate(u.get());
-      solve::parameter_row(p, row.get());
-      solve::NewtonOptions newton;
-      newton.max_iterations = 60;
-      const auto r = solve::newton(p, u.get(), row.get(), speed / o.parameter_scale, newton);
-      EXPECT_TRUE(r.converged) << r.reason << " " << r.residual;
-      p.linearise(u.get(), row.get());
-      return std::pair{p.gather(u.get()).x, std::abs(spectral::eigenvalues(p.monodromy())[0])};
-    };
-    const auto [a, first] = cycle(true);
-    const auto [b, second] = cycle(false);
-    const Index machine =
-        a.rows() - (states ? static_cast<Index>(film::make_state_model(t.supports[1].geometry, t.supports[1].film,
-                                                                       t.supports[1].lubricant)
-                                                    ->states())
-                           : 0);
-    EXPECT_LE((a - b).topRows(machine).cwiseAbs().maxCoeff(), 1e-8 * a.topRows(machine).cwiseAbs().maxCoeff());
-    EXPECT_NEAR(first, second, 1e-7);
-    // The journal moves, and tilts as it does.
-    EXPECT_GT((a.row(2).array() - a.row(2).mean()).abs().maxCoeff(), 1e-7);
-  }
 }

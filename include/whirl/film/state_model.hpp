@@ -126,8 +126,9 @@ void relax(StateModel& film, const Motion& motion, std::vector<double>& states);
 /// The film without its states: they take the values at which nothing that the film remembers changes, whatever the
 /// motion, g(motion, s, s') = 0 with s' = carried_rates() times the velocity, found by Newton's method from those of
 /// the last motion to a tolerance below which the start does not show. Force, stiffness and flows of a journal at rest
-/// are those of the film with states; damping is that of a film whose memory stands still. Its evaluate() also throws
-/// core::NotConverged. Cost: a sparse LU per Newton step, and one solve for each component of the force.
+/// are those of the film with states; damping is that of a film whose memory stands still. Where no such states are
+/// found evaluate() throws core::DomainError as well. Cost: a sparse LU per Newton step, and one solve for each
+/// component of the force.
 [[nodiscard]] std::unique_ptr<Model> condense(std::unique_ptr<StateModel> film);
 
 /// Stiffness K [N/m] and damping C [N s/m] (xx, xy, yx, yy) of a film about equilibrium: K + i omega C is minus the

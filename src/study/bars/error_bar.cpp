@@ -52,7 +52,7 @@ Estimate estimate(double value, std::vector<Sample> samples, double theory) {
 }
 
 // Q(0) + C h^p through the numbers on all meshes of a direction.
-struct Line {
+struct Regression {
   double slope = 0, left = 0;        // C; what it leaves at the mesh in use
   double of_slope = 0, unknown = 0;  // variances of C and of Q(0)
   int freedoms = 0;
@@ -64,36 +64,44 @@ struct Line {
   }
 };
 
-// Order zero: no slope. At least one number more than the line has parameters.
-Line line_through(double value, const std::vector<Sample>& samples, double order) {
-  const auto n = static_cast<double>(samples.size() + 1);
-  double mean_x = 1, mean_y = value;
-  for (const Sample& s : samples) mean_x += std::pow(s.spacing, order), mean_y += s.value;
-  mean_x /= n, mean_y /= n;
-  double xx = (1 - mean_x) * (1 - mean_x), xy = (1 - mean_x) * (value - mean_y);
+// Order zero: no slope. At least one number more than the line has parameters. Kinks are errors of first order, of a
+// factor that is chance: the scatter falls with the spacing, so that weights are its inverse square.
+Regression line_through(double value, std::vector<Sample> samples, double order) {
+  samples.push_back({Axis::around, 1, value});
+  double sum = 0, mean_x = 0, mean_y = 0;
+  const auto weight = [](const Sample& s) { return 1 / (s.spacing * s.spacing); };
+  for (const Sample& s : samples) {
+    sum += weight(s);
+    mean_x += weight(s) * std::pow(s.spacing, order);
+    mean_y += weight(s) * s.value;
+  }
+  mean_x /= sum, mean_y /= sum;
+  double xx = 0, xy = 0;
   for (const Sample& s : samples) {
     const double x = std::pow(s.spacing, order) - mean_x;
-    xx += x * x, xy += x * (s.value - mean_y);
+    xx += weight(s) * x * x, xy += weight(s) * x * (s.value - mean_y);
   }
-  Line out;
+  Regression out;
   out.slope = order > 0 ? xy / xx : 0;
-  const auto left = [&](double x, double y) { return y - mean_y - out.slope * (x - mean_x); };
-  out.left = left(1, value);
-  double squares = out.left * out.left;
-  for (const Sample& s : samples) squares += std::pow(left(std::pow(s.spacing, order), s.value), 2);
-  out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 1 : 0);
+  const auto left = [&](const Sample& s) {
+    return s.value - mean_y - out.slope * (std::pow(s.spacing, order) - mean_x);
+  };
+  double squares = 0;
+  for (const Sample& s : samples) squares += weight(s) * left(s) * left(s);
+  out.left = left(samples.back());
+  out.freedoms = static_cast<int>(samples.size()) - (order > 0 ? 2 : 1);
   const double variance = squares / out.freedoms;
   out.of_slope = order > 0 ? variance / xx : 0;
-  out.unknown = variance / n + mean_x * mean_x * out.of_slope;
+  out.unknown = variance / sum + mean_x * mean_x * out.of_slope;
   return out;
 }
 
-Line best_line(double value, const std::vector<Sample>& samples, double theory) {
+Regression best_line(double value, const std::vector<Sample>& samples, double theory) {
   const bool agree = std::all_of(samples.begin(), samples.end(), [&](const Sample& s) { return s.value == value; });
   if (samples.empty() || (samples.size() < 2 && !agree)) return {nothing, nothing, nothing, nothing, 1};
-  const Line none = line_through(value, samples, 0);
+  const Regression none = line_through(value, samples, 0);
   if (samples.size() < 2) return none;
-  const Line first = line_through(value, samples, 1), other = line_through(value, samples, theory);
+  const Regression first = line_through(value, samples, 1), other = line_through(value, samples, theory);
   if (!first.leans() || !other.leans()) return first.leans() ? first : other.leans() ? other : none;
   return first.length() > other.length() ? first : other;
 }
@@ -133,7 +141,7 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
     }
     if (!any) continue;
     if (axis != Axis::time && law.kinks) {
-      const Line line = best_line(value, own, law.film_order);
+      const Regression line = best_line(value, own, law.film_order);
       bar.film_mesh += std::abs(line.slope);
       bar.kinks += std::abs(line.left);
       unknown_squares += line.unknown;

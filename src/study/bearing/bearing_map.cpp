@@ -78,8 +78,8 @@ public:
     }
   }
 
-  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft film
-  // or one with own states is another one at every speed: its thresholds belong to branches of equilibria.
+  // A rigid rotor of load F0* turns at Omega* = F0*/(n S); it is stable below the limit of its eccentricity. A soft
+  // film or one with own states is another one at every speed: its thresholds belong to branches of equilibria.
   void find_threshold(const std::optional<system::Groups>& groups) {
     if (!groups || !bearing_.rigid()) return;
     const auto found = find([&](const BearingEquilibrium& e) {

@@ -61,12 +61,12 @@ void put_coefficients(const FilmCoefficients& film, const std::string& head, io:
 }
 
 // What follows from the films at the state x.
-void put_values(const Context& context, system::RotorSystem& system, const std::vector<double>& x,
-                io::StudySummary& summary) {
+void put_values(const Context& context, system::RotorSystem& system, Vec at, io::StudySummary& summary) {
+  const std::vector<double> x = system.gather(at);
   const auto journals = system.journals(x.data());
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
-  const std::vector<double> thickness = system.film_thickness(x.data());
+  const std::vector<double> thickness = system.observe(at).film_thickness;
   // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
   const std::vector<FilmCoefficients> coefficients = film_coefficients(system, x, system.speed());
   double total_loss = 0;
@@ -119,8 +119,7 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
       system::RotorSystem other(system.comm(), with_film_mesh(system::train_of(context.machine), mesh.factor), speed);
       const core::Vector at = resampled(other, system, x);
       other.set_forcing(false);
-      if (solve::find_equilibrium(other, at.get(), {}).converged)
-        put_values(context, other, other.gather(at.get()), there);
+      if (solve::find_equilibrium(other, at.get(), {}).converged) put_values(context, other, at.get(), there);
     });
   bars.write(1e-9);
 }
@@ -131,15 +130,16 @@ StudyResult Static::run(Context& context) {
   system::RotorSystem system(plan(context, Sharing::machine).space, system::train_of(context.machine),
                              options.speed.value);
   Walker walker(system);
-  const std::vector<double> x = system.gather(walker.at(options.speed.value));
+  Vec at = walker.at(options.speed.value);
+  const std::vector<double> x = system.gather(at);
   const auto journals = system.journals(x.data());
   const auto films = system.film_responses(x.data(), film::Need::force);
   const auto names = names_of_bearings(context.machine);
   auto& summary = context.results.summary();
   auto& group = context.results.group();
 
-  FilmLimit(system.places()).warn(system.film_thickness(x.data()), "at rest", summary);
-  put_values(context, system, x, summary);
+  FilmLimit(system.places()).warn(system.observe(at).film_thickness, "at rest", summary);
+  put_values(context, system, at, summary);
   // Of all that the summary holds so far: what follows has no mesh.
   put_bars(context, system, options.speed.value, x);
   const auto& rotor = system.train().rotor;
