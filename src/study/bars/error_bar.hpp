@@ -59,15 +59,14 @@ struct Bar {
 /// three times |e| (Roache 1994).
 ///
 /// Film directions of a force with kinks: where a kink stands among the nodes is chance, on each mesh anew, so that no
-/// two meshes show how the error falls. The numbers on all n meshes of a direction, this one included, scatter by s h
+/// two meshes show how the error falls. The numbers on all meshes of a direction, this one included, scatter by s h
 /// about Q(0) alone, or about Q(0) + C h^p where C is significant, larger than t times its own deviation; p is one or
 /// that of theory, and where both show a slope whichever gives the longer bar. Q(0) is known but for u, its standard
-/// deviation by least squares with weights 1/h^2. bar = sum |C| + sum |Q(1) - Q(0) - C| + t
-/// (sum u^2)^(1/2), of which the first counts as error of the mesh and the rest as that of kinks; t is Student's
-/// quantile of 95 % (two-sided) for the degrees of freedom of Welch and Satterthwaite. Unknown with fewer than three
-/// meshes in a direction, unless they agree. It holds for numbers that scatter independently: where they do not, and
-/// where a slope is there but not significant, it covers a little less. Source: regression by least squares; JCGM
-/// 100:2008, G.4, for t.
+/// deviation by least squares with weights 1/h^2. bar = sum |C| + sum |Q(1) - Q(0) - C| + t (sum u^2)^(1/2), of which
+/// the first counts as error of the mesh and the rest as that of kinks; t is Student's quantile of 95 % (two-sided) for
+/// the degrees of freedom of Welch and Satterthwaite. Unknown with fewer than three meshes in a direction, unless they
+/// agree. It holds for numbers that scatter independently: where all meshes see one and the same oscillation it covers
+/// less. Source: regression by least squares; JCGM 100:2008, G.4, for t.
 [[nodiscard]] Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& law);
 
 /// What Student's t with `freedoms` >= 1 degrees of freedom stays below in absolute value with this probability.
