@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "solve/shooting/port_stages.hpp"
 #include "support/petsc_options.hpp"
 #include "support/small_system.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -75,6 +76,16 @@ private:
   double q_;
 };
 
+class WithoutInverses : public TwoFilms {
+public:
+  using TwoFilms::TwoFilms;
+  [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override {
+    ++asked;
+    return nullptr;
+  }
+  int asked = 0;
+};
+
 solve::NewtonResult rest(TwoFilms& s, Eigen::VectorXd& x) {
   core::Vector v = s.vector(Eigen::VectorXd::Constant(n, 0.3));
   solve::NewtonOptions options;
@@ -120,4 +131,24 @@ TEST(PartInverses, MayLeaveTheHubSingular) {
   EXPECT_TRUE(result.converged) << result.reason;
   EXPECT_LT(residual_at(0, x).norm(), 1e-9);
   EXPECT_EQ(s.sets, 1);
+}
+
+// Steps that are kept, each with its elimination.
+TEST(PartInverses, AreAskedForOnceWhereThereAreNone) {
+  WithoutInverses s(2, 1);
+  const auto stages = solve::PortStages::make(s);
+  core::Vector x = s.vector(Eigen::VectorXd::Constant(n, 0.3)), still = s.vector(Eigen::VectorXd::Zero(n)),
+               k = core::duplicate(x.get()), product = core::duplicate(x.get());
+  const double own = 0.1;
+  core::Matrix a = s.make_jacobian();
+  s.jacobian(0, x.get(), still.get(), own, 1, a.get());
+  std::vector<std::shared_ptr<const solve::StageSolver>> kept;
+  for (int step = 0; step < 3; ++step) {
+    stages->begin_step();
+    kept.push_back(stages->solver(a.get(), 0, x.get(), still.get(), own));
+    kept.back()->solve(x.get(), k.get(), 1e-12);
+    core::check(MatMult(a.get(), k.get(), product.get()));
+    EXPECT_LT((s.gather(product.get()) - s.gather(x.get())).norm(), 1e-11);
+  }
+  EXPECT_EQ(s.asked, 1);
 }

@@ -19,6 +19,17 @@ using core::check;
 
 namespace {
 
+int splits = 0;  // of communicators, in this program
+
+}  // namespace
+
+extern "C" int MPI_Comm_split(MPI_Comm comm, int colour, int key, MPI_Comm* made) {
+  ++splits;
+  return PMPI_Comm_split(comm, colour, key, made);
+}
+
+namespace {
+
 // Makes of a film on rigid pads one that holds its content.
 void hold_content(film::Options& options) {
   auto& film = film::as<film::Reynolds>(options);
@@ -208,6 +219,22 @@ TEST(SharedFilms, StagesAreSolvedByPreconditionersOfTheFilms) {
   system::RotorSystem s(MPI_COMM_WORLD, train, 377);
   core::Vector x = state_of(s);
   test::expect_stage_is_solved(s, x.get(), 3e-5, 1e-7);
+}
+
+// Every step that is kept has its inverses; communicators are few.
+TEST(SharedFilms, InversesShareTheirCommunicators) {
+  std::unique_ptr<problem::PartInverse> last;
+  {
+    system::RotorSystem s(MPI_COMM_WORLD, test::train_on_liners({12, 5}, 0.05), 377);
+    splits = 0;
+    const auto first = s.make_part_inverse();
+    ASSERT_TRUE(first);
+    EXPECT_EQ(splits, 5);  // films
+    last = s.make_part_inverse();
+    ASSERT_TRUE(last);
+    EXPECT_EQ(splits, 5);
+  }
+  last.reset();
 }
 
 TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {

@@ -161,6 +161,7 @@ private:
     std::vector<film::StateResponse> own;
   };
   class Blocks;
+  class FilmComms;
   class FilmInverse;
   struct Settling;
   /// Matrices of coordinates, pedestals behind the rotor.
@@ -254,8 +255,9 @@ private:
   // 4 of each that tilts, slope and rate in x and y.
   std::size_t journal_inputs_ = 0;
   std::unique_ptr<Blocks> blocks_;
-  std::unique_ptr<Slope> slope_;        // at this value of the parameter, made when first wanted
-  std::unique_ptr<Settling> settling_;  // made when first wanted
+  std::unique_ptr<Slope> slope_;                 // at this value of the parameter, made when first wanted
+  std::unique_ptr<Settling> settling_;           // made when first wanted
+  std::shared_ptr<const FilmComms> film_comms_;  // of all inverses of the films, made with the first
 };
 
 }  // namespace whirl::system

@@ -14,7 +14,9 @@ std::shared_ptr<PortElimination> PortStages::unused(bool by_inverse) {
   if (!by_inverse) return std::make_shared<PortElimination>(system_.fields());
   for (const auto& e : made_)
     if (e.use_count() == 1) return e;
-  return made_.emplace_back(std::make_shared<PortElimination>(system_.fields(), system_.make_part_inverse()));
+  auto inverse = inverses_ ? system_.make_part_inverse() : nullptr;
+  inverses_ = inverse != nullptr;
+  return made_.emplace_back(std::make_shared<PortElimination>(system_.fields(), std::move(inverse)));
 }
 
 std::shared_ptr<const PortMatrix> PortStages::blocks(Mat a) {

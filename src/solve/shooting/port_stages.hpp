@@ -33,6 +33,7 @@ private:
   std::shared_ptr<PortKrylov> krylov_;
   std::vector<std::shared_ptr<PortElimination>> made_;  // used again when nobody holds them any more
   std::shared_ptr<PortElimination> similar_;
+  bool inverses_ = true;  // until the system has none
 };
 
 }  // namespace whirl::solve
