@@ -101,7 +101,6 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
     for (std::size_t d = 0; d < 2 && coefficients[b].ports > 2; ++d) {
       summary.set(head + "moment." + axis[d], films[b].force[2 + d], "N m");
       summary.set(head + "tilt." + axis[d], journals[b].tilt[d], "1");
-      summary.set(head + "slope." + axis[d], system.axis(static_cast<int>(b))[d], "1");
     }
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt p = system.pedestal(static_cast<int>(b), static_cast<int>(d));
@@ -153,6 +152,9 @@ StudyResult Static::run(Context& context) {
   summary.set("length.total", rotor::node_positions(rotor).back(), "m");
   std::vector<double> px, py, load;
   for (std::size_t b = 0; b < names.size(); ++b) {
+    for (std::size_t d = 0; d < 2 && film::facts(system.train().supports[b].film).tilts; ++d)
+      summary.set(fmt::format("bearing.{}.slope.{}", names[b], d == 0 ? "x" : "y"), system.axis(static_cast<int>(b))[d],
+                  "1");
     px.push_back(journals[b].position[0]);
     py.push_back(journals[b].position[1]);
     load.push_back(films[b].force[1]);
