@@ -253,10 +253,10 @@ void CompliantFilm::evaluate(const Motion& motion, const Share& share, std::span
   by_journal(response);
 }
 
-Made make(const Geometry& geometry, const CompliantShort& options, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& geometry, const CompliantShort& options, const Lubricant& lubricant) {
   return used(options, std::make_unique<CompliantFilm>(geometry, options, false, lubricant));
 }
-Made make(const Geometry& geometry, const CompliantLong& options, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& geometry, const CompliantLong& options, const Lubricant& lubricant) {
   return used(options, std::make_unique<CompliantFilm>(geometry, options, true, lubricant));
 }
 

@@ -7,7 +7,7 @@
 
 #include "film/liner.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film {
 
@@ -72,7 +72,7 @@ private:
 };
 
 /// The film as its option `states` says.
-[[nodiscard]] inline Made used(const Compliant& options, std::unique_ptr<StateModel> film) {
+[[nodiscard]] inline std::unique_ptr<Film> used(const Compliant& options, std::unique_ptr<Film> film) {
   if (options.states == States::condensed) {
     if (options.liner_damping > 0)
       throw core::InputError("a liner that gives way at once (states: condensed) has no damping");
@@ -82,7 +82,7 @@ private:
 }
 
 /// What all compliant films are made of.
-class CompliantModel : public StateModel {
+class CompliantModel : public Film {
 public:
   /// Throws core::InputError unless bore, lubricant and liner make a compliant film.
   /// Its mesh has `options.cells[0]` cells around the bearing and `along` along it, 0 for none.
@@ -91,13 +91,9 @@ public:
   [[nodiscard]] std::vector<StateField> state_fields() const final {
     return {{"thickness", "m", g_.clearance, 0, static_cast<int>(states())}};
   }
-  [[nodiscard]] std::span<const Port> ports() const final {
-    static constexpr std::array<Port, 2> aligned = {Port::x, Port::y};
-    return aligned;
-  }
   /// The thickness over a liner whose deflection stays.
   [[nodiscard]] PortColumns carried_rates() const final;
-  [[nodiscard]] double least_thickness(const Motion& /*motion*/, std::span<const double> states) const final {
+  [[nodiscard]] double least_thickness(const Motion& /*motion*/, std::span<const double> states) final {
     return *std::min_element(states.begin(), states.end());
   }
 

@@ -68,10 +68,9 @@ public:
     for (int k = 0; k < n_; ++k)
       if (!fixed(k)) states[index(k)] = rigid(motion, k) * g_.clearance;
   }
-  using StateModel::evaluate;
   void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
                 Need need, StateResponse& response) override;
-  void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
+  void resample(const Motion& motion, const Film& other, std::span<const double> from,
                 std::span<double> to) const override;
   Summary summary(const Motion& motion, std::span<const double> states) override;
   std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;

@@ -314,7 +314,7 @@ void FiniteFilm::evaluate(const Motion& motion, const Share& share, std::span<co
   rows(part, motion, rates, need, response);
 }
 
-Made make(const Geometry& geometry, const CompliantFinite& options, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& geometry, const CompliantFinite& options, const Lubricant& lubricant) {
   return used(options, std::make_unique<FiniteFilm>(geometry, options, lubricant));
 }
 

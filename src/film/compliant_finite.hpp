@@ -76,10 +76,9 @@ public:
     for (int i = 0; i < ring_.nodes(); ++i)
       std::fill_n(states.begin() + i * inner(), inner(), rigid(motion, i) * g_.clearance);
   }
-  using StateModel::evaluate;
   void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
                 Need need, StateResponse& response) override;
-  void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
+  void resample(const Motion& motion, const Film& other, std::span<const double> from,
                 std::span<double> to) const override;
   Summary summary(const Motion& motion, std::span<const double> states) override;
   std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;

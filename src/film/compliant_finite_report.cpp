@@ -10,7 +10,7 @@ namespace whirl::film {
 using core::at;
 
 // Deflections, periodic around and zero at the edges, are interpolated linearly in both directions.
-void FiniteFilm::resample(const Motion& motion, const StateModel& other, std::span<const double> from,
+void FiniteFilm::resample(const Motion& motion, const Film& other, std::span<const double> from,
                           std::span<double> to) const {
   const auto* mesh = dynamic_cast<const FiniteFilm*>(&other);
   core::require(mesh != nullptr && from.size() == mesh->states(), "states of another film of finite length");

@@ -7,7 +7,7 @@
 namespace whirl::film {
 
 // Deflections, which are periodic and zero in grooves, are interpolated linearly.
-void CompliantFilm::resample(const Motion& motion, const StateModel& other, std::span<const double> from,
+void CompliantFilm::resample(const Motion& motion, const Film& other, std::span<const double> from,
                              std::span<double> to) const {
   const auto* mesh = dynamic_cast<const CompliantFilm*>(&other);
   core::require(mesh != nullptr && from.size() == mesh->states(), "states of another short or long film");

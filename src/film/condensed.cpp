@@ -6,7 +6,7 @@
 
 namespace whirl::film {
 
-Condensed::Condensed(std::unique_ptr<StateModel> film)
+Condensed::Condensed(std::unique_ptr<Film> film)
     : film_(std::move(film)), carried_rates_(film_->carried_rates()), steady_(*film_) {}
 
 // carried_rates() times `by`, which is a velocity or a displacement.
@@ -89,10 +89,11 @@ void Condensed::solve(const Motion& motion) {
   }
 }
 
-void Condensed::evaluate(const Motion& motion, Need need, Response& response) {
+void Condensed::evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+                         std::span<const double> /*rates*/, Need need, StateResponse& all) {
   solve(motion);
   const StateResponse& at = steady_.here();
-  response = {};
+  Response& response = all.without_states();
   response.force = at.journal.force;
   response.min_thickness = at.journal.min_thickness;
   if (need == Need::force) return;
@@ -100,14 +101,14 @@ void Condensed::evaluate(const Motion& motion, Need need, Response& response) {
   const auto ports = film_->ports();
   const auto n = static_cast<Eigen::Index>(states_.size());
   const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };
-  const Share& all = film_->whole();
+  const Share& whole = film_->whole();
   for (std::size_t f = 0; f < ports.size(); ++f) {
     const auto i = static_cast<std::size_t>(ports[f]);
     const Eigen::VectorXd lambda = steady_.solve_transposed(at.force_d_states[f]);
     // What a rate of each state does to the force, all in all.
     Eigen::VectorXd by_rates = Eigen::VectorXd::Zero(carried_rates_.empty() ? 0 : n);
     if (!carried_rates_.empty()) {
-      for_entries(all, all.d_rates, at.d_rates,
+      for_entries(whole, whole.d_rates, at.d_rates,
                   [&](int row, int column, double value) { by_rates(column) -= lambda(row) * value; });
       if (!at.force_d_rates.empty()) by_rates += thin(at.force_d_rates[f]);
     }
@@ -121,24 +122,24 @@ void Condensed::evaluate(const Motion& motion, Need need, Response& response) {
   }
 }
 
-Summary Condensed::summary(const Motion& motion) {
+Summary Condensed::summary(const Motion& motion, std::span<const double> /*states*/) {
   solve(motion);
   there_ = false;  // the film is asked on its own from here on
   return film_->summary(motion, states_);
 }
 
-std::vector<Field> Condensed::fields(const Motion& motion) {
+std::vector<Field> Condensed::fields(const Motion& motion, std::span<const double> /*states*/) {
   solve(motion);
   there_ = false;
   return film_->fields(motion, states_);
 }
 
-double Condensed::least_thickness(const Motion& motion) {
+double Condensed::least_thickness(const Motion& motion, std::span<const double> /*states*/) {
   solve(motion);
   return film_->least_thickness(motion, states_);
 }
 
-void Condensed::start_from(const Model& other) {
+void Condensed::start_from(const Film& other) {
   const auto* film = dynamic_cast<const Condensed*>(&other);
   if (!film || film->film_->states() != film_->states()) return;
   found_ = film->found_;
@@ -146,7 +147,8 @@ void Condensed::start_from(const Model& other) {
   there_ = false;
 }
 
-std::unique_ptr<Model> condense(std::unique_ptr<StateModel> film) {
+std::unique_ptr<Film> condense(std::unique_ptr<Film> film) {
+  if (film->states() == 0) return film;
   return std::make_unique<Condensed>(std::move(film));
 }
 

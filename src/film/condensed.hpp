@@ -3,7 +3,7 @@
 //
 //     F(w, w') = f(w, w', s, r w'),   g(w, w', s, r w') = 0
 //
-// with r the rates of the states while nothing changes that the film remembers (StateModel::carried_rates). With lambda
+// with r the rates of the states while nothing changes that the film remembers (Film::carried_rates). With lambda
 // = (dg/ds)^-T df/ds of each force
 //
 //     dF/dw = df/dw - lambda . dg/dw,   dF/dw' = df/dw' + df/ds' r - lambda . (dg/dw' + dg/ds' r)
@@ -17,14 +17,18 @@
 
 namespace whirl::film {
 
-class Condensed final : public Model {
+class Condensed final : public Film {
 public:
-  explicit Condensed(std::unique_ptr<StateModel> film);
-  void evaluate(const Motion& motion, Need need, Response& response) override;
-  Summary summary(const Motion& motion) override;
-  std::vector<Field> fields(const Motion& motion) override;
-  [[nodiscard]] double least_thickness(const Motion& motion) override;
-  void start_from(const Model& other) override;
+  /// Of a film with states.
+  explicit Condensed(std::unique_ptr<Film> film);
+  [[nodiscard]] std::span<const Port> ports() const override { return film_->ports(); }
+  using Film::evaluate;
+  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
+                Need need, StateResponse& response) override;
+  Summary summary(const Motion& motion, std::span<const double> states) override;
+  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
+  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> states) override;
+  void start_from(const Film& other) override;
   /// Factorisations so far.
   [[nodiscard]] long factorisations() const { return steady_.factorisations(); }
 
@@ -35,7 +39,7 @@ private:
   [[nodiscard]] bool attempt(const Motion& motion, std::vector<double> states);
   [[nodiscard]] std::vector<double> carried(const std::array<double, 4>& by) const;
 
-  std::unique_ptr<StateModel> film_;
+  std::unique_ptr<Film> film_;
   PortColumns carried_rates_;
   Steady steady_;
   // The last motion whose states were found, and whether steady_ still stands there.

@@ -6,11 +6,12 @@
 #include "film/content_pad.hpp"
 #include "film/report.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/thickness.hpp"
 
 namespace whirl::film {
 namespace {
 
-class ContentFilm final : public StateModel {
+class ContentFilm final : public Film {
 public:
   ContentFilm(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant)
       : geometry_(geometry), options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
@@ -29,8 +30,7 @@ public:
     return {{"content", "m", geometry_.clearance, 0, static_cast<int>(states_)}};
   }
   [[nodiscard]] std::span<const Port> ports() const override {
-    static constexpr std::array<Port, 4> all = {Port::x, Port::y, Port::tilt_x, Port::tilt_y};
-    return std::span(all).first(options_.tilt ? 4 : 2);
+    return std::span(all_ports).first(options_.tilt ? 4 : 2);
   }
   [[nodiscard]] bool whole_steps() const override { return true; }
   void unloaded(const Motion& /*motion*/, std::span<double> states) const override {
@@ -44,7 +44,6 @@ public:
   }
   [[nodiscard]] Share share(int begin, int end) const override { return lay_out(begin, end).share; }
 
-  using StateModel::evaluate;
   void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
                 Need need, StateResponse& response) override {
     if (at_hand_.share.begin != share.begin || at_hand_.share.end != share.end)
@@ -67,7 +66,7 @@ public:
       solvers_[n]->evaluate(motion, at_hand_.pads[n], states, rates, need, response);
   }
 
-  void resample(const Motion& motion, const StateModel& other, std::span<const double> from,
+  void resample(const Motion& motion, const Film& other, std::span<const double> from,
                 std::span<double> to) const override {
     const auto* mesh = dynamic_cast<const ContentFilm*>(&other);
     core::require(mesh != nullptr && from.size() == mesh->states_ && mesh->pads_.size() == pads_.size(),
@@ -77,7 +76,7 @@ public:
                             to.subspan(first_[n], solvers_[n]->states()));
   }
 
-  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) const override {
+  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) override {
     std::array<double, 4> position = motion.position;
     if (!options_.tilt) position[2] = position[3] = 0.0;
     return minimum_thickness(geometry_, position);
@@ -144,8 +143,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Reynolds& options,
-                                         const Lubricant& lubricant) {
+std::unique_ptr<Film> make_content(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant) {
   return std::make_unique<ContentFilm>(geometry, options, lubricant);
 }
 

@@ -17,7 +17,7 @@
 
 #include "film/pad_equations.hpp"
 #include "film/report.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film {
 
@@ -92,6 +92,6 @@ private:
 
 /// Film on rigid pads that conserves its mass, with what its gap holds as states. Throws core::InputError on values
 /// outside their range.
-std::unique_ptr<StateModel> make_content(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant);
+std::unique_ptr<Film> make_content(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film

@@ -1,18 +1,19 @@
 #include <limits>
 
 #include "whirl/film/describe.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film {
 namespace {
 
 // force = -K (x, y) - C (x', y').
-class LinearFilm final : public Model {
+class LinearFilm final : public Film {
 public:
   explicit LinearFilm(const Linear& options) : stiffness_(options.stiffness), damping_(options.damping) {}
 
-  void evaluate(const Motion& motion, Need need, Response& response) override {
-    response = {};
+  void evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+                std::span<const double> /*rates*/, Need need, StateResponse& all) override {
+    Response& response = all.without_states();
     response.min_thickness = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 2; ++i) {
       for (std::size_t j = 0; j < 2; ++j) {
@@ -23,9 +24,13 @@ public:
       }
     }
   }
-  Summary summary(const Motion&) override { return {.min_thickness = std::numeric_limits<double>::infinity()}; }
-  std::vector<Field> fields(const Motion&) override { return {}; }
-  [[nodiscard]] double least_thickness(const Motion&) override { return std::numeric_limits<double>::infinity(); }
+  Summary summary(const Motion&, std::span<const double>) override {
+    return {.min_thickness = std::numeric_limits<double>::infinity()};
+  }
+  std::vector<Field> fields(const Motion&, std::span<const double>) override { return {}; }
+  [[nodiscard]] double least_thickness(const Motion&, std::span<const double>) override {
+    return std::numeric_limits<double>::infinity();
+  }
 
 private:
   std::array<double, 4> stiffness_, damping_;
@@ -46,7 +51,7 @@ Facts facts_of(const Linear& /*options*/, const Geometry& /*geometry*/) {
   return {.coefficients = true};
 }
 
-Made make(const Geometry& /*geometry*/, const Linear& options, const Lubricant& /*lubricant*/) {
+std::unique_ptr<Film> make(const Geometry& /*geometry*/, const Linear& options, const Lubricant& /*lubricant*/) {
   return std::make_unique<LinearFilm>(options);
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 
@@ -62,15 +61,6 @@ double LeastThickness::operator()(double X, double Y) const {
 double LeastThickness::operator()(double X, double Y, double tx, double ty) const {
   const double x = half_length_ * tx, y = half_length_ * ty;
   return std::min((*this)(X + x, Y + y), (*this)(X - x, Y - y));
-}
-
-double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Pad& pad : make_pads(geometry)) {
-    const double X = position[0] - pad.centre_x, Y = position[1] - pad.centre_y;
-    least = std::min(least, LeastThickness(pad)(X, Y, position[2], position[3]));
-  }
-  return least;
 }
 
 void require_thickness(double h_min) {

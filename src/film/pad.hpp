@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "whirl/film/model.hpp"
+#include "whirl/film/response.hpp"
+#include "whirl/film/reynolds.hpp"
 
 namespace whirl::film {
 
@@ -65,7 +66,7 @@ public:
   virtual ~PadSolver() = default;
   /// Adds force and derivatives of this pad to `response` and lowers its min_thickness.
   virtual void add(const Motion& motion, Need need, Response& response) = 0;
-  /// As Model::start_from().
+  /// As Film::start_from().
   virtual void start_from(const PadSolver& /*other*/) {}
   /// Truncated nodal pressure [n_theta + 1][n_z + 1], Pa.
   virtual std::vector<double> pressure(const Motion& motion) = 0;

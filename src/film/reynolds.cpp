@@ -12,6 +12,7 @@
 #include "film/turning_frame.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/describe.hpp"
+#include "whirl/film/thickness.hpp"
 
 namespace whirl::film {
 namespace {
@@ -67,7 +68,7 @@ void check_pads(const Geometry& g, const Reynolds& o, const Lubricant& l) {
          "holes do not turn with an inlet at the maximum gap");
 }
 
-class ReynoldsFilm final : public Model {
+class ReynoldsFilm final : public Film {
 public:
   ReynoldsFilm(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant)
       : geometry_(geometry), options_(options), lubricant_(lubricant), pads_(make_pads(geometry, options.inlet)) {
@@ -80,8 +81,12 @@ public:
     }
   }
 
-  void evaluate(const Motion& motion, Need need, Response& response) override {
-    response = {};
+  [[nodiscard]] std::span<const Port> ports() const override {
+    return std::span(all_ports).first(options_.tilt ? 4 : 2);
+  }
+  void evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+                std::span<const double> /*rates*/, Need need, StateResponse& all) override {
+    Response& response = all.without_states();
     response.min_thickness = std::numeric_limits<double>::infinity();
     if (turns()) {
       const TurningFrame frame(motion, pads_.front().clearance);
@@ -91,21 +96,21 @@ public:
     for (auto& solver : solvers_) solver->add(motion, need, response);
   }
 
-  void start_from(const Model& other) override {
+  void start_from(const Film& other) override {
     const auto* film = dynamic_cast<const ReynoldsFilm*>(&other);
     for (std::size_t k = 0; film && k < std::min(solvers_.size(), film->solvers_.size()); ++k)
       solvers_[k]->start_from(*film->solvers_[k]);
   }
 
-  Summary summary(const Motion& motion) override {
+  Summary summary(const Motion& motion, std::span<const double> /*states*/) override {
     return summarise(pads_, options_, lubricant_, seen(motion), reports(motion));
   }
-  std::vector<Field> fields(const Motion& motion) override {
+  std::vector<Field> fields(const Motion& motion, std::span<const double> /*states*/) override {
     const double turn = turns() ? TurningFrame(motion, pads_.front().clearance).angle() : 0.0;
     return fields_of(pads_, options_, seen(motion), turn, reports(motion));
   }
 
-  [[nodiscard]] double least_thickness(const Motion& motion) override {
+  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) override {
     std::array<double, 4> position = motion.position;
     if (!options_.tilt) position[2] = position[3] = 0.0;
     return minimum_thickness(geometry_, position);
@@ -230,7 +235,7 @@ Facts facts_of(const Reynolds& o, const Geometry& geometry) {
   return f;
 }
 
-Made make(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant) {
   check_pads(geometry, options, lubricant);
   if (dynamic(options)) return make_content(geometry, options, lubricant);
   return std::make_unique<ReynoldsFilm>(geometry, options, lubricant);

@@ -7,15 +7,15 @@
 #include "whirl/core/error.hpp"
 #include "whirl/film/closed_form.hpp"
 #include "whirl/film/describe.hpp"
+#include "whirl/film/film.hpp"
 #include "whirl/film/impedance.hpp"
-#include "whirl/film/state_model.hpp"
 
 namespace whirl::film {
 namespace {
 
 using std::numbers::pi;
 
-class RigidFilm final : public Model {
+class RigidFilm final : public Film {
 public:
   RigidFilm(const Geometry& geometry, ClosedForm kind, const Lubricant& lubricant)
       : g_(geometry), kind_(kind), viscosity_(lubricant.viscosity), ld_(0.5 * g_.length / g_.radius) {
@@ -24,8 +24,10 @@ public:
     pressure_ = 6.0 * viscosity_ * ratio * ratio;
   }
 
-  void evaluate(const Motion& motion, Need need, Response& response) override {
-    response = {};
+  using Film::evaluate;
+  void evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+                std::span<const double> /*rates*/, Need need, StateResponse& all) override {
+    Response& response = all.without_states();
     const auto [e, v] = state(motion);
     const Impedance f = impedance(kind_, ld_, e, v);
     response.min_thickness = g_.clearance * (1.0 - std::hypot(e[0], e[1]));
@@ -40,9 +42,9 @@ public:
     }
   }
 
-  Summary summary(const Motion& motion) override;
-  std::vector<Field> fields(const Motion& motion) override;
-  [[nodiscard]] double least_thickness(const Motion& motion) override {
+  Summary summary(const Motion& motion, std::span<const double> states) override;
+  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
+  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) override {
     return g_.clearance - std::hypot(motion.position[0], motion.position[1]);
   }
 
@@ -68,7 +70,7 @@ private:
 // F_y
 // - e_y F_x)/(2 R)), r^2 = 1 - eps^2. Side flow of the short film: 2 R c L |v_s| (Ocvirk and DuBois 1953: R c L Omega
 // eps).
-Summary RigidFilm::summary(const Motion& motion) {
+Summary RigidFilm::summary(const Motion& motion, std::span<const double> /*states*/) {
   Response response;
   evaluate(motion, Need::force, response);
   const auto [e, v] = state(motion);
@@ -102,7 +104,7 @@ Summary RigidFilm::summary(const Motion& motion) {
   return s;
 }
 
-std::vector<Field> RigidFilm::fields(const Motion& motion) {
+std::vector<Field> RigidFilm::fields(const Motion& motion, std::span<const double> /*states*/) {
   if (!has_pressure()) return {};
   const auto [e, v] = state(motion);
   const bool is_short = kind_ == ClosedForm::short_bearing;
@@ -126,7 +128,7 @@ std::vector<Field> RigidFilm::fields(const Motion& motion) {
   return {theta, z, pressure, h};
 }
 
-std::unique_ptr<Model> make_rigid(const Geometry& g, ClosedForm kind, const Lubricant& lubricant) {
+std::unique_ptr<Film> make_rigid(const Geometry& g, ClosedForm kind, const Lubricant& lubricant) {
   if (g.type != Geometry::Bore::cylindrical)
     throw core::InputError("film: short, long and finite_approximate films need a cylindrical bore");
   if (!(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0))
@@ -143,7 +145,7 @@ void describe(deck::Description<Short>& /*d*/) {}
 Facts facts_of(const Short& /*options*/, const Geometry& /*geometry*/) {
   return {.circle_only = circle};
 }
-Made make(const Geometry& g, const Short& /*options*/, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& g, const Short& /*options*/, const Lubricant& lubricant) {
   return make_rigid(g, ClosedForm::short_bearing, lubricant);
 }
 
@@ -151,7 +153,7 @@ void describe(deck::Description<Long>& /*d*/) {}
 Facts facts_of(const Long& /*options*/, const Geometry& /*geometry*/) {
   return {.circle_only = circle};
 }
-Made make(const Geometry& g, const Long& /*options*/, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& g, const Long& /*options*/, const Lubricant& lubricant) {
   return make_rigid(g, ClosedForm::long_bearing, lubricant);
 }
 
@@ -159,7 +161,7 @@ void describe(deck::Description<LongInlet>& /*d*/) {}
 Facts facts_of(const LongInlet& /*options*/, const Geometry& /*geometry*/) {
   return {.circle_only = circle};
 }
-Made make(const Geometry& g, const LongInlet& /*options*/, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& g, const LongInlet& /*options*/, const Lubricant& lubricant) {
   return make_rigid(g, ClosedForm::long_inlet, lubricant);
 }
 
@@ -167,7 +169,7 @@ void describe(deck::Description<FiniteApproximate>& /*d*/) {}
 Facts facts_of(const FiniteApproximate& /*options*/, const Geometry& /*geometry*/) {
   return {.circle_only = circle};
 }
-Made make(const Geometry& g, const FiniteApproximate& /*options*/, const Lubricant& lubricant) {
+std::unique_ptr<Film> make(const Geometry& g, const FiniteApproximate& /*options*/, const Lubricant& lubricant) {
   return make_rigid(g, ClosedForm::finite_approximate, lubricant);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "film/stencil.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film {
 

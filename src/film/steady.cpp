@@ -18,7 +18,7 @@ Map view(const std::vector<double>& v) {
 
 }  // namespace
 
-Steady::Steady(StateModel& film) : film_(film) {
+Steady::Steady(Film& film) : film_(film) {
   const auto n = static_cast<Eigen::Index>(film.states());
   scale_.resize(n);
   for (const StateField& f : film.state_fields()) scale_.segment(f.begin, f.end - f.begin).setConstant(f.scale);

@@ -5,13 +5,13 @@
 #include <array>
 #include <vector>
 
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film {
 
 class Steady {
 public:
-  explicit Steady(StateModel& film);
+  explicit Steady(Film& film);
   /// How small the last step must be: 1e-10 of the typical state, or so small too that it does not show in the force.
   enum class Until { small_step, same_force };
   /// Finds the states from those given, which it leaves as they were if it throws core::NotConverged or
@@ -28,7 +28,7 @@ private:
   void factor();
   [[nodiscard]] std::array<double, 4> effect(const Eigen::VectorXd& step) const;
 
-  StateModel& film_;
+  Film& film_;
   Eigen::VectorXd scale_;
   StateResponse here_, there_;
   std::vector<double> trial_;

@@ -1,7 +1,7 @@
 #pragma once
 // The frame in which the inlet of a film at the maximum gap stands still.
 
-#include "whirl/film/model.hpp"
+#include "whirl/film/response.hpp"
 
 namespace whirl::film {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/rotor/freedom.hpp"
 
 namespace whirl::study {
@@ -41,8 +41,9 @@ double memory_of_equilibria(const system::Machine& machine) {
 
 double memory_of_cycles(const system::Machine& machine, double intervals, double stages, bool radau) {
   const double n = n_states(machine);
-  const bool own = system::is_rotor(machine) && std::any_of(machine.bearings.begin(), machine.bearings.end(),
-                                                            [](const auto& b) { return film::has_states(b.film); });
+  const bool own =
+      system::is_rotor(machine) && std::any_of(machine.bearings.begin(), machine.bearings.end(),
+                                               [](const auto& b) { return film::facts(b.film).own_states; });
   // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
   const bool whole = radau && !own && system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
                      machine.rotor.reduction.type == rotor::Reduction::Type::none && n >= 250;

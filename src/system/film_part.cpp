@@ -8,96 +8,59 @@ namespace whirl::system {
 
 using core::check;
 
-FilmPart::FilmPart(const Support& support, PetscInt first) : first_(first) {
-  film::Made made = film::make_film(support.geometry, support.film, support.lubricant);
-  if (auto* model = std::get_if<std::unique_ptr<film::Model>>(&made)) {
-    model_ = std::move(*model);
-  } else {
-    states_ = std::move(std::get<std::unique_ptr<film::StateModel>>(made));
-    count_ = static_cast<PetscInt>(states_->states());
-  }
-}
+FilmPart::FilmPart(const Support& support, PetscInt first)
+    : film_(film::make_film(support.geometry, support.film, support.lubricant)),
+      first_(first),
+      count_(static_cast<PetscInt>(film_->states())) {}
 
 FilmPart FilmPart::with(const Support& support) const {
   FilmPart out(support, first_);
-  core::require(out.count_ == count_ && !out.model_ == !model_, "a film on the same mesh");
-  if (model_) out.model_->start_from(*model_);
+  core::require(out.count_ == count_, "a film on the same mesh");
+  out.film_->start_from(*film_);
   out.row_ = row_;
   out.gathered_ = gathered_;
   out.here_ = here_;
-  if (rows() > 0) out.share_ = out.states_->share(share_.begin, share_.end);
+  if (rows() > 0) out.share_ = out.film_->share(share_.begin, share_.end);
   // Solvers learn once which derivatives a film has.
-  if (states_ && out.states_->constant_rates() != states_->constant_rates())
+  if (out.film_->constant_rates() != film_->constant_rates())
     throw core::DomainError("the damping of a liner can not come or go along a branch");
   return out;
 }
 
-film::StateModel& FilmPart::film() const {
-  core::require(states_ != nullptr, "a film with states");
-  return *states_;
-}
-
 PetscInt FilmPart::cut(PetscInt wanted) const {
-  return first_ + film().cut(static_cast<int>(wanted - first_));
+  return first_ + film_->cut(static_cast<int>(wanted - first_));
 }
 
 void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered, bool without_states) {
   const PetscInt from = std::max(first_, begin), to = std::min(this->end(), end);
-  share_ = from < to ? film().share(static_cast<int>(from - first_), static_cast<int>(to - first_)) : film::Share{};
+  share_ = from < to ? film_->share(static_cast<int>(from - first_), static_cast<int>(to - first_)) : film::Share{};
   row_ = row + std::clamp<PetscInt>(first_ - begin, 0, end - begin);
   gathered_ = gathered;
   here_ = count_ > 0 ? rows() > 0 : without_states;
 }
 
-// No rows: `response` may be of another film.
-void FilmPart::evaluate_model(const film::Motion& motion, film::Need need, film::StateResponse& response) const {
-  response.residual.clear();
-  model_->evaluate(motion, need, response.journal);
-}
-
 void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
                         film::Need need, film::StateResponse& response) const {
-  if (model_) return evaluate_model(motion, need, response);
   const std::size_t n = share_.seen.size();
-  states_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
+  film_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
 }
 
 void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need,
                         film::StateResponse& response) const {
-  if (model_) return evaluate_model(motion, need, response);
   const auto n = static_cast<std::size_t>(count_);
-  states_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response);
-}
-
-double FilmPart::least_thickness(const film::Motion& motion, std::span<const double> states) const {
-  return states_ ? states_->least_thickness(motion, states) : model_->least_thickness(motion);
-}
-
-film::Summary FilmPart::summary(const film::Motion& motion, std::span<const double> states) const {
-  return states_ ? states_->summary(motion, states) : model_->summary(motion);
-}
-
-std::vector<film::Field> FilmPart::report(const film::Motion& motion, std::span<const double> states) const {
-  return states_ ? states_->fields(motion, states) : model_->fields(motion);
-}
-
-void FilmPart::resample(const film::Motion& motion, const FilmPart& other, std::span<const double> from,
-                        std::span<double> to) const {
-  if (states_) states_->resample(motion, other.film(), from, to);
+  film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response);
 }
 
 std::vector<double> FilmPart::relaxed(const film::Motion& motion) const {
   std::vector<double> states(static_cast<std::size_t>(count_));
-  if (!states_) return states;
-  states_->unloaded(motion, states);
-  film::relax(*states_, motion, states);
+  film_->unloaded(motion, states);
+  film::relax(*film_, motion, states);
   return states;
 }
 
 std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
   std::vector<problem::Field> out;
-  if (!states_) return out;
-  for (const film::StateField& f : states_->state_fields()) {
+  for (const film::StateField& f : film_->state_fields()) {
     const int begin = std::clamp(f.begin, share_.begin, share_.end), end = std::clamp(f.end, share_.begin, share_.end);
     out.push_back({name, row_ + begin - share_.begin, row_ + end - share_.begin, f.name, f.unit, f.scale});
   }

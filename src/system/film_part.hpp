@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "whirl/core/entry_stream.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 #include "whirl/problem/system.hpp"
 #include "whirl/system/train.hpp"
 
@@ -27,8 +27,7 @@ public:
   /// from where this one ended. Throws as the constructor does.
   [[nodiscard]] FilmPart with(const Support& support) const;
 
-  /// The film with its states; core::Bug if it has none.
-  [[nodiscard]] film::StateModel& film() const;
+  [[nodiscard]] film::Film& film() const { return *film_; }
   [[nodiscard]] PetscInt first() const { return first_; }
   [[nodiscard]] PetscInt count() const { return count_; }
   [[nodiscard]] PetscInt end() const { return first_ + count_; }
@@ -59,16 +58,9 @@ public:
     return {x + 2 * n + first_, static_cast<std::size_t>(count_)};
   }
 
-  [[nodiscard]] bool constant_rates() const { return !states_ || states_->constant_rates(); }
+  [[nodiscard]] bool constant_rates() const { return film_->constant_rates(); }
   /// It finds its states by whole steps of Newton's method while the machine stays where it is.
-  [[nodiscard]] bool settles() const { return states_ && states_->whole_steps(); }
-  /// Least thickness [m] at some of its states (StateModel::least_thickness), or of a film without states.
-  [[nodiscard]] double least_thickness(const film::Motion& motion, std::span<const double> states) const;
-  [[nodiscard]] film::Summary summary(const film::Motion& motion, std::span<const double> states) const;
-  [[nodiscard]] std::vector<film::Field> report(const film::Motion& motion, std::span<const double> states) const;
-  /// Its states from those of the same film on another mesh.
-  void resample(const film::Motion& motion, const FilmPart& other, std::span<const double> from,
-                std::span<double> to) const;
+  [[nodiscard]] bool settles() const { return film_->whole_steps(); }
   /// The states at which it rests with the journal where it is.
   [[nodiscard]] std::vector<double> relaxed(const film::Motion& motion) const;
 
@@ -80,10 +72,8 @@ public:
            double alpha, double sigma) const;
 
 private:
-  void evaluate_model(const film::Motion& motion, film::Need need, film::StateResponse& response) const;
-  std::unique_ptr<film::Model> model_;        // of a film without states,
-  std::unique_ptr<film::StateModel> states_;  // or of one with such
-  PetscInt first_, count_ = 0, row_ = 0;
+  std::unique_ptr<film::Film> film_;
+  PetscInt first_, count_, row_ = 0;
   std::size_t gathered_ = 0;
   bool here_ = false;
   film::Share share_;

@@ -185,8 +185,8 @@ Observed RotorSystem::observe(Vec x) {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const FilmPart& part = *bearings_[i].part;
       if (part.here())
-        out.film_thickness[i] =
-            part.least_thickness(motion(journals[i]), {xa.data() + part.row(), static_cast<std::size_t>(part.rows())});
+        out.film_thickness[i] = part.film().least_thickness(
+            motion(journals[i]), {xa.data() + part.row(), static_cast<std::size_t>(part.rows())});
     }
   });
   MPI_Allreduce(MPI_IN_PLACE, out.film_thickness.data(), static_cast<int>(bearings_.size()), MPI_DOUBLE, MPI_MIN,
@@ -204,12 +204,12 @@ bool RotorSystem::constant_rates() const {
 
 film::Summary RotorSystem::film_summary(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
-  return bearings_[i].part->summary(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
+  return bearings_[i].part->film().summary(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
 }
 
 std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
-  return bearings_[i].part->report(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
+  return bearings_[i].part->film().fields(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
 }
 
 // Every rank relaxes the whole of a film that it holds a share of: a sparse LU of the film per Newton step, on each of
@@ -237,8 +237,8 @@ std::vector<double> RotorSystem::resampled(const Plant& of, const double* x) con
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const FilmPart &to = *bearings_[i].part, &from = *other.bearings_[i].part;
-    to.resample(motion(at[i]), from, from.of(x, n_),
-                {out.data() + 2 * n_ + to.first(), static_cast<std::size_t>(to.count())});
+    to.film().resample(motion(at[i]), from.film(), from.of(x, n_),
+                       {out.data() + 2 * n_ + to.first(), static_cast<std::size_t>(to.count())});
   }
   return out;
 }

@@ -217,7 +217,7 @@ std::vector<double> RotorSystem::film_thickness(const double* x) const {
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const FilmPart& part = *bearings_[i].part;
-    out.push_back(part.least_thickness(motion(at[i]), part.of(x, n_)));
+    out.push_back(part.film().least_thickness(motion(at[i]), part.of(x, n_)));
   }
   return out;
 }

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "support/film_of.hpp"
-#include "whirl/film/model.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 extern "C" {
 void dpbtrf_(const char* uplo, const int* n, const int* kd, double* ab, const int* ldab, int* info);
@@ -112,14 +111,14 @@ double factorisation_time() {
 
 void evaluate(benchmark::State& state, Reynolds options, Need need) {
   options.cells = {kAround, kAlong};
-  auto model = make_model(one_pad(), options, {0.0067, 850.0});
+  auto film = make_film(one_pad(), options, {0.0067, 850.0});
   Motion m = loaded(options.tilt);
-  Response r;
+  StateResponse r;
   long count = 0;
   const double start = m.position[0];
   for (auto _ : state) {
     m.position[0] = start * (1.0 + 1e-3 * static_cast<double>(++count % 16));  // a moving journal, so a moving rupture
-    model->evaluate(m, need, r);
+    film->evaluate(m, film->whole(), {}, {}, need, r);
     benchmark::DoNotOptimize(r);
   }
   state.counters["per_factorisation"] = benchmark::Counter(factorisation_time() * static_cast<double>(count),
@@ -132,7 +131,7 @@ void evaluate_states(benchmark::State& state, testing::Elastic options, Need nee
   const Geometry bore{Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0.0, 0.0, 0.0};
   options.compliance = 0.1;
   options.reference_speed = 160.0;
-  auto film = make_state_model(bore, options, {0.001, 1000.0});
+  auto film = make_film(bore, options, {0.001, 1000.0});
   Motion m;
   m.position = {0.3 * bore.clearance, -0.5 * bore.clearance, 0.0, 0.0};
   m.velocity = {0.05 * bore.clearance * 320.0, -0.08 * bore.clearance * 320.0, 0.0, 0.0};

@@ -5,8 +5,8 @@
 #include <memory>
 #include <numbers>
 
+#include "whirl/film/film.hpp"
 #include "whirl/film/impedance.hpp"
-#include "whirl/film/state_model.hpp"
 
 namespace whirl::film::testing {
 
@@ -53,13 +53,13 @@ inline Motion motion(const Geometry& g, std::array<double, 4> position, std::arr
 }
 
 /// Typical magnitude of the states of a film with one field.
-inline double scale_of(const StateModel& film) {
+inline double scale_of(const Film& film) {
   return film.state_fields().front().scale;
 }
 
-inline Response evaluate(Model& model, const Motion& m, Need need = Need::tangents) {
+inline Response evaluate(Film& film, const Motion& m, Need need = Need::tangents) {
   Response r;
-  model.evaluate(m, need, r);
+  film.evaluate(m, need, r);
   return r;
 }
 

@@ -31,7 +31,7 @@ Motion at(const Geometry& g) {
 
 // Force and tangents, in parts of the load.
 std::array<double, 11> numbers(const Geometry& g, const Options& o) {
-  const Response r = evaluate(*make_model(g, o, oil()), at(g));
+  const Response r = evaluate(*make_film(g, o, oil()), at(g));
   return {r.force[0],
           r.force[1],
           r.d_position[0][0] * g.clearance,
@@ -84,7 +84,7 @@ TEST(Closed, TendsToTheShortAndTheLongFilm) {
   EXPECT_NEAR(std::log2(a / b), 2.0, 0.3);
   const auto force = [&](double ld, const Options& o) {
     const Geometry g = bore(ld);
-    return evaluate(*make_model(g, o, oil()), motion(g, {0.3, -0.5, 0.0, 0.0}, {}, 377.0), Need::force).force;
+    return evaluate(*make_film(g, o, oil()), motion(g, {0.3, -0.5, 0.0, 0.0}, {}, 377.0), Need::force).force;
   };
   const auto shorter = force(8.0, closed(C::half_sommerfeld, {240, 80})),
              longer = force(16.0, closed(C::half_sommerfeld, {240, 160})), exact = force(8.0, large);
@@ -102,7 +102,7 @@ TEST(Closed, SqueezeOfACentredJournal) {
                                                           (1.0 - std::tanh(x) / x);
     std::array<double, 2> error{};
     for (std::size_t k = 0; k < 2; ++k) {
-      const Response r = evaluate(*make_model(g, closed(C::none, {24 << k, 24 << k}), oil()), motion(g, {}, {}, 377.0));
+      const Response r = evaluate(*make_film(g, closed(C::none, {24 << k, 24 << k}), oil()), motion(g, {}, {}, 377.0));
       error[k] = std::abs(r.d_velocity[0][0] / exact - 1.0);
       EXPECT_NEAR(r.d_velocity[1][1], r.d_velocity[0][0], 1e-9 * std::abs(exact));
     }
@@ -114,7 +114,7 @@ TEST(Closed, SqueezeOfACentredJournal) {
 TEST(Closed, DoesNotKnowWhereItsMeshBegins) {
   const Geometry g = bore(0.8);
   for (const C cavitation : {C::half_sommerfeld, C::reynolds, C::none}) {
-    auto model = make_model(g, closed(cavitation, {48, 12}), oil());
+    auto model = make_film(g, closed(cavitation, {48, 12}), oil());
     const Response a = evaluate(*model, motion(g, {0.3, -0.5, 0.0, 0.0}, {0.05, -0.03, 0.0, 0.0}, 377.0)),
                    b = evaluate(*model, motion(g, {0.5, 0.3, 0.0, 0.0}, {0.03, 0.05, 0.0, 0.0}, 377.0));
     EXPECT_NEAR(b.force[0], -a.force[1], 1e-9 * std::abs(a.force[1]));
@@ -136,9 +136,9 @@ TEST(Closed, AGrooveIsAnEdge) {
   }
   Reynolds all = closed(C::none, {48, 12});
   all.grooves = {{0.0, 200.0 * kDegree}, {180.0 * kDegree, 200.0 * kDegree}};
-  EXPECT_THROW(make_model(g, all, oil()), core::InputError);
+  EXPECT_THROW(make_film(g, all, oil()), core::InputError);
   all.grooves = {{0.0, 0.1}};
-  EXPECT_THROW(make_model(cut, all, oil()), core::InputError);
+  EXPECT_THROW(make_film(cut, all, oil()), core::InputError);
 }
 
 // Edges on nodes of every mesh: order 2; and mirror images of bearing and rotation give mirror images of the force.
@@ -155,8 +155,8 @@ TEST(Closed, GroovesAreOfSecondOrderAndSymmetric) {
   Reynolds left = closed(C::half_sommerfeld, {36, 8}), right = left;
   left.grooves = {{150.0 * kDegree, 20.0 * kDegree}};
   right.grooves = {{30.0 * kDegree, 20.0 * kDegree}};
-  const Response a = evaluate(*make_model(g, left, oil()), motion(g, {0.2, -0.5, 0.0, 0.0}, {}, 377.0)),
-                 b = evaluate(*make_model(g, right, oil()), motion(g, {-0.2, -0.5, 0.0, 0.0}, {}, -377.0));
+  const Response a = evaluate(*make_film(g, left, oil()), motion(g, {0.2, -0.5, 0.0, 0.0}, {}, 377.0)),
+                 b = evaluate(*make_film(g, right, oil()), motion(g, {-0.2, -0.5, 0.0, 0.0}, {}, -377.0));
   EXPECT_NEAR(a.force[0], -b.force[0], 1e-9 * std::abs(a.force[1]));
   EXPECT_NEAR(a.force[1], b.force[1], 1e-9 * std::abs(a.force[1]));
 }
@@ -172,13 +172,13 @@ TEST(Closed, ApproximateFiniteLength) {
     for (const auto& [e, most] : {std::pair{0.1, 1.13}, {0.6, 1.21}}) {
       const Geometry g = bore(ld);
       const auto m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 377.0);
-      const auto [exact, at] = polar(evaluate(*make_model(g, closed(C::half_sommerfeld, {120, 24}), oil()), m));
-      const auto [close, approximately] = polar(evaluate(*make_model(g, sum, oil()), m));
+      const auto [exact, at] = polar(evaluate(*make_film(g, closed(C::half_sommerfeld, {120, 24}), oil()), m));
+      const auto [close, approximately] = polar(evaluate(*make_film(g, sum, oil()), m));
       EXPECT_GT(close, exact);
       EXPECT_LT(close, most * exact) << ld;
       EXPECT_NEAR(approximately, at, 3.0);
       if (ld != 1.0) continue;
-      const auto [ruptured, there] = polar(evaluate(*make_model(g, closed(C::reynolds, {120, 24}), oil()), m));
+      const auto [ruptured, there] = polar(evaluate(*make_film(g, closed(C::reynolds, {120, 24}), oil()), m));
       EXPECT_NEAR(close, ruptured, 0.07 * ruptured);
     }
 }
@@ -188,7 +188,7 @@ TEST(Closed, RaimondiBoyd) {
   const Geometry g = bore(1.0);
   Reynolds o = closed(C::reynolds, {180, 32});
   o.grooves = {{180.0 * kDegree, 0.0}};
-  const Response r = evaluate(*make_model(g, o, oil()), motion(g, {0.6, 0.0, 0.0, 0.0}, {}, 377.0), Need::force);
+  const Response r = evaluate(*make_film(g, o, oil()), motion(g, {0.6, 0.0, 0.0, 0.0}, {}, 377.0), Need::force);
   const double load = oil().viscosity * 377.0 / (2.0 * std::numbers::pi) * g.length * 2.0 * g.radius *
                       std::pow(g.radius / g.clearance, 2) / 0.1208;
   EXPECT_NEAR(std::hypot(r.force[0], r.force[1]), load, 0.01 * load);

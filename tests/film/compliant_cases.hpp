@@ -7,7 +7,7 @@
 
 #include "film/cases.hpp"
 #include "support/film_of.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film::testing {
 
@@ -30,7 +30,7 @@ inline Motion still(double x, double y) {
   return motion(cylinder(), {x, y, 0.0, 0.0}, {}, kSpeed);
 }
 
-inline std::vector<double> relaxed(StateModel& film, const Motion& m) {
+inline std::vector<double> relaxed(Film& film, const Motion& m) {
   std::vector<double> s(film.states());
   film.unloaded(m, s);
   relax(film, m, s);
@@ -38,7 +38,7 @@ inline std::vector<double> relaxed(StateModel& film, const Motion& m) {
 }
 
 inline Response static_response(const Options& o, const Motion& m) {
-  auto film = make_state_model(cylinder(), o, oil());
+  auto film = make_film(cylinder(), o, oil());
   const auto s = relaxed(*film, m);
   StateResponse r;
   film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::tangents, r);
@@ -96,8 +96,8 @@ struct CompliantPoint {
 
 inline CompliantPoint point(Elastic options) {
   options.contact.reset();
-  const auto made = make_state_model(cylinder(), options, oil());
-  StateModel& film = *made;
+  const auto made = make_film(cylinder(), options, oil());
+  Film& film = *made;
   CompliantPoint p{kMoving, relaxed(film, still(0.2, -0.4)), {}};
   for (std::size_t k = 0; k < p.states.size(); ++k) {
     const double c = scale_of(film), angle = 0.3 * static_cast<double>(k);

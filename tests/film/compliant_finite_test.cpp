@@ -36,7 +36,7 @@ TEST(CompliantFinite, ManufacturedPressureAtSecondOrder) {
         o.liner_damping = tau;
         o.rubber_thickness = rubber * c;
       }
-      auto film = make_state_model(g, o, oil());
+      auto film = make_film(g, o, oil());
       std::vector<double> states, rates, exact_residual;
       for (int i = 0; i < o.cells[0]; ++i)
         for (int j = 1; j < o.cells[1]; ++j) {
@@ -84,12 +84,12 @@ TEST(CompliantFinite, ShortAndLongLimits) {
     g.length = 2.0 * g.radius * length_to_diameter;
     Elastic o = compliant(compliant_finite, compliance, cells[0], false);
     o.cells = cells;
-    auto film = make_state_model(g, o, oil());
+    auto film = make_film(g, o, oil());
     const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
     StateResponse r;
     const auto s = relaxed(*film, m);
     film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
-    const Response exact = evaluate(*make_model(g, rigid, oil()), m);
+    const Response exact = evaluate(*make_film(g, rigid, oil()), m);
     return std::hypot(r.journal.force[0] - exact.force[0], r.journal.force[1] - exact.force[1]) /
            std::hypot(exact.force[0], exact.force[1]);
   };

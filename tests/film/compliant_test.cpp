@@ -18,9 +18,9 @@ class CompliantFilms : public ::testing::TestWithParam<CompliantCase> {};
 TEST_P(CompliantFilms, ContactCarries) {
   Elastic o = GetParam().options;
   if (!o.contact) GTEST_SKIP() << "without contact";
-  auto with = make_state_model(cylinder(), o, oil());
+  auto with = make_film(cylinder(), o, oil());
   o.contact.reset();
-  auto without = make_state_model(cylinder(), o, oil());
+  auto without = make_film(cylinder(), o, oil());
   const CompliantPoint base = point(o);
   StateResponse a, b;
   with->evaluate(base.motion, base.states, base.rates, Need::tangents, a);
@@ -34,7 +34,7 @@ TEST_P(CompliantFilms, ContactCarries) {
 }
 
 TEST_P(CompliantFilms, ContactIsADomainError) {
-  auto film = make_state_model(cylinder(), GetParam().options, oil());
+  auto film = make_film(cylinder(), GetParam().options, oil());
   CompliantPoint p = point(GetParam().options);
   StateResponse r;
   p.states[7] = 0.0;
@@ -44,10 +44,10 @@ TEST_P(CompliantFilms, ContactIsADomainError) {
 }
 
 TEST_P(CompliantFilms, ResamplingKeepsTheFilm) {
-  auto film = make_state_model(cylinder(), GetParam().options, oil());
+  auto film = make_film(cylinder(), GetParam().options, oil());
   Elastic twice = GetParam().options;
   for (int& cells : twice.cells) cells *= 2;
-  auto fine = make_state_model(cylinder(), twice, oil());
+  auto fine = make_film(cylinder(), twice, oil());
   const Motion m = still(0.2, -0.4);
   const auto coarse = relaxed(*film, m);
   std::vector<double> between(fine->states()), back(film->states());
@@ -64,7 +64,7 @@ TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
   using enum Kind;
   for (const auto& [soft, hard] : {std::pair{compliant_short, short_bearing}, std::pair{compliant_long, long_inlet}}) {
     const Options rigid = film_of(hard);
-    auto model = make_model(cylinder(), rigid, oil());
+    auto model = make_film(cylinder(), rigid, oil());
     const Motion m = still(0.3, -0.3);
     const Response exact = evaluate(*model, m);
     std::array<double, 2> error{};
@@ -82,10 +82,10 @@ TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
 TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
   using enum Kind;
   const Short rigid;
-  auto model = make_model(cylinder(), rigid, oil());
+  auto model = make_film(cylinder(), rigid, oil());
   const Motion m = still(0.3, -0.3);
   const Response exact = evaluate(*model, m);
-  auto film = make_state_model(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());
+  auto film = make_film(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());
   const Coefficients c = coefficients(*film, m, relaxed(*film, m), kSpeed);
   double size = 0.0;
   for (const auto& row : exact.d_position) size = std::max({size, std::abs(row[0]), std::abs(row[1])});
@@ -96,7 +96,7 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
     }
   for (const auto kind : {compliant_short, compliant_long}) {
     const Elastic soft = compliant(kind, 0.5, 60, false);
-    auto other = make_state_model(cylinder(), soft, oil());
+    auto other = make_film(cylinder(), soft, oil());
     const Coefficients slow = coefficients(*other, m, relaxed(*other, m), 1e-3);
     const double step = 1e-5;
     for (std::size_t j = 0; j < 2; ++j) {
@@ -119,7 +119,7 @@ TEST(CompliantLimits, OrdersOfTheDifferences) {
       for (std::size_t k = 0; k < 2; ++k) {
         Elastic o = compliant(kind, 0.1, 40 << k, false);
         o.differences = differences;
-        auto film = make_state_model(cylinder(), o, oil());
+        auto film = make_film(cylinder(), o, oil());
         std::vector<double> s(film->states());
         film->unloaded(still(0.3, -0.4), s);
         StateResponse r;
@@ -159,17 +159,17 @@ TEST(CompliantLimits, ALinerIsItsCompliance) {
   const Response a = static_response(by_b, still(0.2, -0.4)), b = static_response(by_liner, still(0.2, -0.4));
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-10 * std::abs(a.force[1]));
   by_liner.compliance = 0.1;
-  EXPECT_THROW(make_state_model(g, by_liner, oil()), core::InputError);
+  EXPECT_THROW(make_film(g, by_liner, oil()), core::InputError);
   by_b.cells[0] = 3;
-  EXPECT_THROW(make_state_model(g, by_b, oil()), core::InputError);
+  EXPECT_THROW(make_film(g, by_b, oil()), core::InputError);
 }
 
 TEST(CompliantLimits, ReportsAgreeWithTheRigidFilm) {
   using enum Kind;
   const Short rigid;
   const Motion m = still(0.3, -0.3);
-  const Summary exact = make_model(cylinder(), rigid, oil())->summary(m);
-  auto film = make_state_model(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());
+  const Summary exact = make_film(cylinder(), rigid, oil())->summary(m, {});
+  auto film = make_film(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());
   const auto s = relaxed(*film, m);
   const Summary r = film->summary(m, s);
   EXPECT_NEAR(r.power_loss, exact.power_loss, 2e-3 * exact.power_loss);

@@ -72,7 +72,7 @@ TEST(Contact, JournalAtRestIsCarriedByAsperities) {
     for (const auto quadrature : {Compliant::Quadrature::sub_cell, Compliant::Quadrature::simpson}) {
       o.kind = kind;
       o.quadrature = quadrature;
-      auto film = make_state_model(g, o, oil());
+      auto film = make_film(g, o, oil());
       const Motion m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 0.0);
       const std::size_t line = kind == Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
       std::vector<double> s(film->states());
@@ -118,7 +118,7 @@ TEST(Contact, FiniteFilmTendsToTheShortOne) {
     Elastic o = compliant(kind, 0.1, 120, false);
     o.cells[1] = 24;
     if (contact) o.contact = Contact{0.25 * g.clearance, 2e9 * length_to_diameter * length_to_diameter};
-    auto film = make_state_model(g, o, oil());
+    auto film = make_film(g, o, oil());
     const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
     StateResponse r;
     const auto s = relaxed(*film, m);

@@ -8,7 +8,7 @@
 
 #include "film/cases.hpp"
 #include "film/hole.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film::testing {
 
@@ -57,7 +57,7 @@ inline std::vector<ContentCase> content_films() {
 }
 
 /// The states at which nothing changes while the journal moves as `m` says.
-inline std::vector<double> settled(StateModel& film, const Motion& m) {
+inline std::vector<double> settled(Film& film, const Motion& m) {
   std::vector<double> q(film.states());
   film.unloaded(m, q);
   relax(film, m, q);
@@ -65,7 +65,7 @@ inline std::vector<double> settled(StateModel& film, const Motion& m) {
 }
 
 /// dg/ds + sigma dg/ds' of the whole film.
-inline Eigen::SparseMatrix<double> matrix_of(const StateModel& film, const StateResponse& r, double sigma) {
+inline Eigen::SparseMatrix<double> matrix_of(const Film& film, const StateResponse& r, double sigma) {
   const Share& all = film.whole();
   std::vector<Eigen::Triplet<double>> entries;
   for_entries(all, all.d_states, r.d_states, [&](int i, int j, double v) { entries.emplace_back(i, j, v); });
@@ -80,7 +80,7 @@ struct Eliminated {
   std::array<std::array<double, 2>, 2> d_position, d_velocity;
   std::array<double, 2> d_speed;
 };
-inline Eliminated eliminate(const StateModel& film, const StateResponse& r) {
+inline Eliminated eliminate(const Film& film, const StateResponse& r) {
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(film, r, 0.0));
   const auto n = static_cast<Eigen::Index>(r.residual.size());
   Eigen::MatrixXd by(n, 5), force(2, n);
@@ -117,7 +117,7 @@ inline std::vector<double> cell_areas(const Geometry& g, const Reynolds& o) {
   const int rows = whole ? o.cells[1] - 1 : o.cells[1] / 2, pads = g.type == Geometry::Bore::lemon_bore ? 2 : 1;
   int columns = o.cells[0] - 1;
   if (!edges) {  // grooves
-    const auto film = make_state_model(g, o, oil());
+    const auto film = make_film(g, o, oil());
     columns = static_cast<int>(film->states()) / rows;
   }
   // Of holes in a bore with one groove, a line at the top: its columns start behind it.

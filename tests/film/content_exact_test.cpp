@@ -59,7 +59,7 @@ struct Measured {
 
 // Of the mid-plane of a film so long that it does not feel its sides; t = theta + `turn`.
 Measured measure(const LongFilm& exact, const Geometry& g, const Reynolds& o, const Motion& m, double turn) {
-  const auto fields = make_model(g, o, oil())->fields(m);
+  const auto fields = make_film(g, o, oil())->fields(m, {});
   const auto values = [&](const std::string& name) -> const std::vector<double>& {
     return std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; })->values;
   };
@@ -145,10 +145,10 @@ TEST(LongSlider, FullFilmHasThePressureWithoutCavitation) {
   const Reynolds o = dynamic({40, 10});
   Reynolds none = without_states(o);
   none.cavitation = Reynolds::Cavitation::none;
-  auto film = make_state_model(g, o, oil());
+  auto film = make_film(g, o, oil());
   const auto q = settled(*film, m);
   EXPECT_TRUE(std::all_of(q.begin(), q.end(), [](double x) { return x > 0.0; }));
-  const auto a = film->fields(m, q), b = make_model(g, none, oil())->fields(m);
+  const auto a = film->fields(m, q), b = make_film(g, none, oil())->fields(m, {});
   const double peak = *std::max_element(b[2].values.begin(), b[2].values.end());
   for (std::size_t k = 0; k < b[2].values.size(); ++k) ASSERT_NEAR(a[2].values[k], b[2].values[k], 1e-10 * peak);
 }
@@ -213,7 +213,7 @@ Squeezed squeeze(const Plates& s, int cells, int steps, double bulk_modulus, con
   Reynolds o = dynamic({180 * cells, 2});
   o.bulk_modulus = bulk_modulus;
   o.grooves = {{270.0 * kDegree, 358.0 * kDegree, s.p0}};
-  auto film = make_state_model(g, o, {s.mu, 0.0});
+  auto film = make_film(g, o, {s.mu, 0.0});
   EXPECT_EQ(film->states(), static_cast<std::size_t>(cells - 1));
   const auto at = [&](double t) {
     Motion m;

@@ -19,8 +19,8 @@ class Content : public ::testing::TestWithParam<ContentCase> {};
 // With contents that do not change, the film is the one without states: in any motion, to rounding.
 TEST_P(Content, IsTheCondensedFilmWhereItsContentStays) {
   const ContentCase& c = GetParam();
-  auto film = make_state_model(c.geometry, c.options, oil());
-  auto condensed = make_model(c.geometry, without_states(c.options), oil());
+  auto film = make_film(c.geometry, c.options, oil());
+  auto condensed = make_film(c.geometry, without_states(c.options), oil());
   for (const double speed : {377.0, -250.0}) {
     const Motion m = motion(c.geometry, c.position, c.velocity, speed);
     std::vector<double> q = settled(*film, m);
@@ -32,7 +32,7 @@ TEST_P(Content, IsTheCondensedFilmWhereItsContentStays) {
     for (std::size_t i = 0; i < 4; ++i)
       EXPECT_NEAR(r.journal.force[i], other.force[i], 1e-9 * load * (i < 2 ? 1.0 : c.geometry.length)) << c.name << i;
     EXPECT_EQ(r.journal.min_thickness, other.min_thickness);
-    const auto own = film->fields(m, q), theirs = condensed->fields(m);
+    const auto own = film->fields(m, q), theirs = condensed->fields(m, {});
     ASSERT_EQ(own.size(), theirs.size());
     for (std::size_t f = 0; f < own.size(); ++f) {
       ASSERT_EQ(own[f].name, theirs[f].name);
@@ -55,7 +55,7 @@ TEST_P(Content, IsTheCondensedFilmWhereItsContentStays) {
 // What enters, leaves and is pressed out is what the content gains: with any content, to rounding.
 TEST_P(Content, WhatEntersIsStored) {
   const ContentCase& c = GetParam();
-  auto film = make_state_model(c.geometry, c.options, oil());
+  auto film = make_film(c.geometry, c.options, oil());
   const Motion m = motion(c.geometry, c.position, c.velocity, 377.0);
   std::mt19937 engine(11);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -79,7 +79,7 @@ TEST_P(Content, WhatEntersIsStored) {
 
 TEST_P(Content, ThicknessMustBePositive) {
   const ContentCase& c = GetParam();
-  auto film = make_state_model(c.geometry, c.options, oil());
+  auto film = make_film(c.geometry, c.options, oil());
   const std::vector<double> q(film->states(), 0.0);
   StateResponse r;
   EXPECT_THROW(film->evaluate(motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0), q, q, Need::force, r),
@@ -89,14 +89,14 @@ TEST_P(Content, ThicknessMustBePositive) {
                core::DomainError);
   const Motion m = motion(c.geometry, c.position, {}, 377.0);
   EXPECT_EQ(film->least_thickness(m, q),
-            evaluate(*make_model(c.geometry, without_states(c.options), oil()), m).min_thickness);
+            evaluate(*make_film(c.geometry, without_states(c.options), oil()), m).min_thickness);
 }
 
 // At rest a film that starts full stays full, and its equations are regular: nothing drives it but what grooves press
 // in.
 TEST_P(Content, RestIsRegular) {
   const ContentCase& c = GetParam();
-  auto film = make_state_model(c.geometry, c.options, oil());
+  auto film = make_film(c.geometry, c.options, oil());
   const Motion rest = motion(c.geometry, c.position, {}, 0.0);
   const std::vector<double> q = settled(*film, rest);
   double feed = 0.0;
@@ -118,7 +118,7 @@ TEST_P(Content, ResamplesToOtherMeshes) {
   const ContentCase& c = GetParam();
   Reynolds finer = c.options;
   finer.cells = {2 * c.options.cells[0], 2 * c.options.cells[1]};
-  auto film = make_state_model(c.geometry, c.options, oil()), fine = make_state_model(c.geometry, finer, oil());
+  auto film = make_film(c.geometry, c.options, oil()), fine = make_film(c.geometry, finer, oil());
   const Motion m = motion(c.geometry, c.position, {}, 377.0);
   const std::vector<double> q = settled(*film, m), exact = settled(*fine, m);
   std::vector<double> same(q.size()), to(fine->states());
@@ -143,7 +143,7 @@ TEST(ContentFilm, CompressibilityIsOfTheMotionOnly) {
   Reynolds stiff = dynamic({40, 10}), soft = stiff;
   soft.bulk_modulus = 1e7;
   const Motion m = motion(lemon(), {0.3, -0.5, 0.0, 0.0}, {}, 377.0);
-  auto a = make_state_model(lemon(), stiff, oil()), b = make_state_model(lemon(), soft, oil());
+  auto a = make_film(lemon(), stiff, oil()), b = make_film(lemon(), soft, oil());
   StateResponse ra, rb;
   const auto qa = settled(*a, m), qb = settled(*b, m);
   const std::vector<double> still(qa.size(), 0.0);
@@ -158,11 +158,11 @@ TEST(ContentFilm, CompressibilityIsOfTheMotionOnly) {
 TEST(ContentFilm, ImpossibleOptionsAreInputErrors) {
   Reynolds turning = dynamic({40, 10});
   turning.inlet = {Inlet::Type::maximum_gap, 0.0};
-  EXPECT_THROW((void)make_state_model(cylinder(), turning, oil()), core::InputError);
-  EXPECT_THROW((void)make_state_model(cylinder(), dynamic({40, 10}), oil()), core::InputError);
+  EXPECT_THROW((void)make_film(cylinder(), turning, oil()), core::InputError);
+  EXPECT_THROW((void)make_film(cylinder(), dynamic({40, 10}), oil()), core::InputError);
   Reynolds soft = dynamic({40, 10});
   soft.bulk_modulus = 0.0;
-  EXPECT_THROW((void)make_state_model(lemon(), soft, oil()), core::InputError);
+  EXPECT_THROW((void)make_film(lemon(), soft, oil()), core::InputError);
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ TEST_P(Contract, TaylorRemainderIsSecondOrder) {
   const Reynolds* reynolds = find<Reynolds>(c.options);
   const bool kinked = reynolds != nullptr && (reynolds->cavitation == Reynolds::Cavitation::reynolds ||
                                               reynolds->cavitation == Reynolds::Cavitation::mass_conserving);
-  auto model = make_model(c.geometry, c.options, oil());
+  auto model = make_film(c.geometry, c.options, oil());
   const Motion base = motion(c.geometry, c.position, c.velocity, 377.0);
   const Response at = evaluate(*model, base);
   const std::size_t components = facts(c.options).tilts ? 4 : 2;
@@ -173,8 +173,8 @@ TEST_P(Contract, TaylorRemainderIsSecondOrder) {
 
 TEST_P(Contract, ForceDoesNotDependOnNeedOrHistory) {
   const Case& c = GetParam();
-  auto model = make_model(c.geometry, c.options, oil());
-  auto fresh = make_model(c.geometry, c.options, oil());
+  auto model = make_film(c.geometry, c.options, oil());
+  auto fresh = make_film(c.geometry, c.options, oil());
   const Motion here = motion(c.geometry, c.position, c.velocity, 377.0);
   const Motion elsewhere = motion(c.geometry, {-0.3, 0.2, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}, 200.0);
   evaluate(*model, elsewhere);
@@ -185,13 +185,13 @@ TEST_P(Contract, ForceDoesNotDependOnNeedOrHistory) {
 
 TEST_P(Contract, ThicknessMustBePositive) {
   const Case& c = GetParam();
-  auto model = make_model(c.geometry, c.options, oil());
+  auto model = make_film(c.geometry, c.options, oil());
   if (facts(c.options).coefficients) GTEST_SKIP();
   Response r;
   const Motion beyond = motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0);
   if (!facts(c.options).gives_way) {
     EXPECT_THROW(model->evaluate(beyond, Need::force, r), core::DomainError);
-    EXPECT_LT(model->least_thickness(beyond), 0.0);
+    EXPECT_LT(model->least_thickness(beyond, {}), 0.0);
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(model->evaluate(motion(c.geometry, {nan, 0.0, 0.0, 0.0}, {}, 377.0), Need::force, r), core::DomainError);
@@ -199,7 +199,7 @@ TEST_P(Contract, ThicknessMustBePositive) {
 
 TEST_P(Contract, RestWithoutMotionGivesNoForce) {
   const Case& c = GetParam();
-  auto model = make_model(c.geometry, c.options, oil());
+  auto model = make_film(c.geometry, c.options, oil());
   if (facts(c.options).coefficients) GTEST_SKIP();
   if (const Reynolds* reynolds = find<Reynolds>(c.options))
     for (const Groove& g : reynolds->grooves)
@@ -210,27 +210,69 @@ TEST_P(Contract, RestWithoutMotionGivesNoForce) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(r.force[i], 0.0, rounding);
 }
 
+// Whoever takes any film finds no rows where there are no states, whatever the response held before.
+TEST_P(Contract, AFilmWithoutStatesAnswersWithoutRows) {
+  const Case& c = GetParam();
+  const Motion m = motion(c.geometry, c.position, c.velocity, 377.0);
+  CompliantShort other;
+  other.compliance = 0.1;
+  other.reference_speed = 300.0;
+  const auto with = make_film(cylinder(), other, oil());
+  std::vector<double> states(with->states());
+  const Motion gentle = motion(cylinder(), {0.2, -0.3, 0.0, 0.0}, {}, 377.0);
+  with->unloaded(gentle, states);
+  StateResponse r;
+  with->evaluate(gentle, states, std::vector<double>(states.size()), Need::tangents, r);
+  ASSERT_EQ(r.residual.size(), states.size());
+
+  auto film = make_film(c.geometry, c.options, oil());
+  EXPECT_EQ(film->states(), 0U);
+  EXPECT_FALSE(facts(c.options).own_states);
+  EXPECT_TRUE(film->state_fields().empty());
+  EXPECT_EQ(film->whole().rows(), 0);
+  EXPECT_EQ(film->ports().size(), facts(c.options).tilts ? 4U : 2U);
+  film->evaluate(m, film->whole(), {}, {}, Need::tangents, r);
+  for (const std::vector<double>* v : {&r.residual, &r.d_states, &r.d_rates, &r.d_speed}) EXPECT_TRUE(v->empty());
+  for (const PortColumns* v : {&r.d_position, &r.d_velocity, &r.force_d_states, &r.force_d_rates})
+    EXPECT_TRUE(v->empty());
+  const Response alone = evaluate(*make_film(c.geometry, c.options, oil()), m);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(r.journal.force[i], alone.force[i], 1e-12 * std::abs(alone.force[1]));
+
+  relax(*film, m, r.residual);
+  EXPECT_TRUE(r.residual.empty());
+  for (const double omega : {50.0, 500.0}) {
+    const Coefficients k = coefficients(*film, m, {}, omega);
+    for (std::size_t i = 0; i < 4; ++i) {
+      // A film that searches its pressure finds it again to its tolerance.
+      EXPECT_NEAR(k.stiffness[i], -alone.d_position[i / 2][i % 2], 1e-8 * std::abs(alone.d_position[1][1]));
+      EXPECT_NEAR(k.damping[i], -alone.d_velocity[i / 2][i % 2], 1e-8 * std::abs(alone.d_velocity[1][1]));
+    }
+  }
+  Film* const same = film.get();
+  EXPECT_EQ(condense(std::move(film)).get(), same) << "there is nothing to condense";
+}
+
 INSTANTIATE_TEST_SUITE_P(Films, Contract, ::testing::ValuesIn(cases()),
                          [](const auto& which) { return which.param.name; });
 
 TEST(Film, ImpossibleOptionsAreInputErrors) {
   Geometry g = arc();
   g.preload = 1.0;
-  EXPECT_THROW(make_model(g, {}, oil()), core::InputError);
+  EXPECT_THROW(make_film(g, {}, oil()), core::InputError);
   g = arc();
   g.offset = 1e-5;
-  EXPECT_THROW(make_model(g, {}, oil()), core::InputError);
+  EXPECT_THROW(make_film(g, {}, oil()), core::InputError);
   Reynolds coarse;
   coarse.cells = {2, 16};
-  EXPECT_THROW(make_model(arc(), coarse, oil()), core::InputError);
+  EXPECT_THROW(make_film(arc(), coarse, oil()), core::InputError);
   Reynolds turbulent;
   turbulent.turbulence = Turbulence::constantinescu;
-  EXPECT_THROW(make_model(arc(), turbulent, {0.0067, 0.0}), core::InputError);
+  EXPECT_THROW(make_film(arc(), turbulent, {0.0067, 0.0}), core::InputError);
   Reynolds inlet;
   inlet.inlet.type = Inlet::Type::maximum_gap;
-  EXPECT_THROW(make_model(arc(), inlet, oil()), core::InputError);
+  EXPECT_THROW(make_film(arc(), inlet, oil()), core::InputError);
   inlet.grooves = {{0.0, 0.0}};
-  EXPECT_THROW(make_model(cylinder(), inlet, oil()), core::InputError);
+  EXPECT_THROW(make_film(cylinder(), inlet, oil()), core::InputError);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ Coefficients coefficients(K kind, double ld, double eps) {
   const Geometry g{Geometry::Bore::cylindrical, 0.05, 0.1 * ld, 0.0001, 0, 0, 0};
   const Lubricant lubricant{0.02, 0};
   const Options o = film_of(kind);
-  auto model = make_model(g, o, lubricant);
+  auto model = make_film(g, o, lubricant);
   const double speed = 200, unit = lubricant.viscosity * g.length * 2 * g.radius * std::pow(g.radius / g.clearance, 2);
   const Response flat = evaluate(*model, motion(g, {0, -eps, 0, 0}, {}, speed));
   Coefficients c{};

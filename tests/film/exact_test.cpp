@@ -51,7 +51,7 @@ TEST_P(Squeeze, DampingConvergesWithOrderTwo) {
                                      evaluate(resistance_along(GetParam()), Re), oil().viscosity);
   std::array<double, 2> previous{};
   for (int level = 0; level < 4; ++level) {
-    auto model = make_model(g, options(C::none, GetParam(), {12 << level, 10 << level}), oil());
+    auto model = make_film(g, options(C::none, GetParam(), {12 << level, 10 << level}), oil());
     const Response r = evaluate(*model, motion(g, {}, {}, speed));
     for (std::size_t i = 0; i < 2; ++i) {
       const double error = -r.d_velocity[i][i] / exact[i] - 1.0;
@@ -74,7 +74,7 @@ TEST(Order, ForceAndTangentsOfEccentricJournalConvergeWithOrderTwo) {
   for (const C cavitation : {C::none, C::half_sommerfeld}) {
     std::vector<std::vector<double>> values;
     for (int level = 0; level < 3; ++level) {
-      auto model = make_model(lemon(), options(cavitation, T::constantinescu, {90 << level, 20 << level}), oil());
+      auto model = make_film(lemon(), options(cavitation, T::constantinescu, {90 << level, 20 << level}), oil());
       const Response r = evaluate(*model, motion(lemon(), {0.6, -0.3, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0));
       values.push_back({r.force[0], r.force[1], r.d_position[0][0], r.d_position[1][1], r.d_velocity[0][0],
                         r.d_velocity[1][1], r.d_speed[1]});
@@ -95,7 +95,7 @@ TEST(Long, SommerfeldForces) {
     for (std::size_t k = 0; k < 2; ++k) {
       const int times = static_cast<int>(k) + 1;
       const Geometry g = full(length * times);
-      auto model = make_model(g, options(cavitation, T::laminar, {720, 40 * times}), oil);
+      auto model = make_film(g, options(cavitation, T::laminar, {720, 40 * times}), oil);
       const Response r = evaluate(*model, motion(g, {0.0, -e, 0.0, 0.0}, {}, speed), Need::force);
       force[k] = {r.force[0], r.force[1]};
     }
@@ -119,7 +119,7 @@ TEST(Short, OcvirkForces) {
   const double e = 0.6, speed = 150.0;
   const Geometry g = full(0.01);
   const Lubricant oil{10.0, 0.0};
-  auto model = make_model(g, options(C::half_sommerfeld, T::laminar, {1440, 128}), oil);
+  auto model = make_film(g, options(C::half_sommerfeld, T::laminar, {1440, 128}), oil);
   const Response r = evaluate(*model, motion(g, {0.0, -e, 0.0, 0.0}, {}, speed), Need::force);
   const double unit = oil.viscosity * speed * g.radius * std::pow(g.length, 3) / (g.clearance * g.clearance);
   EXPECT_NEAR(r.force[1] / (unit * e * e / std::pow(1.0 - e * e, 2)), 1.0, 1e-3);
@@ -130,7 +130,7 @@ TEST(Short, OcvirkForces) {
 TEST(Short, FriswellExample551) {
   const double thin = 30.0, speed = 1500.0 * kPi / 30.0, load = 525.0, e = 0.266298;
   const Geometry g{Geometry::Bore::partial_arc, 0.05, 0.03 / thin, 0.0001, 2.0 * kPi, 0.0, 0.0};
-  auto model = make_model(g, options(C::half_sommerfeld, T::laminar, {1440, 128}), {0.1 * thin * thin * thin, 0.0});
+  auto model = make_film(g, options(C::half_sommerfeld, T::laminar, {1440, 128}), {0.1 * thin * thin * thin, 0.0});
   const double attitude = std::atan(kPi * std::sqrt(1.0 - e * e) / (4.0 * e));
   EXPECT_NEAR(attitude / kDegree, 70.62, 0.005);
   const Response r =
@@ -157,7 +157,7 @@ TEST(Published, RaimondiBoyd) {
     const Geometry g = full(1.0);
     const Lubricant oil{0.02, 0.0};
     const double speed = 100.0, N = speed / (2.0 * kPi);
-    auto model = make_model(g, options(C::reynolds, T::laminar, {240, 40}), oil);
+    auto model = make_film(g, options(C::reynolds, T::laminar, {240, 40}), oil);
     const Motion m = motion(g, {0.0, -row.e, 0.0, 0.0}, {}, speed);
     const Response r = evaluate(*model, m, Need::force);
     const double load = std::hypot(r.force[0], r.force[1]), ratio = g.radius / g.clearance;
@@ -165,7 +165,7 @@ TEST(Published, RaimondiBoyd) {
     const double attitude = std::atan2(r.force[0], r.force[1]);
     EXPECT_NEAR(S, row.S, 3e-3 * row.S);
     EXPECT_NEAR(attitude / kDegree, row.attitude, 0.15);
-    const Summary s = model->summary(m);
+    const Summary s = model->summary(m, {});
     EXPECT_NEAR(s.side_flow / (g.radius * g.clearance * N * g.length), row.side, 0.02 * row.side);
     EXPECT_NEAR(load / (g.length * 2.0 * g.radius) / s.max_pressure, row.peak, 0.01 * row.peak);
     EXPECT_NEAR(s.min_thickness, g.clearance * (1.0 - row.e), 1e-3 * g.clearance);
@@ -186,7 +186,7 @@ TEST(Published, LundThomsen) {
     const Geometry g{Geometry::Bore::lemon_bore, 0.1, 0.1, 0.0001, 160.0 * kDegree, 0.0, 0.0};
     const Lubricant oil{0.02, 0.0};
     const double speed = 100.0;
-    auto model = make_model(g, options(C::reynolds, T::laminar, {160, 32}), oil);
+    auto model = make_film(g, options(C::reynolds, T::laminar, {160, 32}), oil);
     const double phi = row.attitude * kDegree;
     const Response r =
         evaluate(*model, motion(g, {row.e * std::sin(phi), -row.e * std::cos(phi), 0.0, 0.0}, {}, speed));

@@ -9,7 +9,7 @@
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/film/describe.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -119,9 +119,6 @@ TEST(Facts, OptionsAreThoseOfTheirKind) {
   EXPECT_EQ(find<CompliantShort>(o), nullptr);
   EXPECT_THROW((void)as<Reynolds>(o), core::Bug);
   EXPECT_NE(find<Reynolds>(Options()), nullptr) << "the default";
-  as<Compliant>(o).reference_speed = 300.0;
-  EXPECT_THROW((void)make_model(cylinder(), o, oil()), core::Bug);
-  EXPECT_THROW((void)make_state_model(cylinder(), Short{}, oil()), core::Bug);
 }
 
 }  // namespace

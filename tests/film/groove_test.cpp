@@ -16,7 +16,7 @@ using enum Kind;
 TEST(Groove, OneAtTheTopIsTheInletOfTheLongFilm) {
   Elastic plain = compliant(compliant_long, 0.1, 40, false), grooved = plain;
   grooved.grooves = {kTop};
-  auto a = make_state_model(cylinder(), plain, oil()), b = make_state_model(cylinder(), grooved, oil());
+  auto a = make_film(cylinder(), plain, oil()), b = make_film(cylinder(), grooved, oil());
   ASSERT_EQ(a->states(), b->states());
   EXPECT_EQ(relaxed(*a, still(0.3, -0.4)), relaxed(*b, still(0.3, -0.4)));
 }
@@ -32,7 +32,7 @@ TEST(Groove, FiniteFilmTendsToTheLongOne) {
     const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
     std::array<std::array<double, 4>, 2> f{};
     for (const auto& [k, o] : {std::pair{0U, lines}, {1U, whole}}) {
-      auto film = make_state_model(g, o, oil());
+      auto film = make_film(g, o, oil());
       const auto s = relaxed(*film, m);
       StateResponse r;
       film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
@@ -80,7 +80,7 @@ TEST(Groove, MirrorImages) {
 TEST(Groove, LinesOfAFiniteFilmFollowTheJournal) {
   Elastic o = compliant(compliant_finite, 0.1, 36, false);
   o.grooves = {{90.0 * kDegree, 20.0 * kDegree}};
-  auto film = make_state_model(cylinder(), o, oil());
+  auto film = make_film(cylinder(), o, oil());
   const Motion m = motion(cylinder(), {0.3, -0.3, 0.0, 0.0}, {0.2, 0.1, 0.0, 0.0}, kSpeed);
   const auto s = relaxed(*film, still(0.3, -0.3));
   std::vector<double> rates(s.size(), 0.0);

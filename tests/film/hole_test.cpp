@@ -48,9 +48,9 @@ TEST(Hole, FeedsAWideGapAsTheLogarithmSays) {
     const int n = 20 << level;
     Reynolds o = conserving({n, n});
     o.holes = {{270.0 * kDegree, 0.0, 2.0 * exact.r, exact.p}};
-    auto film = make_model(g, o, oil());
+    auto film = make_film(g, o, oil());
     const Motion rest;
-    const Summary s = film->summary(rest);
+    const Summary s = film->summary(rest, {});
     ASSERT_EQ(s.hole_flows.size(), 1U);
     EXPECT_LT(std::abs(s.imbalance), 1e-12 * s.hole_flows[0]);
     flow[level] = std::abs(s.hole_flows[0] / exact.flow() - 1.0);
@@ -75,13 +75,13 @@ TEST(Hole, FlowsBalance) {
   pads.edge_fill = 0.7;
   pads.holes = {{230.0 * kDegree, 0.05, 0.1, 2e5}, {60.0 * kDegree, -0.06, 0.1, 1e5}};
   for (const auto& [g, o] : {std::pair{cylinder(), one}, {cylinder(), two}, {lemon(), pads}}) {
-    auto film = make_model(g, o, oil());
+    auto film = make_film(g, o, oil());
     for (int sample = 0; sample < 10; ++sample) {
       const double tilt = o.tilt ? 0.3 : 0.0;
       const Motion m =
           motion(g, {0.5 * uniform(engine), 0.5 * uniform(engine), tilt * uniform(engine), tilt * uniform(engine)},
                  {0.3 * uniform(engine), 0.3 * uniform(engine), 0.0, 0.0}, sample % 3 == 0 ? -377.0 : 377.0);
-      const Summary s = film->summary(m);
+      const Summary s = film->summary(m, {});
       ASSERT_EQ(s.hole_flows.size(), o.holes.size());
       double size = std::abs(s.side_flow);
       for (const double flow : s.hole_flows) size += std::abs(flow);
@@ -100,11 +100,11 @@ TEST(Hole, AloneFeedsTheWholeLength) {
   for (const auto& cells : {std::array{48, 12}, {24, 30}}) {
     Reynolds o = conserving(cells);
     o.holes = {{-90.0 * kDegree, 0.0, 0.02, 1e5}};
-    auto film = make_model(cylinder(), o, oil());
+    auto film = make_film(cylinder(), o, oil());
     for (int sample = 0; sample < 250; ++sample) {
       const Motion m = motion(cylinder(), {0.65 * uniform(engine), 0.65 * uniform(engine), 0.0, 0.0},
                               {0.4 * uniform(engine), 0.4 * uniform(engine), 0.0, 0.0}, sample % 3 ? 377.0 : -377.0);
-      const Summary s = film->summary(m);
+      const Summary s = film->summary(m, {});
       EXPECT_LT(std::abs(s.imbalance), 1e-9 * s.side_flow) << sample;
       EXPECT_TRUE(std::isfinite(evaluate(*film, m).force[0])) << sample;
     }
@@ -115,18 +115,18 @@ TEST(Hole, AloneFeedsTheWholeLength) {
 TEST(Hole, WithoutPressureTheFilmRunsDry) {
   Reynolds o = conserving({48, 12});
   o.holes = {{-90.0 * kDegree, 0.0, 0.02, 0.0}};
-  auto film = make_model(cylinder(), o, oil()), fresh = make_model(cylinder(), o, oil());
+  auto film = make_film(cylinder(), o, oil()), fresh = make_film(cylinder(), o, oil());
   const Motion least = motion(cylinder(), {0.0, -0.5, 0.0, 0.0}, {}, 377.0),
                widest = motion(cylinder(), {0.0, 0.5, 0.0, 0.0}, {}, 377.0);
   EXPECT_THROW((void)evaluate(*film, least), core::DomainError);
-  EXPECT_THROW((void)film->summary(least), core::DomainError);
+  EXPECT_THROW((void)film->summary(least, {}), core::DomainError);
   const Response a = evaluate(*film, widest), b = evaluate(*fresh, widest);
   EXPECT_LT(a.force[1], -1000.0);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-9 * std::abs(b.force[1]));
   EXPECT_EQ(facts(o, cylinder()).misplaced.option, "holes");
   o.holes.push_back({90.0 * kDegree, 0.0, 0.02, 1e4});
   EXPECT_TRUE(facts(o, cylinder()).misplaced.option.empty());
-  EXPECT_GT(std::abs(evaluate(*make_model(cylinder(), o, oil()), least).force[1]), 0.0);
+  EXPECT_GT(std::abs(evaluate(*make_film(cylinder(), o, oil()), least).force[1]), 0.0);
 }
 
 // Two rims cut the same faces: what is left between them conducts. Along z a square of 16 cells has faces of 1.25 mm;
@@ -155,7 +155,7 @@ TEST(Hole, BesideAnotherSharesItsFaces) {
 // A film with states of its own that has settled is the one without.
 TEST(Hole, WithStatesAndWithout) {
   Reynolds o = dynamic({40, 16});
-  EXPECT_THROW((void)make_state_model(
+  EXPECT_THROW((void)make_film(
                    cylinder(),
                    [&] {
                      Reynolds alone = o;
@@ -167,15 +167,15 @@ TEST(Hole, WithStatesAndWithout) {
   o.grooves = {{-60.0 * kDegree, 0.0, 0.0}};
   o.holes = {{95.0 * kDegree, 0.01, 0.018, 3e5}};
   const Motion m = motion(cylinder(), {0.3, -0.5, 0.0, 0.0}, {0.05, 0.1, 0.0, 0.0}, 377.0);
-  auto film = make_state_model(cylinder(), o, oil());
+  auto film = make_film(cylinder(), o, oil());
   const std::vector<double> q = settled(*film, m), rest(q.size(), 0.0);
   StateResponse a;
   film->evaluate(m, q, rest, Need::force, a);
-  auto without = make_model(cylinder(), without_states(o), oil());
+  auto without = make_film(cylinder(), without_states(o), oil());
   const Response b = evaluate(*without, m);
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.journal.force[i], b.force[i], 1e-9 * std::abs(b.force[1]));
-  EXPECT_NEAR(film->summary(m, q).hole_flows.at(0), without->summary(m).hole_flows.at(0),
-              1e-9 * without->summary(m).side_flow);
+  EXPECT_NEAR(film->summary(m, q).hole_flows.at(0), without->summary(m, {}).hole_flows.at(0),
+              1e-9 * without->summary(m, {}).side_flow);
 }
 
 // Mirrored at the mid-plane a hole off the middle gives the same force and the opposite moment.
@@ -186,7 +186,7 @@ TEST(Hole, OffTheMiddleTheFilmIsNotSymmetric) {
     o.tilt = true;
     o.grooves = {{90.0 * kDegree, 0.0, 0.0}};
     o.holes = {{250.0 * kDegree, side == 0 ? 0.02 : -0.02, 0.02, 4e5}};
-    auto film = make_model(cylinder(), o, oil());
+    auto film = make_film(cylinder(), o, oil());
     r[static_cast<std::size_t>(side)] =
         evaluate(*film, motion(cylinder(), {0.2, -0.3, 0.0, 0.0}, {0.0, 0.1, 0.0, 0.0}, 377.0));
   }
@@ -203,9 +203,9 @@ TEST(Hole, HoldsItsPressureInEveryFilm) {
     Reynolds o = conserving({48, 12});
     o.cavitation = cavitation;
     o.holes = {{-70.0 * kDegree, 0.0, 0.02, cavitation == mass_conserving ? 1e5 : 0.0}};
-    auto film = make_model(cylinder(), o, oil());
+    auto film = make_film(cylinder(), o, oil());
     const Motion m = motion(cylinder(), {0.0, -0.6, 0.0, 0.0}, {}, 377.0);
-    const auto fields = film->fields(m);
+    const auto fields = film->fields(m, {});
     int held = 0;
     double highest = 0.0;
     for (const Field& f : fields) {
@@ -254,7 +254,7 @@ TEST(Hole, MayNotBeAnywhere) {
   EXPECT_NE(why(cylinder(), {{272.0 * kDegree, 0.003, 0.001, 1e5}}).find("no node of the mesh"), std::string::npos);
   Reynolds o = conserving({48, 12});
   o.holes = {{272.0 * kDegree, 0.003, 0.001, 1e5}};
-  EXPECT_THROW((void)make_model(cylinder(), o, oil()), core::InputError);
+  EXPECT_THROW((void)make_film(cylinder(), o, oil()), core::InputError);
 }
 
 }  // namespace

@@ -224,10 +224,10 @@ TEST(Rigid, ReportQuantities) {
   const double speed = 300, eps = 0.5;
   for (const K kind : {K::short_bearing, K::long_bearing, K::long_inlet}) {
     const Options o = film_of(kind);
-    auto model = make_model(g, o, oil());
+    auto model = make_film(g, o, oil());
     const Motion m = motion(g, {0.3, -0.4, 0, 0}, {0.1, -0.2, 0, 0}, speed);
     const Response r = evaluate(*model, m, Need::force);
-    const auto fields = model->fields(m);
+    const auto fields = model->fields(m, {});
     ASSERT_EQ(fields.size(), 4U);
     const std::size_t rows = fields[0].values.size(), columns = fields[1].values.size();
     double fx = 0, fy = 0, peak = 0;
@@ -240,13 +240,13 @@ TEST(Rigid, ReportQuantities) {
         peak = std::max(peak, p);
       }
     expect_near({fx, fy}, {r.force[0], r.force[1]}, 1e-3);
-    const Summary s = model->summary(m);
+    const Summary s = model->summary(m, {});
     EXPECT_NEAR(s.max_pressure, peak, 1e-3 * peak);
     EXPECT_GE(s.max_pressure, peak);
     EXPECT_NEAR(s.min_thickness, 0.5 * g.clearance, 1e-12);
     const Motion still = motion(g, {0.3, -0.4, 0, 0}, {}, speed);
     const Response at = evaluate(*model, still, Need::force);
-    const Summary t = model->summary(still);
+    const Summary t = model->summary(still, {});
     const double flow = kind == K::short_bearing ? eps * speed * g.radius * g.clearance * g.length : 0;
     EXPECT_NEAR(t.side_flow, flow, 1e-12 * (flow + 1e-12));
     const double U = speed * g.radius, arm = 0.3 * g.clearance * at.force[1] + 0.4 * g.clearance * at.force[0];
@@ -258,8 +258,8 @@ TEST(Rigid, ReportQuantities) {
 TEST(Rigid, NeedsACylindricalBore) {
   for (const K kind : kAll) {
     const Options o = film_of(kind);
-    EXPECT_THROW(make_model(arc(), o, oil()), core::InputError);
-    EXPECT_THROW(make_model(cylinder(), o, {0, 0}), core::InputError);
+    EXPECT_THROW(make_film(arc(), o, oil()), core::InputError);
+    EXPECT_THROW(make_film(cylinder(), o, {0, 0}), core::InputError);
   }
 }
 

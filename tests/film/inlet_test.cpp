@@ -33,10 +33,10 @@ std::array<double, 6> columns(double e, Inlet inlet, std::array<int, 2> cells) {
   const Geometry g = plain(1.0);
   const Lubricant oil{0.02, 0.0};
   const double speed = 100.0, N = speed / (2.0 * kPi), ratio = g.radius / g.clearance;
-  auto film = make_model(g, starting(inlet, C::reynolds, cells), oil);
+  auto film = make_film(g, starting(inlet, C::reynolds, cells), oil);
   const Motion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, speed);
   const Response r = evaluate(*film, m, Need::force);
-  const Summary s = film->summary(m);
+  const Summary s = film->summary(m, {});
   const double load = std::hypot(r.force[0], r.force[1]), flow = g.radius * g.clearance * N * g.length;
   return {oil.viscosity * N * g.length * 2.0 * g.radius * ratio * ratio / load,
           std::atan2(r.force[0], r.force[1]) / kDegree,
@@ -97,8 +97,8 @@ TEST(Inlet, LineAtTheMaximumGapHasTheSameForce) {
       const double at = 37.0 * kDegree;
       const Motion m =
           motion(plain(0.7), {-0.6 * std::cos(at), -0.6 * std::sin(at), 0.1, 0.05}, {0.1, 0.2, 0.05, 0.1}, 200.0);
-      const Response a = evaluate(*make_model(plain(0.7), starting(kWidest, cavitation, {40, 10}, tilt), oil()), m),
-                     b = evaluate(*make_model(plain(0.7), starting(line(at), cavitation, {40, 10}, tilt), oil()), m);
+      const Response a = evaluate(*make_film(plain(0.7), starting(kWidest, cavitation, {40, 10}, tilt), oil()), m),
+                     b = evaluate(*make_film(plain(0.7), starting(line(at), cavitation, {40, 10}, tilt), oil()), m);
       for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_NEAR(a.force[i], b.force[i], 1e-11 * std::abs(b.force[i < 2 ? 1 : 3]));
         for (std::size_t j = 0; j < (tilt ? 4U : 2U); ++j)
@@ -115,7 +115,7 @@ TEST(Inlet, LineAtTheMaximumGapHasTheSameForce) {
 // moved around the bearing turns its force by as much.
 TEST(Inlet, MaximumGapTurnsWithTheFrame) {
   for (const C cavitation : {C::half_sommerfeld, C::reynolds}) {
-    auto film = make_model(plain(1.0), starting(kWidest, cavitation, {50, 12}, true), oil());
+    auto film = make_film(plain(1.0), starting(kWidest, cavitation, {50, 12}, true), oil());
     const auto at = [&](double turn) {
       const double c = std::cos(turn), s = std::sin(turn);
       const auto turned = [&](double x, double y) { return std::array<double, 2>{c * x - s * y, s * x + c * y}; };
@@ -143,7 +143,7 @@ TEST(Inlet, MaximumGapTurnsWithTheFrame) {
 // A journal at rest in the centre: the tangent is the limit of those about it, the same in every direction.
 TEST(Inlet, TheCentreIsALimit) {
   for (const C cavitation : {C::half_sommerfeld, C::reynolds}) {
-    auto film = make_model(plain(1.0), starting(kWidest, cavitation, {60, 16}), oil());
+    auto film = make_film(plain(1.0), starting(kWidest, cavitation, {60, 16}), oil());
     const Response centre = evaluate(*film, motion(plain(1.0), {}, {}, 300.0));
     EXPECT_NEAR(centre.force[0], 0.0, 1e-8 * std::abs(centre.d_position[0][1]) * plain(1.0).clearance);
     for (const double at : {0.2, 1.9, 4.0}) {
@@ -166,7 +166,7 @@ TEST(Inlet, LongLimitIsHalfSommerfeld) {
   for (std::size_t k = 0; k < 2; ++k) {
     const int times = static_cast<int>(k) + 1;
     const Geometry g = plain(100.0 * times);
-    auto film = make_model(g, starting(kWidest, C::half_sommerfeld, {720, 40 * times}), oil);
+    auto film = make_film(g, starting(kWidest, C::half_sommerfeld, {720, 40 * times}), oil);
     const Response r = evaluate(*film, motion(g, {0.0, -e, 0.0, 0.0}, {}, speed));
     force[k] = {r.force[0], r.force[1]};
     tangents[k] = {r.d_position[0][0], r.d_position[0][1], r.d_position[1][0], r.d_position[1][1]};
@@ -192,7 +192,7 @@ TEST(Inlet, ShortLimitIsOcvirk) {
   const Lubricant oil{10.0, 0.0};
   const double unit = oil.viscosity * speed * g.radius * std::pow(g.length, 3) / (g.clearance * g.clearance);
   for (const C cavitation : {C::half_sommerfeld, C::reynolds}) {
-    auto film = make_model(g, starting(kWidest, cavitation, {360, 64}), oil);
+    auto film = make_film(g, starting(kWidest, cavitation, {360, 64}), oil);
     const Response r = evaluate(*film, motion(g, {0.0, -e, 0.0, 0.0}, {}, speed), Need::force);
     EXPECT_NEAR(r.force[1] / (unit * e * e / std::pow(1.0 - e * e, 2)), 1.0, 6e-3);
     EXPECT_NEAR(r.force[0] / (unit * kPi / 4.0 * e / std::pow(1.0 - e * e, 1.5)), 1.0, 6e-3);

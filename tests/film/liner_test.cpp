@@ -99,7 +99,7 @@ TEST(Liner, ForceStiffnessAndDampingOfAShortFilmAgainstOneWithoutMesh) {
     const double load = std::hypot(exact.force[0], exact.force[1]);
     std::array<double, 2> error{}, of_force{};
     for (std::size_t level = 0; level < 2; ++level) {
-      auto film = make_state_model(cylinder(), soft(Kind::compliant_short, 100 << level), oil());
+      auto film = make_film(cylinder(), soft(Kind::compliant_short, 100 << level), oil());
       const auto s = relaxed(*film, m);
       StateResponse r;
       film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);
@@ -120,9 +120,9 @@ TEST(Liner, FastVibrationsSeeTheLinerAlone) {
   for (const auto kind : {Kind::compliant_short, Kind::compliant_finite}) {
     Elastic o = soft(kind, 24);
     o.rubber_thickness.reset();
-    auto damped = make_state_model(cylinder(), o, oil());
+    auto damped = make_film(cylinder(), o, oil());
     o.liner_damping = 0.0;
-    auto plain = make_state_model(cylinder(), o, oil());
+    auto plain = make_film(cylinder(), o, oil());
     const Motion m = still(ex, ey);
     const auto s = relaxed(*damped, m);
     const Coefficients a = coefficients(*plain, m, s, 1e7 * kSpeed);
@@ -143,9 +143,9 @@ TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
   using enum Kind;
   for (const auto kind : {compliant_short, compliant_long, compliant_finite}) {
     Elastic o = soft(kind, 24);
-    auto damped = make_state_model(cylinder(), o, oil());
+    auto damped = make_film(cylinder(), o, oil());
     o.liner_damping = 0.0;
-    auto plain = make_state_model(cylinder(), o, oil());
+    auto plain = make_film(cylinder(), o, oil());
     const Motion m = still(ex, ey);
     const auto a = relaxed(*damped, m), b = relaxed(*plain, m);
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * scale_of(*damped));
@@ -176,7 +176,7 @@ TEST(Liner, RubberStiffensAndHasAnEnd) {
     EXPECT_NEAR(last, std::hypot(linear.force[0], linear.force[1]), 1e-5 * last);
     Elastic thin = compliant(kind, 0.3, 60, false);
     thin.rubber_thickness = 0.5 * cylinder().clearance;
-    auto film = make_state_model(cylinder(), thin, oil());
+    auto film = make_film(cylinder(), thin, oil());
     std::vector<double> s(film->states());
     film->unloaded(m, s);
     s[3] += 0.501 * cylinder().clearance;
@@ -185,7 +185,7 @@ TEST(Liner, RubberStiffensAndHasAnEnd) {
   }
   Elastic wrong = compliant(compliant_short, 0.3, 60, false);
   wrong.liner_damping = -1.0;
-  EXPECT_THROW(make_state_model(cylinder(), wrong, oil()), core::InputError);
+  EXPECT_THROW(make_film(cylinder(), wrong, oil()), core::InputError);
 }
 
 }  // namespace

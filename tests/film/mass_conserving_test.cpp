@@ -67,7 +67,7 @@ TEST(MassConserving, StarvedLongBearingFillsAndRupturesWhereTheBalanceSays) {
     o.inlet = {Inlet::Type::line, 0.0};
     o.edge_fill = exact.f;
     const Motion m = motion(g, {-exact.e, 0.0, 0.0, 0.0}, {}, 377.0);
-    const auto fields = make_model(g, o, oil())->fields(m);
+    const auto fields = make_film(g, o, oil())->fields(m, {});
     const Field &p = field(fields, "pressure"), &fill = field(fields, "fill");
     const double scale = 6.0 * oil().viscosity * m.speed * std::pow(g.radius / g.clearance, 2),
                  step = 2.0 * std::numbers::pi / n;
@@ -98,13 +98,13 @@ TEST(MassConserving, BalancesToRounding) {
   grooved.grooves = {{90.0 * kDegree, 20.0 * kDegree, 3e5}, {-50.0 * kDegree, 0.0, 1e5}};
   starved.edge_fill = 0.6;
   for (const auto& [g, o] : {std::pair{lemon(), conserving({40, 10})}, {arc(), starved}, {cylinder(), grooved}}) {
-    auto film = make_model(g, o, oil());
+    auto film = make_film(g, o, oil());
     for (int sample = 0; sample < 20; ++sample) {
       const double tilt = o.tilt ? 0.3 : 0.0;
       const Motion m =
           motion(g, {0.5 * uniform(engine), 0.5 * uniform(engine), tilt * uniform(engine), tilt * uniform(engine)},
                  {0.3 * uniform(engine), 0.3 * uniform(engine), 0.0, 0.0}, sample % 3 == 0 ? -377.0 : 377.0);
-      const Summary s = film->summary(m);
+      const Summary s = film->summary(m, {});
       EXPECT_LT(std::abs(s.imbalance), 1e-12 * (std::abs(s.inlet_flow) + std::abs(s.side_flow)));
     }
   }
@@ -115,8 +115,8 @@ TEST(MassConserving, IsTheUncavitatedFilmWhereTheGapIsFull) {
   Geometry g = arc();
   g.arc = 40.0 * kDegree;
   const Motion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
-  const Response a = evaluate(*make_model(g, conserving({40, 10}), oil()), m),
-                 b = evaluate(*make_model(g, with(conserving({40, 10}), Reynolds::Cavitation::none), oil()), m);
+  const Response a = evaluate(*make_film(g, conserving({40, 10}), oil()), m),
+                 b = evaluate(*make_film(g, with(conserving({40, 10}), Reynolds::Cavitation::none), oil()), m);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(a.force[i], b.force[i],
                 3e-3 * std::abs(b.force[i]));  // its force counts the nodes, the other the edges
@@ -134,12 +134,12 @@ TEST(MassConserving, FedAtTheWidestGapItIsNearReynolds) {
   for (const double e : {0.2, 0.5, 0.8}) {
     Reynolds o = conserving({120, 24});
     o.inlet = {Inlet::Type::maximum_gap, 0.0};
-    auto a = make_model(g, o, oil()), b = make_model(g, with(o, Reynolds::Cavitation::reynolds), oil());
+    auto a = make_film(g, o, oil()), b = make_film(g, with(o, Reynolds::Cavitation::reynolds), oil());
     const Motion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, 377.0);
     const Response ra = evaluate(*a, m), rb = evaluate(*b, m);
     const double load = std::hypot(ra.force[0], ra.force[1]), other = std::hypot(rb.force[0], rb.force[1]);
     EXPECT_NEAR(load, other, 0.01 * other) << e;
-    const Summary sa = a->summary(m), sb = b->summary(m);
+    const Summary sa = a->summary(m, {}), sb = b->summary(m, {});
     EXPECT_LT(std::abs(sa.imbalance), 1e-12 * sa.inlet_flow);
     EXPECT_GT(std::abs(sb.imbalance), 0.02 * sb.side_flow) << e;
     RecordProperty("imbalance", std::to_string(sb.imbalance / sb.side_flow));
@@ -150,7 +150,7 @@ TEST(MassConserving, FedAtTheWidestGapItIsNearReynolds) {
 TEST(MassConserving, TurnsBothWays) {
   Reynolds o = conserving({40, 10});
   o.edge_fill = 0.8;
-  auto film = make_model(lemon(), o, oil());
+  auto film = make_film(lemon(), o, oil());
   const Response a = evaluate(*film, motion(lemon(), {0.4, -0.5, 0.0, 0.0}, {0.05, 0.1, 0.0, 0.0}, 300.0));
   Motion mirrored = motion(lemon(), {-0.4, -0.5, 0.0, 0.0}, {-0.05, 0.1, 0.0, 0.0}, 300.0);
   mirrored.speed = -300.0;
@@ -165,11 +165,11 @@ TEST(MassConserving, TurnsBothWays) {
 TEST(MassConserving, TheAnswerDoesNotDependOnTheStart) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  auto film = make_model(lemon(), conserving({40, 10}), oil());
+  auto film = make_film(lemon(), conserving({40, 10}), oil());
   for (int sample = 0; sample < 30; ++sample) {
     const Motion m = motion(lemon(), {0.7 * uniform(engine), 0.7 * uniform(engine), 0.0, 0.0},
                             {0.5 * uniform(engine), 0.5 * uniform(engine), 0.0, 0.0}, 377.0);
-    auto fresh = make_model(lemon(), conserving({40, 10}), oil());
+    auto fresh = make_film(lemon(), conserving({40, 10}), oil());
     const Response a = evaluate(*film, m), b = evaluate(*fresh, m);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-10 * std::abs(b.force[1]) + 1e-9);
   }
@@ -177,12 +177,12 @@ TEST(MassConserving, TheAnswerDoesNotDependOnTheStart) {
 
 // Closed to the outside a bore would run dry.
 TEST(MassConserving, MustBeFed) {
-  EXPECT_THROW((void)make_model(cylinder(), conserving({40, 10}), oil()), core::InputError);
+  EXPECT_THROW((void)make_film(cylinder(), conserving({40, 10}), oil()), core::InputError);
   Reynolds grooved = conserving({40, 10});
   grooved.grooves = {{90.0 * kDegree, 0.0}};
-  EXPECT_NO_THROW((void)make_model(cylinder(), grooved, oil()));
+  EXPECT_NO_THROW((void)make_film(cylinder(), grooved, oil()));
   grooved.edge_fill = 0.5;  // which nothing would read
-  EXPECT_THROW((void)make_model(cylinder(), grooved, oil()), core::InputError);
+  EXPECT_THROW((void)make_film(cylinder(), grooved, oil()), core::InputError);
 }
 
 }  // namespace

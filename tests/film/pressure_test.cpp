@@ -55,7 +55,7 @@ TEST(Truncation, IntervalIntegralsAreExactAndTheirGradientsConsistent) {
 // A finely moved journal drags the rupture through many cells: the largest jump of force and tangent between neighbours
 // falls with the step (a node-wise truncation would keep finite jumps of the tangent).
 TEST(Truncation, ForceAndTangentAreContinuousAcrossAMovingRupture) {
-  auto model = make_model(lemon(), {}, oil());
+  auto model = make_film(lemon(), {}, oil());
   std::array<double, 2> force{}, tangent{};
   for (std::size_t k = 0; k < 2; ++k) {
     const int steps = k == 0 ? 500 : 8000;
@@ -85,7 +85,7 @@ TEST(Solvers, SineModesAndBandAgreeToRounding) {
       band.tilt = true;
       for (const Geometry& g : {lemon(), arc()}) {
         const Motion m = motion(g, {0.4, -0.5, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
-        const Response a = evaluate(*make_model(g, modal, oil()), m), b = evaluate(*make_model(g, band, oil()), m);
+        const Response a = evaluate(*make_film(g, modal, oil()), m), b = evaluate(*make_film(g, band, oil()), m);
         const auto near = [&](const auto& u, const auto& v) {
           double size = 0.0;
           for (std::size_t i = 0; i < 2; ++i) size = std::max({size, std::abs(u[i][0]), std::abs(u[i][1])});
@@ -115,8 +115,8 @@ TEST(Solvers, HalfAndWholePadAgreeWithReynoldsCavitation) {
     Reynolds whole = half;
     whole.tilt = true;
     const Motion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
-    const Response a = evaluate(*make_model(lemon(), half, oil()), m),
-                   b = evaluate(*make_model(lemon(), whole, oil()), m);
+    const Response a = evaluate(*make_film(lemon(), half, oil()), m),
+                   b = evaluate(*make_film(lemon(), whole, oil()), m);
     EXPECT_LT(largest(a, b, false), 1e-10 * std::abs(a.force[1]));
     EXPECT_LT(largest(a, b, true), 1e-10 * std::abs(a.d_position[1][1]));
   }
@@ -126,15 +126,15 @@ TEST(Solvers, HalfAndWholePadAgreeWithReynoldsCavitation) {
 TEST(Solvers, OnlyComplementarityHasSymmetricDamping) {
   const Motion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
   Reynolds o;
-  Response r = evaluate(*make_model(lemon(), o, oil()), m);
+  Response r = evaluate(*make_film(lemon(), o, oil()), m);
   EXPECT_GT(std::abs(r.d_velocity[0][1] - r.d_velocity[1][0]), 0.1 * std::abs(r.d_velocity[0][1]));
   o.cavitation = C::reynolds;
-  r = evaluate(*make_model(lemon(), o, oil()), m);
+  r = evaluate(*make_film(lemon(), o, oil()), m);
   EXPECT_NEAR(r.d_velocity[0][1], r.d_velocity[1][0], 1e-10 * std::abs(r.d_velocity[0][1]));
 }
 
 TEST(Signs, LoadedJournalIsLiftedAndPushedForward) {
-  auto model = make_model(arc(), {}, oil());
+  auto model = make_film(arc(), {}, oil());
   const Response low = evaluate(*model, motion(arc(), {0.0, -0.6, 0.0, 0.0}, {}, 377.0));
   EXPECT_GT(low.force[1], 0.0);
   EXPECT_LT(low.d_position[1][1], 0.0);
@@ -142,7 +142,7 @@ TEST(Signs, LoadedJournalIsLiftedAndPushedForward) {
   EXPECT_LT(low.d_velocity[1][1], 0.0);
   Geometry round = arc();
   round.arc = 2.0 * std::numbers::pi;
-  const Response r = evaluate(*make_model(round, {}, oil()), motion(round, {0.0, -0.6, 0.0, 0.0}, {}, 377.0));
+  const Response r = evaluate(*make_film(round, {}, oil()), motion(round, {0.0, -0.6, 0.0, 0.0}, {}, 377.0));
   EXPECT_GT(r.force[0], 0.0);  // forward whirl: along the rotation, +x at the bottom
 }
 
@@ -150,7 +150,7 @@ TEST(Signs, LoadedJournalIsLiftedAndPushedForward) {
 TEST(Signs, HalfSpeedWhirlCarriesNoLoad) {
   Reynolds o;
   o.cavitation = C::none;
-  auto model = make_model(arc(), o, oil());
+  auto model = make_film(arc(), o, oil());
   const double still = std::abs(evaluate(*model, motion(arc(), {0.3, -0.5, 0.0, 0.0}, {}, 377.0)).force[1]);
   const Response r = evaluate(*model, motion(arc(), {0.3, -0.5, 0.0, 0.0}, {0.25, 0.15, 0.0, 0.0}, 377.0));
   EXPECT_NEAR(r.force[0], 0.0, 1e-12 * still);
@@ -159,7 +159,7 @@ TEST(Signs, HalfSpeedWhirlCarriesNoLoad) {
 
 TEST(Signs, MirrorAndHalfTurn) {
   Geometry g = lemon();
-  auto model = make_model(g, {}, oil());
+  auto model = make_film(g, {}, oil());
   const Response a = evaluate(*model, motion(g, {0.5, -0.3, 0.0, 0.0}, {0.05, -0.02, 0.0, 0.0}, 377.0));
   Motion mirrored = motion(g, {-0.5, -0.3, 0.0, 0.0}, {-0.05, -0.02, 0.0, 0.0}, 377.0);
   mirrored.speed = -377.0;
@@ -170,7 +170,7 @@ TEST(Signs, MirrorAndHalfTurn) {
   EXPECT_NEAR(a.d_speed[0], b.d_speed[0], tiny);
   EXPECT_NEAR(a.d_speed[1], -b.d_speed[1], tiny);
   g.offset = 0.3 * g.clearance;  // an offset bore keeps only its half-turn symmetry
-  auto offset = make_model(g, {}, oil());
+  auto offset = make_film(g, {}, oil());
   const Response c = evaluate(*offset, motion(g, {0.5, -0.3, 0.0, 0.0}, {0.05, -0.02, 0.0, 0.0}, 377.0));
   const Response d = evaluate(*offset, motion(g, {-0.5, 0.3, 0.0, 0.0}, {-0.05, 0.02, 0.0, 0.0}, 377.0));
   EXPECT_NEAR(c.force[0], -d.force[0], tiny);
@@ -181,7 +181,7 @@ TEST(Signs, MirrorAndHalfTurn) {
 TEST(Signs, OffsetMovesTheLowerLobeToTheRight) {
   Geometry g = lemon();
   g.offset = 0.5 * g.clearance;
-  const auto fields = make_model(g, {}, oil())->fields(motion(g, {}, {}, 377.0));
+  const auto fields = make_film(g, {}, oil())->fields(motion(g, {}, {}, 377.0), {});
   for (const Field& f : fields) {
     if (f.name != "thickness") continue;
     const std::size_t columns = f.shape[1];
@@ -199,11 +199,11 @@ TEST(Fields, IntegrateToTheForce) {
     Reynolds o;
     o.tilt = tilt;
     o.cells = {120, 32};
-    auto model = make_model(lemon(), o, oil());
+    auto model = make_film(lemon(), o, oil());
     const Motion m = motion(lemon(), {0.9, -0.4, 0.0, tilt ? -0.2 : 0.0}, {}, 377.0);
     const Response r = evaluate(*model, m);
     std::array<double, 3> total{};
-    const auto fields = model->fields(m);
+    const auto fields = model->fields(m, {});
     ASSERT_EQ(fields.size(), 8u);
     for (std::size_t pad = 0; pad < 2; ++pad) {
       const auto &theta = fields[4 * pad], &z = fields[4 * pad + 1], &p = fields[4 * pad + 2];

@@ -42,7 +42,7 @@ Setup setup(const Json& p, std::array<int, 2> cells) {
 }
 
 // Position under a vertical load by Newton's method with the film's own tangents.
-Motion equilibrium(Model& model, const Setup& s, double load) {
+Motion equilibrium(Film& model, const Setup& s, double load) {
   Motion m = motion(s.geometry, {0.3, -0.4, 0.0, 0.0}, {}, s.speed);
   for (int k = 0; k < 60; ++k) {
     const Response r = evaluate(model, m);
@@ -69,7 +69,7 @@ std::vector<double> compute(const Json& record, std::array<int, 2> cells) {
     return {evaluate(resistance_around(t), Re), evaluate(resistance_along(t), Re)};
   }
   const Setup s = setup(p, cells);
-  auto model = make_model(s.geometry, s.options, oil());
+  auto model = make_film(s.geometry, s.options, oil());
   if (quantity.starts_with("force")) {
     const Motion m = motion(s.geometry, {p.at("x_cb"), p.at("y_cb"), 0.0, 0.0},
                             {p.at("vx_cb_Om"), p.at("vy_cb_Om"), 0.0, 0.0}, s.speed);

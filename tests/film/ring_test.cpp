@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "film/cases.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -19,7 +19,7 @@ double rate(std::array<int, 2> cells, double dt, Compliant::Differences differen
   o.reference_speed = 160.0;
   o.differences = differences;
   if (contact) o.contact = Contact{0.2 * g.clearance, 1e7};
-  auto film = make_state_model(g, o, {0.001, 1000.0});
+  auto film = make_film(g, o, {0.001, 1000.0});
   const Motion m = motion(g, {0.5, -0.55, 0.0, 0.0}, {}, 800.0);
   const std::size_t n = film->states();
   std::vector<double> s(n), zero(n, 0.0);

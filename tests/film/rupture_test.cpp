@@ -43,7 +43,7 @@ TEST(Rupture, TangentsSumUpToTheForceAcrossNodes) {
   Random random;
   for (const Geometry& g : {lemon(), cylinder()})
     for (const bool tilt : {false, true}) {
-      auto film = make_model(g, ruptured({40, 10}, tilt, Turbulence::constantinescu), oil());
+      auto film = make_film(g, ruptured({40, 10}, tilt, Turbulence::constantinescu), oil());
       double worst = 0.0;
       for (int sample = 0; sample < 6; ++sample) {
         const Motion from = random.motion(g, tilt);
@@ -88,7 +88,7 @@ TEST(Rupture, TangentsSumUpToTheForceAcrossNodes) {
 // A finely moved journal drags the rupture through many cells: the largest jump of the tangents falls with the step.
 TEST(Rupture, TangentsAreContinuous) {
   for (const Geometry& g : {lemon(), cylinder()}) {
-    auto film = make_model(g, ruptured({60, 16}), oil());
+    auto film = make_film(g, ruptured({60, 16}), oil());
     std::array<double, 2> jump{};
     for (std::size_t k = 0; k < 2; ++k) {
       const int steps = k == 0 ? 250 : 4000;
@@ -111,7 +111,7 @@ TEST(Rupture, TangentsAreContinuous) {
 TEST(Rupture, DampingIsSymmetricEverywhere) {
   Random random;
   for (const Geometry& g : {lemon(), arc(), cylinder()}) {
-    auto film = make_model(g, ruptured({31, 11}, true, Turbulence::constantinescu), oil());
+    auto film = make_film(g, ruptured({31, 11}, true, Turbulence::constantinescu), oil());
     for (int sample = 0; sample < 20; ++sample) {
       const Response r = evaluate(*film, random.motion(g, true));
       for (std::size_t i = 0; i < 4; ++i)
@@ -128,10 +128,10 @@ TEST(Rupture, TheAnswerDoesNotDependOnTheStart) {
   for (const Geometry& g : {lemon(), arc(), cylinder()})
     for (const bool tilt : {false, true}) {
       const Reynolds o = ruptured({36, 10}, tilt, Turbulence::constantinescu);
-      auto film = make_model(g, o, oil());
+      auto film = make_film(g, o, oil());
       for (int sample = 0; sample < 25; ++sample) {
         const Motion m = random.motion(g, tilt);
-        const Response a = evaluate(*film, m), b = evaluate(*make_model(g, o, oil()), m);
+        const Response a = evaluate(*film, m), b = evaluate(*make_film(g, o, oil()), m);
         for (std::size_t i = 0; i < 2; ++i) {
           EXPECT_NEAR(a.force[i], b.force[i], 1e-9 * size(b.force));
           for (std::size_t j = 0; j < 2; ++j)
@@ -145,7 +145,7 @@ TEST(Rupture, TheAnswerDoesNotDependOnTheStart) {
 std::vector<std::array<double, 8>> locus(std::array<int, 2> cells) {
   Geometry g = cylinder();
   g.length = 2.0 * g.radius;
-  auto film = make_model(g, ruptured(cells), oil());
+  auto film = make_film(g, ruptured(cells), oil());
   std::vector<std::array<double, 8>> rows;
   double attitude = 1.4;
   for (int k = 0; k <= 40; ++k) {
@@ -190,8 +190,8 @@ TEST(Rupture, CoefficientsDoNotScatterOverEccentricity) {
 TEST(Rupture, AFailureLeavesNothingBehind) {
   for (const bool tilt : {false, true}) {
     const Motion good = motion(lemon(), {0.6, -0.3, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
-    auto fresh = make_model(lemon(), ruptured({40, 8}, tilt), oil()),
-         film = make_model(lemon(), ruptured({40, 8}, tilt), oil());
+    auto fresh = make_film(lemon(), ruptured({40, 8}, tilt), oil()),
+         film = make_film(lemon(), ruptured({40, 8}, tilt), oil());
     const Response expected = evaluate(*fresh, good);
     (void)evaluate(*film, good);
     Motion bad = good;
@@ -211,7 +211,7 @@ TEST(Rupture, AFailureLeavesNothingBehind) {
 TEST(Rupture, OrderTwo) {
   std::vector<std::vector<double>> values;
   for (int level = 0; level < 4; ++level) {
-    auto film = make_model(lemon(), ruptured({40 << level, 8 << level}), oil());
+    auto film = make_film(lemon(), ruptured({40 << level, 8 << level}), oil());
     const Response r = evaluate(*film, motion(lemon(), {0.6, -0.3, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0));
     values.push_back({r.force[0], r.force[1], r.d_position[0][0], r.d_position[1][1], r.d_velocity[0][0],
                       r.d_velocity[1][1], r.d_speed[1]});
@@ -232,7 +232,7 @@ TEST(Rupture, TangentsAfterTheForceAreThoseOfOneCall) {
       for (const bool tilt : {false, true}) {
         Reynolds o = ruptured({24, 8}, tilt);
         o.cavitation = cavitation;
-        auto twice = make_model(g, o, oil()), once = make_model(g, o, oil());
+        auto twice = make_film(g, o, oil()), once = make_film(g, o, oil());
         Motion m = random.motion(g, tilt);
         for (const double change : {0.0, 1e-7, 0.3}) {
           m.speed *= 1.0 + change;

@@ -21,7 +21,7 @@ struct Case {
   Geometry geometry;
   Options options;
   std::function<Motion()> motion;
-  std::function<void(const StateModel&, std::vector<double>&, std::vector<double>&)> states, directions;
+  std::function<void(const Film&, std::vector<double>&, std::vector<double>&)> states, directions;
   double step;
 };
 
@@ -29,12 +29,12 @@ std::vector<Case> cases() {
   std::vector<Case> all;
   for (const CompliantCase& c : compliant_films())
     all.push_back({c.name, cylinder(), c.options, [] { return kMoving; },
-                   [c](const StateModel&, std::vector<double>& s, std::vector<double>& rates) {
+                   [c](const Film&, std::vector<double>& s, std::vector<double>& rates) {
                      CompliantPoint p = point(c.options);
                      s = p.states;
                      rates = p.rates;
                    },
-                   [](const StateModel& film, std::vector<double>& s, std::vector<double>& rates) {
+                   [](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
                      for (std::size_t k = 0; k < s.size(); ++k) {
                        s[k] = scale_of(film) * std::sin(1.0 + 2.3 * static_cast<double>(k));
                        rates[k] = kSpeed * s[k];
@@ -44,7 +44,7 @@ std::vector<Case> cases() {
   for (const ContentCase& c : content_films())
     all.push_back({c.name, c.geometry, c.options, [c] { return motion(c.geometry, c.position, c.velocity, kSpeed); },
                    // Away from q = 0, where a node becomes full.
-                   [](const StateModel& film, std::vector<double>& s, std::vector<double>& rates) {
+                   [](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
                      std::mt19937 engine(7);
                      std::uniform_real_distribution<double> uniform(0.2, 1.0);
                      for (std::size_t k = 0; k < s.size(); ++k) {
@@ -52,7 +52,7 @@ std::vector<Case> cases() {
                        rates[k] = uniform(engine) * scale_of(film) * 100.0;
                      }
                    },
-                   [](const StateModel& film, std::vector<double>& s, std::vector<double>& rates) {
+                   [](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
                      std::mt19937 engine(11);
                      std::uniform_real_distribution<double> uniform(-0.4, 0.4);
                      for (std::size_t k = 0; k < s.size(); ++k) {
@@ -66,13 +66,13 @@ std::vector<Case> cases() {
 
 // A case made: film, motion, states with rates, and their directions.
 struct Made {
-  std::unique_ptr<StateModel> film;
+  std::unique_ptr<Film> film;
   Motion motion;
   std::vector<double> states, rates, along, along_rates;
 };
 
 Made make(const Case& c) {
-  Made m{make_state_model(c.geometry, c.options, oil()), c.motion(), {}, {}, {}, {}};
+  Made m{make_film(c.geometry, c.options, oil()), c.motion(), {}, {}, {}, {}};
   const std::size_t n = m.film->states();
   m.states.resize(n);
   m.rates.resize(n);
@@ -252,7 +252,7 @@ TEST_P(StateContract, SharesAddUpToTheWhole) {
 // states, and along what is no port there is no force.
 TEST_P(StateContract, HasNoMemory) {
   const Made m = make(GetParam());
-  const auto fresh = make_state_model(GetParam().geometry, GetParam().options, oil());
+  const auto fresh = make_film(GetParam().geometry, GetParam().options, oil());
   StateResponse a, b;
   const int n = static_cast<int>(m.states.size()), cut = m.film->cut(n / 3);
   if (cut > 0 && cut < n) {  // another share before
@@ -304,7 +304,7 @@ TEST_P(StateContract, TurnsWithItsFrame) {
   const auto to = rotated(still.position[0], still.position[1]);
   other.position = {to[0], to[1], 0.0, 0.0};
   const auto solve = [&](const Options& o, const Motion& m, Response& force) {
-    const auto film = make_state_model(c.geometry, o, oil());
+    const auto film = make_film(c.geometry, o, oil());
     std::vector<double> s(film->states());
     film->unloaded(m, s);
     relax(*film, m, s);

@@ -6,6 +6,7 @@
 
 #include "film/cases.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/thickness.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -44,7 +45,7 @@ TEST(Thickness, LeastIsThatOfTheFormula) {
       Reynolds o;
       o.tilt = true;
       o.cells = {12, 4};
-      EXPECT_DOUBLE_EQ(evaluate(*make_model(g, o, oil()), m, Need::force).min_thickness,
+      EXPECT_DOUBLE_EQ(evaluate(*make_film(g, o, oil()), m, Need::force).min_thickness,
                        minimum_thickness(g, m.position));
     }
 }
@@ -56,7 +57,7 @@ TEST(Thickness, ContactBetweenNodesIsSeen) {
       Reynolds o;
       o.cavitation = cavitation;
       o.cells = {9, 4};
-      auto film = make_model(g, o, oil());
+      auto film = make_film(g, o, oil());
       const double between = 270.0 * kDegree + 0.13 * kDegree, e = 1.0 + 1e-6;
       Response r;
       EXPECT_THROW(film->evaluate(motion(g, {e * std::cos(between), e * std::sin(between), 0.0, 0.0}, {}, 377.0),

@@ -294,7 +294,7 @@ TEST(CompliantRotor, CoefficientsAtTheWhirlFrequencyGiveTheHopfPoint) {
     const double scale = reference_speed(t), guess = kind == Kind::compliant_short ? 2.7326 : 0.4984;
     system::RotorSystem s(MPI_COMM_WORLD, t, 0.8 * guess * scale);
     const Hopf h = hopf(s, scale, 0.95 * guess, 1.05 * guess);
-    const auto film = film::make_state_model(t.supports[0].geometry, t.supports[0].film, t.supports[0].lubricant);
+    const auto film = film::make_film(t.supports[0].geometry, t.supports[0].film, t.supports[0].lubricant);
     film::Motion motion;
     motion.speed = s.speed();
     for (std::size_t d = 0; d < 2; ++d) motion.position[d] = s.journals(h.state.data())[0].position[d];

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "support/overhung.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
@@ -93,10 +93,10 @@ TEST(Tilt, CyclesByEveryWay) {
     const auto [a, first] = cycle(true);
     const auto [b, second] = cycle(false);
     const Index machine =
-        a.rows() - (states ? static_cast<Index>(film::make_state_model(t.supports[1].geometry, t.supports[1].film,
-                                                                       t.supports[1].lubricant)
-                                                    ->states())
-                           : 0);
+        a.rows() -
+        (states ? static_cast<Index>(
+                      film::make_film(t.supports[1].geometry, t.supports[1].film, t.supports[1].lubricant)->states())
+                : 0);
     EXPECT_LE((a - b).topRows(machine).cwiseAbs().maxCoeff(), 1e-8 * a.topRows(machine).cwiseAbs().maxCoeff());
     EXPECT_NEAR(first, second, 1e-7);
     // The journal moves, and tilts as it does.

@@ -79,17 +79,17 @@ core::Vector rest(system::RotorSystem& s) {
 
 // Of a film by itself, by elimination of its states on one rank.
 film::Coefficients coefficients_alone(const system::RotorSystem& s, int b, const std::vector<double>& x, double omega) {
-  std::vector<std::unique_ptr<film::StateModel>> films;
+  std::vector<std::unique_ptr<film::Film>> films;
   auto begin = x.end() - s.own_states();
   for (const system::Support& at : s.train().supports) {
-    films.push_back(film::make_state_model(at.geometry, at.film, at.lubricant));
+    films.push_back(film::make_film(at.geometry, at.film, at.lubricant));
     if (&at - s.train().supports.data() < b) begin += static_cast<std::ptrdiff_t>(films.back()->states());
   }
   const system::JournalState journal = s.journals(x.data())[static_cast<std::size_t>(b)];
   film::Motion motion;
   for (std::size_t d = 0; d < 2; ++d) motion.position[d] = journal.position[d];
   motion.speed = s.speed();
-  film::StateModel& film = *films[static_cast<std::size_t>(b)];
+  film::Film& film = *films[static_cast<std::size_t>(b)];
   return film::coefficients(film, motion, {&*begin, film.states()}, omega);
 }
 

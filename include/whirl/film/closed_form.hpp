@@ -36,18 +36,20 @@ struct FiniteApproximate {
 
 void describe(deck::Description<Short>& d);
 [[nodiscard]] Facts facts_of(const Short& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const Short& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const Short& options, const Lubricant& lubricant);
 
 void describe(deck::Description<Long>& d);
 [[nodiscard]] Facts facts_of(const Long& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const Long& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const Long& options, const Lubricant& lubricant);
 
 void describe(deck::Description<LongInlet>& d);
 [[nodiscard]] Facts facts_of(const LongInlet& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const LongInlet& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const LongInlet& options,
+                                         const Lubricant& lubricant);
 
 void describe(deck::Description<FiniteApproximate>& d);
 [[nodiscard]] Facts facts_of(const FiniteApproximate& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const FiniteApproximate& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const FiniteApproximate& options,
+                                         const Lubricant& lubricant);
 
 }  // namespace whirl::film

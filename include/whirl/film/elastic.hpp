@@ -74,14 +74,17 @@ void refine(Compliant& options, const std::array<double, 2>& factor);
 
 void describe(deck::Description<CompliantShort>& d);
 [[nodiscard]] Facts facts_of(const CompliantShort& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const CompliantShort& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const CompliantShort& options,
+                                         const Lubricant& lubricant);
 
 void describe(deck::Description<CompliantLong>& d);
 [[nodiscard]] Facts facts_of(const CompliantLong& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const CompliantLong& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const CompliantLong& options,
+                                         const Lubricant& lubricant);
 
 void describe(deck::Description<CompliantFinite>& d);
 [[nodiscard]] Facts facts_of(const CompliantFinite& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const CompliantFinite& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const CompliantFinite& options,
+                                         const Lubricant& lubricant);
 
 }  // namespace whirl::film

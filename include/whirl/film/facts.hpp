@@ -5,12 +5,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
 
 namespace whirl::film {
 
-class Model;
-class StateModel;
+class Film;
 
 /// How often the discrete force can be differentiated in the motion of the journal (and in the film's own states).
 ///
@@ -47,7 +45,7 @@ struct Facts {
   bool gives_way = false;       // the bore is elastic, so that the journal may go beyond the clearance
   bool asperities = false;      // they carry where journal and bore touch
   bool tilts = false;           // it follows the slope of the journal
-  bool own_states = false;      // a StateModel, else a Model
+  bool own_states = false;      // the film has states of its own
   bool force_by_rates = false;  // the force depends on the rates of the own states
   int states = 0;               // about how many own states
   std::array<int, 2> cells{};   // of its mesh, around and along the bearing or each pad; 0: no mesh in this direction
@@ -56,8 +54,5 @@ struct Facts {
   CircleOnly circle_only{};
   Misplaced misplaced{};  // found only if a bore was given
 };
-
-/// A film without own states, or one with such.
-using Made = std::variant<std::unique_ptr<Model>, std::unique_ptr<StateModel>>;
 
 }  // namespace whirl::film

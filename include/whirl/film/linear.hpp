@@ -23,6 +23,6 @@ struct Linear {
 
 void describe(deck::Description<Linear>& d);
 [[nodiscard]] Facts facts_of(const Linear& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const Linear& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const Linear& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film

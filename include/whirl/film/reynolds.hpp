@@ -37,7 +37,7 @@ struct Reynolds {
 
 void describe(deck::Description<Reynolds>& d);
 [[nodiscard]] Facts facts_of(const Reynolds& options, const Geometry& geometry);
-[[nodiscard]] Made make(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant);
+[[nodiscard]] std::unique_ptr<Film> make(const Geometry& geometry, const Reynolds& options, const Lubricant& lubricant);
 void refine(Reynolds& options, const std::array<double, 2>& factor);
 
 }  // namespace whirl::film

@@ -1,6 +1,8 @@
 #pragma once
 // How near a journal may come to its bearing.
 
+#include <array>
+
 #include "whirl/film/bore.hpp"
 
 namespace whirl::film {
@@ -10,5 +12,9 @@ namespace whirl::film {
 /// superfinished surfaces have: no real bearing keeps its surfaces apart with less.
 /// Source: Hamrock, Schmid and Jacobson (2004), sec. 3.8, for the lambda ratio.
 [[nodiscard]] double default_minimum_film(const Geometry& geometry);
+
+/// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`
+/// as in Motion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
+[[nodiscard]] double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position);
 
 }  // namespace whirl::film

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "whirl/core/entry_stream.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 #include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
 #include "whirl/system/plant.hpp"

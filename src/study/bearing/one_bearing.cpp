@@ -19,40 +19,32 @@ constexpr double vertical = 1e-13, vertical_relaxed = 1e-11;
 }  // namespace
 
 OneBearing::OneBearing(const system::Support& support, double speed)
-    : clearance_(support.geometry.clearance), speed_(speed), soft_(film::facts(support.film).gives_way) {
+    : clearance_(support.geometry.clearance),
+      speed_(speed),
+      soft_(film::facts(support.film).gives_way),
+      film_(film::make_film(support.geometry, support.film, support.lubricant)),
+      rest_(film_->states()) {
   const film::Geometry& g = support.geometry;
   const double ratio = g.radius / g.clearance, shear = support.lubricant.viscosity * ratio * ratio * speed;
   load_ = shear * g.length * 2 * g.radius;
   pressure_ = 6 * shear;
   motion_.speed = speed;
-  if (film::has_states(support.film)) {
-    stateful_ = film::make_state_model(g, support.film, support.lubricant);
-    rest_.resize(stateful_->states());
-  } else {
-    film_ = film::make_model(g, support.film, support.lubricant);
-  }
 }
 
 BearingEquilibrium OneBearing::centred() const {
   BearingEquilibrium e{0, 0.5 * std::numbers::pi, 0, nan, nan, {}};
-  if (!stateful_) return e;
   film::Motion m;
   m.speed = speed_;
-  e.states.resize(stateful_->states());
-  stateful_->unloaded(m, e.states);
+  e.states.resize(film_->states());
+  film_->unloaded(m, e.states);
   return e;
 }
 
 // F* at the position of motion_, the film at rest.
 std::array<double, 2> OneBearing::force() {
-  if (stateful_) {
-    film::relax(*stateful_, motion_, states_);
-    stateful_->evaluate(motion_, states_, rest_, film::Need::force, state_response_);
-    response_ = state_response_.journal;
-  } else {
-    film_->evaluate(motion_, film::Need::tangents, response_);
-  }
-  return {response_.force[0] / load_, response_.force[1] / load_};
+  film::relax(*film_, motion_, states_);
+  film_->evaluate(motion_, states_, rest_, film::Need::force, response_);
+  return {response_.journal.force[0] / load_, response_.journal.force[1] / load_};
 }
 
 // Turning the journal turns the force of a full film by as much, so that one step is exact; other bores take secants.
@@ -106,7 +98,7 @@ void OneBearing::set_border(BearingEquilibrium& e) {
     const double nu2 = ((k_e - k[0]) * (k_e - k[3]) - k[1] * k[2]) / (b[0] * b[3] - b[1] * b[2]);
     if (!(nu2 > 0 && k_e > 0)) return;
     const double last = std::exchange(nu, std::sqrt(nu2));
-    if (stateful_ && std::abs(nu - last) > 1e-12) continue;
+    if (std::abs(nu - last) > 1e-12) continue;
     e.whirl_ratio = nu;
     e.speed_limit = std::sqrt(k_e / (nu2 * e.sommerfeld));
     return;
@@ -114,27 +106,18 @@ void OneBearing::set_border(BearingEquilibrium& e) {
 }
 
 BearingCoefficients OneBearing::coefficients(double ratio) {
+  const film::Coefficients c = film::coefficients(*film_, motion_, states_, ratio * speed_);
   BearingCoefficients out{};
-  if (stateful_) {
-    const film::Coefficients c = film::coefficients(*stateful_, motion_, states_, ratio * speed_);
-    for (std::size_t i = 0; i < 4; ++i) {
-      out.k[i] = c.stiffness[i] * clearance_ / load_;
-      out.b[i] = c.damping[i] * clearance_ * speed_ / load_;
-    }
-    return out;
+  for (std::size_t i = 0; i < 4; ++i) {
+    out.k[i] = c.stiffness[i] * clearance_ / load_;
+    out.b[i] = c.damping[i] * clearance_ * speed_ / load_;
   }
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) {
-      out.k[2 * i + j] = -response_.d_position[i][j] * clearance_ / load_;
-      out.b[2 * i + j] = -response_.d_velocity[i][j] * clearance_ * speed_ / load_;
-    }
   return out;
 }
 
 BearingProfile OneBearing::profile() {
   BearingProfile out;
-  const auto fields = stateful_ ? stateful_->fields(motion_, states_) : film_->fields(motion_);
-  for (const film::Field& f : fields) {
+  for (const film::Field& f : film_->fields(motion_, states_)) {
     if (f.name == "theta") out.theta.insert(out.theta.end(), f.values.begin(), f.values.end());
     const bool pressure = f.name == "pressure";
     if (!pressure && f.name != "thickness") continue;
@@ -154,11 +137,11 @@ std::array<double, 2> OneBearing::impedance(double along, double across) {
   m.position = {along * clearance_, across * clearance_, 0, 0};
   m.velocity = {clearance_ * speed_, 0, 0, 0};
   try {
-    film_->evaluate(m, film::Need::force, response_);
+    film_->evaluate(m, states_, rest_, film::Need::force, response_);
   } catch (const core::DomainError&) {
     return {nan, nan};
   }
-  return {-response_.force[0] / load_, -response_.force[1] / load_};
+  return {-response_.journal.force[0] / load_, -response_.journal.force[1] / load_};
 }
 
 }  // namespace whirl::study

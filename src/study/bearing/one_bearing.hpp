@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {
@@ -39,7 +39,7 @@ public:
   /// @param speed shaft speed Omega [rad/s]
   OneBearing(const system::Support& support, double speed);
   /// A film on a rigid bore without own states: its force does not depend on what was before.
-  [[nodiscard]] bool rigid() const { return !stateful_ && !soft_; }
+  [[nodiscard]] bool rigid() const { return film_->states() == 0 && !soft_; }
   /// The journal at this eccentricity, sought from an equilibrium `near` it (attitude and states). Empty where the film
   /// does not exist: journal and bearing touch.
   [[nodiscard]] std::optional<BearingEquilibrium> carrying(double eccentricity, const BearingEquilibrium& near);
@@ -62,11 +62,9 @@ private:
   bool soft_;
   double load_ = 0;      // N, of F* = 1
   double pressure_ = 0;  // Pa, of p* = 1
-  std::unique_ptr<film::Model> film_;
-  std::unique_ptr<film::StateModel> stateful_;
+  std::unique_ptr<film::Film> film_;
   film::Motion motion_;
-  film::Response response_;
-  film::StateResponse state_response_;
+  film::StateResponse response_;
   std::vector<double> states_, rest_;
 };
 

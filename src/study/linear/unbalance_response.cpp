@@ -19,7 +19,7 @@
 #include "study/linear/response_peaks.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/thickness.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/solve/newton/frequency_response.hpp"
 #include "whirl/study/linear/separation.hpp"

@@ -1,4 +1,4 @@
-#include "whirl/film/state_model.hpp"
+#include "whirl/film/film.hpp"
 
 #include <Eigen/SparseLU>
 #include <cmath>
@@ -28,35 +28,54 @@ Sparse<Scalar> matrix(const Share& all, const StateResponse& r, Scalar sigma) {
 
 }  // namespace
 
-const Share& StateModel::whole() const {
+std::span<const Port> Film::ports() const {
+  return std::span(all_ports).first(2);
+}
+
+const Share& Film::whole() const {
   if (!whole_) whole_ = std::make_unique<const Share>(share(0, static_cast<int>(states())));
   return *whole_;
 }
 
-void StateModel::evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates,
-                          Need need, StateResponse& response) {
+void Film::evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates, Need need,
+                    StateResponse& response) {
   core::require(states.size() == this->states() && rates.size() == states.size(), "states of a film");
   const Share& all = whole();
   if (all.seen.size() == states.size()) return evaluate(motion, all, states, rates, need, response);
   evaluate(motion, all, seen_of(all, states), seen_of(all, rates), need, response);
 }
 
-void relax(StateModel& film, const Motion& motion, std::vector<double>& states) {
+void Film::evaluate(const Motion& motion, Need need, Response& response) {
+  core::require(states() == 0, "a film without states");
+  StateResponse all;
+  evaluate(motion, whole(), {}, {}, need, all);
+  response = all.journal;
+}
+
+void relax(Film& film, const Motion& motion, std::vector<double>& states) {
+  if (film.states() == 0) return;
   const std::vector<double> rest(states.size(), 0.0);
   Steady(film).solve(motion, rest, Steady::Until::small_step, states);
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.
-Coefficients coefficients(StateModel& film, const Motion& motion, std::span<const double> states, double omega) {
+Coefficients coefficients(Film& film, const Motion& motion, std::span<const double> states, double omega) {
   if (!(omega > 0.0)) throw core::InputError("film: the frequency of stiffness and damping must be positive");
   const std::vector<double> rest(states.size(), 0.0);
   StateResponse r;
   film.evaluate(motion, states, rest, Need::tangents, r);
   const Complex iw(0.0, omega);
+  Coefficients out;
+  if (states.empty()) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      out.stiffness[i] = -r.journal.d_position[i / 2][i % 2];
+      out.damping[i] = -r.journal.d_velocity[i / 2][i % 2];
+    }
+    return out;
+  }
   Sparse<Complex> m = matrix(film.whole(), r, iw);
   Eigen::SparseLU<Sparse<Complex>> lu(m);
   if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
-  Coefficients out;
   const auto n = static_cast<Eigen::Index>(states.size());
   const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };
   for (std::size_t j = 0; j < 2; ++j) {  // ports x and y

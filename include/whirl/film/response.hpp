@@ -1,13 +1,10 @@
 #pragma once
-// Quasi-static fluid films: journal motion in, film force on the journal and its exact tangents out.
+// What a fluid film takes and gives: journal motion in, force on the journal and its exact tangents out.
 
 #include <array>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
-
-#include "whirl/film/options.hpp"
 
 namespace whirl::film {
 
@@ -29,7 +26,36 @@ struct Response {
   std::array<std::array<double, 4>, 4> d_position{};  // [i][j] = d force_i / d position_j; stiffness K is its negative
   std::array<std::array<double, 4>, 4> d_velocity{};  // [i][j] = d force_i / d velocity_j; damping C is its negative
   std::array<double, 4> d_speed{};                    // [i] = d force_i / d Omega
-  double min_thickness = 0.0;  // m, least of all pads, exactly (minimum_thickness); infinite for a linear film
+  double min_thickness = 0.0;                         // m, least of all pads, exactly; infinite for a linear film
+};
+
+/// A motion of the journal that a film sees, and the force that does work with it: where they stand in Motion and in
+/// Response.
+enum class Port { x, y, tilt_x, tilt_y };
+/// In their order; a film that does not follow tilt sees the first two.
+inline constexpr std::array<Port, 4> all_ports = {Port::x, Port::y, Port::tilt_x, Port::tilt_y};
+
+/// Thin blocks of derivatives, spread like the states: [port][row of the share], ports as the film names them.
+using PortColumns = std::vector<std::vector<double>>;
+
+/// g(motion, s, s') of the rows of a share, its part of the force on the journal, and all derivatives. Forces and their
+/// derivatives of all shares of a film add up (min_thickness: the least). A film without states has the journal's
+/// alone.
+struct StateResponse {
+  Response journal;                       // force and its derivatives at constant s
+  std::vector<double> residual;           // [rows] g
+  std::vector<double> d_states, d_rates;  // dg/ds, dg/ds' at the places of the share
+  PortColumns d_position, d_velocity;     // dg/d(position), dg/d(velocity)
+  std::vector<double> d_speed;            // [rows] dg/dOmega
+  PortColumns force_d_states;             // d force/d s_k of the states k held
+  PortColumns force_d_rates;              // likewise d force/d s'_k; no ports if zero
+
+  /// Leaves no rows and nothing of an evaluation before; returns the journal's part.
+  Response& without_states() {
+    for (std::vector<double>* v : {&residual, &d_states, &d_rates, &d_speed}) v->clear();
+    for (PortColumns* columns : {&d_position, &d_velocity, &force_d_states, &force_d_rates}) columns->clear();
+    return journal = {};
+  }
 };
 
 /// Quantities for reports, computed apart from evaluate() so that they cost nothing inside solvers.
@@ -57,34 +83,5 @@ struct Field {
   std::vector<std::size_t> shape;  // {n_theta}, {n_z} or {n_theta, n_z}
   std::vector<double> values;
 };
-
-/// A film without own states: force = f(position, velocity, Omega). Not thread-safe (own workspace).
-class Model {
-public:
-  Model() = default;
-  Model(const Model&) = delete;
-  Model& operator=(const Model&) = delete;
-  virtual ~Model() = default;
-  /// Fills `response`; the derivatives are those of the discrete force, zero if only the force is needed.
-  /// Throws core::DomainError where the film thickness is not positive, or the film runs dry.
-  virtual void evaluate(const Motion& motion, Need need, Response& response) = 0;
-  /// Report quantities at `motion`; throws as evaluate() does.
-  virtual Summary summary(const Motion& motion) = 0;
-  /// Pressure and thickness at the grid nodes of every pad; empty for a linear film; throws as evaluate() does.
-  virtual std::vector<Field> fields(const Motion& motion) = 0;
-  /// Least thickness of the film [m] over its whole length, exactly where the bore is rigid: not positive where the
-  /// surfaces touch. Infinite for a linear film. Throws as evaluate() does where the film itself has to be known.
-  [[nodiscard]] virtual double least_thickness(const Motion& motion) = 0;
-  /// Starts the search for its pressure from where `other` ended, a film of the same mesh with other numbers. Without
-  /// effect on a film that searches nothing, or if the meshes differ.
-  virtual void start_from(const Model& /*other*/) {}
-};
-
-/// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`
-/// as in Motion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
-[[nodiscard]] double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position);
-
-/// The film described by the options, which has no own states; throws core::InputError on values outside their range.
-std::unique_ptr<Model> make_model(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 
 }  // namespace whirl::film
