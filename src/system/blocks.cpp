@@ -4,6 +4,7 @@
 #include <span>
 
 #include "film_part.hpp"
+#include "rotor_part.hpp"
 #include "slope.hpp"
 #include "whirl/core/error.hpp"
 
@@ -20,9 +21,8 @@ problem::SparseBlock block(Eigen::Index rows, Eigen::Index columns, const Entrie
   return out;
 }
 
-}  // namespace
-
-void add_entries(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out) {
+// Appends the entries (i, j) of this rank's rows of m as (2 i, 2 j + rate): a matrix of coordinates on states.
+void add_entries(Mat m, PetscInt rate, Entries& out) {
   PetscInt begin = 0, end = 0;
   check(MatGetOwnershipRange(m, &begin, &end));
   for (PetscInt i = begin; i < end; ++i) {
@@ -36,6 +36,8 @@ void add_entries(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out)
   }
 }
 
+}  // namespace
+
 RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
   rebuild();
   find_own_states();
@@ -43,12 +45,13 @@ RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
 
 void RotorSystem::Blocks::rebuild() {
   const RotorSystem& system = system_;
+  const RotorPart::Matrices& m = system.hub_->matrices();
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
   Entries rates, at_rest, gyroscopic, b, c;
-  add_entries(system.matrices_.mass.get(), 1, rates);
-  add_entries(system.matrices_.stiffness.get(), 0, at_rest);
-  add_entries(system.matrices_.damping.get(), 1, at_rest);
-  add_entries(system.matrices_.gyroscopic.get(), 1, gyroscopic);
+  add_entries(m.mass.get(), 1, rates);
+  add_entries(m.stiffness.get(), 0, at_rest);
+  add_entries(m.damping.get(), 1, at_rest);
+  add_entries(m.gyroscopic.get(), 1, gyroscopic);
   for (int i = 0; i < static_cast<int>(n / 2); ++i) {
     rates.emplace_back(2 * i + 1, 2 * i, 1);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);
@@ -56,7 +59,7 @@ void RotorSystem::Blocks::rebuild() {
   Eigen::Index ports = 0;
   ports_.clear();
   for (int i = 0; i < bearings; ++i) {
-    const std::vector<PortEnds>& of = system.bearings_[static_cast<std::size_t>(i)].ports;
+    const std::vector<PortEnds>& of = system.bearings_[static_cast<std::size_t>(i)].part->ports();
     const auto k = static_cast<Eigen::Index>(of.size());
     ports_.push_back({ports, k});
     for (Eigen::Index d = 0; d < k; ++d)
@@ -76,7 +79,6 @@ void RotorSystem::Blocks::rebuild() {
 }
 
 void RotorSystem::Blocks::find_own_states() {
-  responses_.resize(system_.bearings_.size());
   for (std::size_t i = 0; i < system_.bearings_.size(); ++i) {
     const FilmPart& part = *system_.bearings_[i].part;
     if (part.count() == 0) continue;
@@ -99,11 +101,12 @@ const problem::SparseBlock& RotorSystem::Blocks::l0() {
 }
 
 void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load) {
-  const auto [c, s] = system_.unbalance_factors(angle);
+  const RotorPart& hub = *system_.hub_;
+  const auto [c, s] = RotorPart::unbalance_factors(system_.moment(angle, nullptr, nullptr));
   load.setZero(size());
   for (Eigen::Index i = 0; i < size() / 2; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    load(2 * i) = system_.load_[k] + c * system_.unbalance_.cosine[k] + s * system_.unbalance_.sine[k];
+    load(2 * i) = hub.load()[k] + c * hub.unbalance().cosine[k] + s * hub.unbalance().sine[k];
   }
 }
 
@@ -161,13 +164,13 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
       if (ports == 2) motion.position[2 + d] = motion.velocity[2 + d] = 0.0;
       motion.position[2 + d] -= system_.axes_[k][d];
     }
-    const FilmPart& part = *system_.bearings_[k].part;
-    film::StateResponse& here = responses_[k];
+    FilmPart& part = *system_.bearings_[k].part;
     try {
-      part.evaluate(motion, own, rates, need, here);
+      part.evaluate(motion, own, rates, need);
     } catch (const core::DomainError& e) {
       throw core::DomainError("bearing " + system_.train_.supports[k].name + ": " + e.what());
     }
+    const film::StateResponse& here = part.response();
     const film::Response& response = here.journal;
     for (Eigen::Index d = 0; d < ports; ++d) films.forces(first + d) = response.force[static_cast<std::size_t>(d)];
     films.residual.segment(part.first(), part.count()) =
@@ -207,7 +210,7 @@ void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::Vector
   const double c = 2 * system_.speed_ * std::cos(angle), s = 2 * system_.speed_ * std::sin(angle);
   for (Eigen::Index i = 0; i < n / 2; ++i) {
     const auto j = static_cast<std::size_t>(i);
-    out(2 * i) -= c * system_.unbalance_.cosine[j] + s * system_.unbalance_.sine[j];
+    out(2 * i) -= c * system_.unbalance_cosine()[j] + s * system_.unbalance_sine()[j];
   }
 }
 

@@ -9,9 +9,6 @@
 
 namespace whirl::system {
 
-/// Appends the entries (i, j) of this rank's rows of m as (2 i, 2 j + rate): a matrix of coordinates on states.
-void add_entries(Mat m, PetscInt rate, std::vector<Eigen::Triplet<double>>& out);
-
 /// Inputs are (x, y, vx, vy) of each journal relative to its pedestal (elevation not subtracted), forces (Fx, Fy) of
 /// each film on its journal; with the slopes of the shaft behind x, y, their rates behind vx, vy and the moments behind
 /// Fx, Fy where a film tilts.
@@ -46,8 +43,6 @@ private:
     Eigen::Index first, count;
   };
   std::vector<Ports> ports_;  // of each bearing among the forces; positions stand at twice that, then rates
-  // Work space.
-  std::vector<film::StateResponse> responses_;
 };
 
 }  // namespace whirl::system

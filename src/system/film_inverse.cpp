@@ -86,9 +86,9 @@ bool RotorSystem::FilmInverse::complete() const {
 }
 
 void RotorSystem::FilmInverse::set(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma) {
-  const Films at = system_.films_at(x, xdot, film::Need::tangents);
+  system_.evaluate_films(x, xdot, film::Need::tangents);
   for (Film& film : films_) {
-    const film::StateResponse& own = at.own[film.bearing];
+    const film::StateResponse& own = system_.bearings_[film.bearing].part->response();
     film.inverse->set(own.d_states, own.d_rates, alpha, sigma);
   }
 }

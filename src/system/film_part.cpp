@@ -13,18 +13,25 @@ FilmPart::FilmPart(const Support& support, PetscInt first)
       first_(first),
       count_(static_cast<PetscInt>(film_->states())) {}
 
-FilmPart FilmPart::with(const Support& support) const {
-  FilmPart out(support, first_);
-  core::require(out.count_ == count_, "a film on the same mesh");
-  out.film_->start_from(*film_);
-  out.row_ = row_;
-  out.gathered_ = gathered_;
-  out.here_ = here_;
-  if (rows() > 0) out.share_ = out.film_->share(share_.begin, share_.end);
+std::unique_ptr<FilmPart> FilmPart::with(const Support& support) const {
+  auto out = std::make_unique<FilmPart>(support, first_);
+  core::require(out->count_ == count_, "a film on the same mesh");
+  out->film_->start_from(*film_);
+  out->row_ = row_;
+  out->gathered_ = gathered_;
+  out->here_ = here_;
+  out->ports_ = ports_;
+  out->begin_ = begin_;
+  if (rows() > 0) out->share_ = out->film_->share(share_.begin, share_.end);
   // Solvers learn once which derivatives a film has.
-  if (out.film_->constant_rates() != film_->constant_rates())
+  if (out->film_->constant_rates() != film_->constant_rates())
     throw core::DomainError("the damping of a liner can not come or go along a branch");
   return out;
+}
+
+void FilmPart::join(std::vector<PortEnds> ports, PetscInt coordinates) {
+  ports_ = std::move(ports);
+  begin_ = 2 * coordinates + first_;
 }
 
 PetscInt FilmPart::cut(PetscInt wanted) const {
@@ -40,15 +47,14 @@ void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gath
 }
 
 void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
-                        film::Need need, film::StateResponse& response) const {
+                        film::Need need) {
   const std::size_t n = share_.seen.size();
-  film_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response);
+  film_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response_);
 }
 
-void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need,
-                        film::StateResponse& response) const {
+void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need) {
   const auto n = static_cast<std::size_t>(count_);
-  film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response);
+  film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response_);
 }
 
 std::vector<double> FilmPart::relaxed(const film::Motion& motion) const {
@@ -67,42 +73,58 @@ std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
   return out;
 }
 
-void FilmPart::count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const {
-  const auto add = [&](const film::Places& places) {
-    film::for_entries(share_, places, {}, [&](int row, int, double) { ++count[static_cast<std::size_t>(row_ + row)]; });
-  };
-  add(share_.d_states);
-  add(share_.d_rates);
+void FilmPart::scales(double* states, double* rows) const {
+  for (const problem::Field& f : fields({}))
+    for (PetscInt i = f.begin - row_; i < f.end - row_; ++i) {
+      states[i] = f.scale;
+      rows[i] = f.scale * typical_frequency;
+    }
+}
+
+void FilmPart::residual(const Moment& /*at*/, double* f) const {
+  if (rows() > 0) std::copy(response_.residual.begin(), response_.residual.end(), f);
+}
+
+void FilmPart::speed_derivative(const Moment& /*at*/, double* f) const {
+  if (rows() > 0) std::copy(response_.d_speed.begin(), response_.d_speed.end(), f);
+}
+
+void FilmPart::count_own_entries(std::span<PetscInt> count) const {
+  for (const film::Places* places : {&share_.d_states, &share_.d_rates})
+    film::for_entries(share_, *places, {},
+                      [&](int row, int, double) { ++count[static_cast<std::size_t>(row_ + row)]; });
+}
+
+void FilmPart::count_entries(std::span<PetscInt> count) const {
+  count_own_entries(count);
   PetscInt inputs = 0;  // positions and velocities
-  for (const PortEnds& port : ports) inputs += 2 * static_cast<PetscInt>(port.size());
+  for (const PortEnds& port : ports_) inputs += 2 * static_cast<PetscInt>(port.size());
   for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;
 }
 
-void FilmPart::add(core::EntryStream& j, const film::StateResponse* response, PetscInt n,
-                   const std::vector<PortEnds>& ports, double alpha, double sigma) const {
+void FilmPart::add(core::EntryStream& j, bool values, double alpha, double sigma) const {
   if (rows() == 0) return;
-  const PetscInt all = 2 * n + first_, begin = all + share_.begin;
-  const auto matrix = [&](const film::Places& places, const std::vector<double>* values, double factor) {
-    const std::span<const double> at = values ? std::span<const double>(*values) : std::span<const double>();
-    film::for_entries(share_, places, at,
-                      [&](int row, int column, double value) { j.add(begin + row, all + column, factor * value); });
+  const PetscInt begin = begin_ + share_.begin;
+  const auto matrix = [&](const film::Places& places, const std::vector<double>& of, double factor) {
+    film::for_entries(share_, places, values ? std::span<const double>(of) : std::span<const double>(),
+                      [&](int row, int column, double value) { j.add(begin + row, begin_ + column, factor * value); });
   };
-  matrix(share_.d_states, response ? &response->d_states : nullptr, alpha);
-  matrix(share_.d_rates, response ? &response->d_rates : nullptr, sigma);
+  matrix(share_.d_states, response_.d_states, alpha);
+  matrix(share_.d_rates, response_.d_rates, sigma);
   const PetscInt count = rows();
-  for (std::size_t port = 0; port < ports.size(); ++port)
-    for (const auto& [q, side] : ports[port]) {
-      const auto column = [&](const film::PortColumns* from, PetscInt unknown) {
+  for (std::size_t port = 0; port < ports_.size(); ++port)
+    for (const auto& [q, side] : ports_[port]) {
+      const auto column = [&](const film::PortColumns& from, PetscInt unknown) {
         for (PetscInt k = 0; k < count; ++k)
-          j.add(begin + k, unknown, from ? alpha * side * (*from)[port][static_cast<std::size_t>(k)] : 0.0);
+          j.add(begin + k, unknown, values ? alpha * side * from[port][static_cast<std::size_t>(k)] : 0.0);
       };
-      column(response ? &response->d_position : nullptr, 2 * q);
-      column(response ? &response->d_velocity : nullptr, 2 * q + 1);
-      const bool by_rates = response && !response->force_d_rates.empty();
+      column(response_.d_position, 2 * q);
+      column(response_.d_velocity, 2 * q + 1);
+      const bool by_rates = values && !response_.force_d_rates.empty();
       for (PetscInt k = 0; k < count; ++k) {
         const auto i = static_cast<std::size_t>(k);
-        double value = response ? -side * alpha * response->force_d_states[port][i] : 0.0;
-        if (by_rates) value -= side * sigma * response->force_d_rates[port][i];
+        double value = values ? -side * alpha * response_.force_d_states[port][i] : 0.0;
+        if (by_rates) value -= side * sigma * response_.force_d_rates[port][i];
         j.add(2 * q, begin + k, value);
       }
     }

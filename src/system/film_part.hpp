@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "part.hpp"
 #include "whirl/core/entry_stream.hpp"
 #include "whirl/film/film.hpp"
-#include "whirl/problem/system.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::system {
@@ -19,13 +19,13 @@ namespace whirl::system {
 using PortEnds = std::vector<std::pair<PetscInt, double>>;
 
 /// Own states of all films stand film by film behind the machine; this one's begin at `first` among them.
-class FilmPart {
+class FilmPart final : public Part {
 public:
   /// Makes the film of a bearing; throws core::InputError on values outside their range.
   FilmPart(const Support& support, PetscInt first);
   /// The film of the same bearing with other numbers on the same mesh, held as this one is; what it searches starts
   /// from where this one ended. Throws as the constructor does.
-  [[nodiscard]] FilmPart with(const Support& support) const;
+  [[nodiscard]] std::unique_ptr<FilmPart> with(const Support& support) const;
 
   [[nodiscard]] film::Film& film() const { return *film_; }
   [[nodiscard]] PetscInt first() const { return first_; }
@@ -37,46 +37,54 @@ public:
   /// see is gathered film by film, that of this one from `gathered` on. A film without states is one rank's.
   void hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gathered, bool without_states);
   [[nodiscard]] const film::Share& share() const { return share_; }
-  /// First local row, and their number.
-  [[nodiscard]] PetscInt row() const { return row_; }
-  [[nodiscard]] PetscInt rows() const { return share_.rows(); }
+  /// The motions that it sees, by their coordinates of the machine, of which there are `coordinates`: own states of all
+  /// films stand behind these and their rates.
+  void join(std::vector<PortEnds> ports, PetscInt coordinates);
+  [[nodiscard]] const std::vector<PortEnds>& ports() const { return ports_; }
   /// Where what it sees begins in what is gathered.
   [[nodiscard]] std::size_t gathered() const { return gathered_; }
   /// This rank evaluates it, or a share of it.
   [[nodiscard]] bool here() const { return here_; }
 
   /// This rank's share; `own` and `rates`: what all films of this rank see.
-  void evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates, film::Need need,
-                film::StateResponse& response) const;
+  void evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
+                film::Need need);
   /// The whole film; `own` and `rates`: those of all films, null if there are none.
-  void evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need,
-                film::StateResponse& response) const;
-  /// Its fields on this rank; they bear the name of the part.
-  [[nodiscard]] std::vector<problem::Field> fields(const std::string& name) const;
-  /// The states of the film from those of a machine of n coordinates held as a whole.
-  [[nodiscard]] std::span<const double> of(const double* x, PetscInt n) const {
-    return {x + 2 * n + first_, static_cast<std::size_t>(count_)};
-  }
+  void evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need);
+  /// What it answered last.
+  [[nodiscard]] const film::StateResponse& response() const { return response_; }
 
+  [[nodiscard]] PetscInt row() const override { return row_; }
+  [[nodiscard]] PetscInt rows() const override { return share_.rows(); }
+  [[nodiscard]] std::vector<problem::Field> fields(const std::string& name) const override;
+  void scales(double* states, double* rows) const override;
+  void residual(const Moment& at, double* f) const override;
+  void speed_derivative(const Moment& at, double* f) const override;
+  void count_entries(std::span<PetscInt> count) const override;
+  /// The same of dg/ds and dg/ds' alone.
+  void count_own_entries(std::span<PetscInt> count) const;
+  /// j += alpha times the derivatives of its rows in states and journal, and of its forces in its states; sigma times
+  /// those in rates. Without `values` their places alone.
+  void add(core::EntryStream& j, bool values, double alpha, double sigma) const;
+
+  /// The states of the film from those of a machine held as a whole.
+  [[nodiscard]] std::span<const double> of(const double* x) const {
+    return {x + begin_, static_cast<std::size_t>(count_)};
+  }
   [[nodiscard]] bool constant_rates() const { return film_->constant_rates(); }
   /// It finds its states by whole steps of Newton's method while the machine stays where it is.
   [[nodiscard]] bool settles() const { return film_->whole_steps(); }
   /// The states at which it rests with the journal where it is.
   [[nodiscard]] std::vector<double> relaxed(const film::Motion& motion) const;
 
-  /// Room for the entries of its rows, [local rows].
-  void count_entries(const std::vector<PortEnds>& ports, std::span<PetscInt> count) const;
-  /// j += alpha times the derivatives in states and journal, sigma times those in rates; without a response the places
-  /// alone. The rows of own states of all films begin at 2 n.
-  void add(core::EntryStream& j, const film::StateResponse* response, PetscInt n, const std::vector<PortEnds>& ports,
-           double alpha, double sigma) const;
-
 private:
   std::unique_ptr<film::Film> film_;
-  PetscInt first_, count_, row_ = 0;
+  PetscInt first_, count_, begin_ = 0, row_ = 0;  // begin_: of its states in a machine held as a whole
   std::size_t gathered_ = 0;
   bool here_ = false;
   film::Share share_;
+  std::vector<PortEnds> ports_;
+  film::StateResponse response_;
 };
 
 }  // namespace whirl::system

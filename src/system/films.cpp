@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "film_part.hpp"
+#include "rotor_part.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -73,14 +74,16 @@ film::Motion RotorSystem::motion(const JournalState& journal) const {
 
 std::vector<film::Response> RotorSystem::film_responses(const std::vector<JournalState>& journals, film::Need need) {
   core::require(n_own_ == 0, "films with own states need the whole state");
-  return films_at({journals, {}, {}}, need).journal;
+  evaluate_films({journals, {}, {}}, need);
+  return responses();
 }
 
 std::vector<film::Response> RotorSystem::film_responses(const double* x, film::Need need) {
   FilmInputs in{journals(x), {}, {}};
   for (std::size_t k = journal_inputs_; k < wanted_.size(); ++k) in.own.push_back(x[wanted_[k]]);
   in.rates.resize(in.own.size());
-  return films_at(in, need).journal;
+  evaluate_films(in, need);
+  return responses();
 }
 
 RotorSystem::FilmInputs RotorSystem::film_inputs(Vec x, Vec xdot) {
@@ -94,32 +97,34 @@ RotorSystem::FilmInputs RotorSystem::film_inputs(Vec x, Vec xdot) {
   return in;
 }
 
-RotorSystem::Films RotorSystem::films_at(Vec x, Vec xdot, film::Need need) {
-  return films_at(film_inputs(x, xdot), need);
+std::vector<film::Response> RotorSystem::responses() const {
+  std::vector<film::Response> out;
+  for (const Bearing& b : bearings_) out.push_back(b.response);
+  return out;
 }
 
-void RotorSystem::evaluate(std::size_t bearing, const FilmPart& part, const FilmInputs& in, film::Need need,
-                           film::StateResponse& response) const {
+void RotorSystem::evaluate_films(Vec x, Vec xdot, film::Need need) {
+  evaluate_films(film_inputs(x, xdot), need);
+}
+
+void RotorSystem::evaluate(std::size_t bearing, FilmPart& part, const FilmInputs& in, film::Need need) const {
   try {
-    part.evaluate(motion(in.journals[bearing]), in.own, in.rates, need, response);
+    part.evaluate(motion(in.journals[bearing]), in.own, in.rates, need);
   } catch (const core::DomainError& e) {
     throw core::DomainError("bearing " + train_.supports[bearing].name + ": " + e.what());
   }
 }
 
-RotorSystem::Films RotorSystem::films_at(const FilmInputs& in, film::Need need) {
-  Films films;
-  films.journal.resize(bearings_.size());
-  films.own.resize(bearings_.size());
+void RotorSystem::evaluate_films(const FilmInputs& in, film::Need need) {
   core::agree(comm_, [&] {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
-      if (!bearings_[i].part->here()) continue;
-      evaluate(i, *bearings_[i].part, in, need, films.own[i]);
-      films.journal[i] = films.own[i].journal;
+      FilmPart& part = *bearings_[i].part;
+      if (!part.here()) continue;
+      evaluate(i, part, in, need);
+      bearings_[i].response = part.response().journal;
     }
   });
-  if (core::size_of(comm_) > 1) sum_over_ranks(films.journal);
-  return films;
+  if (core::size_of(comm_) > 1) sum_over_ranks();
 }
 
 namespace {
@@ -141,38 +146,38 @@ void each(film::Response& r, std::size_t k, F&& f) {
 
 // Forces and tangents add up, be it over the parts of a film or because all ranks but one have none; of thicknesses the
 // least counts.
-void RotorSystem::sum_over_ranks(std::vector<film::Response>& films) const {
+void RotorSystem::sum_over_ranks() {
   std::vector<double> flat, thickness;
-  for (std::size_t i = 0; i < films.size(); ++i) {
-    const bool here = bearings_[i].part->here();
-    each(films[i], bearings_[i].ports.size(), [&](double value) { flat.push_back(here ? value : 0.0); });
-    thickness.push_back(here ? films[i].min_thickness : infinite);
+  for (Bearing& b : bearings_) {
+    const bool here = b.part->here();
+    each(b.response, b.part->ports().size(), [&](double value) { flat.push_back(here ? value : 0.0); });
+    thickness.push_back(here ? b.response.min_thickness : infinite);
   }
   MPI_Allreduce(MPI_IN_PLACE, flat.data(), static_cast<int>(flat.size()), MPI_DOUBLE, MPI_SUM, comm_);
   MPI_Allreduce(MPI_IN_PLACE, thickness.data(), static_cast<int>(thickness.size()), MPI_DOUBLE, MPI_MIN, comm_);
   const double* from = flat.data();
-  for (std::size_t i = 0; i < films.size(); ++i) {
-    each(films[i], bearings_[i].ports.size(), [&](double& value) { value = *from++; });
-    films[i].min_thickness = thickness[i];
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    each(bearings_[i].response, bearings_[i].part->ports().size(), [&](double& value) { value = *from++; });
+    bearings_[i].response.min_thickness = thickness[i];
   }
 }
 
-void RotorSystem::add_films(Mat j, const Films* films, double alpha, double sigma) const {
+void RotorSystem::add_films(Mat j, bool values, double alpha, double sigma) {
   static const film::Response none;
   film_entries_.begin(j);
-  for (std::size_t b = 0; b < bearings_.size(); ++b) {
-    const film::Response& r = films ? films->journal[b] : none;
-    const std::vector<PortEnds>& ports = bearings_[b].ports;
+  for (const Bearing& b : bearings_) {
+    const film::Response& r = values ? b.response : none;
+    const std::vector<PortEnds>& ports = b.part->ports();
     for (std::size_t d = 0; d < ports.size(); ++d)
       for (const auto& [row, to] : ports[d]) {
-        if (!owns(row)) continue;
+        if (!hub_->owns(row)) continue;
         for (std::size_t e = 0; e < ports.size(); ++e)
           for (const auto& [column, side] : ports[e]) {
             film_entries_.add(2 * row, 2 * column, -alpha * to * side * r.d_position[d][e]);
             film_entries_.add(2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e]);
           }
       }
-    bearings_[b].part->add(film_entries_, films ? &films->own[b] : nullptr, n_, ports, alpha, sigma);
+    b.part->add(film_entries_, values, alpha, sigma);
   }
   film_entries_.end();
 }
@@ -204,12 +209,12 @@ bool RotorSystem::constant_rates() const {
 
 film::Summary RotorSystem::film_summary(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
-  return bearings_[i].part->film().summary(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
+  return bearings_[i].part->film().summary(motion(journals(x)[i]), bearings_[i].part->of(x));
 }
 
 std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
-  return bearings_[i].part->film().fields(motion(journals(x)[i]), bearings_[i].part->of(x, n_));
+  return bearings_[i].part->film().fields(motion(journals(x)[i]), bearings_[i].part->of(x));
 }
 
 // Every rank relaxes the whole of a film that it holds a share of: a sparse LU of the film per Newton step, on each of
@@ -237,7 +242,7 @@ std::vector<double> RotorSystem::resampled(const Plant& of, const double* x) con
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const FilmPart &to = *bearings_[i].part, &from = *other.bearings_[i].part;
-    to.film().resample(motion(at[i]), from.film(), from.of(x, n_),
+    to.film().resample(motion(at[i]), from.film(), from.of(x),
                        {out.data() + 2 * n_ + to.first(), static_cast<std::size_t>(to.count())});
   }
   return out;

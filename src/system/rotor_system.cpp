@@ -1,15 +1,14 @@
 #include "whirl/system/rotor_system.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "blocks.hpp"
 #include "film_part.hpp"
+#include "rotor_part.hpp"
 #include "settling.hpp"
 #include "slope.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/rotor/shaft.hpp"
 #include "whirl/system/start.hpp"
 
 namespace whirl::system {
@@ -29,7 +28,7 @@ RotorSystem::RotorSystem(MPI_Comm comm, Varying varying, double speed)
 RotorSystem::~RotorSystem() = default;
 
 // Where the option ends at p, the difference is one-sided.
-const RotorSystem::Slope& RotorSystem::slope() {
+RotorSystem::Slope& RotorSystem::slope() {
   if (slope_) return *slope_;
   const double p = varying_.value, step = 1e-5 * varying_.magnitude;
   const auto beside = [&](double there) -> std::pair<double, Train> {
@@ -57,58 +56,36 @@ void RotorSystem::set_parameter(double p) {
   varying_.value = p;
 }
 
-// The centre of unbalance moves along (cos, sin)(angle): its acceleration has a part towards the axis and one along the
-// turn.
-std::array<double, 2> RotorSystem::unbalance_factors(double angle) const {
-  if (!forcing_) return {};
-  const double c = std::cos(angle), s = std::sin(angle), inward = speed_ * speed_;
-  return {inward * c + acceleration_ * s, inward * s - acceleration_ * c};
+Moment RotorSystem::moment(double angle, Vec x, Vec xdot) const {
+  return {angle, speed_, acceleration_, forcing_, x, xdot};
 }
 
-core::Vector RotorSystem::products(const Matrices& m, Vec x, Vec xdot) const {
-  // q, v and their rates as vectors of coordinates.
-  core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()),
-               a = core::duplicate(q.get()), sum = core::duplicate(q.get());
-  {
-    const core::ReadArray xa(x), da(xdot);
-    const core::WriteArray qa(q.get()), va(v.get()), aa(a.get());
-    for (PetscInt i = 0; i < qa.size(); ++i) {
-      qa[i] = xa[2 * i];
-      va[i] = xa[2 * i + 1];
-      aa[i] = da[2 * i + 1];
-    }
-  }
-  check(MatMult(m.stiffness.get(), q.get(), sum.get()));
-  check(MatMultAdd(m.damping.get(), v.get(), sum.get(), sum.get()));
-  check(MatMultAdd(m.mass.get(), a.get(), sum.get(), sum.get()));
-  check(MatMult(m.gyroscopic.get(), v.get(), a.get()));
-  check(VecAXPY(sum.get(), speed_, a.get()));
-  return sum;
+std::vector<const Part*> RotorSystem::parts() const {
+  std::vector<const Part*> out{hub_.get()};
+  for (const Bearing& b : bearings_) out.push_back(b.part.get());
+  return out;
 }
 
 void RotorSystem::subtract(const std::vector<std::array<double, 4>>& forces, double* rows) const {
-  for (std::size_t b = 0; b < bearings_.size(); ++b)
-    for (std::size_t port = 0; port < bearings_[b].ports.size(); ++port)
-      for (const auto& [q, side] : bearings_[b].ports[port])
-        if (owns(q)) rows[2 * (q - begin_)] -= side * forces[b][port];
+  for (std::size_t b = 0; b < bearings_.size(); ++b) {
+    const std::vector<PortEnds>& ports = bearings_[b].part->ports();
+    for (std::size_t port = 0; port < ports.size(); ++port)
+      for (const auto& [q, side] : ports[port])
+        if (hub_->owns(q)) rows[2 * (q - hub_->begin())] -= side * forces[b][port];
+  }
+}
+
+void RotorSystem::subtract(std::array<double, 4> film::Response::*of, double* rows) const {
+  std::vector<std::array<double, 4>> forces;
+  for (const Bearing& b : bearings_) forces.push_back(b.response.*of);
+  subtract(forces, rows);
 }
 
 void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
-  const Films films = films_at(x, xdot, film::Need::force);
-  const core::Vector sum = products(matrices_, x, xdot);
-  const core::ReadArray xa(x), da(xdot), sa(sum.get());
+  evaluate_films(x, xdot, film::Need::force);
   const core::WriteArray fa(f);
-  const auto [c, s] = unbalance_factors(angle);
-  for (PetscInt i = 0; i < sa.size(); ++i) {
-    const auto g = static_cast<std::size_t>(begin_ + i);
-    fa[2 * i + 1] = da[2 * i] - xa[2 * i + 1];
-    fa[2 * i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_.cosine[g] - s * unbalance_.sine[g];
-  }
-  std::vector<std::array<double, 4>> forces;
-  for (const film::Response& r : films.journal) forces.push_back(r.force);
-  subtract(forces, fa.data());
-  for (std::size_t b = 0; b < bearings_.size(); ++b)
-    std::copy(films.own[b].residual.begin(), films.own[b].residual.end(), fa.data() + bearings_[b].part->row());
+  for (const Part* part : parts()) part->residual(moment(angle, x, xdot), fa.data() + part->row());
+  subtract(&film::Response::force, fa.data());
 }
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
@@ -117,80 +94,27 @@ void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, doub
   if (alpha != 1) check(MatScale(j, alpha));
   if (alpha != 0) check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
   if (alpha != 0 || n_own_ > 0) {
-    const Films films = films_at(x, xdot, film::Need::tangents);
-    add_films(j, &films, alpha, sigma);
+    evaluate_films(x, xdot, film::Need::tangents);
+    add_films(j, true, alpha, sigma);
   }
   if (sigma != 0) check(MatAXPY(j, sigma, j_rates_.get(), SAME_NONZERO_PATTERN));
 }
 
 void RotorSystem::parameter_derivative(double angle, Vec x, Vec xdot, Vec f) {
   if (varying_.train) return slope().derivative(angle, x, xdot, f);
-  const Films films = films_at(x, xdot, film::Need::tangents);
-  core::Vector v = core::make_vector(comm_, end_ - begin_, n_), sum = core::duplicate(v.get());
-  {
-    const core::ReadArray xa(x);
-    const core::WriteArray va(v.get());
-    for (PetscInt i = 0; i < va.size(); ++i) va[i] = xa[2 * i + 1];
-  }
-  check(MatMult(matrices_.gyroscopic.get(), v.get(), sum.get()));
-  const core::ReadArray sa(sum.get());
+  evaluate_films(x, xdot, film::Need::tangents);
   const core::WriteArray fa(f);
-  const double force = forcing_ ? 2 * speed_ : 0.0, c = force * std::cos(angle), s = force * std::sin(angle);
-  for (PetscInt i = 0; i < sa.size(); ++i) {
-    const auto g = static_cast<std::size_t>(begin_ + i);
-    fa[2 * i + 1] = 0;
-    fa[2 * i] = sa[i] - c * unbalance_.cosine[g] - s * unbalance_.sine[g];
-  }
-  std::vector<std::array<double, 4>> forces;
-  for (const film::Response& r : films.journal) forces.push_back(r.d_speed);
-  subtract(forces, fa.data());
-  for (std::size_t b = 0; b < bearings_.size(); ++b)
-    std::copy(films.own[b].d_speed.begin(), films.own[b].d_speed.end(), fa.data() + bearings_[b].part->row());
+  for (const Part* part : parts()) part->speed_derivative(moment(angle, x, xdot), fa.data() + part->row());
+  subtract(&film::Response::d_speed, fa.data());
 }
 
-// Displacements are measured in clearances, rates in clearances times a typical whirl frequency, forces in parts of the
-// weight.
 void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
-  double clearance = 0;
-  int films = 0;
-  for (const Support& s : train_.supports)
-    if (s.geometry.clearance > 0) {
-      clearance += s.geometry.clearance;
-      ++films;
-    }
-  clearance = films > 0 ? clearance / films : 1e-4;
-  constexpr double frequency = 300;  // rad/s
-  const double mass = rotor::total_mass(train_.rotor),
-               force = std::max(mass * std::abs(train_.gravity) + std::abs(train_.rotor.load),
-                                mass * clearance * frequency * frequency) /
-                       std::max<double>(1.0, static_cast<double>(bearings_.size()));
   const core::WriteArray s(state_scale), r(residual_scale);
-  for (PetscInt i = 0; i < end_ - begin_; ++i) {
-    const PetscInt g = begin_ + i;
-    double length = clearance, load = force;
-    if (g < n_rotor_) {
-      const std::optional<rotor::Freedom> freedom = rotor_->freedom(g);
-      if (!freedom) {  // mass-normalised modes
-        length = clearance * std::sqrt(mass);
-        load = force / std::sqrt(mass);
-      } else if (rotor::is_slope(*freedom)) {
-        load = force * 0.1;  // clearance per metre, moments on a lever of 0.1 m
-      }
-    }
-    s[2 * i] = length;
-    s[2 * i + 1] = length * frequency;
-    r[2 * i + 1] = length * frequency;
-    r[2 * i] = load;
-  }
-  for (const problem::Field& f : fields())
-    for (PetscInt i = f.begin; f.scale > 0 && i < f.end; ++i) {
-      s[i] = f.scale;
-      r[i] = s[i] * frequency;
-    }
+  for (const Part* part : parts()) part->scales(s.data() + part->row(), r.data() + part->row());
 }
 
 std::vector<problem::Field> RotorSystem::fields() const {
-  std::vector<problem::Field> out{{"machine", 0, 2 * (end_ - begin_)}};
+  std::vector<problem::Field> out = hub_->fields("machine");
   for (std::size_t i = 0; i < bearings_.size(); ++i)
     for (problem::Field& f : bearings_[i].part->fields(train_.supports[i].name)) out.push_back(std::move(f));
   return out;
@@ -217,7 +141,7 @@ std::vector<double> RotorSystem::film_thickness(const double* x) const {
   const std::vector<JournalState> at = journals(x);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     const FilmPart& part = *bearings_[i].part;
-    out.push_back(part.film().least_thickness(motion(at[i]), part.of(x, n_)));
+    out.push_back(part.film().least_thickness(motion(at[i]), part.of(x)));
   }
   return out;
 }
@@ -233,7 +157,7 @@ void RotorSystem::displace(Vec x, const std::array<double, 2>& offset) {
     for (std::size_t d = 0; d < 2; ++d) {
       const PetscInt q = bearings_[b].journal[d];
       const double by = offset[d] * train_.supports[b].geometry.clearance;
-      if (by != 0 && moved.insert(q).second && owns(q)) check(VecSetValue(x, 2 * q, by, ADD_VALUES));
+      if (by != 0 && moved.insert(q).second && hub_->owns(q)) check(VecSetValue(x, 2 * q, by, ADD_VALUES));
     }
   check(VecAssemblyBegin(x));
   check(VecAssemblyEnd(x));
@@ -245,12 +169,37 @@ bool RotorSystem::has_film_mesh() const {
                      [](const Support& s) { return film::facts(s.film).cells[0] > 0; });
 }
 
+const rotor::Rotor& RotorSystem::rotor() const {
+  return hub_->rotor();
+}
+
+const std::vector<double>& RotorSystem::unbalance_cosine() const {
+  return hub_->unbalance().cosine;
+}
+
+const std::vector<double>& RotorSystem::unbalance_sine() const {
+  return hub_->unbalance().sine;
+}
+
+RotorSystem::Made RotorSystem::made() const {
+  return {hub_->made(), films_made_};
+}
+
+PetscInt RotorSystem::local_size() const {
+  return hub_->rows() + own_here_;
+}
+
+int RotorSystem::ports(int b) const {
+  return static_cast<int>(bearings_[static_cast<std::size_t>(b)].part->ports().size());
+}
+
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {
-  const rotor::Matrices& m = rotor_->matrices();
+  const rotor::Matrices& m = rotor().matrices();
   if (!m.basis) {
-    std::vector<double> out(static_cast<std::size_t>(n_rotor_));
-    for (PetscInt i = 0; i < n_rotor_; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
-    out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor_->n_nodes()),
+    const PetscInt n = hub_->rotor_coordinates();
+    std::vector<double> out(static_cast<std::size_t>(n));
+    for (PetscInt i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
+    out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor().n_nodes()),
                0.0);  // a rigid rotor does not tilt
     return out;
   }

@@ -26,7 +26,7 @@ void RotorSystem::settle(Vec x) {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const FilmPart* part = bearings_[i].part.get();
       if (!part->settles()) continue;
-      const std::span<const double> present = part->of(xa.data(), n_);
+      const std::span<const double> present = part->of(xa.data());
       std::vector<double> states(present.begin(), present.end());
       film::relax(part->film(), motion(journals[i]), states);
       std::copy(states.begin(), states.end(), xa.data() + part->row());
@@ -41,7 +41,7 @@ RotorSystem::Settling& RotorSystem::settling() {
   const PetscInt machine = local_size() - own_here_;
   std::vector<PetscInt> count(static_cast<std::size_t>(local_size()), 1);
   for (const Bearing& b : bearings_)
-    if (b.part->settles()) b.part->count_entries({}, count);
+    if (b.part->settles()) b.part->count_own_entries(count);
   count.erase(count.begin(), count.begin() + machine);
   s.matrix = core::make_matrix(comm_, own_here_, std::move(count));
   s.residual = core::make_vector(comm_, own_here_, PETSC_DETERMINE);
@@ -60,7 +60,7 @@ void RotorSystem::settle_together(Vec x) {
   PetscInt first = 0;
   check(MatGetOwnershipRange(s.matrix.get(), &first, nullptr));
   for (int k = 0; k < most_steps; ++k) {
-    const Films films = films_at(x, s.rest.get(), film::Need::tangents);
+    evaluate_films(x, s.rest.get(), film::Need::tangents);
     check(MatZeroEntries(s.matrix.get()));
     {
       const core::WriteArray r(s.residual.get());
@@ -74,11 +74,11 @@ void RotorSystem::settle_together(Vec x) {
             check(MatSetValue(s.matrix.get(), j, j, 1, ADD_VALUES));
           continue;
         }
-        std::copy(films.own[i].residual.begin(), films.own[i].residual.end(), r.data() + row);
-        film::for_entries(
-            part->share(), part->share().d_states, films.own[i].d_states, [&](int at, int column, double value) {
-              check(MatSetValue(s.matrix.get(), first + row + at, part->first() + column, value, ADD_VALUES));
-            });
+        const film::StateResponse& own = part->response();
+        std::copy(own.residual.begin(), own.residual.end(), r.data() + row);
+        film::for_entries(part->share(), part->share().d_states, own.d_states, [&](int at, int column, double value) {
+          check(MatSetValue(s.matrix.get(), first + row + at, part->first() + column, value, ADD_VALUES));
+        });
       }
     }
     check(MatAssemblyBegin(s.matrix.get(), MAT_FINAL_ASSEMBLY));

@@ -2,11 +2,11 @@
 // dF/dp of a parameter other than the speed, from the parts that depend on it.
 
 #include <array>
-#include <optional>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include "film_part.hpp"
+#include "rotor_part.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::system {
@@ -24,16 +24,12 @@ public:
   /// `step` is p+ - p-. Collective; throws core::InputError where a part refuses its numbers.
   Slope(RotorSystem& system, const Train& minus, const Train& plus, double step);
   /// f = dF/dp. Collective; throws as RotorSystem::residual() does.
-  void derivative(double angle, Vec x, Vec xdot, Vec f) const;
+  void derivative(double angle, Vec x, Vec xdot, Vec f);
 
 private:
-  struct Pedestal {
-    PetscInt row;
-    double mass, damping, stiffness;
-  };
   struct Film {
     std::size_t bearing;
-    FilmPart minus, plus;
+    std::unique_ptr<FilmPart> minus, plus;
   };
   /// Of a bearing, along the ports of its film.
   struct Place {
@@ -44,19 +40,14 @@ private:
     std::array<double, 4> force{};
     std::vector<double> residual;  // of the rows here
   };
-  void take_matrices(const rotor::Rotor& minus, const rotor::Rotor& plus);
-  /// Differences of the films on this rank [bearings]; `evaluate(bearing, part, response)`. Throws as they do.
-  template <class Evaluate>
-  [[nodiscard]] std::vector<FilmRate> film_rates(const Evaluate& evaluate) const;
-  /// Load and unbalance on this rank's coordinate i.
-  [[nodiscard]] double force_on(PetscInt i, const std::array<double, 2>& factors) const;
+  /// Differences of the films on this rank [bearings]. Throws as they do.
+  [[nodiscard]] std::vector<FilmRate> film_rates(const FilmInputs& in);
+  /// Takes from them what the moving places do.
+  void move(const FilmInputs& in, std::vector<FilmRate>& rates);
 
   RotorSystem& system_;
   double step_;
-  std::optional<Matrices> matrices_;  // if the rotor itself depends on p
-  std::vector<Pedestal> pedestals_;   // on this rank, that do
-  std::vector<double> load_;          // empty: it does not
-  std::optional<Unbalances> unbalance_;
+  RotorPart::Rates hub_;
   std::vector<Place> places_;
   std::vector<Film> films_;
 };

@@ -17,6 +17,9 @@
 namespace whirl::system {
 
 class FilmPart;
+class Part;
+class RotorPart;
+struct Moment;
 
 /// A parameter other than the speed: the train as a function of it. Of the system, what depends on it is made anew at
 /// every value, and nothing else.
@@ -56,7 +59,7 @@ public:
 
   [[nodiscard]] MPI_Comm comm() const override { return comm_; }
   [[nodiscard]] PetscInt size() const override { return 2 * n_ + n_own_; }
-  [[nodiscard]] PetscInt local_size() const override { return 2 * (end_ - begin_) + own_here_; }
+  [[nodiscard]] PetscInt local_size() const override;
   [[nodiscard]] double parameter() const override { return varying_.train ? varying_.value : speed_; }
   void set_parameter(double p) override;
   [[nodiscard]] double speed() const override { return speed_; }
@@ -79,7 +82,7 @@ public:
   struct Made {
     long rotors = 0, films = 0;
   };
-  [[nodiscard]] const Made& made() const { return made_; }
+  [[nodiscard]] Made made() const;
 
   /// The forces of unbalance.
   void set_forcing(bool on) override { forcing_ = on; }
@@ -101,13 +104,13 @@ public:
 
   // Facts about the machine, for studies.
   [[nodiscard]] const Train& train() const { return train_; }
-  [[nodiscard]] const rotor::Rotor& rotor() const { return *rotor_; }
+  [[nodiscard]] const rotor::Rotor& rotor() const;
   [[nodiscard]] int n_bearings() const { return static_cast<int>(train_.supports.size()); }
   /// Number of coordinates q: rotor and pedestals.
   [[nodiscard]] PetscInt coordinates() const { return n_; }
   /// Number of motions that the film of bearing b sees, and of force components that it gives: x and y, and the slopes
   /// dx/dz and dy/dz with their moments where it tilts.
-  [[nodiscard]] int ports(int b) const { return static_cast<int>(bearings_[static_cast<std::size_t>(b)].ports.size()); }
+  [[nodiscard]] int ports(int b) const;
   /// Slope dx/dz, dy/dz of the axis of bearing b: that of the deck, else that of the shaft on rigid supports at the
   /// elevations of the bearings, at rest under gravity. Zero of a film that does not tilt.
   [[nodiscard]] const std::array<double, 2>& axis(int b) const { return axes_[static_cast<std::size_t>(b)]; }
@@ -142,41 +145,21 @@ public:
   /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
   /// Force of unbalance per Omega^2 on each coordinate as cosine and sine parts [coordinates()], whole on every rank.
-  [[nodiscard]] const std::vector<double>& unbalance_cosine() const { return unbalance_.cosine; }
-  [[nodiscard]] const std::vector<double>& unbalance_sine() const { return unbalance_.sine; }
+  [[nodiscard]] const std::vector<double>& unbalance_cosine() const;
+  [[nodiscard]] const std::vector<double>& unbalance_sine() const;
 
 private:
   struct Bearing {
     std::array<PetscInt, 4> journal{-1, -1, -1, -1};
     std::array<PetscInt, 2> pedestal{-1, -1};
     std::unique_ptr<FilmPart> part;
-    // Coordinates of journal and pedestal with their signs, whose sum is what the film sees, along x and y, and the
-    // slopes of the journal if it tilts.
-    std::vector<std::vector<std::pair<PetscInt, double>>> ports;
-    [[nodiscard]] bool tilts() const { return ports.size() > 2; }
-  };
-  /// Films at one state: what they do to the journals on all ranks, and this rank's rows of own states.
-  struct Films {
-    std::vector<film::Response> journal;
-    std::vector<film::StateResponse> own;
+    film::Response response;  // of the film evaluated last, on all ranks
+    [[nodiscard]] bool tilts() const { return journal[2] >= 0; }
   };
   class Blocks;
   class FilmComms;
   class FilmInverse;
   struct Settling;
-  /// Matrices of coordinates, pedestals behind the rotor.
-  struct Matrices {
-    core::Matrix mass, damping, gyroscopic, stiffness;
-  };
-  /// What load is linear in: gravity [m/s^2], the load of a rigid rotor and the weights of the pedestals [N].
-  struct Weights {
-    double gravity, rotor_load;
-    std::vector<double> pedestals;
-  };
-  /// Force of unbalance per Omega^2, whole on every rank.
-  struct Unbalances {
-    std::vector<double> cosine, sine;
-  };
   /// What the films of this rank see.
   struct FilmInputs {
     std::vector<JournalState> journals;
@@ -188,43 +171,38 @@ private:
   /// Slopes of the axes of all bearings of a train, as axis() says. Collective.
   [[nodiscard]] std::vector<std::array<double, 2>> axes_of(const Train& train) const;
   void share_out_own_states();
-  [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
   /// The parts of some bearings with the numbers of `train`. Collective.
-  [[nodiscard]] std::vector<FilmPart> parts_at(const Train& train, const std::vector<std::size_t>& bearings);
-  /// Those of a rotor, zero at the pedestals. Collective, as are the others.
-  [[nodiscard]] Matrices matrices_of(const rotor::Rotor& rotor) const;
-  void make_matrices();
-  void set_pedestals();
-  [[nodiscard]] static Weights weights_of(const Train& train);
-  [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
-  [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
+  [[nodiscard]] std::vector<std::unique_ptr<FilmPart>> parts_at(const Train& train,
+                                                                const std::vector<std::size_t>& bearings);
+  /// Rotor and pedestals, then the films.
+  [[nodiscard]] std::vector<const Part*> parts() const;
   void make_constant_parts();
   void fill_constant_parts();
   /// Made when first wanted at this value of the parameter. Collective.
-  [[nodiscard]] const Slope& slope();
-  /// K q + (C + Omega G) v + M v' on this rank's coordinates. Collective.
-  [[nodiscard]] core::Vector products(const Matrices& m, Vec x, Vec xdot) const;
+  [[nodiscard]] Slope& slope();
+  [[nodiscard]] Moment moment(double angle, Vec x, Vec xdot) const;
   /// Takes forces on journals, by ports, from this rank's rows: B f in the equation above.
   void subtract(const std::vector<std::array<double, 4>>& forces, double* rows) const;
-  /// j += alpha times the derivatives of the film forces and rows, sigma times those in the rates; zeros at their
-  /// places without films. Collective: assembles j.
-  void add_films(Mat j, const Films* films, double alpha, double sigma) const;
+  /// The same of one component of the films' responses.
+  void subtract(std::array<double, 4> film::Response::*of, double* rows) const;
+  /// j += alpha times the derivatives of the film forces and rows as evaluated last, sigma times those in the rates;
+  /// without `values` zeros at their places. Collective: assembles j.
+  void add_films(Mat j, bool values, double alpha, double sigma);
   [[nodiscard]] FilmInputs film_inputs(Vec x, Vec xdot);
-  [[nodiscard]] Films films_at(Vec x, Vec xdot, film::Need need);
-  [[nodiscard]] Films films_at(const FilmInputs& in, film::Need need);
+  /// All films, each by the ranks that hold it: the parts then hold their rows here, and the bearings the responses of
+  /// the journals, the same on all ranks. Collective.
+  void evaluate_films(Vec x, Vec xdot, film::Need need);
+  void evaluate_films(const FilmInputs& in, film::Need need);
+  [[nodiscard]] std::vector<film::Response> responses() const;
   /// Film `bearing`, or another one in its place; a core::DomainError says which.
-  void evaluate(std::size_t bearing, const FilmPart& part, const FilmInputs& in, film::Need need,
-                film::StateResponse& response) const;
+  void evaluate(std::size_t bearing, FilmPart& part, const FilmInputs& in, film::Need need) const;
   /// settle() on several ranks, and what it works with. Collective.
   void settle_together(Vec x);
   [[nodiscard]] Settling& settling();
-  void sum_over_ranks(std::vector<film::Response>& films) const;
-  /// Factors of the cosine and the sine parts of the unbalance at a shaft angle [1/s^2].
-  [[nodiscard]] std::array<double, 2> unbalance_factors(double angle) const;
+  void sum_over_ranks();
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
   /// Films with own states are shared out over all ranks, and the rotor stands on the first one.
   [[nodiscard]] bool first_holds_rotor() const { return n_own_ > 0 && core::size_of(comm_) > 1; }
-  [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
   /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
   [[nodiscard]] std::vector<double> gather_inputs(Vec x);
   /// The same into inputs_.
@@ -237,18 +215,14 @@ private:
   double speed_;
   bool forcing_ = true;
   double acceleration_ = 0;
-  Made made_;
-  std::unique_ptr<rotor::Rotor> rotor_;
+  long films_made_ = 0;
+  std::unique_ptr<RotorPart> hub_;
   std::vector<Bearing> bearings_;
   std::vector<std::array<double, 2>> axes_;
-  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;  // coordinates: all, of the rotor, this rank's range
-  PetscInt n_own_ = 0, own_here_ = 0;                   // own states of films: all, on this rank
-  Matrices matrices_;
+  PetscInt n_ = 0, n_own_ = 0, own_here_ = 0;        // coordinates; own states of films: all, on this rank
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;  // constant parts of the Jacobian, made when first wanted
-  mutable core::EntryStream film_entries_;           // of the films in matrices of make_jacobian()'s pattern
-  std::vector<double> load_;                         // gravity on this rank's coordinates [N]
-  Unbalances unbalance_;
-  std::vector<PetscInt> wanted_;  // entries of a state that gather_inputs() gathers
+  core::EntryStream film_entries_;                   // of the films in matrices of make_jacobian()'s pattern
+  std::vector<PetscInt> wanted_;                     // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   // Before the own states among them: 8 of each bearing, position and velocity of journal and pedestal in x and y; then

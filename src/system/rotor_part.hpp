@@ -1,0 +1,119 @@
+#pragma once
+// The hub of a machine: the rotor with its pedestals.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "change.hpp"
+#include "part.hpp"
+#include "whirl/core/petsc.hpp"
+#include "whirl/rotor/rotor.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::system {
+
+/// With q = (rotor coordinates, pedestals), v = q' and the state (q_1, v_1, q_2, v_2, ...)
+///
+///     row 2i:     M v' + (C + Omega G) v + K q - load - Omega^2 (u_c cos angle + u_s sin angle)
+///                                              - alpha (u_c sin angle - u_s cos angle)
+///     row 2i + 1: q' - v
+///
+/// Rows follow the rotor's distribution with the pedestals on its last rank, or all stand on the first one. Its rows
+/// are the first on every rank.
+class RotorPart final : public Part {
+public:
+  /// Matrices of coordinates, pedestals behind the rotor.
+  struct Matrices {
+    core::Matrix mass, damping, gyroscopic, stiffness;
+  };
+  /// Force of unbalance per Omega^2 [coordinates()], whole on every rank.
+  struct Unbalances {
+    std::vector<double> cosine, sine;
+  };
+  /// Derivatives in a parameter of the numbers that the rows are made of: of those that depend on it.
+  struct Rates {
+    struct Pedestal {
+      PetscInt row;
+      double mass, damping, stiffness;
+    };
+    std::optional<Matrices> matrices;
+    std::vector<Pedestal> pedestals;  // on this rank
+    std::vector<double> load;         // as load(), or empty
+    std::optional<Unbalances> unbalance;
+  };
+
+  /// `train` outlives it. Collective.
+  RotorPart(MPI_Comm comm, const Train& train, bool on_first);
+
+  [[nodiscard]] const rotor::Rotor& rotor() const { return *rotor_; }
+  /// Number of coordinates q: of all, of the rotor alone.
+  [[nodiscard]] PetscInt coordinates() const { return n_; }
+  [[nodiscard]] PetscInt rotor_coordinates() const { return n_rotor_; }
+  /// Coordinates [begin(), end()) stand on this rank.
+  [[nodiscard]] PetscInt begin() const { return begin_; }
+  [[nodiscard]] PetscInt end() const { return end_; }
+  [[nodiscard]] bool owns(PetscInt coordinate) const { return coordinate >= begin_ && coordinate < end_; }
+  /// Coordinates of the pedestal of a bearing in x and y; -1: it has none.
+  [[nodiscard]] const std::array<PetscInt, 2>& pedestal(std::size_t bearing) const { return pedestals_[bearing]; }
+  [[nodiscard]] const Matrices& matrices() const { return matrices_; }
+  /// Weight and static load on this rank's coordinates [N].
+  [[nodiscard]] const std::vector<double>& load() const { return load_; }
+  [[nodiscard]] const Unbalances& unbalance() const { return unbalance_; }
+  /// Factors of the cosine and the sine parts of the unbalance [1/s^2].
+  [[nodiscard]] static std::array<double, 2> unbalance_factors(const Moment& at);
+
+  [[nodiscard]] PetscInt row() const override { return 0; }
+  [[nodiscard]] PetscInt rows() const override { return 2 * (end_ - begin_); }
+  [[nodiscard]] std::vector<problem::Field> fields(const std::string& name) const override;
+  void scales(double* states, double* rows) const override;
+  void residual(const Moment& at, double* f) const override;
+  void speed_derivative(const Moment& at, double* f) const override;
+  void count_entries(std::span<PetscInt> count) const override;
+  /// j += at_rest dF/dx without the gyroscopic part, gyroscopic times that of unit speed, rates times dF/d(dx/dt): all
+  /// entries, if need be zero. Not assembled.
+  void add(Mat j, double at_rest, double gyroscopic, double rates) const;
+  /// Sets the entries of the pedestals in the same matrices of the whole machine, which hold them already.
+  void set_pedestals(Mat at_rest, Mat rates) const;
+
+  /// A rotor with other numbers; it counts. Collective.
+  [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
+  /// Rotors made so far.
+  [[nodiscard]] long made() const { return made_; }
+  /// Takes what differs from the train, which has changed; `rotor` is a new one if its shaft differs. Collective.
+  void take(const Change& change, std::unique_ptr<rotor::Rotor> rotor);
+  /// Differences of two trains over `step`. Exact where the rows are linear in a number of the train. Collective.
+  [[nodiscard]] Rates rates(const Change& change, const Train& minus, const Train& plus, double step);
+  /// f [rows()] = what they do to the rows. Collective.
+  void apply(const Rates& rates, const Moment& at, double* f) const;
+
+private:
+  /// What load is linear in: gravity [m/s^2], the load of a rigid rotor and the weights of the pedestals [N].
+  struct Weights {
+    double gravity, rotor_load;
+    std::vector<double> pedestals;
+  };
+  [[nodiscard]] static Weights weights_of(const Train& train);
+  /// Those of a rotor, zero at the pedestals. Collective, as are the others.
+  [[nodiscard]] Matrices matrices_of(const rotor::Rotor& rotor) const;
+  void make_matrices();
+  void set_pedestals();
+  [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
+  [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
+  /// K q + (C + Omega G) v + M v' on this rank's coordinates. Collective.
+  [[nodiscard]] core::Vector products(const Matrices& m, const Moment& at) const;
+
+  MPI_Comm comm_;
+  const Train& train_;
+  bool on_first_;
+  long made_ = 0;
+  std::unique_ptr<rotor::Rotor> rotor_;
+  std::vector<std::array<PetscInt, 2>> pedestals_;
+  PetscInt n_ = 0, n_rotor_ = 0, begin_ = 0, end_ = 0;
+  Matrices matrices_;
+  std::vector<double> load_;
+  Unbalances unbalance_;
+};
+
+}  // namespace whirl::system

@@ -1,0 +1,93 @@
+// How the rows of rotor and pedestals change with a parameter other than the speed.
+
+#include "rotor_part.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::system {
+
+using core::check;
+
+namespace {
+
+// Unbalance masses whose cosine and sine parts are the rates of those of `minus` and `plus`.
+std::vector<UnbalanceMass> rate_of(const std::vector<UnbalanceMass>& minus, const std::vector<UnbalanceMass>& plus,
+                                   double step) {
+  core::require(minus.size() == plus.size(), "unbalances in the same planes");
+  std::vector<UnbalanceMass> out;
+  for (std::size_t k = 0; k < minus.size(); ++k) {
+    const UnbalanceMass &a = minus[k], &b = plus[k];
+    core::require(a.node == b.node && a.phase == b.phase, "unbalances in the same planes");
+    out.push_back({a.node, (b.amount - a.amount) / step, a.phase});
+  }
+  return out;
+}
+
+}  // namespace
+
+RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, const Train& plus, double step) {
+  Rates out;
+  const auto rate = [step](double a, double b) { return (b - a) / step; };
+  const auto rates_of = [&](const std::vector<double>& a, std::vector<double> b) {
+    for (std::size_t i = 0; i < a.size(); ++i) b[i] = rate(a[i], b[i]);
+    return b;
+  };
+  if (change.shaft) {
+    const auto below = make_rotor(minus.rotor), above = make_rotor(plus.rotor);
+    out.matrices = matrices_of(*above);
+    const Matrices less = matrices_of(*below);
+    for (const auto& [m, n] :
+         {std::pair{&out.matrices->mass, &less.mass}, std::pair{&out.matrices->damping, &less.damping},
+          std::pair{&out.matrices->gyroscopic, &less.gyroscopic},
+          std::pair{&out.matrices->stiffness, &less.stiffness}}) {
+      check(MatAXPY(m->get(), -1, n->get(), DIFFERENT_NONZERO_PATTERN));
+      check(MatScale(m->get(), 1 / step));
+    }
+    const Unbalances a = unbalance_of(*below, minus.unbalance), b = unbalance_of(*above, plus.unbalance);
+    out.unbalance = {rates_of(a.cosine, b.cosine), rates_of(a.sine, b.sine)};
+    out.load = rates_of(load_of(*below, weights_of(minus)), load_of(*above, weights_of(plus)));
+  } else {
+    if (change.load) {
+      const Weights a = weights_of(minus), b = weights_of(plus);
+      out.load = load_of(
+          *rotor_, {rate(a.gravity, b.gravity), rate(a.rotor_load, b.rotor_load), rates_of(a.pedestals, b.pedestals)});
+    }
+    if (change.unbalance) out.unbalance = unbalance_of(*rotor_, rate_of(minus.unbalance, plus.unbalance, step));
+    // C = value K
+    if (change.damping) {
+      out.matrices = matrices_of(*rotor_);
+      check(MatCopy(out.matrices->stiffness.get(), out.matrices->damping.get(), SAME_NONZERO_PATTERN));
+      check(MatScale(out.matrices->damping.get(), rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping)));
+      for (const core::Matrix* m : {&out.matrices->mass, &out.matrices->gyroscopic, &out.matrices->stiffness})
+        check(MatZeroEntries(m->get()));
+    }
+  }
+  for (std::size_t i = 0; change.pedestals && i < minus.supports.size(); ++i) {
+    const Support &a = minus.supports[i], &b = plus.supports[i];
+    for (std::size_t d = 0; d < 2; ++d)
+      if (const PetscInt row = pedestals_[i][d]; row >= 0 && owns(row))
+        out.pedestals.push_back(
+            {row, rate(a.mass[d], b.mass[d]), rate(a.damping[d], b.damping[d]), rate(a.stiffness[d], b.stiffness[d])});
+  }
+  return out;
+}
+
+void RotorPart::apply(const Rates& rates, const Moment& at, double* f) const {
+  const auto [c, s] = unbalance_factors(at);
+  const core::Vector sum = rates.matrices ? products(*rates.matrices, at) : core::Vector();
+  const core::ReadArray xa(at.x), da(at.xdot);
+  for (PetscInt i = 0; i < end_ - begin_; ++i) {
+    const auto here = static_cast<std::size_t>(i), all = static_cast<std::size_t>(begin_ + i);
+    f[2 * i] = rates.load.empty() ? 0.0 : -rates.load[here];
+    f[2 * i + 1] = 0.0;
+    if (rates.unbalance) f[2 * i] -= c * rates.unbalance->cosine[all] + s * rates.unbalance->sine[all];
+  }
+  for (const Rates::Pedestal& p : rates.pedestals) {
+    const PetscInt i = 2 * (p.row - begin_);
+    f[i] += p.mass * da[i + 1] + p.damping * xa[i + 1] + p.stiffness * xa[i];
+  }
+  if (!sum) return;
+  const core::ReadArray sa(sum.get());
+  for (PetscInt i = 0; i < sa.size(); ++i) f[2 * i] += sa[i];
+}
+
+}  // namespace whirl::system
