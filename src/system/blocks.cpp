@@ -148,22 +148,14 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
     films.d_speed.resize(r + system_.n_own_);
     films.own.resize(own_.size());
   }
-  film::Motion motion;
-  motion.speed = system_.speed_;
   const film::Need need = tangents ? film::Need::tangents : film::Need::force;
   std::size_t next = 0;  // among the films with own states
   for (int i = 0; i < bearings; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const auto [first, ports] = ports_[k];
-    for (Eigen::Index d = 0; d < ports; ++d) {
-      motion.position[static_cast<std::size_t>(d)] = inputs(2 * first + d);
-      motion.velocity[static_cast<std::size_t>(d)] = inputs(2 * first + ports + d);
-    }
-    motion.position[1] -= system_.train_.supports[k].elevation;
-    for (std::size_t d = 0; d < 2; ++d) {
-      if (ports == 2) motion.position[2 + d] = motion.velocity[2 + d] = 0.0;
-      motion.position[2 + d] -= system_.axes_[k][d];
-    }
+    const double* at = inputs.data() + 2 * first;
+    const auto n = static_cast<std::size_t>(ports);
+    const film::Motion motion = system_.motion(k, {at, n}, {at + ports, n});
     FilmPart& part = *system_.bearings_[k].part;
     try {
       part.evaluate(motion, own, rates, need);

@@ -49,14 +49,11 @@ void RotorSystem::build() {
   axes_ = axes_of(train_);
   share_out_own_states();
 
-  // Which entries of the state the films see: journal and pedestal positions and velocities, and own states.
+  // Which entries of the state the films see: positions and velocities at their ports, and own states.
   for (const Bearing& b : bearings_)
-    for (std::size_t d = 0; d < 2; ++d)
-      for (const PetscInt q : {b.journal[d], b.pedestal[d]})
-        for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * std::max<PetscInt>(q, 0) + rate);
-  for (const Bearing& b : bearings_)
-    for (std::size_t d = 2; d < b.part->ports().size(); ++d)
-      for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * b.journal[d] + rate);
+    for (const PortEnds& port : b.part->ports())
+      for (const auto& [q, side] : port)
+        for (PetscInt rate = 0; rate < 2; ++rate) wanted_.push_back(2 * q + rate);
   journal_inputs_ = wanted_.size();
   for (const Bearing& b : bearings_)
     for (const int k : b.part->share().seen) wanted_.push_back(2 * n_ + b.part->first() + k);

@@ -41,8 +41,6 @@ public:
   /// films stand behind these and their rates.
   void join(std::vector<PortEnds> ports, PetscInt coordinates);
   [[nodiscard]] const std::vector<PortEnds>& ports() const { return ports_; }
-  /// Where what it sees begins in what is gathered.
-  [[nodiscard]] std::size_t gathered() const { return gathered_; }
   /// This rank evaluates it, or a share of it.
   [[nodiscard]] bool here() const { return here_; }
 

@@ -32,21 +32,35 @@ std::vector<double> RotorSystem::gather_inputs(Vec x) {
 
 std::vector<JournalState> RotorSystem::journals_of(std::span<const double> inputs) const {
   std::vector<JournalState> out(bearings_.size());
-  const double* slope = inputs.data() + 8 * bearings_.size();
+  const double* next = inputs.data();
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    std::array<double, 4> place{}, rate{};
+    const std::vector<PortEnds>& ports = bearings_[i].part->ports();
+    for (std::size_t port = 0; port < ports.size(); ++port)
+      for (const auto& [q, side] : ports[port]) {
+        place[port] += side * *next++;
+        rate[port] += side * *next++;
+      }
+    const film::Motion seen = motion(i, {place.data(), ports.size()}, {rate.data(), ports.size()});
     for (std::size_t d = 0; d < 2; ++d) {
-      const double* a = inputs.data() + 8 * i + 4 * d;
-      const bool moves = bearings_[i].pedestal[d] >= 0;
-      out[i].position[d] = a[0] - (moves ? a[2] : 0.0);
-      out[i].velocity[d] = a[1] - (moves ? a[3] : 0.0);
-    }
-    out[i].position[1] -= train_.supports[i].elevation;
-    for (std::size_t d = 0; bearings_[i].tilts() && d < 2; ++d, slope += 2) {
-      out[i].tilt[d] = slope[0] - axes_[i][d];
-      out[i].tilt_rate[d] = slope[1];
+      out[i].position[d] = seen.position[d];
+      out[i].velocity[d] = seen.velocity[d];
+      out[i].tilt[d] = seen.position[2 + d];
+      out[i].tilt_rate[d] = seen.velocity[2 + d];
     }
   }
   return out;
+}
+
+film::Motion RotorSystem::motion(std::size_t bearing, std::span<const double> place,
+                                 std::span<const double> rate) const {
+  film::Motion motion;
+  std::copy(place.begin(), place.end(), motion.position.begin());
+  std::copy(rate.begin(), rate.end(), motion.velocity.begin());
+  motion.position[1] -= train_.supports[bearing].elevation;
+  for (std::size_t d = 0; d < 2; ++d) motion.position[2 + d] -= axes_[bearing][d];
+  motion.speed = speed_;
+  return motion;
 }
 
 std::vector<JournalState> RotorSystem::journals(const double* x) const {

@@ -201,6 +201,9 @@ private:
   [[nodiscard]] Settling& settling();
   void sum_over_ranks();
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
+  /// What the film of a bearing sees of positions and velocities at its ports.
+  [[nodiscard]] film::Motion motion(std::size_t bearing, std::span<const double> place,
+                                    std::span<const double> rate) const;
   /// Films with own states are shared out over all ranks, and the rotor stands on the first one.
   [[nodiscard]] bool first_holds_rotor() const { return n_own_ > 0 && core::size_of(comm_) > 1; }
   /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
@@ -225,9 +228,7 @@ private:
   std::vector<PetscInt> wanted_;                     // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
-  // Before the own states among them: 8 of each bearing, position and velocity of journal and pedestal in x and y; then
-  // 4 of each that tilts, slope and rate in x and y.
-  std::size_t journal_inputs_ = 0;
+  std::size_t journal_inputs_ = 0;  // before the own states among them: position and velocity of each end of each port
   std::unique_ptr<Blocks> blocks_;
   std::unique_ptr<Slope> slope_;                 // at this value of the parameter, made when first wanted
   std::unique_ptr<Settling> settling_;           // made when first wanted
