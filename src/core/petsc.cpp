@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 
 #include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
@@ -66,14 +68,38 @@ std::vector<double> gather(Vec v) {
   return all;
 }
 
+namespace {
+
+constexpr const char* other_size = "numbers kept of a problem of another size: compute the study again";
+
+}  // namespace
+
 void fill(Vec v, const std::vector<double>& all) {
   PetscInt begin = 0, size = 0;
   check(VecGetOwnershipRange(v, &begin, nullptr));
   check(VecGetSize(v, &size));
-  if (static_cast<std::size_t>(size) != all.size())
-    throw Error("numbers kept of a problem of another size: compute the study again");
+  if (static_cast<std::size_t>(size) != all.size()) throw Error(other_size);
   const WriteArray a(v);
   std::copy_n(all.begin() + begin, a.size(), a.data());
+}
+
+void fill(Vec v, std::size_t begin, const std::vector<double>& rows) {
+  PetscInt size = 0;
+  check(VecGetSize(v, &size));
+  std::uint64_t end = begin + rows.size(), facts[] = {rows.size(), 0};
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(v));
+  MPI_Allreduce(MPI_IN_PLACE, &facts[0], 1, MPI_UINT64_T, MPI_SUM, comm);
+  MPI_Allreduce(&end, &facts[1], 1, MPI_UINT64_T, MPI_MAX, comm);
+  if (facts[0] != static_cast<std::uint64_t>(size) || facts[1] != facts[0]) {
+    Error other(other_size);
+    other.mark_agreed();
+    throw other;
+  }
+  std::vector<PetscInt> places(rows.size());
+  std::iota(places.begin(), places.end(), static_cast<PetscInt>(begin));
+  check(VecSetValues(v, static_cast<PetscInt>(rows.size()), places.data(), rows.data(), INSERT_VALUES));
+  check(VecAssemblyBegin(v));
+  check(VecAssemblyEnd(v));
 }
 
 int rank_of(MPI_Comm comm) {

@@ -1,68 +1,14 @@
 #include "whirl/io/hdf5.hpp"
 
-#include <hdf5.h>
+#include <algorithm>
 
 #include "io/atomic_file.hpp"
+#include "io/hdf5_handle.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/petsc.hpp"
 
 namespace whirl::io {
 namespace {
-
-// Innermost HDF5 message of the failure in flight.
-std::string reason() {
-  std::string text;
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_DOWNWARD,
-      [](unsigned, const H5E_error2_t* e, void* out) -> herr_t {
-        if (e->desc && *e->desc) *static_cast<std::string*>(out) = e->desc;
-        return 0;
-      },
-      &text);
-  return text.empty() ? "HDF5 failed" : text;
-}
-
-void check(herr_t code) {
-  if (code < 0) throw core::Error(reason());
-}
-
-// HDF5 prints its errors by default; ours travel as exceptions.
-class Quiet {
-public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-
-private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
-template <herr_t (*Close)(hid_t)>
-class Id {
-public:
-  Id(hid_t id) : id_(id) {
-    if (id < 0) throw core::Error(reason());
-  }
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  ~Id() { Close(id_); }
-  operator hid_t() const { return id_; }
-
-private:
-  hid_t id_;
-};
-
-using File = Id<H5Fclose>;
-using GroupId = Id<H5Gclose>;
-using Data = Id<H5Dclose>;
-using Attr = Id<H5Aclose>;
-using Space = Id<H5Sclose>;
-using Type = Id<H5Tclose>;
-using List = Id<H5Pclose>;
 
 hid_t utf8() {
   const hid_t t = H5Tcopy(H5T_C_S1);
@@ -89,13 +35,19 @@ void write_attribute(hid_t at, const std::string& name, const Attribute& value) 
   }
 }
 
+// How a file says that a dataset is shared: it is never filled, as ranks write their rows into the room it is given.
+constexpr H5D_fill_time_t of_rows = H5D_FILL_TIME_NEVER;
+
 void write_dataset(hid_t at, const std::string& name, const Dataset& data) {
-  const std::vector<hsize_t> extents(data.shape.begin(), data.shape.end());
+  const Shape shape = data.whole_shape();
+  const std::vector<hsize_t> extents(shape.begin(), shape.end());
   const Space space(extents.empty() ? H5Screate(H5S_SCALAR)
                                     : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr));
+  const List how(H5Pcreate(H5P_DATASET_CREATE));
+  if (data.share) check(H5Pset_fill_time(how, of_rows));
   const auto store = [&](hid_t file_type, hid_t memory_type, const void* values) {
-    const Data d(H5Dcreate2(at, name.c_str(), file_type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-    if (data.size() > 0) check(H5Dwrite(d, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+    const Data d(H5Dcreate2(at, name.c_str(), file_type, space, H5P_DEFAULT, how, H5P_DEFAULT));
+    if (data.size() > 0 && !data.share) check(H5Dwrite(d, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
     if (!data.unit.empty()) write_attribute(d, "unit", data.unit);
     if (!data.description.empty()) write_attribute(d, "description", data.description);
   };
@@ -147,16 +99,38 @@ Attribute read_attribute(hid_t at, const char* name) {
   }
 }
 
-Dataset read_dataset(hid_t at, const char* name) {
+// A rank and the number of ranks that read together.
+struct Reader {
+  std::size_t rank, size;
+};
+
+bool written_by_rows(hid_t dataset) {
+  const List how(H5Dget_create_plist(dataset));
+  H5D_fill_time_t time = H5D_FILL_TIME_IFSET;
+  check(H5Pget_fill_time(how, &time));
+  return time == of_rows;
+}
+
+Dataset read_dataset(hid_t at, const char* name, const Reader* reader) {
   Dataset data;
   const Data d(H5Dopen2(at, name, H5P_DEFAULT));
   const Space space(H5Dget_space(d));
   std::vector<hsize_t> extents(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space))));
   check(H5Sget_simple_extent_dims(space, extents.data(), nullptr));
   data.shape.assign(extents.begin(), extents.end());
-  const auto n = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
-  const auto load = [&](hid_t memory, void* values) {
-    if (n > 0) check(H5Dread(d, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
+  if (reader && !data.shape.empty() && written_by_rows(d)) {
+    const std::size_t total = data.shape.front(), begin = total * reader->rank / reader->size;
+    data.share = {begin, total};
+    data.shape.front() = total * (reader->rank + 1) / reader->size - begin;
+    select_rows(space, begin, data.shape.front());
+  }
+  const std::vector<hsize_t> here(data.shape.begin(), data.shape.end());
+  const auto n = static_cast<std::size_t>(H5Sget_select_npoints(space));
+  const auto load = [&](hid_t type, void* values) {
+    if (n == 0) return;
+    const Space memory(here.empty() ? H5Screate(H5S_SCALAR)
+                                    : H5Screate_simple(static_cast<int>(here.size()), here.data(), nullptr));
+    check(H5Dread(d, type, memory, space, H5P_DEFAULT, values));
   };
   const Type type(H5Dget_type(d));
   switch (H5Tget_class(type)) {
@@ -190,7 +164,7 @@ Dataset read_dataset(hid_t at, const char* name) {
   return data;
 }
 
-Group read_group(hid_t at) {
+Group read_group(hid_t at, const Reader* reader) {
   // Callbacks only collect names, so that no exception crosses HDF5's frames.
   std::vector<std::string> attributes, links;
   check(H5Aiterate2(
@@ -214,17 +188,31 @@ Group read_group(hid_t at) {
     H5O_info_t info;
     check(H5Oget_info_by_name2(at, name.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT));
     if (info.type == H5O_TYPE_DATASET) {
-      group.put(name, read_dataset(at, name.c_str()));
+      group.put(name, read_dataset(at, name.c_str(), reader));
     } else if (info.type == H5O_TYPE_GROUP) {
       const GroupId g(H5Gopen2(at, name.c_str(), H5P_DEFAULT));
-      group.child(name) = read_group(g);
+      group.child(name) = read_group(g, reader);
     }
   }
   return group;
 }
 
-// The bytes of a file with `root`. It is made in memory: where the disk is full, HDF5 cannot close a file, and ends the
-// process with a fault when it tries again at exit.
+Group read_file(const std::filesystem::path& path, const Reader* reader) {
+  const Quiet quiet;
+  if (!std::filesystem::exists(path)) throw core::Error("cannot read " + path.string() + ": there is no such file");
+  try {
+    const List how(unlocked());
+    const File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, how));
+    return read_group(file, reader);
+  } catch (const core::Bug&) {
+    throw core::Error("cannot read " + path.string() + ": its contents do not fit together");
+  } catch (const core::Error& e) {
+    throw core::Error("cannot read " + path.string() + ": " + e.what());
+  }
+}
+
+}  // namespace
+
 std::string image_of(const Group& root) {
   const List in_memory(H5Pcreate(H5P_FILE_ACCESS));
   check(H5Pset_fapl_core(in_memory, std::size_t{1} << 20, false));
@@ -238,16 +226,17 @@ std::string image_of(const Group& root) {
   return bytes;
 }
 
-// Locks fail on some network file systems, and an atomic rename needs none.
-hid_t access() {
-  const hid_t list = H5Pcreate(H5P_FILE_ACCESS);
-  if (list >= 0) H5Pset_file_locking(list, false, true);
-  return list;
+void select_rows(hid_t space, std::size_t begin, std::size_t rows) {
+  std::vector<hsize_t> start(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space))), count(start.size());
+  check(H5Sget_simple_extent_dims(space, count.data(), nullptr));
+  if (rows == 0 || H5Sget_simple_extent_npoints(space) == 0) return check(H5Sselect_none(space));
+  start.front() = begin;
+  count.front() = rows;
+  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
 }
 
-}  // namespace
-
 void write_hdf5(const std::filesystem::path& path, const Group& root) {
+  core::require(!is_shared(root), "shared datasets are written by all ranks");
   const Quiet quiet;
   std::string bytes;
   try {
@@ -259,20 +248,16 @@ void write_hdf5(const std::filesystem::path& path, const Group& root) {
 }
 
 Group read_hdf5(const std::filesystem::path& path) {
-  const Quiet quiet;
-  if (!std::filesystem::exists(path)) throw core::Error("cannot read " + path.string() + ": there is no such file");
-  try {
-    const List how(access());
-    const File file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, how));
-    return read_group(file);
-  } catch (const core::Bug&) {
-    throw core::Error("cannot read " + path.string() + ": its contents do not fit together");
-  } catch (const core::Error& e) {
-    throw core::Error("cannot read " + path.string() + ": " + e.what());
-  }
+  return read_file(path, nullptr);
+}
+
+Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm) {
+  const Reader reader{static_cast<std::size_t>(core::rank_of(comm)), static_cast<std::size_t>(core::size_of(comm))};
+  return read_file(path, &reader);
 }
 
 std::string to_bytes(const Group& root) {
+  core::require(!is_shared(root), "no rank has the whole of a shared dataset");
   const Quiet quiet;
   return image_of(root);
 }
@@ -284,7 +269,7 @@ Group from_bytes(const std::string& bytes) {
   std::string image = bytes;
   check(H5Pset_file_image(in_memory, image.data(), image.size()));
   const File file(H5Fopen("whirl results in memory.h5", H5F_ACC_RDONLY, in_memory));
-  return read_group(file);
+  return read_group(file, nullptr);
 }
 
 void describe_results(Group& root, const std::string& title, const std::string& version) {

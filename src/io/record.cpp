@@ -26,8 +26,40 @@ const T& get(const V& value, const std::string& name, const char* type) {
   return *p;
 }
 
+void visit_shared(const Group& group, const std::string& path,
+                  const std::function<void(const std::string&, const Dataset&)>& visit) {
+  for (const auto& [name, data] : group.datasets())
+    if (data.share) visit(path + name, data);
+  for (const auto& [name, sub] : group.groups()) visit_shared(sub, path + name + "/", visit);
+}
+
+// One number at its place; the finaliser of splitmix64 (Steele, Lea, Flood 2014) mixes all bits.
+std::uint64_t hash_at(std::uint64_t place, std::uint64_t bits) {
+  std::uint64_t z = bits + (place + 1) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
+// That part of a shared dataset's sum that stands on this rank.
+std::uint64_t sum_here(const Dataset& d) {
+  std::size_t row = 1;
+  for (std::size_t axis = 1; axis < d.shape.size(); ++axis) row *= d.shape[axis];
+  std::uint64_t place = d.share->begin * row, sum = 0;
+  const auto add = [&](const auto& numbers) {
+    for (const auto x : numbers) sum += hash_at(place++, std::bit_cast<std::uint64_t>(x));
+  };
+  if (const auto* x = std::get_if<std::vector<double>>(&d.values))
+    add(*x);
+  else
+    add(std::get<std::vector<std::int64_t>>(d.values));
+  return sum;
+}
+
 class Fnv {
 public:
+  // Sums of the shared datasets over all ranks, in their order.
+  explicit Fnv(const std::vector<std::uint64_t>& sums) : sum_(sums.begin()) {}
   void byte(unsigned char b) { hash_ = (hash_ ^ b) * 0x100000001b3ULL; }
   void word(std::uint64_t w) {
     for (int shift = 0; shift < 64; shift += 8) byte(static_cast<unsigned char>(w >> shift));
@@ -40,14 +72,18 @@ public:
   void value(double d) { word(std::bit_cast<std::uint64_t>(d)); }
   void value(std::int64_t i) { word(static_cast<std::uint64_t>(i)); }
   void value(const Dataset& d) {
-    word(d.shape.size());
-    for (std::size_t n : d.shape) word(n);
+    const Shape shape = d.whole_shape();
+    word(shape.size());
+    for (std::size_t n : shape) word(n);
     word(d.values.index());
-    std::visit(
-        [&](const auto& v) {
-          for (const auto& x : v) value(x);
-        },
-        d.values);
+    if (d.share)
+      word(*sum_++);
+    else
+      std::visit(
+          [&](const auto& v) {
+            for (const auto& x : v) value(x);
+          },
+          d.values);
     text(d.unit);
     text(d.description);
   }
@@ -68,13 +104,26 @@ private:
     word(map.size());
     for (const auto& [name, x] : map) text(name), value(x);
   }
+  std::vector<std::uint64_t>::const_iterator sum_;
   std::uint64_t hash_ = 0xcbf29ce484222325ULL;
 };
+
+std::vector<std::uint64_t> sums_here(const Group& group) {
+  std::vector<std::uint64_t> sums;
+  visit_shared(group, "", [&](const std::string&, const Dataset& d) { sums.push_back(sum_here(d)); });
+  return sums;
+}
 
 }  // namespace
 
 std::size_t Dataset::size() const {
   return std::visit([](const auto& v) { return v.size(); }, values);
+}
+
+Shape Dataset::whole_shape() const {
+  Shape whole = shape;
+  if (share) whole.front() = share->total;
+  return whole;
 }
 
 void Group::set(const std::string& name, std::string value) {
@@ -110,6 +159,10 @@ void Group::put(const std::string& name, Dataset data) {
   std::size_t n = 1;
   for (std::size_t extent : data.shape) n *= extent;
   core::require(n == data.size(), "the shape of a dataset does not fit its values");
+  if (data.share)
+    core::require(!data.shape.empty() && data.share->begin + data.shape[0] <= data.share->total &&
+                      !std::holds_alternative<std::vector<std::string>>(data.values),
+                  "a shared dataset holds rows of numbers");
   datasets_[name] = std::move(data);
 }
 
@@ -137,16 +190,26 @@ const Dataset& Group::dataset(const std::string& name) const {
   return find(datasets_, name, "dataset");
 }
 
+namespace {
+
+template <class T>
+const std::vector<T>& values_of(const Dataset& data, const std::string& name, const char* type) {
+  if (data.share) throw core::Error("record '" + name + "' is shared: no rank has all of it");
+  return get<std::vector<T>>(data.values, name, type);
+}
+
+}  // namespace
+
 const std::vector<double>& Group::reals(const std::string& name) const {
-  return get<std::vector<double>>(dataset(name).values, name, "real");
+  return values_of<double>(dataset(name), name, "real");
 }
 
 const std::vector<std::int64_t>& Group::integers(const std::string& name) const {
-  return get<std::vector<std::int64_t>>(dataset(name).values, name, "integer");
+  return values_of<std::int64_t>(dataset(name), name, "integer");
 }
 
 const std::vector<std::string>& Group::strings(const std::string& name) const {
-  return get<std::vector<std::string>>(dataset(name).values, name, "text");
+  return values_of<std::string>(dataset(name), name, "text");
 }
 
 Group& Group::child(const std::string& name) {
@@ -181,8 +244,28 @@ std::string plain_name(const std::string& text) {
   return first == std::string::npos ? "study" : name.substr(first, last - first + 1);
 }
 
+void each_shared(const Group& group, const std::function<void(const std::string& path, const Dataset&)>& visit) {
+  visit_shared(group, "", visit);
+}
+
+bool is_shared(const Group& group) {
+  bool any = false;
+  each_shared(group, [&any](const std::string&, const Dataset&) { any = true; });
+  return any;
+}
+
 std::uint64_t checksum(const Group& group) {
-  Fnv fnv;
+  const std::vector<std::uint64_t> sums = sums_here(group);
+  Fnv fnv(sums);
+  fnv.value(group);
+  return fnv.hash();
+}
+
+std::uint64_t checksum(const Group& group, MPI_Comm comm) {
+  std::vector<std::uint64_t> sums = sums_here(group);
+  if (!sums.empty())
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_UINT64_T, MPI_SUM, comm);
+  Fnv fnv(sums);
   fnv.value(group);
   return fnv.hash();
 }

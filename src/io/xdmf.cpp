@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "io/atomic_file.hpp"
 #include "whirl/core/error.hpp"
@@ -70,21 +71,30 @@ std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, cons
   const std::vector<double> theta = pad.reals("theta"), z = pad.reals("z");
   const Shape shape = {theta.size(), z.size()};
   StructuredGrid wrapped{name, shape, path + "/node_xyz", {}};
+  std::optional<Share> share;
+  std::size_t rows = theta.size();
   for (const auto& [field, data] : pad.datasets())
-    if (data.shape == shape && std::holds_alternative<std::vector<double>>(data.values) && !field.starts_with("node_"))
+    if (data.whole_shape() == shape && std::holds_alternative<std::vector<double>>(data.values) &&
+        !field.starts_with("node_")) {
       wrapped.fields.push_back({data.unit.empty() ? field : field + " [" + data.unit + "]", path + "/" + field});
+      share = data.share;
+      rows = data.shape.front();
+    }
 
   std::vector<double> in_space, flat;
-  for (double t : theta)
+  const std::size_t first = share ? share->begin : 0;
+  for (std::size_t i = first; i < first + rows; ++i)
     for (double s : z) {
+      const double t = theta[i];
       in_space.insert(in_space.end(), {place.centre_x + place.radius * std::cos(t),
                                        place.centre_y + place.radius * std::sin(t), place.centre_z + s});
       flat.insert(flat.end(), {place.radius * t, s, 0.0});
     }
-  const Shape triples = {theta.size(), z.size(), 3};
-  pad.put("node_xyz", triples, std::move(in_space), "m", "position of the film's nodes in space [theta][z][x, y, z]");
-  pad.put("node_flat", triples, std::move(flat), "m",
-          "unwrapped: radius times theta, z from the bearing's middle, zero [theta][z][3]");
+  const Shape triples = {rows, z.size(), 3};
+  pad.put("node_xyz",
+          {triples, std::move(in_space), "m", "position of the film's nodes in space [theta][z][x, y, z]", share});
+  pad.put("node_flat", {triples, std::move(flat), "m",
+                        "unwrapped: radius times theta, z from the bearing's middle, zero [theta][z][3]", share});
 
   StructuredGrid unwrapped = wrapped;
   unwrapped.name += " unwrapped";

@@ -1,6 +1,7 @@
 #include "branch_state.hpp"
 
 #include "study/cycle/cycle_record.hpp"
+#include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -38,23 +39,23 @@ std::vector<solve::LocatedEvent> events_of(const io::Group& group, const std::st
   return events;
 }
 
-void put_unknowns(io::Group& group, const std::string& name, Vec v) {
-  group.put(name, core::gather(v), "1", "scaled, in global order");
+void put_unknowns(io::Group& group, const std::string& name, Vec v, bool shared) {
+  put_vector(group, name, v, shared, "scaled, in global order");
 }
 
 core::Vector unknowns_of(const io::Group& group, const std::string& name, Vec like) {
   core::Vector v = core::duplicate(like);
-  core::fill(v.get(), group.reals(name));
+  take_vector(group, name, v.get());
   return v;
 }
 
 }  // namespace
 
-void write_memory(io::Group& group, const solve::BranchMemory& memory) {
+void write_memory(io::Group& group, const solve::BranchMemory& memory, bool shared) {
   if (memory.before.u) {
     write_point(group.child("before"), memory.before.point);
-    put_unknowns(group, "u", memory.before.u.get());
-    put_unknowns(group, "tangent", memory.before.tangent.get());
+    put_unknowns(group, "u", memory.before.u.get(), shared);
+    put_unknowns(group, "tangent", memory.before.tangent.get(), shared);
   }
   if (memory.earlier) write_point(group.child("earlier"), *memory.earlier);
   group.set("visited", memory.visited ? 1 : 0);
@@ -65,7 +66,7 @@ void write_memory(io::Group& group, const solve::BranchMemory& memory) {
   group.put("warm", memory.warm, "1", "what helps with the next solution");
   if (!memory.held) return;
   put_events(group, "held", {*memory.held});
-  put_unknowns(group, "held_u", memory.held_u.get());
+  put_unknowns(group, "held_u", memory.held_u.get(), shared);
 }
 
 solve::BranchMemory read_memory(const io::Group& group, Vec like) {
@@ -88,10 +89,10 @@ solve::BranchMemory read_memory(const io::Group& group, Vec like) {
 
 void write_restart(io::Group& group, const solve::Settled& at, Vec u, Vec tangent) {
   write_point(group.child("point"), at.point);
-  put_unknowns(group, "u", u);
-  put_unknowns(group, "tangent", tangent);
+  put_unknowns(group, "u", u, false);
+  put_unknowns(group, "tangent", tangent, false);
   group.set("next_step", at.next_step);
-  write_memory(group.child("memory"), *at.memory);
+  write_memory(group.child("memory"), *at.memory, false);
 }
 
 solve::Restart read_restart(const io::Group& group, Vec like) {

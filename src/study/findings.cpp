@@ -1,6 +1,5 @@
 #include "findings.hpp"
 
-#include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/io/checkpoint.hpp"
 
@@ -48,9 +47,7 @@ bool Findings::agreed(bool word) const {
 }
 
 void Findings::save_checkpoint(const io::Group& state) const {
-  core::agree(comm_, [&] {
-    if (rank_ == 0) io::Checkpoint(checkpoint_).save(state);
-  });
+  io::Checkpoint(checkpoint_).save(state, comm_);
 }
 
 bool Findings::has_checkpoint() const {
@@ -60,9 +57,7 @@ bool Findings::has_checkpoint() const {
 }
 
 io::Group Findings::load_checkpoint() const {
-  io::Group state;
-  core::agree(comm_, [&] { state = io::Checkpoint(checkpoint_).load().state; });
-  return state;
+  return io::Checkpoint(checkpoint_).load(comm_).state;
 }
 
 }  // namespace whirl::study

@@ -51,7 +51,8 @@ public:
   /// Rank 0's word, for all: what a clock decides must be decided alike. Collective.
   [[nodiscard]] bool agreed(bool word) const;
 
-  /// Saved on rank 0, loaded on all ranks. Collective.
+  /// Saved by rank 0, and by all ranks where they share datasets; loaded on all ranks, which then have as many rows of
+  /// these as each other. Collective.
   void save_checkpoint(const io::Group& state) const;
   [[nodiscard]] io::Group load_checkpoint() const;
   [[nodiscard]] bool has_checkpoint() const;

@@ -61,7 +61,8 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   Layout out;
   out.world = context.comm;
   out.large = !reason.empty();
-  if (out.large && !whole) {
+  out.shared = out.large && !whole;
+  if (out.shared) {
     out.space = context.comm;
   } else {
     out.space = MPI_COMM_SELF;

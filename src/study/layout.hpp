@@ -33,6 +33,7 @@ struct Layout {
   int count = 1;                  ///< number of groups
   int index = 0;                  ///< of this rank's group
   bool large = false;             ///< the machine is one that several ranks share where there are several
+  bool shared = false;            ///< and it is shared here: `space` is the world, which may be one rank
 };
 
 /// The one place where the world is split. The first plan of a study on several ranks says in its summary what was

@@ -44,7 +44,7 @@ Writer::Writer(MPI_Comm comm, fs::path directory, const std::string& title, cons
     if (!resume || !fs::exists(directory_ / "summary.json")) return;
     all_ = io::Summary::read(directory_ / "summary.json");
     earlier_seconds_ = all_.wall_seconds;
-    if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5");
+    if (fs::exists(directory_ / "results.h5")) root_ = io::read_hdf5(directory_ / "results.h5", comm_);
     auto& studies = root_.child("studies");
     for (const auto& s : all_.studies) {
       // What delivered nothing is tried again.
@@ -109,10 +109,11 @@ void Writer::add(StudyResult result) {
 void Writer::write() {
   all_.wall_seconds =
       earlier_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  fs::path results;
+  core::agree(comm_, [&] { results = file("results.h5"); });
+  io::write_hdf5(results, root_, comm_);
   core::agree(comm_, [&] {
-    if (rank_ != 0) return;
-    io::write_hdf5(file("results.h5"), root_);
-    all_.write(file("summary.json"));
+    if (rank_ == 0) all_.write(file("summary.json"));
   });
 }
 

@@ -15,7 +15,8 @@
 
 namespace whirl::study {
 
-/// Writes the results of one study after another. Every rank holds the same tree; rank 0 of `comm` writes the files.
+/// Writes the results of one study after another. Every rank holds the same tree but for the rows of fields that ranks
+/// share; all ranks of `comm` write these, and rank 0 all else.
 class Writer final : public Store {
 public:
   /// `resume` takes over what an earlier run left in the directory.

@@ -62,21 +62,25 @@ Verdict autonomous(const Evidence& e) {
 
 }  // namespace
 
-std::vector<double> return_distances(const std::vector<std::vector<double>>& points, int longest, double size) {
+std::vector<double> return_distances(const std::vector<std::vector<double>>& points, int longest, double size,
+                                     MPI_Comm comm) {
   std::vector<double> out;
   for (std::size_t k = 1; k <= static_cast<std::size_t>(longest) && k < points.size(); ++k) {
     double sum = 0;
     for (std::size_t i = 0; i + k < points.size(); ++i)
       for (std::size_t j = 0; j < points[i].size(); ++j) sum += std::pow(points[i + k][j] - points[i][j], 2);
-    out.push_back(std::sqrt(sum / static_cast<double>(points.size() - k)) / size);
+    out.push_back(sum);
   }
+  MPI_Allreduce(MPI_IN_PLACE, out.data(), static_cast<int>(out.size()), MPI_DOUBLE, MPI_SUM, comm);
+  for (std::size_t k = 1; k <= out.size(); ++k)
+    out[k - 1] = std::sqrt(out[k - 1] / static_cast<double>(points.size() - k)) / size;
   return out;
 }
 
-std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest) {
+std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest, MPI_Comm comm) {
   const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
-  const auto early = return_distances({points.begin(), middle}, longest, 1),
-             late = return_distances({middle, points.end()}, longest, 1);
+  const auto early = return_distances({points.begin(), middle}, longest, 1, comm),
+             late = return_distances({middle, points.end()}, longest, 1, comm);
   std::vector<double> out;
   for (std::size_t k = 0; k < std::min(early.size(), late.size()); ++k)
     out.push_back(early[k] > 0 ? late[k] / early[k] : 1);

@@ -10,6 +10,31 @@ import tempfile
 import time
 
 
+def family(pid):
+    """A process and all that descend from it: mpirun gives its ranks process groups of their own."""
+    parents = {}
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            try:
+                with open(f"/proc/{entry}/stat") as f:
+                    parents[int(entry)] = int(f.read().rsplit(")", 1)[1].split()[1])
+            except OSError:
+                pass
+    found = [pid]
+    for p in found:
+        found += [child for child, parent in parents.items() if parent == p]
+    return found
+
+
+def kill(process):
+    for pid in family(process.pid):
+        try:
+            os.kill(pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    process.wait()
+
+
 class Harness:
     """Runs decks in a directory of its own; every comparison becomes a line of a table."""
 
@@ -38,16 +63,18 @@ class Harness:
             sys.exit(f"{deck}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
         return self.studies(name)
 
-    def kill_at_checkpoint(self, deck, out, overrides=()):
-        """Starts a deck on one rank and kills it as soon as it has written a checkpoint into the directory `out`."""
-        process = subprocess.Popen(self.command(deck, out, overrides, launcher=[]), stdout=subprocess.DEVNULL,
+    def kill_at_checkpoint(self, deck, out, overrides=(), flags=(), launcher=()):
+        """Starts a deck, on one rank unless there is a launcher, and kills it as soon as it has written a checkpoint into the
+        directory `out`."""
+        saved = lambda: {p: p.stat().st_mtime_ns for p in out.glob("*.checkpoint.h5")}
+        before = saved()
+        process = subprocess.Popen(self.command(deck, out, overrides, flags, launcher), stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL)
         limit = time.monotonic() + 200
-        while process.poll() is None and time.monotonic() < limit and not list(out.glob("*.checkpoint.h5")):
+        while process.poll() is None and time.monotonic() < limit and saved() == before:
             time.sleep(1e-3)
         if process.poll() is None:
-            os.kill(process.pid, signal.SIGKILL)
-        process.wait()
+            kill(process)
         self.true(f"{out.name}: killed at a checkpoint", process.returncode == -signal.SIGKILL and list(out.glob("*.checkpoint.h5")))
 
     def studies(self, name):

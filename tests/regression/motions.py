@@ -9,6 +9,8 @@ import resource
 import subprocess
 import sys
 
+import h5py
+
 from compare import same_results
 from harness import Harness, value
 
@@ -180,6 +182,28 @@ def resume(h):
         h.close(f"resumed: {what}", difference, 0, within)
 
 
+def shared(h):
+    """Of a machine whose states all ranks share no rank has a whole one, in checkpoints neither: a motion takes one
+    revolution on three ranks, the next one on two, the last one on one; likewise a run-up."""
+    studies = {
+        "motion": ("motion: {name: s, unbalance: [a], speed: 320 rad/s, discard: 0, revolutions: 3, samples: 8, exponents: 1, tolerance: 1e-2}", (3, 2)),
+        "run_up": ("run_up: {name: s, unbalance: [a], range: {from: 160 rad/s, to: 320 rad/s}, acceleration: 2000 rad/s^2, samples: 8, tolerance: 1e-2}", (2,))}
+    for kind, (study, ranks) in studies.items():
+        path = h.work / f"{kind}.yaml"
+        path.write_text(f"base: {h.source / 'inputs/compliant_rotor/finite_curve.yaml'}\nlayout: {{machine: all_ranks}}\n"
+                        f"bearings: {{half: {{film: {{cells: [12, 4]}}}}}}\nstudies:\n  - {study}\n")
+        h.run(path, kind, launcher=[])
+        out = h.work / f"{kind} killed"
+        for n in ranks:
+            h.kill_at_checkpoint(path, out, flags=["--resume"] if out.exists() else [], launcher=[*h.launcher, "-n", str(n)])
+            with h5py.File(out / "s.checkpoint.h5") as f:
+                how = f["state/u"].id.get_create_plist()
+                h.true(f"{kind} on {n} ranks: states are written by rows", how.get_fill_time() == h5py.h5d.FILL_TIME_NEVER)
+        h.run(path, out.name, flags=["--resume"], launcher=[])
+        for what, difference, within in same_results(h.work / kind, out):
+            h.close(f"{kind} resumed: {what}", difference, 0, within)
+
+
 def pump(h):
     """A film that ruptures costs little more than one that is cut off, a finer tolerance changes nothing, and progress says
     where the motion is within a revolution."""
@@ -206,5 +230,5 @@ def pump(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "ranks": ranks, "resume": resume, "pump": pump}[sys.argv[3]](harness)
+    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "ranks": ranks, "resume": resume, "shared": shared, "pump": pump}[sys.argv[3]](harness)
     harness.finish()

@@ -6,16 +6,14 @@ resume.py PROGRAM SOURCE KILLS SEED LAUNCHER WORDS...
 Every kill is a SIGKILL to the launcher and all its ranks at a random moment of the run; the next attempt resumes, on
 one or two ranks.
 """
-import os
 import random
-import signal
 import subprocess
 import sys
 import time
 
 from branches import G25, G63, SHORT
 from compare import same_results
-from harness import Harness
+from harness import Harness, kill
 
 program, source, kills, seed = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
 h = Harness(program, source, sys.argv[5:])
@@ -28,31 +26,6 @@ deck = LONG if kills > 6 else SHORT
 
 def on(ranks):
     return [*h.launcher, "-n", str(ranks)] if ranks > 1 else []
-
-
-def family(pid):
-    """A process and all that descend from it: mpirun gives its ranks process groups of their own."""
-    parents = {}
-    for entry in os.listdir("/proc"):
-        if entry.isdigit():
-            try:
-                with open(f"/proc/{entry}/stat") as f:
-                    parents[int(entry)] = int(f.read().rsplit(")", 1)[1].split()[1])
-            except OSError:
-                pass
-    found = [pid]
-    for p in found:
-        found += [child for child, parent in parents.items() if parent == p]
-    return found
-
-
-def kill(process):
-    for pid in family(process.pid):
-        try:
-            os.kill(pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-    process.wait()
 
 
 def left(out):

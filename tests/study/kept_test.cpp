@@ -58,11 +58,13 @@ TEST(Kept, AMotionKnowsWholeRevolutionsOnly) {
   options.exponents = 0;
   options.orbit = 5;
   const auto played = [&](bool runs_away) {
-    MotionRecord record(options, {{"B"}, {1e-4}, "m", "m/s", "place"});
+    const core::Vector state = core::make_vector(PETSC_COMM_SELF, 2, 2);
+    MotionRecord record(options, {{"B"}, {1e-4}, "m", "m/s", "place"}, state.get());
     for (int turn = 0; turn < (runs_away ? 3 : 2); ++turn) {
       for (int k = 1; k <= (turn < 2 ? 16 : 8); ++k) {
         const double angle = 2 * 3.14159265358979 * k / 16, r = turn < 2 ? 1e-5 : 9e-5;
-        record.sample({{{r * std::cos(angle), r * std::sin(angle)}, {}}}, {r * std::cos(angle), r * std::sin(angle)});
+        core::fill(state.get(), {r * std::cos(angle), r * std::sin(angle)});
+        record.sample({{{r * std::cos(angle), r * std::sin(angle)}, {}}}, state.get());
       }
       if (turn < 2) record.close({}, 2 * 3.14159265358979 / 100);
     }

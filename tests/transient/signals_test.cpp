@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "whirl/core/petsc.hpp"
 #include "whirl/transient/classify.hpp"
 #include "whirl/transient/spectrum.hpp"
 
@@ -76,6 +77,15 @@ TEST(Returns, FindThePeriod) {
   EXPECT_NEAR(d[2], 0, 1e-14);
   EXPECT_NEAR(d[5], 0, 1e-14);
   EXPECT_TRUE(return_distances({{1}}, 3, 1).empty());
+  // The same where each rank has some entries of the points, and the first of several has none.
+  const int rank = whirl::core::rank_of(PETSC_COMM_WORLD), size = whirl::core::size_of(PETSC_COMM_WORLD);
+  std::vector<std::vector<double>> here(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < points[i].size(); ++j)
+      if (size == 1 || rank == 1 + static_cast<int>(j) % (size - 1)) here[i].push_back(points[i][j]);
+  const auto shared = return_distances(here, 7, 0.5, PETSC_COMM_WORLD);
+  ASSERT_EQ(shared.size(), d.size());
+  for (std::size_t k = 0; k < d.size(); ++k) EXPECT_NEAR(shared[k], d[k], 1e-14);
 }
 
 // A multiplier of -0.97: after two revolutions the motion is back within 6 % of what parts it from its cycle.

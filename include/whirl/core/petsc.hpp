@@ -121,6 +121,9 @@ private:
 [[nodiscard]] std::vector<double> gather(Vec v);
 /// The other way: this rank's part of `all` into v. Throws core::Error if v is of another size.
 void fill(Vec v, const std::vector<double>& all);
+/// The same where each rank of v has other ones of all entries, those from `begin` on, in whatever way they are shared
+/// out. Throws core::Error, agreed, if they are not as many as v has. Collective.
+void fill(Vec v, std::size_t begin, const std::vector<double>& rows);
 
 /// Rank of this process in `comm` / number of processes of `comm`.
 [[nodiscard]] int rank_of(MPI_Comm comm);

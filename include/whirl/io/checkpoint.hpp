@@ -1,6 +1,8 @@
 #pragma once
 // Checkpoints that survive a kill at any moment.
 
+#include <mpi.h>
+
 #include <filesystem>
 #include <string>
 
@@ -10,7 +12,8 @@ namespace whirl::io {
 
 /// A checkpoint file and its predecessor `<path>.prev`.
 ///
-/// After a kill at any moment at least one of the two is complete. Serial: call on one rank and broadcast what matters.
+/// After a kill at any moment at least one of the two is complete. Without a communicator serial: call on one rank and
+/// broadcast what matters.
 class Checkpoint {
 public:
   explicit Checkpoint(std::filesystem::path path) : path_(std::move(path)) {}
@@ -18,6 +21,8 @@ public:
   /// Writes `state` with its checksum, keeps the last checkpoint as `.prev`, then renames. Attributes of `state` whose
   /// name starts with "checkpoint_" are reserved.
   void save(const Group& state) const;
+  /// The same by all ranks of `comm`, which share datasets of the state. Errors are agreed. Collective.
+  void save(const Group& state, MPI_Comm comm) const;
 
   struct Loaded {
     Group state;
@@ -26,6 +31,9 @@ public:
   };
   /// The newest readable state. core::Error naming both files and what is wrong with them if neither can be used.
   [[nodiscard]] Loaded load() const;
+  /// The same on all ranks of `comm`: each has as many rows of shared datasets as the others, whatever their number was
+  /// when it was saved. Errors are agreed. Collective.
+  [[nodiscard]] Loaded load(MPI_Comm comm) const;
 
   /// True if there is something to load, readable or not.
   [[nodiscard]] bool exists() const;
@@ -35,6 +43,8 @@ public:
 
 private:
   [[nodiscard]] std::filesystem::path previous() const;
+  [[nodiscard]] std::filesystem::path next() const;
+  void rename() const;
   std::filesystem::path path_;
 };
 

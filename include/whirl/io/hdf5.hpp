@@ -1,5 +1,7 @@
 #pragma once
-// A tree of records as an HDF5 file and back. Serial: call on one rank.
+// A tree of records as an HDF5 file and back. Serial where no communicator is given: call on one rank.
+
+#include <mpi.h>
 
 #include <filesystem>
 
@@ -10,11 +12,18 @@ namespace whirl::io {
 /// Writes `root` to `path` so that `path` always is a complete file: written beside it, synced, renamed.
 ///
 /// Datasets carry the attributes `unit` and `description`. core::Error with the reason if the disk refuses; then `path`
-/// is what it was before.
+/// is what it was before. Nothing may be shared.
 void write_hdf5(const std::filesystem::path& path, const Group& root);
+/// The same by the ranks of `comm`: rank 0 writes the tree, and each rank its rows of shared datasets
+/// (MPI-IO). Errors are agreed. Collective.
+void write_hdf5(const std::filesystem::path& path, const Group& root, MPI_Comm comm);
 
-/// Reads a file that write_hdf5 made; core::Error if it is missing, damaged, or holds types that are not ours.
+/// Reads a file that write_hdf5 made; core::Error if it is missing, damaged, or holds types that are not ours. Datasets
+/// that were shared are whole.
 [[nodiscard]] Group read_hdf5(const std::filesystem::path& path);
+/// The same on one of the ranks that read it together: of each dataset that was shared it gets as many rows as the
+/// others, whatever their number was when it was written. Does not communicate: agree on its errors.
+[[nodiscard]] Group read_hdf5(const std::filesystem::path& path, MPI_Comm comm);
 
 /// Marks `root` as a results file: attributes title, version, format, and in words the frames, signs and units.
 void describe_results(Group& root, const std::string& title, const std::string& version);
@@ -22,5 +31,7 @@ void describe_results(Group& root, const std::string& title, const std::string& 
 /// The tree as the bytes of such a file, and back: to hand it to other ranks. core::Error if the bytes are damaged.
 [[nodiscard]] std::string to_bytes(const Group& root);
 [[nodiscard]] Group from_bytes(const std::string& bytes);
+/// The tree with the whole of its shared datasets on every rank of `comm`, for those who must hand it on. Collective.
+void make_whole(Group& root, MPI_Comm comm);
 
 }  // namespace whirl::io

@@ -1,8 +1,12 @@
 #pragma once
 // Results and checkpoints in memory: a tree of groups with attributes and typed, unit-bearing datasets.
 
+#include <mpi.h>
+
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,13 +17,23 @@ using Attribute = std::variant<std::string, double, std::int64_t>;
 using Shape = std::vector<std::size_t>;
 using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>;
 
+/// Which rows a rank holds of an array that several ranks share: [begin, begin + shape[0]) of `total` along the first
+/// axis. The other ranks hold the other ones, each once.
+struct Share {
+  std::size_t begin = 0, total = 0;
+  bool operator==(const Share&) const = default;
+};
+
 /// An array of rank shape.size() in row-major order; an empty shape is one scalar.
 struct Dataset {
-  Shape shape;
+  Shape shape;  ///< of the rows here, if it is shared
   Values values;
-  std::string unit;         ///< UDUNITS text, "1" if dimensionless, empty for names and counts
-  std::string description;  ///< what a reader of the file should know
+  std::string unit;              ///< UDUNITS text, "1" if dimensionless, empty for names and counts
+  std::string description;       ///< what a reader of the file should know
+  std::optional<Share> share{};  ///< numbers only; none: all is here
 
+  /// Shape of the whole array.
+  [[nodiscard]] Shape whole_shape() const;
   [[nodiscard]] std::size_t size() const;  ///< number of values
   bool operator==(const Dataset&) const = default;
 };
@@ -27,7 +41,8 @@ struct Dataset {
 /// A node of the tree: attributes, datasets and subgroups, each under a unique name (no '/', not empty).
 ///
 /// Setting a name twice replaces its value; a name is either a dataset or a subgroup. Misuse raises core::Bug; a
-/// missing or mistyped entry raises core::Error with its name, because the tree may come from a file.
+/// missing or mistyped entry raises core::Error with its name, because the tree may come from a file. Ranks that write
+/// a tree together hold the same one, but for the rows of datasets that they share.
 class Group {
 public:
   // Attributes.
@@ -49,6 +64,7 @@ public:
   void put(const std::string& name, std::vector<std::string> values, std::string description);
   [[nodiscard]] bool has_dataset(const std::string& name) const { return datasets_.contains(name); }
   [[nodiscard]] const Dataset& dataset(const std::string& name) const;
+  /// The values of a dataset that is not shared; core::Error if it is.
   [[nodiscard]] const std::vector<double>& reals(const std::string& name) const;
   [[nodiscard]] const std::vector<std::int64_t>& integers(const std::string& name) const;
   [[nodiscard]] const std::vector<std::string>& strings(const std::string& name) const;
@@ -77,8 +93,16 @@ private:
 /// become one '_', without those and '.' at its ends; "study" if nothing is left.
 [[nodiscard]] std::string plain_name(const std::string& text);
 
+/// Calls visit(path, dataset) for every shared dataset of the tree, in the same order on all ranks.
+void each_shared(const Group& group, const std::function<void(const std::string& path, const Dataset&)>& visit);
+/// Whether there is any.
+[[nodiscard]] bool is_shared(const Group& group);
+
 /// 64-bit FNV-1a hash of all names, shapes, units and values of the tree (descriptions too); equal trees have equal
-/// hashes.
+/// hashes. Of a shared dataset the sum over its numbers of hash(place, bits) stands for the values: it does not depend
+/// on who holds which rows.
 [[nodiscard]] std::uint64_t checksum(const Group& group);
+/// The same of a tree that the ranks of `comm` share, on all of them. Collective if is_shared(group).
+[[nodiscard]] std::uint64_t checksum(const Group& group, MPI_Comm comm);
 
 }  // namespace whirl::io

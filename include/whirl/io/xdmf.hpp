@@ -36,7 +36,8 @@ struct FilmPlace {
 /// shaft) and "<name> unwrapped" (x = radius * theta, y = z).
 ///
 /// `pad` holds theta[n_theta] (rad), z[n_z] (m) and fields of shape [n_theta][n_z]; `path` is the place of `pad` in the
-/// file, "/studies/..."; every such field becomes a field of both grids.
+/// file, "/studies/..."; every such field becomes a field of both grids. Where the fields are shared, all in the same
+/// rows, the coordinates are as well.
 [[nodiscard]] std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, const std::string& name,
                                                      const FilmPlace& place);
 

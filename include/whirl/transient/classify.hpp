@@ -1,6 +1,8 @@
 #pragma once
 // What kind of motion it is, and by which evidence.
 
+#include <mpi.h>
+
 #include <string>
 #include <vector>
 
@@ -28,12 +30,15 @@ struct Verdict {
 };
 
 /// d_k = root mean square of |P_(i+k) - P_i| over all i, divided by `size`, for k = 1 to `longest`; P_i are the states
-/// at the same shaft angle of successive revolutions [points][size of a state]. Empty if there are too few points.
+/// at the same shaft angle of successive revolutions [points][entries of a state on this rank]. Empty if there are too
+/// few points. Collective on `comm`, whose ranks share the states.
 [[nodiscard]] std::vector<double> return_distances(const std::vector<std::vector<double>>& points, int longest,
-                                                   double size);
+                                                   double size, MPI_Comm comm = MPI_COMM_SELF);
 
 /// d_k of the second half of the points over that of the first, for k = 1 to `longest`; empty if there are too few.
-[[nodiscard]] std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest);
+/// Collective on `comm`.
+[[nodiscard]] std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest,
+                                                    MPI_Comm comm = MPI_COMM_SELF);
 
 /// A forced motion is periodic if it returns and its largest exponent is not positive, chaotic if that is positive,
 /// quasi-periodic if it is zero within its uncertainty and nothing returns. Without forcing the number of zero

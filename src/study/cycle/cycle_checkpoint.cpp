@@ -81,7 +81,7 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   solve::BranchPoint now = at.point;
   now.slope = solve::last_entry(problem_->comm(), tangent);
   write_point(state.child("point"), now);
-  write_memory(state.child("memory"), *at.memory);
+  write_memory(state.child("memory"), *at.memory, layout().shared);
   state.set("next_step", at.next_step);
   state.set("largest_difference", largest_);
   state.set("events", events_);

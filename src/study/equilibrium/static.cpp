@@ -16,9 +16,26 @@
 namespace whirl::study {
 namespace {
 
-// Pressure and thickness of every pad, and where ParaView finds them.
+// A field of a pad. Where ranks share a machine, each keeps and writes as many rows, those around the pad.
+io::Dataset dataset_of(film::Field field, MPI_Comm sharing) {
+  io::Dataset data{field.shape, std::move(field.values), field.unit, field.name + " at the nodes of the film mesh"};
+  if (sharing == MPI_COMM_NULL || data.shape.size() < 2) return data;
+  const auto rank = static_cast<std::size_t>(core::rank_of(sharing)),
+             size = static_cast<std::size_t>(core::size_of(sharing));
+  const std::size_t total = data.shape.front(), begin = total * rank / size, end = total * (rank + 1) / size;
+  const auto& all = std::get<std::vector<double>>(data.values);
+  const auto place = [&, row = all.size() / total](std::size_t k) {
+    return all.begin() + static_cast<std::ptrdiff_t>(row * k);
+  };
+  data.values = std::vector(place(begin), place(end));
+  data.shape.front() = end - begin;
+  data.share = {begin, total};
+  return data;
+}
+
+// Pressure and thickness of every pad, and where ParaView finds them. Films with states are `shared` like these.
 void put_films(Context& context, system::RotorSystem& system, const std::vector<double>& x,
-               const std::vector<double>& z) {
+               const std::vector<double>& z, bool shared) {
   auto& group = context.results.group();
   const auto names = names_of_bearings(context.machine);
   for (int b = 0; b < system.n_bearings(); ++b) {
@@ -26,9 +43,11 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
     const auto& support = system.train().supports[k];
     std::vector<film::Field> fields;
     core::agree(context.comm, [&] { fields = system.film_fields(b, x.data()); });
-    for (const film::Field& f : fields) {
+    const MPI_Comm sharing = shared && system.own_states(b) > 0 ? context.comm : MPI_COMM_NULL;
+    for (film::Field& f : fields) {
       auto& pad = group.child("films").child(io::safe_name(names[k])).child(fmt::format("pad{}", f.pad + 1));
-      pad.put(f.name, f.shape, f.values, f.unit, f.name + " at the nodes of the film mesh");
+      const std::string name = f.name;
+      pad.put(name, dataset_of(std::move(f), sharing));
     }
     if (fields.empty()) continue;
     io::FilmPlace place;
@@ -126,8 +145,8 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
 }  // namespace
 
 StudyResult Static::run(Context& context) {
-  system::RotorSystem system(plan(context, Sharing::machine).space, system::train_of(context.machine),
-                             options.speed.value);
+  const Layout layout = plan(context, Sharing::machine);
+  system::RotorSystem system(layout.space, system::train_of(context.machine), options.speed.value);
   Walker walker(system);
   Vec at = walker.at(options.speed.value);
   const std::vector<double> x = system.gather(at);
@@ -183,7 +202,7 @@ StudyResult Static::run(Context& context) {
   for (const auto& s : system.train().supports) bz.push_back(z[static_cast<std::size_t>(s.node - 1)]);
   bearings.put("z", bz, "m", "axial position");
   group.set("speed", options.speed.value);
-  if (options.fields) put_films(context, system, x, z);
+  if (options.fields) put_films(context, system, x, z, layout.shared);
   summary.points = 1;
   return context.results.finish("completed", true);
 }

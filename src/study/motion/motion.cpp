@@ -14,6 +14,7 @@
 #include "study/make_plant.hpp"
 #include "study/motion/motion_record.hpp"
 #include "study/motion/motion_start.hpp"
+#include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/transient/integrator.hpp"
 
@@ -34,15 +35,15 @@ class Player {
 public:
   Player(Context& context, const MotionOptions& given)
       : context_(context),
-        plant_(make_plant(plan(context, sharing_of(given.start)).space, context.machine,
-                          {.unbalance = given.unbalance, .value = given.speed.value})),
+        layout_(plan(context, sharing_of(given.start))),
+        plant_(make_plant(layout_.space, context.machine, {.unbalance = given.unbalance, .value = given.speed.value})),
         system_(*plant_),
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
         integrator_(system_, {options_.speed.value}, start_.x.get(),
                     {.tolerance = options_.tolerance,
                      .after_step = [this](double time, double step) { progress(time, step); }}),
-        record_(options_, system_.places()),
+        record_(options_, system_.places(), integrator_.scaled()),
         films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
@@ -78,7 +79,7 @@ private:
       integrator_.state(start_.x.get());
       const system::Observed seen = system_.observe(start_.x.get());
       if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
-      if (record) record_.sample(seen.shown, system_.gather(integrator_.scaled()));
+      if (record) record_.sample(seen.shown, integrator_.scaled());
     }
     if (record) record_.close(growth, period);
     integrator_.restart(0, integrator_.step());
@@ -104,27 +105,20 @@ private:
     state.set("done", done_ + 1);
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
-    state.put("u", system_.gather(integrator_.scaled()), "1", "scaled state");
+    put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
-      state.put(fmt::format("tangent_{}", k + 1), system_.gather(tangents_->column(k)), "1", "deviation");
-    record_.save(state.child("record"));
+      put_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k), layout_.shared, "deviation");
+    record_.save(state.child("record"), layout_.shared);
     context_.results.save_checkpoint(state);
     last_saved_ = context_.results.seconds();
   }
 
-  static void put(const std::vector<double>& whole, Vec v) {
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(v, &begin, nullptr));
-    const core::WriteArray a(v);
-    for (PetscInt i = 0; i < a.size(); ++i) a[i] = whole[static_cast<std::size_t>(begin + i)];
-  }
-
   void restore(const io::Group& state) {
     done_ = static_cast<int>(state.integer("done"));
-    put(state.reals("u"), integrator_.scaled());
+    take_vector(state, "u", integrator_.scaled());
     integrator_.restart(0, state.real("step"));
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
-      put(state.reals(fmt::format("tangent_{}", k + 1)), tangents_->column(k));
+      take_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k));
     record_.load(state.group("record"));
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
@@ -151,6 +145,7 @@ private:
   }
 
   Context& context_;
+  Layout layout_;
   std::unique_ptr<system::Plant> plant_;
   system::Plant& system_;
   MotionOptions options_;

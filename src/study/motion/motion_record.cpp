@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/stored_vector.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/transient/spectrum.hpp"
 
@@ -18,13 +19,15 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, system::Places places)
+MotionRecord::MotionRecord(const MotionOptions& options, system::Places places, Vec like)
     : options_(options),
       places_(std::move(places)),
+      like_(like),
       period_(2 * std::numbers::pi / options.speed.value),
       exponents_(options.exponents) {}
 
-void MotionRecord::sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled) {
+void MotionRecord::sample(const std::vector<system::PlaceState>& shown, Vec state) {
+  const std::vector<double> scaled = entries_here(state);
   last_.clear();
   for (const auto& j : shown) {
     open_.samples.insert(open_.samples.end(), j.position.begin(), j.position.end());
@@ -54,12 +57,14 @@ transient::Evidence MotionRecord::evidence() const {
   transient::Evidence e;
   e.forced = !options_.unbalance.empty();
   const double count = static_cast<double>(points_.size()) * options_.samples;
-  double mean = 0;
-  for (const double s : sum_) mean += (s / count) * (s / count);
-  e.size = std::sqrt(std::max(0.0, squares_ / count - mean));
+  double of_all[] = {0, squares_};  // square of the mean, sum of the squares
+  for (const double s : sum_) of_all[0] += (s / count) * (s / count);
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(like_));
+  MPI_Allreduce(MPI_IN_PLACE, of_all, 2, MPI_DOUBLE, MPI_SUM, comm);
+  e.size = std::sqrt(std::max(0.0, of_all[1] / count - of_all[0]));
   e.return_tolerance = options_.return_tolerance;
-  if (e.size >= e.rest) e.returns = transient::return_distances(points_, options_.max_period, e.size);
-  e.fading = transient::fading_of_returns(points_, options_.max_period);
+  if (e.size >= e.rest) e.returns = transient::return_distances(points_, options_.max_period, e.size, comm);
+  e.fading = transient::fading_of_returns(points_, options_.max_period, comm);
   if (options_.exponents > 0) {
     e.exponents = exponents_.values();
     e.uncertainties = exponents_.uncertainties();
@@ -203,14 +208,18 @@ void MotionRecord::write(io::Group& group, io::StudySummary& summary) const {
   write_points(group);
 }
 
-void MotionRecord::save(io::Group& group) const {
+void MotionRecord::save(io::Group& group, bool shared) const {
   group.put("samples", samples_, places_.unit, "what is shown");
   group.put("ends", ends_, "SI", "what is shown at the ends of revolutions");
-  group.put("sum", sum_, "1", "of scaled states");
-  group.set("squares", squares_);
-  std::vector<double> flat;
-  for (const auto& p : points_) flat.insert(flat.end(), p.begin(), p.end());
-  group.put("points", {points_.size(), sum_.size()}, flat, "1", "scaled states at the ends of revolutions");
+  core::Vector sum = core::duplicate(like_);
+  core::check(VecSet(sum.get(), 0.0));
+  if (!points_.empty()) std::copy(sum_.begin(), sum_.end(), core::WriteArray(sum.get()).data());
+  put_vector(group, "sum", sum.get(), shared, "of scaled states");
+  double squares = squares_;
+  MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(like_));
+  MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPI_DOUBLE, MPI_SUM, comm);
+  group.set("squares", squares);
+  put_vectors(group, "points", points_, like_, shared, "scaled states at the ends of revolutions");
   group.put("growth", exponents_.growth(), "1", "of deviations");
   group.put("durations", exponents_.durations(), "s", "of revolutions");
 }
@@ -218,14 +227,12 @@ void MotionRecord::save(io::Group& group) const {
 void MotionRecord::load(const io::Group& group) {
   samples_ = group.reals("samples");
   ends_ = group.reals("ends");
-  sum_ = group.reals("sum");
-  squares_ = group.real("squares");
-  const auto& shape = group.dataset("points").shape;
-  const auto& flat = group.reals("points");
-  points_.clear();
-  for (std::size_t i = 0; i < shape[0]; ++i)
-    points_.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(i * shape[1]),
-                         flat.begin() + static_cast<std::ptrdiff_t>((i + 1) * shape[1]));
+  points_ = take_vectors(group, "points", like_);
+  core::Vector sum = core::duplicate(like_);
+  take_vector(group, "sum", sum.get());
+  sum_ = entries_here(sum.get());
+  // One rank's for all.
+  squares_ = core::rank_of(PetscObjectComm(reinterpret_cast<PetscObject>(like_))) == 0 ? group.real("squares") : 0.0;
   exponents_ = transient::Exponents(options_.exponents);
   const auto &growth = group.reals("growth"), &durations = group.reals("durations");
   for (std::size_t i = 0; i < durations.size(); ++i)

@@ -13,25 +13,27 @@
 
 namespace whirl::study {
 
-/// Samples of what is shown (journals), states at the end of each revolution, growth of deviations. Replicated on all
-/// ranks.
+/// Samples of what is shown (journals) and growth of deviations, replicated on all ranks; of states at the end of each
+/// revolution the entries of this rank. What reads them is collective on the ranks of the states.
 class MotionRecord {
 public:
-  MotionRecord(const MotionOptions& options, system::Places places);
+  /// States are laid out as `like`, which outlives this.
+  MotionRecord(const MotionOptions& options, system::Places places, Vec like);
 
-  /// A sample at a whole state [size of the system] in SI; `scaled` is the same over its scales.
-  void sample(const std::vector<system::PlaceState>& shown, const std::vector<double>& scaled);
+  /// A sample at a state; `scaled` is it over its scales. Not collective.
+  void sample(const std::vector<system::PlaceState>& shown, Vec scaled);
   /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried. Samples of a
   /// revolution that is never closed, because it ended in contact, count for nothing.
   void close(const std::vector<double>& growth, double duration);
   [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
 
-  /// The verdict so far.
+  /// The verdict so far. Collective.
   [[nodiscard]] transient::Verdict verdict() const;
-  /// Tables into `group`, numbers and verdict into the summary.
+  /// Tables into `group`, numbers and verdict into the summary. Collective.
   void write(io::Group& group, io::StudySummary& summary) const;
 
-  void save(io::Group& group) const;
+  /// Where all ranks share one machine (Layout::shared) they share the states in `group`. Collective.
+  void save(io::Group& group, bool shared) const;
   void load(const io::Group& group);
 
 private:
@@ -44,12 +46,13 @@ private:
 
   const MotionOptions& options_;
   system::Places places_;
+  Vec like_;
   double period_;                // of a revolution [s]
   std::vector<double> samples_;  // [sample][place][x, y]
   std::vector<double> ends_;     // [revolution][place][x, y, vx, vy]
   std::vector<double> last_;     // the same of the last sample
   std::vector<double> sum_;      // of the scaled states of all samples
-  double squares_ = 0;           // of their norms
+  double squares_ = 0;           // of their norms; what of them stands here
   struct Open {
     std::vector<double> samples, sum;
     double squares = 0;

@@ -11,6 +11,7 @@
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/motion/motion_start.hpp"
+#include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
@@ -78,8 +79,8 @@ public:
         options_(options),
         unit_(options.range.unit),
         drive_(drive_of(options)),
-        system_(plan(context, sharing_of(options.start)).space, system::train_of(context.machine, options.unbalance),
-                drive_.speed),
+        layout_(plan(context, sharing_of(options.start))),
+        system_(layout_.space, system::train_of(context.machine, options.unbalance), drive_.speed),
         x_(start_state(system_, options.start).x),
         integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),
         places_(system_.places()),
@@ -180,7 +181,7 @@ private:
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
-    state.put("u", system_.gather(integrator_.scaled()), "1", "scaled state");
+    put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
     table_.write(state.child("run_up"));
     context_.results.save_checkpoint(state);
     last_saved_ = context_.results.seconds();
@@ -188,13 +189,7 @@ private:
 
   void restore(const io::Group& state) {
     done_ = static_cast<int>(state.integer("done"));
-    const std::vector<double>& whole = state.reals("u");
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(integrator_.scaled(), &begin, nullptr));
-    {
-      const core::WriteArray a(integrator_.scaled());
-      for (PetscInt i = 0; i < a.size(); ++i) a[i] = whole[static_cast<std::size_t>(begin + i)];
-    }
+    take_vector(state, "u", integrator_.scaled());
     integrator_.restart(state.real("time"), state.real("step"));
     table_.read(state.group("run_up"));
     context_.results.add_earlier_seconds(state.real("seconds"));
@@ -240,6 +235,7 @@ private:
   const RunUpOptions& options_;
   std::string unit_;
   problem::Drive drive_;
+  Layout layout_;
   system::RotorSystem system_;
   core::Vector x_;
   transient::Integrator integrator_;

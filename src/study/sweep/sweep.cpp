@@ -68,6 +68,8 @@ public:
   void add(StudyResult result) override {
     const std::string name = result.summary.name;
     running_.clear();
+    // Others than those who share the machine want it.
+    io::make_whole(result.group, comm_);
     root_.child("studies").child(io::safe_name(name)) = std::move(result.group);
     std::erase_if(summaries_, [&](const auto& s) { return s.name == name; });
     summaries_.push_back(std::move(result.summary));
