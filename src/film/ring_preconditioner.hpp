@@ -23,7 +23,7 @@ namespace whirl::film {
 ///
 /// where A_c = (I, R) A (I, P)^T has blocks that are tridiagonal along the line again: P and R are diagonal along the
 /// line and equal -A_FF^-1 A_FC and -A_CF A_FF^-1 for vectors that do not change along it. It is exact, a block cyclic
-/// reduction, where these hold for all vectors. On several ranks levels of fewer than `few_lines` lines per rank are
+/// reduction, where these hold for all vectors. On several ranks levels so small that messages cost more (core::cost) are
 /// gathered to all. Source: Schaffer (1998) for semicoarsening; Ries, Trottenberg and Winter (1983) for the reduction.
 class RingPreconditioner final : public StatePreconditioner {
 public:
