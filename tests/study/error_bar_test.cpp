@@ -204,7 +204,7 @@ TEST(ErrorBar, HasEachMeshOnce) {
   // More states than the deck lets bars refine: coarser ones only, as many.
   film.states = film::States::dynamic;
   EXPECT_EQ(cells({60, 16})[0].back(), 120);
-  layout.refined_states = 900;
+  layout.refined_states = 800;
   EXPECT_EQ(cells({60, 16})[0], (std::vector{30, 38, 45, 53}));
 }
 
