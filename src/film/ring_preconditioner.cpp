@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "film/lines.hpp"
+#include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::film {
 namespace {
 
-// Below this many lines a rank, messages cost more than doing all lines everywhere.
-constexpr int few_lines = 32;
 static_assert(std::is_same_v<Real, float>, "exchange() and gather() send MPI_FLOAT");
 
 }  // namespace
@@ -81,7 +80,7 @@ RingPreconditioner::Level::Level(MPI_Comm comm, int lines, int line, Lines here,
   residual_ = Columns(line, c_.x.count);
   wrap_before_ = wrap_after_ = Block(line, 1);
   const int coarse_lines = (lines + 1) / 2;
-  gathered_ = size_ > 1 && coarse_lines < few_lines * size_;
+  gathered_ = size_ > 1 && core::cost::repeated_level(coarse_lines, line, size_) < core::cost::exchanged_level();
   Lines coarse_here{c_begin_, c_end};
   if (gathered_) {
     coarse_here = {0, coarse_lines};

@@ -23,8 +23,9 @@ namespace whirl::film {
 ///
 /// where A_c = (I, R) A (I, P)^T has blocks that are tridiagonal along the line again: P and R are diagonal along the
 /// line and equal -A_FF^-1 A_FC and -A_CF A_FF^-1 for vectors that do not change along it. It is exact, a block cyclic
-/// reduction, where these hold for all vectors. On several ranks levels of fewer than `few_lines` lines per rank are
-/// gathered to all. Source: Schaffer (1998) for semicoarsening; Ries, Trottenberg and Winter (1983) for the reduction.
+/// reduction, where these hold for all vectors. On several ranks levels so small that
+/// messages cost more (core::cost) are gathered to all. Source: Schaffer (1998) for semicoarsening; Ries, Trottenberg
+/// and Winter (1983) for the reduction.
 class RingPreconditioner final : public StatePreconditioner {
 public:
   /// `line` states in each of `lines` lines, of which this rank holds `here`. Every rank of `comm` holds two or more.

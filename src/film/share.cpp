@@ -16,11 +16,13 @@ void Places::add(Diagonal piece) {
   pieces_.push_back(piece);
 }
 
-// Of few long pieces in blocks of rows short enough for x and y to stay in the nearest cache while they add up.
+// In blocks of rows short enough for x and y to stay in the nearest cache while they add up, unless pieces are cut into
+// loops so short that starting them costs more.
 void multiply_add(const Places& places, std::span<const double> values, const double* x, std::span<double> y) {
-  constexpr std::size_t few = 16;
-  constexpr int block = 512;
-  const int rows = static_cast<int>(y.size()), height = places.pieces().size() > few ? rows : block;
+  constexpr int block = 512, shortest_loop = 16;
+  const int rows = static_cast<int>(y.size());
+  const std::size_t loops = places.pieces().size() * static_cast<std::size_t>(rows / block + 1);
+  const int height = places.size() < shortest_loop * loops ? rows : block;
   for (int begin = 0; begin < rows; begin += height) {
     const double* value = values.data();
     for (const Diagonal& d : places.pieces()) {

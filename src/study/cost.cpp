@@ -1,7 +1,9 @@
 #include "cost.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "whirl/core/cost.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/rotor/freedom.hpp"
 
@@ -45,8 +47,15 @@ double memory_of_cycles(const system::Machine& machine, double intervals, double
       system::is_rotor(machine) && std::any_of(machine.bearings.begin(), machine.bearings.end(),
                                                [](const auto& b) { return film::facts(b.film).own_states; });
   // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
+  // A node sees two others: 13 entries a state.
+  const core::cost::Cycle counts{.states = std::llround(n),
+                                 .intervals = std::llround(intervals),
+                                 .degree = std::llround(stages),
+                                 .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
+                                 .entries = std::llround(13 * n)};
   const bool whole = radau && !own && system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
-                     machine.rotor.reduction.type == rotor::Reduction::Type::none && n >= 250;
+                     machine.rotor.reduction.type == rotor::Reduction::Type::none &&
+                     core::cost::time_modes(counts) < core::cost::dense_joining(counts);
   return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
 }
 

@@ -69,7 +69,7 @@ void describe(deck::Description<Deck>& d) {
   d.embed(&Deck::machine);
   d.choices("studies", &Deck::studies, kinds(), "what to compute, in this order");
   d.add("limits", &Deck::limits, "what a run may take");
-  d.add("layout", &Deck::layout, "how ranks share the work");
+  d.add("layout", &Deck::layout, "how ranks share the work, and how much of it error bars may take");
   d.check([](const Deck& deck, const deck::Report& r) {
     const auto holds = [](const auto& s) { return s->needs_bearings(); };
     const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;

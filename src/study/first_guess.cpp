@@ -9,7 +9,7 @@
 namespace whirl::study {
 
 core::Vector first_guess(system::Plant& plant) {
-  constexpr int few_states = 4000;  // are found from anywhere
+  constexpr int few_states = 4000;  // no cost: so many were found from anywhere
   const auto* const fine = dynamic_cast<const system::RotorSystem*>(&plant);
   if (!fine || fine->own_states() <= few_states) return plant.guess();
   try {

@@ -35,6 +35,10 @@ void describe(deck::Description<LayoutOptions>& d) {
   d.add("film_states", &LayoutOptions::film_states, deck::positive,
         "states of all films together from which all ranks share one machine")
       .only(&LayoutOptions::machine, {automatic});
+  d.add(
+      "refined_states", &LayoutOptions::refined_states, deck::positive,
+      "states of all films together up to which error bars take finer film meshes too, of up to twice as many; beyond, "
+      "coarser ones only");
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include "transient/equations.hpp"
 
+#include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::transient {
@@ -7,8 +8,13 @@ namespace {
 
 using core::check;
 
-// Above this size a dense factorisation costs more than a sparse one with its symbolic part.
-constexpr PetscInt dense_below = 160;
+bool dense_is_cheaper(problem::System& system) {
+  if (core::size_of(system.comm()) > 1) return false;
+  MatInfo info;
+  const core::Matrix jacobian = system.make_jacobian();
+  check(MatGetInfo(jacobian.get(), MAT_LOCAL, &info));
+  return core::cost::dense_step(system.size()) < core::cost::sparse_step(static_cast<std::int64_t>(info.nz_allocated));
+}
 
 void to_eigen(Vec v, Eigen::VectorXd& out) {
   const core::ReadArray a(v);
@@ -29,7 +35,7 @@ Equations::Equations(problem::System& system, const problem::Drive& drive) : sys
   check(VecReciprocal(inverse_.get()));
   x_ = core::duplicate(state_scale_.get());
   xdot_ = core::duplicate(state_scale_.get());
-  if (core::size_of(system.comm()) == 1 && system.size() < dense_below) {
+  if (dense_is_cheaper(system)) {
     point_ = std::make_unique<solve::ScaledPoint>(system, system.structure());
     point_->refresh();
     f_.resize(system.size());

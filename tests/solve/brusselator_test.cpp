@@ -6,6 +6,7 @@
 
 #include "cycle_systems.hpp"
 #include "reference/brusselator.hpp"
+#include "support/at_points.hpp"
 #include "support/brusselator.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
@@ -83,7 +84,7 @@ void newton_picard(const test::BrusselatorCycle& reference, const solve::Tableau
   solve::NewtonPicardOptions o;
   o.autonomous = true;
   solve::NewtonPicardProblem problem(s, o, tableau, steps, solve::uniform_mesh(intervals));
-  const auto start = solve::at_points(points(), guess(reference.cells), solve::uniform_mesh(intervals));
+  const auto start = test::at_points(points(), guess(reference.cells), solve::uniform_mesh(intervals));
   problem.set_phase_reference(start);
   core::Vector u = problem.scatter(start);
   const auto result = fixed(problem, u.get());
@@ -143,7 +144,7 @@ TEST(Brusselator, CollocationAndMultipleShooting) {
     }
     for (const auto& [tableau, steps] : {std::pair(solve::radau_iia(3), 8), std::pair(solve::classical(), 40)}) {
       solve::ShootingProblem problem(MPI_COMM_WORLD, s, o, tableau, steps, solve::uniform_mesh(12));
-      const auto start = solve::at_points(points(), rough, problem.mesh());
+      const auto start = test::at_points(points(), rough, problem.mesh());
       problem.set_phase_reference(start);
       core::Vector u = problem.scatter(start);
       fixed(problem, u.get());
@@ -173,7 +174,7 @@ TEST(Brusselator, NewtonPicardOnAnyNumberOfRanks) {
     solve::NewtonPicardOptions o;
     o.autonomous = true;
     solve::NewtonPicardProblem problem(s, o, t, steps, solve::uniform_mesh(intervals));
-    const auto start = solve::at_points(points(), guess(8), solve::uniform_mesh(intervals));
+    const auto start = test::at_points(points(), guess(8), solve::uniform_mesh(intervals));
     problem.set_phase_reference(start);
     core::Vector u = problem.scatter(start);
     fixed(problem, u.get());

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cycle_systems.hpp"
+#include "support/at_points.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
@@ -88,7 +89,7 @@ TEST(Shooting, EqualsCollocationAtRadauPoints) {
     for (const int intervals : {1, 6, 48}) {
       const MPI_Comm time = intervals == 1 ? PETSC_COMM_SELF : MPI_COMM_WORLD;
       solve::ShootingProblem shooting(time, s, o, solve::radau_iia(3), 48 / intervals, solve::uniform_mesh(intervals));
-      const auto at = solve::at_points(collocation.scheme(), found, shooting.mesh());
+      const auto at = test::at_points(collocation.scheme(), found, shooting.mesh());
       if (autonomous) shooting.set_phase_reference(at);
       // From a displaced guess, so that Newton has something to do; the phase stays that of the reference.
       solve::Cycle displaced = at;

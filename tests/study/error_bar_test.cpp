@@ -10,6 +10,7 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "whirl/film/options.hpp"
+#include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {
 namespace {
@@ -145,13 +146,15 @@ TEST(ErrorBar, CoversKinksWhenToldOfThem) {
   EXPECT_GE(e.share, 0.97);
   EXPECT_LE(e.median, 4);
   EXPECT_GE(coverage(equal, kinks, coarser).share, 0.97);
-  // One frequency, in one direction: the meshes see one and the same oscillation and are not independent. With these
-  // spacings 84 of 100 are covered, less than what t says.
+  // One frequency, in one direction: the meshes see one and the same oscillation and are not independent. So fewer are
+  // covered than the 95 of 100 that t says, but more than if only two of the five numbers were: of these the mean errs
+  // by less than the bar, t(0.95, 4) s/sqrt 5, in 2/pi atan(t sqrt(2/5)) = 67 of 100.
   const auto one = [](double phase) -> Law {
     return [phase](double h, double) { return h * h * 0.2 + h * std::sin(37 / h + phase); };
   };
   const Coverage o = coverage(one, kinks, four);
-  EXPECT_NEAR(o.share, 0.84, 0.01);
+  EXPECT_LT(o.share, 0.95);
+  EXPECT_GT(o.share, 0.67);
   EXPECT_LE(o.median, 2);
   EXPECT_GE(coverage(one, kinks, coarser).share, 0.99);
   EXPECT_LT(coverage(one, {}, {0.5, 2}).share, o.share) << "without the word it would cover less";
@@ -183,12 +186,13 @@ TEST(ErrorBar, HasEachMeshOnce) {
   system::Machine machine;
   film::Reynolds film;
   film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  LayoutOptions layout;
   const auto cells = [&](std::array<int, 2> of) {
     film.cells = of;
     machine.bearings.resize(1);
     machine.bearings[0].film = film;
     std::array<std::vector<int>, 2> out;
-    for (const FilmMesh& m : film_meshes(machine)) {
+    for (const FilmMesh& m : film_meshes(machine, layout)) {
       const std::size_t d = m.axis == Axis::around ? 0 : 1;
       out[d].push_back(film::facts(film::refined(machine.bearings[0].film, m.factor)).cells[d]);
       EXPECT_NEAR(m.spacing, static_cast<double>(of[d]) / out[d].back(), 1e-12);
@@ -197,6 +201,11 @@ TEST(ErrorBar, HasEachMeshOnce) {
   };
   EXPECT_EQ(cells({60, 16}), (std::array{std::vector{30, 45, 90, 120}, std::vector{8, 12, 24, 32}}));
   EXPECT_EQ(cells({4, 5}), (std::array{std::vector{6, 8}, std::vector{4, 8, 10}}));
+  // More states than the deck lets bars refine: coarser ones only, as many.
+  film.states = film::States::dynamic;
+  EXPECT_EQ(cells({60, 16})[0].back(), 120);
+  layout.refined_states = 800;
+  EXPECT_EQ(cells({60, 16})[0], (std::vector{30, 38, 45, 53}));
 }
 
 // Thresholds of the train in films that conserve their mass, on 120 x 24 cells and the eight meshes beside it

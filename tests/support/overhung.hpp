@@ -1,14 +1,11 @@
 #pragma once
 // A small machine whose journals stand askew in their bearings.
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <numbers>
 #include <string>
 
-#include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/system/rotor_system.hpp"
+#include "support/at_rest.hpp"
 
 namespace whirl::test {
 
@@ -60,15 +57,14 @@ inline system::Train overhung(bool tilt, std::array<int, 2> cells = {30, 10}) {
   return t;
 }
 
-inline core::Vector equilibrium(system::RotorSystem& s) {
-  s.set_forcing(false);
-  core::Vector x = s.guess();
-  solve::NewtonOptions o;
-  o.max_iterations = 60;
-  const auto r = solve::find_equilibrium(s, x.get(), o);
-  EXPECT_TRUE(r.converged) << r.reason << " after " << r.iterations << ", residual " << r.residual;
-  s.set_forcing(true);
-  return x;
+// The same with the second film's content among the states.
+inline system::Train overhung_with_states() {
+  system::Train t = overhung(true, {12, 6});
+  film::Reynolds content = pads(true, {12, 6});
+  content.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  content.states = film::States::dynamic;
+  t.supports[1].film = content;
+  return t;
 }
 
 }  // namespace whirl::test

@@ -2,25 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "support/at_rest.hpp"
 #include "support/train_system.hpp"
-#include "whirl/solve/newton/equilibrium.hpp"
-#include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
-
-namespace {
-
-core::Vector rest(system::RotorSystem& s) {
-  core::Vector x = system::static_guess(s);
-  solve::NewtonOptions o;
-  o.max_iterations = 60;
-  const auto r = solve::find_equilibrium(s, x.get(), o);
-  EXPECT_TRUE(r.converged) << r.reason;
-  return x;
-}
-
-}  // namespace
 
 TEST(CondensedLiner, RestsWhereOneWithStatesDoes) {
   system::Train train = test::train_on_liners({24, 6}, 0.05);
@@ -29,7 +14,7 @@ TEST(CondensedLiner, RestsWhereOneWithStatesDoes) {
   system::RotorSystem condensed(MPI_COMM_WORLD, train, 377);
   EXPECT_GT(dynamic.own_states(), 0);
   EXPECT_EQ(condensed.own_states(), 0);
-  const core::Vector x = rest(dynamic), y = rest(condensed);
+  const core::Vector x = test::equilibrium(dynamic), y = test::equilibrium(condensed);
   const auto a = dynamic.observe(x.get()), b = condensed.observe(y.get());
   const auto f = dynamic.film_responses(dynamic.gather(x.get()).data(), film::Need::force),
              g = condensed.film_responses(condensed.gather(y.get()).data(), film::Need::force);

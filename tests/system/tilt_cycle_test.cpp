@@ -59,12 +59,8 @@ TEST(Tilt, VanishesBySymmetry) {
 // Cycles by the elimination that knows of four ports, and by the general one.
 TEST(Tilt, CyclesByEveryWay) {
   for (const bool states : {false, true}) {
-    system::Train t = overhung(true, {12, 6});
+    system::Train t = states ? test::overhung_with_states() : overhung(true, {12, 6});
     if (states) {
-      film::Reynolds content = pads(true, {12, 6});
-      content.cavitation = film::Reynolds::Cavitation::mass_conserving;
-      content.states = film::States::dynamic;
-      t.supports[1].film = content;
       t.rotor.reduction.type = rotor::Reduction::Type::guyan;
       t.rotor.reduction.masters = {1, 5, 7};
       t.rotor.reduction.slopes = {1, 5};

@@ -90,13 +90,7 @@ TEST(Tilt, AxesAsParameters) {
 // The blocks that structured solvers see give F and J of the matrices, with films with and without states.
 TEST(Tilt, BlocksAreTheSameEquations) {
   for (const bool states : {false, true}) {
-    system::Train t = overhung(true, {12, 6});
-    if (states) {
-      film::Reynolds content = pads(true, {12, 6});
-      content.cavitation = film::Reynolds::Cavitation::mass_conserving;
-      content.states = film::States::dynamic;
-      t.supports[1].film = content;
-    }
+    const system::Train t = states ? test::overhung_with_states() : overhung(true, {12, 6});
     system::RotorSystem s(PETSC_COMM_SELF, t, speed);
     core::Vector x = s.guess(), rate = core::duplicate(x.get()), f = core::duplicate(x.get());
     const Index n = 2 * s.coordinates(), all = s.size();

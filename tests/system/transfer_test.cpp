@@ -6,17 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/at_rest.hpp"
 #include "support/film_of.hpp"
 #include "support/train_system.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/whirl.hpp"
-#include "whirl/system/rotor_system.hpp"
-#include "whirl/system/start.hpp"
 
 using namespace whirl;
 using Complex = std::complex<double>;
@@ -68,15 +66,6 @@ system::Train content() {
   return t;
 }
 
-core::Vector rest(system::RotorSystem& s) {
-  core::Vector x = system::static_guess(s);
-  solve::NewtonOptions o;
-  o.max_iterations = 60;
-  const auto r = solve::find_equilibrium(s, x.get(), o);
-  EXPECT_TRUE(r.converged) << r.reason;
-  return x;
-}
-
 // Of a film by itself, by elimination of its states on one rank.
 film::Coefficients coefficients_alone(const system::RotorSystem& s, int b, const std::vector<double>& x, double omega) {
   std::vector<std::unique_ptr<film::Film>> films;
@@ -100,7 +89,7 @@ bool within(Complex z, const solve::TransferOptions& o) {
 
 // All eigenvalues in the region, found both ways.
 void expect_the_whole_pencils(system::RotorSystem& s, const solve::TransferOptions& o, int at_least, double accuracy) {
-  const core::Vector x = rest(s);
+  const core::Vector x = test::equilibrium(s);
   spectral::EigenOptions all;
   all.dense_below = s.size();
   std::vector<spectral::Mode> expected;
@@ -129,7 +118,7 @@ TEST(TransferFunction, HoldsTheCoefficientsOfItsFilms) {
   for (const auto& train :
        {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), test::train_on_liners({12, 5}, 0.05)}) {
     system::RotorSystem s(MPI_COMM_WORLD, train, train.supports.size() > 1 ? 377 : 2 * scale);
-    const core::Vector x = rest(s);
+    const core::Vector x = test::equilibrium(s);
     solve::TransferFunction transfer(s);
     transfer.linearise(x.get());
     const auto whole = s.gather(x.get());
@@ -198,7 +187,7 @@ TEST(TransferModes, OfTheTrainOnFiveLinersAreThoseOfTheWholePencil) {
 // counted; not all are found, and the answer says so.
 TEST(TransferModes, CountThoseThatHideInADampedLiner) {
   system::RotorSystem s(MPI_COMM_WORLD, damped(), 2.0 * scale);
-  const core::Vector x = rest(s);
+  const core::Vector x = test::equilibrium(s);
   solve::TransferOptions o;
   o.frequency = 8 * scale;
   o.decay = 6 * scale;
@@ -216,7 +205,7 @@ TEST(TransferModes, CountThoseThatHideInADampedLiner) {
 // The parts of a large machine are eliminated; as one it is factorised if an option says so.
 TEST(MachineModes, OfALargeMachineAreThoseOfItsWholeMatrix) {
   system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {48, 14}, 0.1), 2.4 * scale);
-  const core::Vector x = rest(s);
+  const core::Vector x = test::equilibrium(s);
   spectral::EigenOptions o;
   o.count = 12;
   ASSERT_GT(s.size(), o.dense_below);
@@ -236,7 +225,7 @@ TEST(MachineModes, OfALargeMachineAreThoseOfItsWholeMatrix) {
 
 TEST(MachineModes, AreFoundTheWayThatIsAskedFor) {
   system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {20, 6}, 0.1), 2.4 * scale);
-  const core::Vector x = rest(s);
+  const core::Vector x = test::equilibrium(s);
   const auto by = [&](const char* way) {
     if (way) core::check(PetscOptionsSetValue(nullptr, "-modes_by", way));
     return solve::machine_modes(s, x.get(), {});
@@ -255,4 +244,12 @@ TEST(MachineModes, AreFoundTheWayThatIsAskedFor) {
   EXPECT_LT(transfer.modes.size(), whole.modes.size());
   EXPECT_THROW((void)by("guess"), core::InputError);
   core::check(PetscOptionsClearValue(nullptr, "-modes_by"));
+  // Memory that is scarcer: transfer functions for fewer states, and no factors kept.
+  core::check(PetscOptionsSetValue(nullptr, "-modes_whole_states", "100"));
+  core::check(PetscOptionsSetValue(nullptr, "-parts_kept_states", "100"));
+  const auto small = by(nullptr);
+  EXPECT_TRUE(small.transfer);
+  EXPECT_LT(std::abs(least_stable(small) - least_stable(transfer)), 1e-9 * scale);
+  core::check(PetscOptionsClearValue(nullptr, "-modes_whole_states"));
+  core::check(PetscOptionsClearValue(nullptr, "-parts_kept_states"));
 }

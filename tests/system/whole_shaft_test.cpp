@@ -26,7 +26,7 @@ struct Answer {
   std::vector<std::complex<double>> multipliers;
 };
 
-Answer cycle_of(MPI_Comm comm, const system::Train& t, double speed, Joining joining, int intervals) {
+Answer cycle_of(MPI_Comm comm, const system::Train& t, double speed, Joining joining, int intervals, int wanted = 24) {
   system::RotorSystem s(PETSC_COMM_SELF, t, speed);
   core::Vector x = system::static_guess(s);
   solve::NewtonOptions newton;
@@ -34,6 +34,7 @@ Answer cycle_of(MPI_Comm comm, const system::Train& t, double speed, Joining joi
   EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged);
   solve::CycleOptions o;
   o.joining = joining;
+  o.multipliers = wanted;
   solve::CycleProblem p(comm, s, o, solve::uniform_mesh(intervals));
   const auto whole = s.gather(x.get());
   const solve::Cycle guess{p.mesh(),
@@ -70,19 +71,23 @@ system::Train short_train() {
 
 }  // namespace
 
-// Multipliers that the search returns are those of the dense matrix in their order: none is missing.
+// Multipliers that the search returns are those of the dense matrix in their order: none is missing. The search
+// ends with as many as were asked for where more lie near the circle: there are 22 above 0.2.
 TEST(WholeShaft, TimeModesAndDenseTransitionsFindTheSameCycle) {
   const system::Train t = short_train();
   constexpr double speed = 350;
   constexpr int intervals = 16;
   const Answer modes = cycle_of(MPI_COMM_WORLD, t, speed, Joining::cheapest, intervals),
+               few = cycle_of(MPI_COMM_WORLD, t, speed, Joining::cheapest, intervals, 8),
                dense = cycle_of(MPI_COMM_WORLD, t, speed, Joining::dense, intervals);
   EXPECT_EQ(modes.newton.iterations, dense.newton.iterations);
   EXPECT_LE((modes.cycle.x - dense.cycle.x).cwiseAbs().maxCoeff(), 1e-8 * dense.cycle.x.cwiseAbs().maxCoeff());
   EXPECT_EQ(dense.multipliers.size(), 432U);
-  ASSERT_GE(modes.multipliers.size(), 8U);
-  for (std::size_t k = 0; k < modes.multipliers.size() && std::abs(modes.multipliers[k]) > 0.2; ++k)
-    EXPECT_NEAR(std::abs(modes.multipliers[k]), std::abs(dense.multipliers[k]), 1e-7) << k;
+  EXPECT_GE(few.multipliers.size(), 8U);
+  EXPECT_LT(few.multipliers.size(), modes.multipliers.size());
+  for (const Answer* a : {&modes, &few})
+    for (std::size_t k = 0; k < a->multipliers.size() && std::abs(a->multipliers[k]) > 0.2; ++k)
+      EXPECT_NEAR(std::abs(a->multipliers[k]), std::abs(dense.multipliers[k]), 1e-7) << k;
 }
 
 // The whole train at 3600 rpm: 740 freedoms of the shaft, 1500 states. Reference values:

@@ -1,5 +1,5 @@
 #pragma once
-// What a deck may say about how ranks share the work.
+// What a deck may say about how ranks share the work, and how much of it there may be.
 
 #include <span>
 
@@ -7,12 +7,13 @@
 
 namespace whirl::study {
 
-/// Who holds one machine, its states and matrices.
+/// Who holds one machine, its states and matrices, and how large others are made beside it.
 struct LayoutOptions {
   enum class Machine { automatic, one_rank, all_ranks };
   Machine machine = Machine::automatic;
   int shaft_freedoms = 20000;  ///< of the shaft before its reduction; other systems: half their states
   int film_states = 3000;      ///< of all films together
+  int refined_states = 4000;   ///< of all films together, up to which bars are computed on finer meshes too
 };
 [[nodiscard]] std::span<const deck::Name<LayoutOptions::Machine>> names(LayoutOptions::Machine);
 void describe(deck::Description<LayoutOptions>& d);

@@ -1,11 +1,14 @@
 #include "whirl/solve/cycle/cycle_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "solve/cycle/cycle_matrix.hpp"
 #include "solve/cycle/film_march.hpp"
+#include "solve/cycle/own_block.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/cost.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 
@@ -20,26 +23,36 @@ using Eigen::VectorXd;
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-// Sweeps pay where intervals cost O(n) to pass. Per point of a branch the dense way carries n states through all
-// intervals three to four times and finds all eigenvalues of M; sweeps carry some 100 states, most of them one at a
-// time, where the dense way carries eight at once. Measured: 1.5 times faster at 56 states, 3 to 4 times at 206.
-constexpr Index dense_below = 40;
+using Joining = CycleOptions::Joining;
 
-// Time modes cost in proportion to the entries of the blocks, dense transitions n^3: they meet at some 250 states of a
-// shaft, where a node sees two others.
-bool thin(problem::Structure& structure) {
-  const Index n = structure.size();
-  return n >= 250 && 20 * (structure.l1().nonZeros() + structure.l0().nonZeros()) < n * n;
+core::cost::Cycle counts(const CycleOptions& options, problem::Structure& structure, std::size_t intervals) {
+  core::cost::Cycle c{.states = structure.size(),
+                      .borders = options.autonomous ? 2 : 1,
+                      .intervals = static_cast<Index>(intervals),
+                      .degree = options.degree,
+                      .forces = structure.n_forces(),
+                      .entries = structure.l1().nonZeros() + structure.l0().nonZeros()};
+  for (const problem::OwnStates& film : structure.own()) {
+    c.states += film.count;
+    if (options.joining == Joining::one_by_one) continue;  // dense maps, whatever is behind them
+    c.own += film.count;
+    c.band = std::max(c.band, OwnShape(film).width());
+  }
+  return c;
 }
 
 }  // namespace
 
-CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Structure* structure) {
+CycleProblem::Way CycleProblem::way_of(const CycleOptions& options, problem::Structure* structure,
+                                       std::size_t intervals) {
   if (!structure) return Way::dense;
   if (!structure->own().empty()) return Way::own_states;
-  using Joining = CycleOptions::Joining;
+  const auto modes_are_cheaper = [&] {
+    const core::cost::Cycle c = counts(options, *structure, intervals);
+    return core::cost::time_modes(c) < core::cost::dense_joining(c);
+  };
   if (options.points == Points::radau &&
-      (options.joining == Joining::modes || (options.joining == Joining::cheapest && thin(*structure))))
+      (options.joining == Joining::modes || (options.joining == Joining::cheapest && modes_are_cheaper())))
     return Way::sparse;
   return 2 * structure->n_forces() < structure->size() ? Way::low_rank : Way::dense;
 }
@@ -51,7 +64,7 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
       system_(local),
       structure_(options.use_structure ? local.structure() : nullptr),
       options_(options),
-      way_(way_of(options, structure_)),
+      way_(way_of(options, structure_, mesh.size() - 1)),
       point_(local, structure_, way_ == Way::sparse),
       scheme_(make_scheme(options.degree, options.points)),
       n_(local.size()),
@@ -59,10 +72,14 @@ CycleProblem::CycleProblem(MPI_Comm time, problem::System& local, const CycleOpt
   run_.comm = time;
   run_.n = n_;
   run_.borders = borders_;
-  using Joining = CycleOptions::Joining;
+  run_.multipliers = options.multipliers;
+  const auto sweeps_are_cheaper = [&] {
+    const core::cost::Cycle c = counts(options, *structure_, mesh.size() - 1);
+    return core::cost::sweeps(c) < core::cost::dense_joining(c);
+  };
   const bool sweeps = options.joining == Joining::sweeps ||
                       ((options.joining == Joining::cheapest || options.joining == Joining::one_by_one) &&
-                       way_ == Way::own_states && n_ > dense_below);
+                       way_ == Way::own_states && sweeps_are_cheaper());
   core::require(options.joining != Joining::modes || way_ == Way::sparse,
                 "time modes want Radau points and a machine that is linear but for thin forces");
   composition_ = way_ == Way::sparse ? make_mode_composition()

@@ -15,7 +15,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Up to here all multipliers can be had from the dense matrix where a search for the dominant ones fails.
+// No crossover: up to here all multipliers can be had from the dense matrix where a search for the dominant ones fails,
+// at forty times the cost of a point (core::cost). Beyond, a branch that goes on for hours would be no service.
 constexpr Index whole_up_to = 1000;
 
 }  // namespace
@@ -173,7 +174,7 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
   };
   SubspaceOptions options;
   options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
-  options.most = 24;
+  options.most = run_->multipliers;
   options.restarts = 20;
   // From the last point's subspace a few vectors do: what is left of M falls by orders of magnitude.
   if (basis_.cols() > 0) options.spare = 4;

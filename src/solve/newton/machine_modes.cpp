@@ -15,15 +15,14 @@ namespace whirl::solve {
 
 namespace {
 
-// A judgement: both ways cost the same at the largest machine measured (158 104 states, docs/speed.md), the count comes
-// on top, and only one film is factorised at a time.
-constexpr PetscInt whole_up_to = 100000;
-
 bool by_transfer(const problem::System& system) {
   std::array<char, 16> word{};
   PetscBool given = PETSC_FALSE;
   core::check(PetscOptionsGetString(nullptr, nullptr, "-modes_by", word.data(), word.size(), &given));
   const std::string_view way = given ? word.data() : "automatic";
+  // A limit of memory, which transfer functions spare: at 158 104 states both ways take the same time (docs/speed.md).
+  PetscInt whole_up_to = 100000;
+  core::check(PetscOptionsGetInt(nullptr, nullptr, "-modes_whole_states", &whole_up_to, nullptr));
   if (way != "whole" && way != "transfer" && way != "automatic")
     throw core::InputError("-modes_by is 'whole', 'transfer' or 'automatic'");
   return system.fields().size() > 1 && (way == "transfer" || (way == "automatic" && system.size() > whole_up_to));

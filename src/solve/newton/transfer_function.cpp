@@ -24,7 +24,12 @@ using Eigen::VectorXcd;
 namespace {
 
 // Parts up to this size keep their factors from one frequency to the next, and with them the analysis of the pattern.
-constexpr PetscInt kept_up_to = 20000;
+// Factors of larger ones would fill the memory.
+PetscInt kept_up_to() {
+  PetscInt states = 20000;
+  check(PetscOptionsGetInt(nullptr, nullptr, "-parts_kept_states", &states, nullptr));
+  return states;
+}
 
 core::Matrix block(Mat a, IS rows, IS columns) {
   core::Matrix m;
@@ -241,7 +246,7 @@ TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes)
         MPI_Allreduce(MPI_IN_PLACE, m->data(), static_cast<int>(forces * columns), MPI_C_DOUBLE_COMPLEX, MPI_SUM,
                       comm());
     out.push_back(std::move(block));
-    if (states(i) > kept_up_to) {
+    if (states(i) > kept_up_to()) {
       p.solver.reset();
       p.real.reset();
       p.right.reset();

@@ -164,11 +164,4 @@ VectorXd ShootingProblem::reference_rate(const Cycle& reference, Index g, Index)
   return reference.period * point().rate(0, x).cwiseProduct(state_scale());
 }
 
-Cycle at_points(const Scheme& scheme, const Cycle& cycle, const std::vector<double>& mesh) {
-  Cycle out{mesh, {}, cycle.period, cycle.parameter};
-  out.x.resize(cycle.x.rows(), out.intervals());
-  for (Index i = 0; i < out.intervals(); ++i) out.x.col(i) = cycle.at(scheme, mesh[static_cast<std::size_t>(i) + 1]);
-  return out;
-}
-
 }  // namespace whirl::solve

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "whirl/core/cost.hpp"
+
 namespace whirl::solve {
 
 using Eigen::Index;
@@ -33,9 +35,10 @@ Map<const Pack> shifted(const double* from) {
 
 std::unique_ptr<StructuredRate> StructuredRate::make(problem::System& system) {
   if (core::size_of(system.comm()) > 1 || !system.structure()) return nullptr;
-  // Dense blocks would make products dearer than those of a sparse matrix.
-  const Index n = system.structure()->size();
-  if (n > 24 && n * n > 8 * system.size()) return nullptr;
+  // Dense blocks may make products dearer than those of a sparse matrix, in which a state of a film has five entries.
+  problem::Structure& s = *system.structure();
+  const Index entries = s.l1().nonZeros() + s.l0().nonZeros() + 5 * (system.size() - s.size());
+  if (core::cost::dense_product(s.size()) > core::cost::sparse_product(entries)) return nullptr;
   std::unique_ptr<StructuredRate> out(new StructuredRate(system));
   if (!out->find_places()) return nullptr;
   out->refresh();

@@ -5,14 +5,9 @@
 #include <set>
 
 #include "whirl/film/options.hpp"
+#include "whirl/study/layout_options.hpp"
 
 namespace whirl::study {
-namespace {
-
-constexpr int most_states = 4000;
-
-}  // namespace
-
 system::Train with_film_mesh(system::Train train, const std::array<double, 2>& factor) {
   for (auto& s : train.supports) s.film = film::refined(s.film, factor);
   return train;
@@ -35,12 +30,12 @@ double order_in_time(const system::Machine& machine, double scheme) {
   return scheme;
 }
 
-std::vector<FilmMesh> film_meshes(const system::Machine& machine) {
+std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOptions& layout) {
   int states = 0;
   for (const auto& b : machine.bearings) states += film::facts(b.film, b.geometry.value_or(film::Geometry{})).states;
   const bool kinks = law_of(machine).kinks;
   std::vector<double> factors{0.5, 2};
-  if (states > most_states)
+  if (states > layout.refined_states)
     factors = kinks ? std::vector{0.5, 0.625, 0.75, 0.875} : std::vector{0.5, 2.0 / 3};
   else if (kinks)
     factors = {0.5, 0.75, 1.5, 2};

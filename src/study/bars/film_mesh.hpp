@@ -13,6 +13,8 @@
 
 namespace whirl::study {
 
+struct LayoutOptions;
+
 /// All films of a machine with other numbers of cells in one direction.
 struct FilmMesh {
   Axis axis = Axis::around;
@@ -22,9 +24,9 @@ struct FilmMesh {
 
 /// Half and double the cells of each direction that a film of the machine has a mesh in; two more between them where
 /// forces have kinks, so that the scatter is seen; and coarser meshes only, as many of them, where films have more than
-/// 4000 states of their own: finer ones would cost more than the branch. Each mesh once: few cells are rounded to fewer
-/// meshes. Empty for machines without film meshes.
-[[nodiscard]] std::vector<FilmMesh> film_meshes(const system::Machine& machine);
+/// LayoutOptions::refined_states: finer ones would cost more than the branch. Each mesh once: few cells are rounded to
+/// fewer meshes. Empty for machines without film meshes.
+[[nodiscard]] std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOptions& layout);
 
 /// The train with the cells of its films multiplied and rounded: at least four, even ones for Simpson's rule.
 [[nodiscard]] system::Train with_film_mesh(system::Train train, const std::array<double, 2>& factor);

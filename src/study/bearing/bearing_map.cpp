@@ -245,7 +245,7 @@ void put_bars(const Context& context, const BearingMapOptions& options, std::siz
   io::StudySummary& summary = context.results.summary();
   Bars bars(numbers_of(map.locus, map.locus), law_of(context.machine));
   SummaryBars of_summary(summary, law_of(context.machine));
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   for (const FilmMesh& mesh : meshes) {
     std::vector<double> numbers;
     io::StudySummary there;

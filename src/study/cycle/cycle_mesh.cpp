@@ -38,7 +38,8 @@ MeshLaw CycleFollower::law() const {
 std::vector<CycleMesh> CycleFollower::meshes() const {
   std::vector<CycleMesh> out{{Axis::time, 0.5, {1, 1}}, {Axis::time, 2, {1, 1}}};
   if (system_->has_film_mesh())
-    for (const FilmMesh& m : film_meshes(context_.machine)) out.push_back({m.axis, m.spacing, m.factor});
+    for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
+      out.push_back({m.axis, m.spacing, m.factor});
   return out;
 }
 

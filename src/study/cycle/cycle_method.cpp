@@ -1,5 +1,6 @@
 // Which solver of periodic solutions follows the branch.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -74,6 +75,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
   const MPI_Comm time = layout(mesh.size() - 1).time;
   solve::CycleOptions o;
   o.degree = options_.degree;
+  o.multipliers = std::max(o.multipliers, options_.multipliers + 1);  // one of a self-excited cycle says nothing
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
   o.turns = turns;
   o.autonomous = autonomous();

@@ -74,9 +74,10 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
   pieces_->complete("hopf bars", b, [&] {
-    study::describe(b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine),
-                        law_of(context_.machine), [this](const auto& cells) { return make_system(cells); },
-                        [this](const auto& name, const auto& work) { return pieces_->numbers("hopf " + name, work); }});
+    study::describe(
+        b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine, context_.layout),
+            law_of(context_.machine), [this](const auto& cells) { return make_system(cells); },
+            [this](const auto& name, const auto& work) { return pieces_->numbers("hopf " + name, work); }});
   });
   pieces_->complete("hopf criticality", b,
                     [&] { set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity); });

@@ -51,7 +51,7 @@ std::vector<MarginThere> margins_there(const Context& context, const Equilibrium
                                        const system::Plant& system, const std::vector<double>& whole, double parameter,
                                        const solve::NewtonOptions& newton) {
   std::vector<MarginThere> out;
-  for (const FilmMesh& mesh : film_meshes(context.machine)) {
+  for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
     // Stays unknown where there is none.
     (void)has_answer([&] {
@@ -171,8 +171,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     problem.to_state(v, x.get());
     const std::string event = fmt::format("event {}", results.summary().bifurcations.size() + 1);
     pieces.complete(event, b, [&] {
-      describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton, film_meshes(context.machine),
-                   law_of(context.machine), [&](const auto& cells) { return plant_of(context, options, cells); },
+      describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
+                   film_meshes(context.machine, context.layout), law_of(context.machine),
+                   [&](const auto& cells) { return plant_of(context, options, cells); },
                    [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); },
                    !plan(context, Sharing::machine).large});
     });

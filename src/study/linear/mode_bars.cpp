@@ -47,7 +47,7 @@ std::vector<std::size_t> few_of(std::size_t n) {
 ModeBars::ModeBars(const Context& context, const Layout& layout, Pieces& pieces,
                    const std::vector<SampledModes>& sampled,
                    const std::function<std::vector<spectral::ModePoint>(system::RotorSystem&, Vec)>& modes_at) {
-  const std::vector<FilmMesh> meshes = film_meshes(context.machine);
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   any_ = !meshes.empty();
   if (!any_ || sampled.empty()) return;
   const auto compute = [&](std::size_t i) {

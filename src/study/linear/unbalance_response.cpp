@@ -340,7 +340,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   if (options.operating_speed) {
     put_operating(context, nodes, at_speeds({options.operating_speed->value}).front(), summary);
   }
-  put_response_bars(summary, film_meshes(context.machine), law_of(context.machine), named, put_peak,
+  put_response_bars(summary, film_meshes(context.machine, context.layout), law_of(context.machine), named, put_peak,
                     [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
                       std::optional<Machine> other;
                       if (cells != std::array<double, 2>{1, 1}) other.emplace(context, layout, options, nodes, cells);

@@ -35,6 +35,7 @@ struct Run {
   std::vector<Eigen::MatrixXd> columns, rows;        ///< [mn x nb], [nb x mn]
   Eigen::MatrixXd corner;                            ///< [nb x nb]
   std::optional<ThinRun> thin;
+  int multipliers = 24;  ///< looked for at most where M is known by its products
 
   /// Carries states [n x k] over this rank's intervals; added += rows X [nb x k].
   void carry(Eigen::MatrixXd& state, Eigen::MatrixXd& added) const;

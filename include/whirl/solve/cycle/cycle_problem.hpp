@@ -28,9 +28,11 @@ struct CycleOptions {
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
   bool use_structure = true;   ///< condense with what the system tells of its structure
   /// How intervals are joined: by one dense matrix of all states, by sweeps of single states over all intervals, by
-  /// time modes (Radau points, no own states of films), or by whichever is thought to cost less: of all, or of the
-  /// first two, which take intervals of any kind.
+  /// time modes (Radau points, no own states of films), or by whichever costs less by the counts of core::cost: of
+  /// all, or of the first two, which take intervals of any kind.
   enum class Joining { cheapest, dense, sweeps, modes, one_by_one } joining = Joining::cheapest;
+  /// Where M is known by its products: multipliers above 0.2 that are looked for, the largest.
+  int multipliers = 24;
   double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
   int base_intervals = 0;     ///< adapt() never makes a mesh coarser than this uniform one; 0: its longest interval
   int max_intervals = 400;
@@ -75,8 +77,8 @@ public:
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
   void set_phase_reference(const Cycle& reference) override;
   [[nodiscard]] double period_scale() const override { return period_scale_; }
-  /// All of them, or where sweeps join the intervals those above 0.2 and one below, at most 24; where a dense band of
-  /// them lies above 0.2, those above 0.5.
+  /// All of them, or where M is known by its products those above 0.2 and one below, at most CycleOptions::multipliers;
+  /// where a dense band of them lies above 0.2, those above 0.5.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Monodromy matrix [n x n] over one period at the last linearisation, in scaled states; the same copy on every rank.
@@ -169,7 +171,7 @@ private:
 
   /// How an interval is condensed.
   enum class Way { dense, low_rank, own_states, sparse };
-  [[nodiscard]] static Way way_of(const CycleOptions& options, problem::Structure* structure);
+  [[nodiscard]] static Way way_of(const CycleOptions& options, problem::Structure* structure, std::size_t intervals);
 
   MPI_Comm comm_;
   int rank_, size_;

@@ -63,8 +63,4 @@ private:
   int steps_;
 };
 
-/// The states of `cycle` (made with `scheme`) at the points of another mesh, in the layout of degree 1: a guess for
-/// ShootingProblem.
-[[nodiscard]] Cycle at_points(const Scheme& scheme, const Cycle& cycle, const std::vector<double>& mesh);
-
 }  // namespace whirl::solve

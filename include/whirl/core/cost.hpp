@@ -1,0 +1,54 @@
+#pragma once
+// What two ways to the same answer cost, counted from sizes, so that the cheaper one can be taken: the same on every
+// machine and in every run.
+
+#include <cstdint>
+
+namespace whirl::core::cost {
+
+// The unit is a multiply-add in a product of dense matrices, 0.03 ns on the machine of docs/speed.md, which measures
+// what others take (bench_cost).
+
+/// Of a dense matrix that is read once for one vector.
+inline constexpr double streamed = 3.3;
+/// In sparse matrices, bands and small blocks.
+inline constexpr double scattered = 6;
+/// Before a sparse or iterative solver has done anything: objects, analysis, 0.13 ms.
+inline constexpr double call = 4.5e6;
+/// An exchange with a neighbour, 5 us.
+inline constexpr double message = 1.65e5;
+
+/// A cycle of n states by collocation or steps.
+struct Cycle {
+  std::int64_t states = 0, borders = 1;
+  std::int64_t intervals = 0, degree = 1;
+  std::int64_t own = 0;      ///< states of films among them
+  std::int64_t band = 0;     ///< neighbours that one of these sees, itself included
+  std::int64_t forces = 0;   ///< nonlinear forces on the others
+  std::int64_t entries = 0;  ///< of the linear blocks of the others
+};
+
+/// A point of a branch of cycles: three iterations of Newton's method, and multipliers.
+
+/// Intervals joined by one dense matrix: all columns pass all intervals in every iteration, and LAPACK finds all
+/// multipliers, in 70 n^3.
+[[nodiscard]] double dense_joining(const Cycle& cycle);
+/// Joined by sweeps: 50 columns pass the intervals one by one, in GMRES and in the search for leading multipliers.
+[[nodiscard]] double sweeps(const Cycle& cycle);
+/// Of a machine that is linear but for its forces, by modes in time, one sparse LU a point, and the same sweeps.
+[[nodiscard]] double time_modes(const Cycle& cycle);
+
+/// A step in time of n states by the factors of a dense Jacobian, and of a sparse one with so many entries by MUMPS.
+[[nodiscard]] double dense_step(std::int64_t states);
+[[nodiscard]] double sparse_step(std::int64_t entries);
+
+/// A product of one vector with a dense matrix, and with a sparse one of PETSc, whose call takes 2000.
+[[nodiscard]] double dense_product(std::int64_t states);
+[[nodiscard]] double sparse_product(std::int64_t entries);
+
+/// All lines of a level of a multigrid cycle on every rank instead of a share on each: what that adds in arithmetic,
+/// and what the level's four exchanges cost.
+[[nodiscard]] double repeated_level(std::int64_t lines, std::int64_t line, int ranks);
+[[nodiscard]] double exchanged_level();
+
+}  // namespace whirl::core::cost

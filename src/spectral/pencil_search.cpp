@@ -1,0 +1,99 @@
+#include "spectral/pencil_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/direct_solver.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::spectral {
+
+using core::check;
+
+core::Matrix redundant_dense(Mat m) {
+  core::Matrix whole, dense;
+  const int size = core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(m)));
+  if (size == 1) {
+    check(MatConvert(m, MATSEQDENSE, MAT_INITIAL_MATRIX, dense.put()));
+    return dense;
+  }
+  check(MatCreateRedundantMatrix(m, size, MPI_COMM_NULL, MAT_INITIAL_MATRIX, whole.put()));
+  check(MatConvert(whole.get(), MATSEQDENSE, MAT_INITIAL_MATRIX, dense.put()));
+  return dense;
+}
+
+Pair pair_of(EPS eps, PetscInt i, Vec re, Vec im, bool vectors) {
+  PetscScalar a = 0, b = 0;
+  Pair p;
+  if (vectors) {
+    check(EPSGetEigenpair(eps, i, &a, &b, re, im));
+    p.real = core::gather(re);
+    p.imaginary = core::gather(im);
+  } else {
+    check(EPSGetEigenvalue(eps, i, &a, &b));
+  }
+  p.value = {a, b};
+  return p;
+}
+
+void share(MPI_Comm comm, std::vector<Complex>& values) {
+  auto count = static_cast<unsigned long>(values.size());
+  MPI_Bcast(&count, 1, MPI_UNSIGNED_LONG, 0, comm);
+  values.resize(count);
+  core::share(comm, reinterpret_cast<double*>(values.data()), 2 * values.size());
+}
+
+// The generalised Schur form of strongly non-normal pencils (thin films swept along by the journal) may refuse to be
+// sorted: LAPACK's dtgexc calls neighbours too close. Their standard form b^-1 a sorts.
+void solve_dense(EigenSolver& eps, Mat a, Mat b) {
+  try {
+    check(EPSSolve(eps.get()));
+    return;
+  } catch (const core::LibraryError&) {
+    check(MatLUFactor(b, nullptr, nullptr, nullptr));
+  }
+  core::Matrix standard;
+  check(MatDuplicate(a, MAT_DO_NOT_COPY_VALUES, standard.put()));
+  check(MatMatSolve(b, a, standard.get()));
+  eps.reset();
+  check(EPSCreate(PETSC_COMM_SELF, eps.put()));
+  check(EPSSetOptionsPrefix(eps.get(), "modes_"));
+  check(EPSSetOperators(eps.get(), standard.get(), nullptr));
+  check(EPSSetProblemType(eps.get(), EPS_NHEP));
+  check(EPSSetType(eps.get(), EPSLAPACK));
+  check(EPSSetFromOptions(eps.get()));
+  check(EPSSolve(eps.get()));
+}
+
+void search_near(EPS eps, Mat a, double target, PetscInt wanted, InverseShell* shell) {
+  PetscInt n = 0;
+  check(MatGetSize(a, &n, nullptr));
+  check(EPSSetType(eps, EPSKRYLOVSCHUR));
+  check(EPSSetDimensions(eps, wanted, std::min<PetscInt>(n, 2 * wanted + 20), PETSC_DEFAULT));
+  check(EPSSetTolerances(eps, search_tolerance, 200));
+  check(EPSSetTarget(eps, target));
+  check(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
+  ST st = nullptr;
+  KSP ksp = nullptr;
+  check(EPSGetST(eps, &st));
+  check(STSetType(st, STSINVERT));
+  check(STGetKSP(st, &ksp));
+  if (shell)
+    shell->serve(ksp);
+  else
+    core::make_direct(ksp);
+  // The same start vector on any number of ranks.
+  core::Vector start;
+  check(MatCreateVecs(a, start.put(), nullptr));
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(start.get(), &begin, nullptr));
+  {
+    const core::WriteArray s(start.get());
+    for (PetscInt i = 0; i < s.size(); ++i) s[i] = 1 + std::sin(0.7 * static_cast<double>(begin + i));
+  }
+  Vec first = start.get();
+  check(EPSSetInitialSpace(eps, 1, &first));
+}
+
+}  // namespace whirl::spectral

@@ -1,0 +1,112 @@
+#pragma once
+// Machines that have every option which studies may vary.
+
+#include <numbers>
+#include <string>
+
+#include "whirl/system/options.hpp"
+
+namespace whirl::test {
+
+inline constexpr double degrees = std::numbers::pi / 180;
+
+// Shaft of four equal segments, 200 kg.
+inline rotor::Options four_segments() {
+  rotor::Options o;
+  o.segments.assign(4, {"R", "", 0.5, 0.125, 0});
+  o.material.modulus = {{293.15, 2e11}};
+  o.discs = {{.node = 2, .mass = 20, .polar_inertia = 0.4, .diametral_inertia = 0.2},
+             {.node = 4, .mass = 10, .outer_diameter = 0.3, .thickness = 0.02}};
+  o.stiffness_damping = 1e-5;
+  return o;
+}
+
+inline system::Bearing bearing(const std::string& name, int node, const film::Options& film,
+                               film::Geometry::Bore bore) {
+  system::Bearing b;
+  b.name = name;
+  b.node = node;
+  b.elevation = 2e-5 * node;
+  b.film = film;
+  b.lubricant = "oil";
+  const bool circle = bore == film::Geometry::Bore::cylindrical;
+  b.geometry = film::Geometry{bore, 0.0625, 0.05, 1e-4, circle ? 0 : 150 * degrees, 0, 0};
+  return b;
+}
+
+// Reduced shaft; a pedestal, films of several kinds without states, of which two tilt; unbalance by amount and by
+// grade.
+inline system::Machine reduced_machine() {
+  using enum film::Geometry::Bore;
+  system::Machine m;
+  m.rotor = four_segments();
+  m.rotor.reduction = {rotor::Reduction::Type::craig_bampton, {1, 3, 5}, 2};
+  m.lubricants["oil"] = {0.02, 870};
+  film::Reynolds turbulent;
+  turbulent.cells = {24, 6};
+  turbulent.turbulence = film::Turbulence::constantinescu;
+  turbulent.tilt = true;  // in line with the shaft, which all that bends it turns
+  m.bearings.push_back(bearing("B1", 1, turbulent, lemon_bore));
+  m.bearings[0].geometry->preload = 0.3;
+  m.bearings[0].geometry->offset = 2e-5;
+  m.bearings[0].pedestal = system::Pedestal{{50, 60}, {4e8, 5e8}, {3e4, 2e4}};
+  film::Reynolds fed;
+  fed.cells = {24, 6};
+  fed.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  fed.grooves = {{90 * degrees, 20 * degrees, 1e5}};
+  fed.holes = {{250 * degrees, 0, 0.02, 2e5}};
+  fed.tilt = true;
+  m.bearings.push_back(bearing("B2", 3, fed, cylindrical));
+  m.bearings[1].slope = {{1e-4, -2e-4}};
+  m.bearings.push_back(bearing("B3", 5, film::Linear{{1e8, 2e6, -3e6, 2e8}, {1e5, 2e3, 4e3, 2e5}}, cylindrical));
+  m.bearings[2].geometry.reset();
+  m.bearings[2].lubricant = "";
+  m.unbalance.push_back({"two", {}, {}, "", {{2, {}, 1e-3, {}, 0.4}, {4, {}, 2e-3, {}, 0}}});
+  m.unbalance.push_back({"grade", system::BalanceGrade{2.5e-3}, 377, "R", {{3, 1.0, {}, {}, 1}}});
+  return m;
+}
+
+// Whole shaft with films that have states.
+inline system::Machine whole_machine() {
+  using enum film::Geometry::Bore;
+  system::Machine m;
+  m.rotor = four_segments();
+  m.lubricants["oil"] = {0.02, 870};
+  film::Reynolds content;
+  content.cells = {16, 4};
+  content.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  content.states = film::Reynolds::States::dynamic;
+  content.edge_fill = 0.8;
+  content.bulk_modulus = 1e9;
+  m.bearings.push_back(bearing("B1", 1, content, partial_arc));
+  film::CompliantFinite liner;
+  liner.cells = {16, 6};
+  liner.liner = film::Liner{2e-3, 1e9, 0.4};
+  liner.liner_damping = 1e-4;
+  liner.contact = film::Contact{2e-5, 1e12};
+  m.bearings.push_back(bearing("B2", 3, liner, cylindrical));
+  m.bearings[1].lubricant = film::Lubricant{0.015, 900};
+  film::CompliantShort thick;
+  thick.cells = {24, 4};
+  thick.compliance = 0.1;
+  thick.reference_speed = 300;
+  thick.rubber_thickness = 5e-4;
+  m.bearings.push_back(bearing("B3", 5, thick, cylindrical));
+  m.bearings[2].pedestal = system::Pedestal{{50, 50}, {4e8, 4e8}, {3e4, 3e4}};
+  // Without states, behind films that have some and depend on the same oil.
+  m.bearings.push_back(bearing("B4", 4, film::Short{}, cylindrical));
+  return m;
+}
+
+inline system::Machine rigid_machine() {
+  system::Machine m;
+  m.rotor.type = rotor::Options::Type::rigid;
+  m.rotor.mass = 40;
+  m.rotor.load = 100;
+  m.lubricants["oil"] = {0.02, 870};
+  m.bearings.push_back(bearing("B1", 1, film::Short{}, film::Geometry::Bore::cylindrical));
+  m.unbalance.push_back({"one", {}, {}, "", {{1, {}, {}, 2e-5, 0.3}}});
+  return m;
+}
+
+}  // namespace whirl::test
