@@ -31,7 +31,7 @@ Case liner() {
 
 // The same in a bore whose film carries its content along, a* = 0.1, with a groove at the top under 20 kPa.
 Case content() {
-  Case out{test::finite_rotor(12, 4), 0.75 * scale, {4, 2, 1}};
+  Case out{test::finite_rotor(12, 4), 1.5 * scale, {4, 2, 1}};
   film::Reynolds film;
   film.cavitation = film::Reynolds::Cavitation::mass_conserving;
   film.states = film::Reynolds::States::dynamic;
@@ -111,7 +111,7 @@ void compare(const Case& c, int degree, const std::vector<double>& mesh, const s
   const Eigen::MatrixXd a = unit.cwiseInverse().asDiagonal() * expected.cycle.x,
                         b = unit.cwiseInverse().asDiagonal() * found.cycle.x;
   EXPECT_LE((a - b).cwiseAbs().maxCoeff(), 1e-8 * a.cwiseAbs().maxCoeff());
-  EXPECT_GT((a.colwise() - a.rowwise().mean()).cwiseAbs().maxCoeff(), 0.05);  // it moves
+  EXPECT_GT((a.colwise() - a.rowwise().mean()).cwiseAbs().maxCoeff(), 0.01);  // it moves
   int large = 0;
   for (const auto& mu : expected.multipliers) {
     if (std::abs(mu) < 0.2) continue;
@@ -150,7 +150,7 @@ TEST(SpreadCollocation, SharesEliminations) {
 
 TEST(SpreadCollocation, IsCollocationOnContents) {
   const Case c = content();
-  compare(c, 2, solve::uniform_mesh(24), options(2));
+  compare(c, 2, solve::uniform_mesh(12), options(2));
 }
 
 // The phase condition, the period as an unknown and the adapted mesh.

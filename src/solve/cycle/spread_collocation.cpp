@@ -23,6 +23,10 @@ namespace {
 // Relative residuals of intervals: of products that only precondition, and of those that multipliers are made of.
 constexpr double rough_tolerance = 1e-5, full_tolerance = 1e-11;
 
+// Films settle by whole steps, each of which may find another set of full nodes, to `settled` of their scale.
+constexpr double settling_tolerance = 1e-6, settled = 1e-10;
+constexpr int settling_steps = 40, settling_laps = 60;
+
 }  // namespace
 
 struct SpreadCollocation::Tools {
@@ -56,7 +60,7 @@ std::vector<problem::Field> SpreadCollocation::fields() const {
 
 void SpreadCollocation::refresh() {}
 
-void SpreadCollocation::interpolate(const Map<const MatrixXd>& x, Index i, Index j, double period) {
+void SpreadCollocation::interpolate(const Eigen::Ref<const MatrixXd>& x, Index i, Index j, double period) {
   const Index m = scheme().degree;
   VectorXd rate = x.middleCols(i * m, m) * scheme().slope.row(j).tail(m).transpose();
   rate += scheme().slope(j, 0) * x.col(before(i));
@@ -64,17 +68,19 @@ void SpreadCollocation::interpolate(const Map<const MatrixXd>& x, Index i, Index
   put(rate / (length(i) * period), rate_.get());
 }
 
+void SpreadCollocation::residual_of(const Eigen::Ref<const MatrixXd>& x, Index i, double period, double* r) {
+  for (Index j = 0; j < scheme().degree; ++j) {
+    interpolate(x, i, j, period);
+    tools_->point.residual(angle(mesh()[at(i)] + length(i) * scheme().c(j)), value_.get(), rate_.get(), f_.get());
+    Map<VectorXd>(r + j * local(), local()) = get(f_.get());
+  }
+}
+
 void SpreadCollocation::residuals(Vec u, double period, MatrixXd& r) {
   const core::ReadArray ua(u);
   const auto x = nodes(ua);
-  const Index m = scheme().degree;
-  r.resize(m * local(), intervals());
-  for (Index i = 0; i < intervals(); ++i)
-    for (Index j = 0; j < m; ++j) {
-      interpolate(x, i, j, period);
-      tools_->point.residual(angle(mesh()[at(i)] + length(i) * scheme().c(j)), value_.get(), rate_.get(), f_.get());
-      r.col(i).segment(j * local(), local()) = get(f_.get());
-    }
+  r.resize(scheme().degree * local(), intervals());
+  for (Index i = 0; i < intervals(); ++i) residual_of(x, i, period, r.col(i).data());
 }
 
 // Neighbours of one length share an elimination, in runs that leave as many as may be held.
@@ -84,52 +90,109 @@ bool SpreadCollocation::shares(Index i, Index first) const {
   return i - first < run && std::abs(length(i) - length(first)) < 1e-9 * length(i);
 }
 
-void SpreadCollocation::linearise_intervals(Vec u, double period) {
-  const core::ReadArray ua(u);
-  const auto x = nodes(ua);
+std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<const MatrixXd>& x, Index i,
+                                                               double period, std::shared_ptr<const PortMatrix>& rate,
+                                                               std::shared_ptr<PortElimination>& similar,
+                                                               MatrixXd* columns) {
   const Index m = scheme().degree;
   const bool by_speed = !options().autonomous && system().parameter_is_speed();
   SpreadPoint& point = tools_->point;
   PortMaker& maker = *tools_->maker;
+  const double h = length(i) * period, own = h / tools_->step.shift();
+  std::vector<std::shared_ptr<const PortMatrix>> blocks(at(m)), rates(at(m));
+  VectorXd by_rate(local());
+  for (Index j = 0; j < m; ++j) {
+    const double here = angle(mesh()[at(i)] + length(i) * scheme().c(j));
+    interpolate(x, i, j, period);
+    if (!rate || !options().constant_rates) {
+      point.jacobian(here, value_.get(), rate_.get(), 0, 1, tools_->matrix);
+      rate = maker.blocks(tools_->matrix.get());
+    }
+    rates[at(j)] = rate;
+    point.jacobian(here, value_.get(), rate_.get(), own, 1, tools_->matrix);
+    blocks[at(j)] = maker.blocks(tools_->matrix.get());
+    if (!similar) similar = maker.eliminate(tools_->matrix.get(), *blocks[at(j)], here, point.x(), point.xdot(), own);
+    if (!columns) continue;
+    point.parameter_derivative(here, value_.get(), rate_.get(), f_.get());
+    {
+      const core::ReadArray k(rate_.get());
+      rate->multiply(k.data(), by_rate.data());
+    }
+    auto own_columns = columns->middleRows(j * local(), local());
+    VectorXd by_parameter = get(f_.get());
+    // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
+    if (by_speed) by_parameter += by_rate / system().speed();
+    own_columns.rightCols(1) = options().parameter_scale * by_parameter;
+    if (options().autonomous) own_columns.col(0) = -by_rate / period * period_scale();
+  }
+  return std::make_unique<SpreadInterval>(tools_->step, h, std::move(blocks), std::move(rates), similar);
+}
+
+void SpreadCollocation::linearise_intervals(Vec u, double period) {
+  const core::ReadArray ua(u);
+  const auto x = nodes(ua);
   intervals_.clear();
   intervals_.resize(at(intervals()));
-  columns_.assign(at(intervals()), MatrixXd(m * local(), borders()));
+  columns_.assign(at(intervals()), MatrixXd(scheme().degree * local(), borders()));
   std::shared_ptr<PortElimination> similar;
   std::shared_ptr<const PortMatrix> rate;
   Index first = 0;  // whose elimination it is
-  VectorXd by_rate(local());
   for (Index i = 0; i < intervals(); ++i) {
-    const double h = length(i) * period, own = h / tools_->step.shift();
     if (i > 0 && !shares(i, first)) {
       similar.reset();
       first = i;
     }
-    std::vector<std::shared_ptr<const PortMatrix>> blocks(at(m)), rates(at(m));
-    for (Index j = 0; j < m; ++j) {
-      const double here = angle(mesh()[at(i)] + length(i) * scheme().c(j));
-      interpolate(x, i, j, period);
-      if (!rate || !options().constant_rates) {
-        point.jacobian(here, value_.get(), rate_.get(), 0, 1, tools_->matrix);
-        rate = maker.blocks(tools_->matrix.get());
-      }
-      rates[at(j)] = rate;
-      point.jacobian(here, value_.get(), rate_.get(), own, 1, tools_->matrix);
-      blocks[at(j)] = maker.blocks(tools_->matrix.get());
-      if (!similar) similar = maker.eliminate(tools_->matrix.get(), *blocks[at(j)], here, point.x(), point.xdot(), own);
-      point.parameter_derivative(here, value_.get(), rate_.get(), f_.get());
-      {
-        const core::ReadArray k(rate_.get());
-        rate->multiply(k.data(), by_rate.data());
-      }
-      auto own_columns = columns_[at(i)].middleRows(j * local(), local());
-      VectorXd by_parameter = get(f_.get());
-      // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
-      if (by_speed) by_parameter += by_rate / system().speed();
-      own_columns.rightCols(1) = options().parameter_scale * by_parameter;
-      if (options().autonomous) own_columns.col(0) = -by_rate / period * period_scale();
-    }
-    intervals_[at(i)] = std::make_unique<SpreadInterval>(tools_->step, h, std::move(blocks), std::move(rates), similar);
+    intervals_[at(i)] = interval_at(x, i, period, rate, similar, &columns_[at(i)]);
   }
+  constant_ = options().constant_rates ? rate : nullptr;
+}
+
+double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
+  const Index m = scheme().degree;
+  const PortLayout& layout = *tools_->maker->layout();
+  const VectorXd end = x.col(i * m + m - 1);
+  std::shared_ptr<PortElimination> similar = intervals_[at(i)]->similar();
+  MatrixXd step(m * local(), 1);
+  const auto largest_of = [&](const auto& v) {
+    double size = v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+    MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, comm());
+    return size;
+  };
+  for (int k = 0; k < settling_steps; ++k) {
+    residual_of(x, i, period, step.data());
+    SpreadStep::hold(layout, step.data(), m);
+    interval_at(x, i, period, constant_, similar, nullptr)->solve(step, settling_tolerance, true);
+    x.middleCols(i * m, m) -= Map<const MatrixXd>(step.data(), local(), m);
+    if (largest_of(step) <= settled) return largest_of(x.col(i * m + m - 1) - end);
+  }
+  throw core::NotConverged("the films did not settle within an interval");
+}
+
+bool SpreadCollocation::settle(Vec u) {
+  if (intervals_.empty()) return false;
+  MatrixXd x;
+  {
+    const core::ReadArray ua(u);
+    x = nodes(ua);
+  }
+  try {
+    const double period = begin_point(border_of(u));
+    double moved = 1;
+    for (int lap = 0; lap < settling_laps && moved > settled; ++lap) {
+      for (Index i = 0; i < intervals(); ++i) {
+        moved = settle_interval(x, i, period);
+        if (lap > 0 && moved <= settled) break;  // all behind it stays
+      }
+    }
+    if (!(moved <= settled)) return false;
+  } catch (const core::DomainError&) {
+    return false;
+  } catch (const core::NotConverged&) {
+    return false;
+  }
+  const core::WriteArray ua(u);
+  Map<MatrixXd>(ua.data(), x.rows(), x.cols()) = x;
+  return true;
 }
 
 VectorXd SpreadCollocation::product(Index i, const VectorXd& start, const VectorXd& x) const {

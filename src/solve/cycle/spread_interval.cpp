@@ -58,6 +58,16 @@ SpreadStep::SpreadStep(MPI_Comm comm, PetscInt local, const Scheme& scheme)
   check(KSPSetFromOptions(solver_.get()));
 }
 
+void SpreadStep::hold(const PortLayout& layout, double* v, Index k) {
+  VectorXd parts(layout.parts()), hub(layout.hub());
+  for (Index c = 0; c < k; ++c) {
+    double* column = v + c * layout.local();
+    layout.take(column, parts.data(), hub.data());
+    hub.setZero();
+    layout.give(parts.data(), hub.data(), column);
+  }
+}
+
 PetscErrorCode SpreadStep::multiply(Mat m, Vec v, Vec y) {
   void* raw = nullptr;
   PetscCall(MatShellGetContext(m, &raw));
@@ -66,6 +76,7 @@ PetscErrorCode SpreadStep::multiply(Mat m, Vec v, Vec y) {
     const core::ReadArray x(v);
     const core::WriteArray out(y);
     self.interval_->multiply(nullptr, x.data(), out.data());
+    if (self.held_) hold(*self.interval_->blocks_[0]->layout(), out.data(), self.scheme_->degree);
   });
 }
 
@@ -116,15 +127,19 @@ void SpreadInterval::precondition(const double* r, double* x) const {
       const core::WriteArray a(step_.one_.get());
       Map<VectorXd>(a.data(), n) = own * part;
     }
-    similar_->solve(step_.one_.get(), step_.other_.get());
+    if (step_.held_)
+      similar_->solve_held(step_.one_.get(), step_.other_.get());
+    else
+      similar_->solve(step_.one_.get(), step_.other_.get());
     const core::ReadArray a(step_.other_.get());
     Map<VectorXd>(x + j * n, n) = Map<const VectorXd>(a.data(), n);
   }
 }
 
-void SpreadInterval::solve(MatrixXd& x, double tolerance) const {
+void SpreadInterval::solve(MatrixXd& x, double tolerance, bool held) const {
   SpreadStep& s = step_;
   s.interval_ = this;
+  s.held_ = held;
   check(KSPSetTolerances(s.solver_.get(), tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   const auto fail = [&s] {
     core::agree(s.comm_, [] { throw core::DomainError("the linearised equations of an interval were not solved"); });

@@ -19,6 +19,8 @@ public:
   /// Lower triangle near the slopes (over h) at the points [m x m], and the mean of its diagonal.
   [[nodiscard]] const Eigen::MatrixXd& triangle() const { return triangle_; }
   [[nodiscard]] double shift() const { return shift_; }
+  /// v [local x k] := zero in the rows of the hub of matrices with this layout.
+  static void hold(const PortLayout& layout, double* v, Eigen::Index k);
 
 private:
   friend class SpreadInterval;
@@ -34,6 +36,7 @@ private:
   core::Vector rhs_, answer_;                       // [m local]
   core::Vector one_, other_;                        // [local]
   const class SpreadInterval* interval_ = nullptr;  // that is being solved
+  bool held_ = false;
 };
 
 /// The linearised equations of one interval of length H at m Radau points, which are its nodes; this rank's rows:
@@ -59,9 +62,11 @@ public:
 
   /// y = equations of (x_start, X) [m local]; x_start may be null: zero.
   void multiply(const double* start, const double* x, double* y) const;
-  /// x [m local x k] := X of the right-hand sides x, to the relative residual `tolerance`. Throws core::DomainError, on
-  /// all ranks, if it does not come that far.
-  void solve(Eigen::MatrixXd& x, double tolerance) const;
+  /// x [m local x k] := X of the right-hand sides x, to the relative residual `tolerance`; with `held` only of the rows
+  /// of the parts, the hub being held: x is zero there before and after. Throws core::DomainError, on all ranks, if it
+  /// does not come that far.
+  void solve(Eigen::MatrixXd& x, double tolerance, bool held = false) const;
+  [[nodiscard]] const std::shared_ptr<PortElimination>& similar() const { return similar_; }
 
 private:
   friend class SpreadStep;

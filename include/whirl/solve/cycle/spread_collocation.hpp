@@ -8,6 +8,8 @@
 
 namespace whirl::solve {
 
+class PortElimination;
+class PortMatrix;
 class SpreadInterval;
 
 struct SpreadCollocationOptions : NewtonPicardOptions {
@@ -30,6 +32,10 @@ public:
   /// Whether a system's parts can be told apart. Collective.
   [[nodiscard]] static bool serves(const problem::System& system);
 
+  [[nodiscard]] bool settles() const override { return true; }
+  /// The films, with the hub and all that they see of it held, from interval to interval and lap after lap until what
+  /// enters each interval stays. Nothing before the first linearisation.
+  bool settle(Vec u) override;
   bool adapt(core::Vector& u, core::Vector& tangent) override;
   /// "orbit": the states at all points of time.
   [[nodiscard]] std::vector<problem::Field> fields() const override;
@@ -47,14 +53,24 @@ private:
                                         const Eigen::VectorXd& x) const override;
   [[nodiscard]] Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                Eigen::Index l) override;
-  /// State and rate at point j of interval i into value_ and rate_.
-  void interpolate(const Eigen::Map<const Eigen::MatrixXd>& x, Eigen::Index i, Eigen::Index j, double period);
+  /// State and rate at point j of interval i into value_ and rate_; `x` [local x N m].
+  void interpolate(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, Eigen::Index j, double period);
+  /// F of interval i [m local].
+  void residual_of(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, double period, double* r);
+  /// The linearised interval; `rate` is dF/d(dx/dt) if that is constant, once it is known.
+  [[nodiscard]] std::unique_ptr<SpreadInterval> interval_at(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i,
+                                                            double period, std::shared_ptr<const PortMatrix>& rate,
+                                                            std::shared_ptr<PortElimination>& similar,
+                                                            Eigen::MatrixXd* columns);
+  /// How far the end of interval i has moved.
+  double settle_interval(Eigen::MatrixXd& x, Eigen::Index i, double period);
   [[nodiscard]] bool shares(Eigen::Index i, Eigen::Index first) const;
 
   SpreadCollocationOptions options_;
   struct Tools;
   std::unique_ptr<Tools> tools_;
   core::Vector value_, rate_, f_;
+  std::shared_ptr<const PortMatrix> constant_;  // dF/d(dx/dt) of the last linearisation, if it is constant
   std::vector<std::unique_ptr<SpreadInterval>> intervals_;
   std::vector<Eigen::MatrixXd> columns_;
 };
