@@ -10,6 +10,7 @@
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/solve/newton/newton.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;
@@ -31,7 +32,7 @@ Case liner() {
 
 // The same in a bore whose film carries its content along, a* = 0.1, with a groove at the top under 20 kPa.
 Case content() {
-  Case out{test::finite_rotor(12, 4), 1.5 * scale, {4, 2, 1}};
+  Case out{test::finite_rotor(12, 4), 2.2 * scale, {4, 2, 1}};
   film::Reynolds film;
   film.cavitation = film::Reynolds::Cavitation::mass_conserving;
   film.states = film::Reynolds::States::dynamic;
@@ -106,15 +107,15 @@ void compare(const Case& c, int degree, const std::vector<double>& mesh, const s
   const Answer expected = solved(dense, c, rest);
   solve::SpreadCollocation spread(s, o, mesh);
   const Answer found = solved(spread, c, rest);
-  EXPECT_LE(found.iterations, expected.iterations + 6);
+  EXPECT_LE(found.iterations, expected.iterations + 2);
   const Eigen::VectorXd unit = dense.state_scale();
   const Eigen::MatrixXd a = unit.cwiseInverse().asDiagonal() * expected.cycle.x,
                         b = unit.cwiseInverse().asDiagonal() * found.cycle.x;
   EXPECT_LE((a - b).cwiseAbs().maxCoeff(), 1e-8 * a.cwiseAbs().maxCoeff());
   EXPECT_GT((a.colwise() - a.rowwise().mean()).cwiseAbs().maxCoeff(), 0.01);  // it moves
   int large = 0;
-  for (const auto& mu : expected.multipliers) {
-    if (std::abs(mu) < 0.2) continue;
+  for (const auto& mu : spectral::eigenvalues(dense.monodromy())) {
+    if (std::abs(mu) < o.radius) continue;
     ++large;
     double nearest = 1;
     for (const auto& nu : found.multipliers) nearest = std::min(nearest, std::abs(mu - nu));
@@ -122,7 +123,7 @@ void compare(const Case& c, int degree, const std::vector<double>& mesh, const s
   }
   EXPECT_GT(large, 0);
   EXPECT_EQ(large, std::count_if(found.multipliers.begin(), found.multipliers.end(),
-                                 [](auto z) { return std::abs(z) >= 0.2; }));
+                                 [&](auto z) { return std::abs(z) >= o.radius; }));
   EXPECT_NEAR(least_film(found.cycle, alone), least_film(expected.cycle, alone),
               1e-8 * c.train.supports[0].geometry.clearance);
 }
@@ -150,10 +151,29 @@ TEST(SpreadCollocation, SharesEliminations) {
 
 TEST(SpreadCollocation, IsCollocationOnContents) {
   const Case c = content();
-  compare(c, 2, solve::uniform_mesh(12), options(2));
+  auto o = options(2);
+  o.radius = 0.02;  // oil that a groove renews forgets
+  compare(c, 2, solve::uniform_mesh(12), o);
 }
 
-// The phase condition, the period as an unknown and the adapted mesh.
+// Whatever the films hold at first, the motion of the hub decides what becomes of them.
+TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
+  for (const Case& c : {liner(), content()}) {
+    system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+    solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(12));
+    const Answer found = solved(spread, c, at_rest(alone, c));
+    solve::Cycle other = found.cycle;
+    constexpr int hub = 4;
+    other.x.bottomRows(other.x.rows() - hub) *= 0.99;
+    core::Vector u = spread.scatter(other);
+    ASSERT_TRUE(spread.settle(u.get()));
+    const solve::Cycle settled = spread.gather(u.get());
+    const double size = found.cycle.x.bottomRows(other.x.rows() - hub).cwiseAbs().maxCoeff();
+    EXPECT_LE((settled.x - found.cycle.x).cwiseAbs().maxCoeff(), 1e-7 * size);
+    EXPECT_LE((settled.x - other.x).topRows(hub).cwiseAbs().maxCoeff(), 1e-12 * size);
+  }
+}
+
 TEST(SpreadCollocation, AdaptsItsMesh) {
   const Case c = liner();
   system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);

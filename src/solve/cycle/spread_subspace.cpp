@@ -43,6 +43,8 @@ void SpreadCycle::orthonormalise(MatrixXd& v, Index from) const {
 // again.
 void SpreadCycle::find_image() {
   constexpr double invariant = 1e-7, at_once = 0.1;
+  // Where each product is dear the one iteration that costs nothing has to do.
+  const int most = rough_ ? 0 : 2;
   double last = 0;
   rough_image_ = rough_;
   for (int k = 0;; ++k) {
@@ -52,7 +54,7 @@ void SpreadCycle::find_image() {
     sum(sizes);
     const double defect = sizes(1) > 0 ? std::sqrt(sizes(0) / sizes(1)) : 0;
     if (k > 0) contraction_ = defect / last;
-    if (defect <= invariant || k == 2 || contraction_ > at_once) return;
+    if (defect <= invariant || k == most || contraction_ > at_once) return;
     last = defect;
     basis_ = image_;
     orthonormalise(basis_, 0);
