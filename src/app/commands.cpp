@@ -95,7 +95,7 @@ std::string check(MPI_Comm comm, const DeckRequest& request) {
   constexpr double notable = 2e8;
   for (const auto& s : deck.studies) {
     const auto* sweep = dynamic_cast<const study::Sweep*>(s.get());
-    const double bytes = s->memory(m);
+    const double bytes = s->memory(m, deck.layout);
     text += fmt::format("  {} ({}{}){}\n", s->name(), s->kind(),
                         sweep ? ", " + count(sweep->variants().size(), "variant", "variants") : "",
                         bytes < notable ? "" : fmt::format(", about {} of memory", deck::write_memory(bytes)));

@@ -59,4 +59,8 @@ double memory_of_cycles(const system::Machine& machine, double intervals, double
   return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
 }
 
+double memory_of_spread_cycles(const system::Machine& machine, double intervals, double stages) {
+  return 8 * intervals * n_states(machine) * (stages * (40 + 4 * static_cast<double>(machine.bearings.size())) + 400);
+}
+
 }  // namespace whirl::study

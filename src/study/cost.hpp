@@ -19,4 +19,8 @@ namespace whirl::study {
 /// (collocation at Radau points) those of a whole shaft are solved by modes in time, without blocks [byte].
 [[nodiscard]] double memory_of_cycles(const system::Machine& machine, double intervals, double stages, bool radau);
 
+/// The same by collocation with the states spread over ranks: the blocks of each point, an eliminated matrix for each
+/// interval [byte].
+[[nodiscard]] double memory_of_spread_cycles(const system::Machine& machine, double intervals, double stages);
+
 }  // namespace whirl::study

@@ -85,7 +85,7 @@ void describe(deck::Description<Deck>& d) {
       }
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
-      if (const double bytes = s.memory(deck.machine); bytes > deck.limits.memory)
+      if (const double bytes = s.memory(deck.machine, deck.layout); bytes > deck.limits.memory)
         r.fail(path, fmt::format("'{}' needs about {} of memory, and limits.memory is {}", s.name(),
                                  deck::write_memory(bytes), deck::write_memory(deck.limits.memory)));
     }

@@ -21,7 +21,10 @@ std::span<const deck::Name<LayoutOptions::Machine>> names(LayoutOptions::Machine
   static constexpr deck::Name<LayoutOptions::Machine> table[] = {
       {automatic, "automatic", "each rank, unless its states are too many by the counts below"},
       {one_rank, "one_rank", "each rank, whatever the size"},
-      {all_ranks, "all_ranks", "all ranks share the states of one; intervals of cycles still want whole machines"}};
+      {all_ranks, "all_ranks",
+       "all ranks share the states of one; cycles by collocation at Radau points only where films have states, the "
+       "others "
+       "want whole machines"}};
   return table;
 }
 
@@ -58,13 +61,22 @@ std::string reason_to_share(const LayoutOptions& options, const system::Machine&
 
 }  // namespace
 
+bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine) {
+  using enum LayoutOptions::Machine;
+  if (!system::is_rotor(machine) || options.machine == one_rank) return false;
+  const double own = n_film_states(machine);
+  return own > 0 && (options.machine == all_ranks || own >= options.film_states);
+}
+
 Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   const std::string reason = reason_to_share(context.layout, context.machine);
-  const bool whole = sharing == Sharing::intervals || sharing == Sharing::nothing;  // on every rank
   const int size = core::size_of(context.comm);
   Layout out;
   out.world = context.comm;
   out.large = !reason.empty();
+  out.spread = sharing == Sharing::cycles && spreads_cycles(context.layout, context.machine);
+  const bool in_time = (sharing == Sharing::intervals || sharing == Sharing::cycles) && !out.spread,
+             whole = in_time || sharing == Sharing::nothing;  // on every rank
   out.shared = out.large && !whole;
   if (out.shared) {
     out.space = context.comm;
@@ -73,7 +85,7 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
     out.count = size;
     out.index = core::rank_of(context.comm);
   }
-  const bool share_time = sharing == Sharing::intervals && intervals >= static_cast<std::size_t>(size);
+  const bool share_time = in_time && intervals >= static_cast<std::size_t>(size);
   if (share_time) out.time = context.comm;
   std::string& text = context.results.summary().layout;
   if (size > 1 && text.empty())

@@ -8,16 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "whirl/system/options.hpp"
+
 namespace whirl::study {
 
 class Pieces;
 struct Context;
+struct LayoutOptions;
 
 /// How an analysis can be shared.
 enum class Sharing {
   machine,    ///< one state after another: branches of equilibria, motions in time, Newton-Picard's cycles
   speeds,     ///< independent problems of one machine: modes, responses
   intervals,  ///< pieces of a cycle in time, each of which needs the whole machine on its rank
+  cycles,     ///< the same, or the states at all points of time where films have many: cycles by collocation
   nothing,    ///< neither: single shooting
 };
 
@@ -34,12 +38,17 @@ struct Layout {
   int index = 0;                  ///< of this rank's group
   bool large = false;             ///< the machine is one that several ranks share where there are several
   bool shared = false;            ///< and it is shared here: `space` is the world, which may be one rank
+  bool spread = false;            ///< cycles are solved with the states of the films apart, be it on one rank
 };
 
 /// The one place where the world is split. The first plan of a study on several ranks says in its summary what was
-/// chosen. `intervals`: of the time mesh, for Sharing::intervals; with more ranks than intervals each rank computes all
-/// of them.
+/// chosen. `intervals`: of the time mesh, for Sharing::intervals and ::cycles; with more ranks than intervals each rank
+/// computes all of them.
 [[nodiscard]] Layout plan(const Context& context, Sharing sharing, std::size_t intervals = 1);
+
+/// Whether cycles by collocation at Radau points are solved with the states of the films apart, on all ranks (see
+/// Layout::spread). A long shaft alone has its own way, modes in time on whole machines.
+[[nodiscard]] bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine);
 
 /// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
 /// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.

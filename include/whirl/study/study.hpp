@@ -77,7 +77,9 @@ public:
                               const deck::Report& /*report*/) const {}
   /// Memory that it takes in all ranks together, estimated from counts [bytes]; what is always small counts as nothing.
   /// The deck was read but may still be wrong.
-  [[nodiscard]] virtual double memory(const system::Machine& /*machine*/) const { return 0; }
+  [[nodiscard]] virtual double memory(const system::Machine& /*machine*/, const LayoutOptions& /*layout*/) const {
+    return 0;
+  }
   /// Name of the study whose bifurcations this one goes on from; empty if it needs none.
   [[nodiscard]] virtual std::string starts_from() const { return {}; }
   /// True if that study is `earlier`, or one that `earlier` adds to the results.

@@ -261,6 +261,13 @@ void PortElimination::solve(Vec rhs, Vec x) {
   give(x);
 }
 
+void PortElimination::solve_held(Vec rhs, Vec x) {
+  take(rhs);
+  solve_parts(false);
+  check(VecSet(hub_answer_.get(), 0));
+  give(x);
+}
+
 // x_p = A_pp^-T (b_p - F^T x_h),   (A_h - F X)^T x_h = b_h - X^T b_p
 void PortElimination::solve_transposed(Vec rhs, Vec x) {
   const PortLayout& l = *layout_;

@@ -43,6 +43,8 @@ public:
   /// The approximate inverses, for the caller to set() before factorise(); null where there are none.
   [[nodiscard]] problem::PartInverse* inverse() const { return inverse_.get(); }
   void solve(Vec rhs, Vec x);
+  /// The same with the hub held: A_pp^-1 b_p, or what approximates it, and zeros.
+  void solve_held(Vec rhs, Vec x);
   /// Of matrices whose parts are solved by MUMPS or by another preconditioner with a transpose.
   void solve_transposed(Vec rhs, Vec x);
 

@@ -1,6 +1,6 @@
 #include "whirl/solve/shooting/shooting_problem.hpp"
 
-#include "solve/shooting/local_part.hpp"
+#include "solve/newton/local_part.hpp"
 #include "solve/shooting/sparse_step.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"

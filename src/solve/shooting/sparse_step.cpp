@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "solve/shooting/local_part.hpp"
+#include "solve/newton/local_part.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/index.hpp"
 
@@ -35,14 +35,14 @@ void StepProduct::apply(MatrixXd& v) const {
 }
 
 SparseRungeKutta::SparseRungeKutta(problem::System& system, Tableau tableau, bool constant_rates, bool by_length)
-    : system_(system), tableau_(std::move(tableau)), constant_rates_(constant_rates), by_length_wanted_(by_length) {
+    : system_(system),
+      tableau_(std::move(tableau)),
+      constant_rates_(constant_rates),
+      by_length_wanted_(by_length),
+      point_(system) {
   core::require(tableau_.sequential(), "steps distributed in space need a scheme with sequential stages");
-  x_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
-  for (core::Vector* v : {&state_scale_, &residual_inverse_, &k_, &value_, &base_, &f_, &d_, &lift_})
-    *v = core::duplicate(x_.get());
-  system.scales(state_scale_.get(), residual_inverse_.get());
-  check(VecReciprocal(residual_inverse_.get()));
-  for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(x_.get()));
+  for (core::Vector* v : {&value_, &base_, &f_, &d_, &lift_}) *v = core::duplicate(point_.state_scale());
+  for (Index j = 0; j < tableau_.stages(); ++j) slopes_.push_back(core::duplicate(point_.state_scale()));
   parts_ = PortStages::make(system);
   if (constant_rates) structured_ = StructuredRate::make(system);
   if (structured_ && !tableau_.is_explicit() && !structured_->narrow()) structured_.reset();
@@ -53,39 +53,24 @@ void SparseRungeKutta::fail() const {
   std::abort();
 }
 
-void SparseRungeKutta::residual(double angle, Vec x, Vec k, Vec f) {
-  check(VecPointwiseMult(x_.get(), x, state_scale_.get()));
-  check(VecPointwiseMult(k_.get(), k, state_scale_.get()));
-  system_.residual(angle, x_.get(), k_.get(), f);
-  check(VecPointwiseMult(f, f, residual_inverse_.get()));
-}
-
-void SparseRungeKutta::jacobian(double angle, Vec x, Vec k, double alpha, double sigma, core::Matrix& m) {
-  check(VecPointwiseMult(x_.get(), x, state_scale_.get()));
-  check(VecPointwiseMult(k_.get(), k, state_scale_.get()));
-  if (!m) m = system_.make_jacobian();
-  system_.jacobian(angle, x_.get(), k_.get(), alpha, sigma, m.get());
-  check(MatDiagonalScale(m.get(), residual_inverse_.get(), state_scale_.get()));
-}
-
 // Making a matrix costs more than filling a small one: where only its product with the inverse is kept, one serves all.
 StageProduct SparseRungeKutta::product_at(double angle, Vec x, Vec k, double own,
                                           std::shared_ptr<const StageSolver> solver) {
   if (solver->blocks() && own != 0) {
     std::shared_ptr<const PortMatrix> rates = rate_blocks_;
     if (!rates) {
-      jacobian(angle, x, k, 0, 1, scratch_);
+      point_.jacobian(angle, x, k, 0, 1, scratch_);
       rates = parts_->blocks(scratch_.get());
       if (constant_rates_) rate_blocks_ = rates;
     }
     return {std::move(solver), std::move(rates), own, x};
   }
   if (solver->entrywise() && core::size_of(system_.comm()) == 1) {
-    jacobian(angle, x, k, 1, 0, scratch_);
+    point_.jacobian(angle, x, k, 1, 0, scratch_);
     return {scratch_.get(), std::move(solver)};
   }
   core::Matrix jx;
-  jacobian(angle, x, k, 1, 0, jx);
+  point_.jacobian(angle, x, k, 1, 0, jx);
   return {std::move(jx), std::move(solver)};
 }
 
@@ -94,13 +79,13 @@ std::shared_ptr<const StageSolver> SparseRungeKutta::solver_at(double angle, Vec
   if (kept && rates_) return rates_;
   std::shared_ptr<const StageSolver> solver;
   if (own != 0 && parts_) {
-    jacobian(angle, x, k, own, 1, scratch_);
-    return parts_->solver(scratch_.get(), angle, x_.get(), k_.get(), own);
+    point_.jacobian(angle, x, k, own, 1, scratch_);
+    return parts_->solver(scratch_.get(), angle, point_.x(), point_.xdot(), own);
   }
   core::Matrix matrix;
-  jacobian(angle, x, k, own, 1, matrix);
+  point_.jacobian(angle, x, k, own, 1, matrix);
   if (parts_ && !StageSolver::entrywise(matrix.get()))
-    solver = parts_->solver(matrix.get(), angle, x_.get(), k_.get(), own);
+    solver = parts_->solver(matrix.get(), angle, point_.x(), point_.xdot(), own);
   else
     solver = std::make_shared<const StageSolver>(std::move(matrix));
   if (kept) rates_ = solver;
@@ -115,7 +100,7 @@ std::shared_ptr<const StageSolver> SparseRungeKutta::solve_stage(double angle, d
   std::shared_ptr<const StageSolver> solver;
   for (int it = 0;; ++it) {
     check(VecWAXPY(value_.get(), own, k, base));
-    residual(angle, value_.get(), k, f_.get());
+    point_.residual(angle, value_.get(), k, f_.get());
     if (!solver || (it > 1 && correction > 0.2 * last)) solver = solver_at(angle, value_.get(), k, own);
     solver->solve(f_.get(), d_.get(), tolerance);
     check(VecAXPY(k, -1, d_.get()));
@@ -167,10 +152,7 @@ void SparseRungeKutta::step(double angle, double d_angle, double length, Vec x, 
     product->stages_.push_back(product_at(here, value_.get(), k, own, std::move(solver)));
     check(VecAXPY(lift_.get(), tableau_.a(j, j), k));
     lifts.push_back(get(lift_.get()));
-    check(VecPointwiseMult(x_.get(), value_.get(), state_scale_.get()));
-    check(VecPointwiseMult(k_.get(), k, state_scale_.get()));
-    system_.parameter_derivative(here, x_.get(), k_.get(), f_.get());
-    check(VecPointwiseMult(f_.get(), f_.get(), residual_inverse_.get()));
+    point_.parameter_derivative(here, value_.get(), k, f_.get());
     loads.push_back(get(f_.get()));
   }
   check(VecSet(lift_.get(), 0));

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "solve/newton/spread_point.hpp"
 #include "solve/shooting/port_stages.hpp"
 #include "solve/shooting/stage_solver.hpp"
 #include "solve/shooting/structured_stage.hpp"
@@ -60,13 +61,10 @@ public:
   void step(double angle, double d_angle, double length, Vec x, StepProduct* product);
   /// xdot of F(angle, x, xdot) = 0.
   void rate(double angle, Vec x, Vec xdot);
-  [[nodiscard]] Vec state_scale() const { return state_scale_.get(); }
+  [[nodiscard]] Vec state_scale() const { return point_.state_scale(); }
   [[nodiscard]] const Tableau& tableau() const { return tableau_; }
 
 private:
-  void residual(double angle, Vec x, Vec k, Vec f);
-  /// m = alpha dF/dx + sigma dF/d(dx/dt), scaled; m is made if it is null.
-  void jacobian(double angle, Vec x, Vec k, double alpha, double sigma, core::Matrix& m);
   [[nodiscard]] StageProduct product_at(double angle, Vec x, Vec k, double own,
                                         std::shared_ptr<const StageSolver> solver);
   /// dF/d(dx/dt) + own dF/dx, ready to solve with.
@@ -80,7 +78,8 @@ private:
   problem::System& system_;
   Tableau tableau_;
   bool constant_rates_, by_length_wanted_;
-  core::Vector state_scale_, residual_inverse_, x_, k_, value_, base_, f_, d_, lift_;
+  SpreadPoint point_;
+  core::Vector value_, base_, f_, d_, lift_;
   std::vector<core::Vector> slopes_;
   core::Matrix scratch_;
   std::shared_ptr<const StageSolver> rates_;       // of explicit stages with constant rates

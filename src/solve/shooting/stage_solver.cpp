@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "solve/newton/port_krylov.hpp"
-#include "solve/shooting/local_part.hpp"
+#include "solve/newton/local_part.hpp"
 
 namespace whirl::solve {
 

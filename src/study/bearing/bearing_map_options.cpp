@@ -22,7 +22,7 @@ void describe(deck::Description<BearingMapOptions>& d) {
         "Sommerfeld numbers (loads) at which position, coefficients and the pressure around the bearing are reported");
 }
 
-double BearingMap::memory(const system::Machine&) const {
+double BearingMap::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
   const double frequencies = static_cast<double>(options.frequencies.size());
   return 600.0 * (1 + frequencies) * options.points + 130.0 * options.grid * options.grid;
 }

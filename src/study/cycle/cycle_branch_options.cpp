@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "study/cost.hpp"
+#include "study/layout.hpp"
 #include "whirl/study/cycle/cycle_branch.hpp"
 
 namespace whirl::study {
@@ -18,7 +19,8 @@ int steps_of(const CycleBranchOptions& o) {
 std::span<const deck::Name<CycleBranchOptions::Method>> names(CycleBranchOptions::Method) {
   using enum CycleBranchOptions::Method;
   static constexpr deck::Name<CycleBranchOptions::Method> table[] = {
-      {collocation, "collocation", "orthogonal collocation on an adaptive mesh; intervals are shared by the ranks"},
+      {collocation, "collocation",
+       "orthogonal collocation on an adaptive mesh; ranks share the intervals, or the states of films that have many"},
       {shooting, "shooting", "single shooting: the state at the start is the unknown; every rank does the same"},
       {multiple_shooting, "multiple_shooting", "states at the ends of intervals; intervals are shared by the ranks"},
       {finite_difference, "finite_difference", "one step of the scheme in each interval, shared by the ranks"},
@@ -126,7 +128,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   });
 }
 
-double CycleBranch::memory(const system::Machine& machine) const {
+double CycleBranch::memory(const system::Machine& machine, const LayoutOptions& layout) const {
   using enum CycleBranchOptions::Method;
   const CycleBranchOptions& o = options;
   const double intervals = o.method == shooting ? 1 : o.intervals, steps = o.method == collocation ? 1 : steps_of(o);
@@ -135,9 +137,10 @@ double CycleBranch::memory(const system::Machine& machine) const {
   // Newton-Picard never forms a dense block; the bound of a sparse one holds for it.
   if (o.method == newton_picard) return memory_of_equilibria(machine) * (1 + intervals / 100);
   const double stored = std::min(o.orbits, o.max_points) * 8 * intervals * stages * n_states(machine);
+  const double one = radau && spreads_cycles(layout, machine) ? memory_of_spread_cycles(machine, intervals, stages)
+                                                              : memory_of_cycles(machine, intervals, stages, radau);
   // Flips are followed on twice the intervals.
-  return memory_of_cycles(machine, intervals, stages, radau) * (o.follow_flips ? 2 : 1) + stored +
-         64 * intervals * steps;
+  return one * (o.follow_flips ? 2 : 1) + stored + 64 * intervals * steps;
 }
 
 void CycleBranch::validate(const system::Machine& machine, const deck::Report& report) const {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "study/cycle/cycle_follower.hpp"
+#include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
 
@@ -42,8 +43,10 @@ double CycleFollower::order_of_scheme() const {
 }
 
 Layout CycleFollower::layout(std::size_t intervals) const {
+  const bool radau = options_.method == Method::collocation && options_.points == CycleBranchOptions::Points::radau;
   const Sharing sharing = options_.method == Method::newton_picard ? Sharing::machine
                           : options_.method == Method::shooting    ? Sharing::nothing
+                          : radau                                  ? Sharing::cycles
                                                                    : Sharing::intervals;
   return plan(context_, sharing, intervals);
 }
@@ -62,31 +65,40 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
   else
     steps = static_cast<int>(std::lround(steps * finer));
 
-  if (options_.method == Method::newton_picard) {
-    solve::NewtonPicardOptions o;
+  const auto common = [&](auto o) {
     o.turns = turns;
     o.autonomous = autonomous();
     o.parameter_scale = scale_;
     o.state_weight = state_weight();
+    return o;
+  };
+  const double tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
+  if (options_.method == Method::newton_picard) {
+    auto o = common(solve::NewtonPicardOptions());
     o.radius = options_.radius;
     o.constant_rates = system.constant_rates();
     return std::make_unique<solve::NewtonPicardProblem>(system, o, tableau_of(options_.scheme), steps, std::move(mesh));
   }
-  const MPI_Comm time = layout(mesh.size() - 1).time;
-  solve::CycleOptions o;
+  const Layout shared = layout(mesh.size() - 1);
+  if (shared.spread) {
+    auto o = common(solve::SpreadCollocationOptions());
+    o.radius = 0.2;
+    o.constant_rates = system.constant_rates();
+    o.degree = options_.degree;
+    o.base_intervals = options_.intervals * laps;
+    o.mesh_tolerance = tolerance;
+    return std::make_unique<solve::SpreadCollocation>(system, o, std::move(mesh));
+  }
+  auto o = common(solve::CycleOptions());
   o.degree = options_.degree;
   o.multipliers = std::max(o.multipliers, options_.multipliers + 1);  // one of a self-excited cycle says nothing
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
-  o.turns = turns;
-  o.autonomous = autonomous();
-  o.parameter_scale = scale_;
-  o.state_weight = state_weight();
   o.base_intervals = options_.intervals * laps;
-  o.mesh_tolerance = options_.adapt_mesh ? options_.mesh_tolerance : 0;
+  o.mesh_tolerance = tolerance;
   if (options_.method == Method::collocation)
-    return std::make_unique<solve::CycleProblem>(time, system, o, std::move(mesh));
-  return std::make_unique<solve::ShootingProblem>(time, system, o, tableau_of(options_.scheme), steps, std::move(mesh),
-                                                  system.constant_rates());
+    return std::make_unique<solve::CycleProblem>(shared.time, system, o, std::move(mesh));
+  return std::make_unique<solve::ShootingProblem>(shared.time, system, o, tableau_of(options_.scheme), steps,
+                                                  std::move(mesh), system.constant_rates());
 }
 
 }  // namespace whirl::study

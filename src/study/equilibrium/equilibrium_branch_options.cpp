@@ -19,7 +19,7 @@ void describe(deck::Description<EquilibriumBranchOptions>& d) {
   });
 }
 
-double EquilibriumBranch::memory(const system::Machine& machine) const {
+double EquilibriumBranch::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
   return memory_of_equilibria(machine);
 }
 

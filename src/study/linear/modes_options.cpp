@@ -59,7 +59,7 @@ std::string ModesOptions::unit() const {
   return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
 }
 
-double Modes::memory(const system::Machine& machine) const {
+double Modes::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
   const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
   return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
 }

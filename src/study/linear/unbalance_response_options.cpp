@@ -19,7 +19,7 @@ void describe(deck::Description<UnbalanceResponseOptions>& d) {
   d.add("refine", &O::refine, "add speeds at peaks until their height is settled");
 }
 
-double UnbalanceResponse::memory(const system::Machine& machine) const {
+double UnbalanceResponse::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
   const double places = static_cast<double>(machine.bearings.size() + options.nodes.size());
   return memory_of_equilibria(machine) + 1000 * (places + 3) * options.points;
 }

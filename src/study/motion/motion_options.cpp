@@ -53,7 +53,7 @@ void Motion::validate(const system::Machine& machine, const deck::Report& report
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
 }
 
-double Motion::memory(const system::Machine& machine) const {
+double Motion::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
   const double places = static_cast<double>(machine.bearings.size()) + 1;
   return memory_of_equilibria(machine) + 70 * places * options.revolutions * options.samples;
 }

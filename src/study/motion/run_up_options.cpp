@@ -49,7 +49,7 @@ void RunUp::validate(const system::Machine& machine, const deck::Report& report)
   check_nodes("nodes", options.nodes, machine, report);
 }
 
-double RunUp::memory(const system::Machine& machine) const {
+double RunUp::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
   // Ten numbers a place and revolution, as table, as text and as file.
   const double places = static_cast<double>(machine.bearings.size() + options.nodes.size());
   return memory_of_equilibria(machine) + 240 * (places + 1) * revolutions(options);

@@ -61,7 +61,7 @@ public:
   [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
-  [[nodiscard]] double memory(const system::Machine& machine) const override;
+  [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] bool may_add(std::string_view other) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
   [[nodiscard]] std::vector<std::unique_ptr<Study>> further(const io::Group& result) const override;

@@ -35,7 +35,7 @@ public:
   [[nodiscard]] std::string_view kind() const override { return key; }
   [[nodiscard]] bool needs_bearings() const override { return options.supports == ModesOptions::Supports::films; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
-  [[nodiscard]] double memory(const system::Machine& machine) const override;
+  [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 };
 

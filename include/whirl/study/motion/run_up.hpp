@@ -28,7 +28,7 @@ public:
   static constexpr std::string_view key = "run_up";
   [[nodiscard]] std::string_view kind() const override { return key; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
-  [[nodiscard]] double memory(const system::Machine& machine) const override;
+  [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 };
 

@@ -1,13 +1,12 @@
-// The subspace of a Newton-Picard problem and the multipliers in it.
+// The subspace of a cycle spread over ranks and the multipliers in it.
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "solve/cycle/dominant_subspace.hpp"
-#include "solve/shooting/local_part.hpp"
-#include "solve/shooting/sparse_step.hpp"
-#include "whirl/solve/shooting/newton_picard.hpp"
+#include "solve/newton/local_part.hpp"
+#include "whirl/solve/cycle/spread_cycle.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
@@ -17,8 +16,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+// Of a subspace that only preconditions.
+constexpr double subspace_tolerance = 1e-3;
+
+}  // namespace
+
 // Columns to an orthonormal basis of their span, one after the other, so that leading columns span what they did.
-void NewtonPicardProblem::orthonormalise(MatrixXd& v, Index from) const {
+void SpreadCycle::orthonormalise(MatrixXd& v, Index from) const {
   for (Index c = from; c < v.cols(); ++c) {
     for (int pass = 0; pass < 2; ++pass) {
       MatrixXd inner = v.leftCols(c).transpose() * v.col(c);
@@ -35,9 +41,12 @@ void NewtonPicardProblem::orthonormalise(MatrixXd& v, Index from) const {
 // M V. While V is not invariant and gets better at once, V <- orth(M V): it spares linear iterations. Multipliers below
 // the radius are near it or not, which does not change from one point to the next: what did not help is not tried
 // again.
-void NewtonPicardProblem::find_image() {
+void SpreadCycle::find_image() {
   constexpr double invariant = 1e-7, at_once = 0.1;
+  // Where each product is dear the one iteration that costs nothing has to do.
+  const int most = rough_ ? 0 : 2;
   double last = 0;
+  rough_image_ = rough_;
   for (int k = 0;; ++k) {
     image_ = monodromy_times(basis_, basis_added_);
     MatrixXd sizes(2, 1);
@@ -45,14 +54,14 @@ void NewtonPicardProblem::find_image() {
     sum(sizes);
     const double defect = sizes(1) > 0 ? std::sqrt(sizes(0) / sizes(1)) : 0;
     if (k > 0) contraction_ = defect / last;
-    if (defect <= invariant || k == 2 || contraction_ > at_once) return;
+    if (defect <= invariant || k == most || contraction_ > at_once) return;
     last = defect;
     basis_ = image_;
     orthonormalise(basis_, 0);
   }
 }
 
-std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
+std::vector<std::complex<double>> SpreadCycle::find_subspace() {
   VectorXd start(local_);
   if (basis_.cols() > 0) {
     start = basis_.rowwise().sum();
@@ -65,12 +74,12 @@ std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
   put(start, first.get());
   SubspaceOptions options;
   options.radius = options_.radius;
-  options.tolerance = options_.multiplier_tolerance;
+  options.tolerance = rough_ ? subspace_tolerance : options_.multiplier_tolerance;
   options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
   DominantSubspace found = dominant_subspace(
       [this](Vec v) {
         MatrixXd state = get(v);
-        for (Index i = 0; i < intervals(); ++i) apply(i, state);
+        for (Index i = 0; i < intervals(); ++i) state = advance(i, state, nullptr, false).bottomRows(local_).eval();
         put(state, v);
         ++products_;
       },
@@ -83,7 +92,7 @@ std::vector<std::complex<double>> NewtonPicardProblem::find_subspace() {
 // Multipliers by orthogonal iteration on V and two generic vectors, which would show a multiplier that V does not know;
 // those below the radius, which nothing depends on, to six digits. Empty if this does not settle at once, because there
 // are multipliers just below the radius, or if their number has changed: then they are to be found anew.
-std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
+std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
   constexpr Index probes = 2;
   constexpr int most = 2;
   constexpr double below_radius = 1e-6, slow = 1e-2;
@@ -99,6 +108,8 @@ std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
       x(k, p + c) = 1 + std::sin(phase + std::sin(phase * phase));
     }
   orthonormalise(x, p);
+  if (rough_image_) image_ = monodromy_times(basis_, basis_added_);
+  rough_image_ = false;
   y.leftCols(p) = image_;
   y.rightCols(probes) = monodromy_times(x.rightCols(probes), new_added);
   added << basis_added_, new_added;
@@ -137,7 +148,7 @@ std::vector<std::complex<double>> NewtonPicardProblem::settled_multipliers() {
   }
 }
 
-std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
+std::vector<std::complex<double>> SpreadCycle::multipliers() {
   auto values = settled_multipliers();
   if (!values.empty()) return values;
   values = find_subspace();
@@ -147,14 +158,16 @@ std::vector<std::complex<double>> NewtonPicardProblem::multipliers() {
 }
 
 // In the basis the motion is the eigenvector of V^T M V; the intervals carry it on.
-MatrixXd NewtonPicardProblem::critical_motion(double mu) {
+MatrixXd SpreadCycle::critical_motion(double mu) {
   MatrixXd projected = basis_.transpose() * image_;
   sum(projected);
   MatrixXd state = basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized();
-  MatrixXd motion(local_, intervals());
+  const Index m = scheme_.degree;
+  MatrixXd motion(local_, intervals() * m);
   for (Index i = 0; i < intervals(); ++i) {
-    apply(i, state);
-    motion.col(i) = scale_.cwiseProduct(state);
+    const MatrixXd x = advance(i, state, nullptr, false);
+    state = x.bottomRows(local_);
+    for (Index l = 0; l < m; ++l) motion.col(i * m + l) = scale_.cwiseProduct(x.col(0).segment(l * local_, local_));
   }
   return whole(motion);
 }

@@ -1,0 +1,78 @@
+#pragma once
+// Periodic solutions by orthogonal collocation of systems that are spread over ranks.
+
+#include <memory>
+#include <vector>
+
+#include "whirl/solve/cycle/spread_cycle.hpp"
+
+namespace whirl::solve {
+
+class PortElimination;
+class PortMatrix;
+class SpreadInterval;
+
+struct SpreadCollocationOptions : NewtonPicardOptions {
+  int degree = 2;
+  double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
+  int base_intervals = 0;     ///< adapt() never makes a mesh coarser than this uniform one; 0: its longest interval
+  int max_intervals = 400;
+  int eliminations = 0;  ///< at most so many are held, which neighbours share; 0: one for each interval
+};
+
+/// The equations of CycleProblem at Radau points, F(2 pi k s, x(s), x'(s)/T; p) = 0 with x(0) = x(1), for a machine
+/// made of parts on the ranks of its own communicator. Each rank holds its rows of the states at all points and of the
+/// blocks of dF/dx and dF/d(dx/dt) there: memory grows with states times points, and with the eliminations that are
+/// held. How an interval is solved: see SpreadInterval.
+class SpreadCollocation final : public SpreadCycle {
+public:
+  /// `system` outlives this and has parts that an elimination keeps apart (see serves()).
+  SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh);
+  ~SpreadCollocation() override;
+  /// Whether a system's parts can be told apart. Collective.
+  [[nodiscard]] static bool serves(const problem::System& system);
+
+  [[nodiscard]] bool settles() const override { return true; }
+  /// The films, with the hub and all that they see of it held, from interval to interval and lap after lap until what
+  /// enters each interval stays. Nothing before the first linearisation.
+  bool settle(Vec u) override;
+  bool adapt(core::Vector& u, core::Vector& tangent) override;
+  /// "orbit": the states at all points of time.
+  [[nodiscard]] std::vector<problem::Field> fields() const override;
+
+private:
+  void refresh() override;
+  void residuals(Vec u, double period, Eigen::MatrixXd& r) override;
+  void linearise_intervals(Vec u, double period) override;
+  [[nodiscard]] const Eigen::MatrixXd& columns(Eigen::Index i) const override {
+    return columns_[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Eigen::MatrixXd advance(Eigen::Index i, const Eigen::MatrixXd& start, const Eigen::MatrixXd* rhs,
+                                        bool rest) const override;
+  [[nodiscard]] Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
+                                        const Eigen::VectorXd& x) const override;
+  [[nodiscard]] Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
+                                               Eigen::Index l) override;
+  /// State and rate at point j of interval i into value_ and rate_; `x` [local x N m].
+  void interpolate(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, Eigen::Index j, double period);
+  /// F of interval i [m local].
+  void residual_of(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, double period, double* r);
+  /// The linearised interval; `rate` is dF/d(dx/dt) if that is constant, once it is known.
+  [[nodiscard]] std::unique_ptr<SpreadInterval> interval_at(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i,
+                                                            double period, std::shared_ptr<const PortMatrix>& rate,
+                                                            std::shared_ptr<PortElimination>& similar,
+                                                            Eigen::MatrixXd* columns);
+  /// How far the end of interval i has moved.
+  double settle_interval(Eigen::MatrixXd& x, Eigen::Index i, double period);
+  [[nodiscard]] bool shares(Eigen::Index i, Eigen::Index first) const;
+
+  SpreadCollocationOptions options_;
+  struct Tools;
+  std::unique_ptr<Tools> tools_;
+  core::Vector value_, rate_, f_;
+  std::shared_ptr<const PortMatrix> constant_;  // dF/d(dx/dt) of the last linearisation, if it is constant
+  std::vector<std::unique_ptr<SpreadInterval>> intervals_;
+  std::vector<Eigen::MatrixXd> columns_;
+};
+
+}  // namespace whirl::solve

@@ -1,0 +1,160 @@
+#pragma once
+// Cycles of systems that are spread over ranks: what joins their intervals.
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <complex>
+#include <vector>
+
+#include "whirl/problem/system.hpp"
+#include "whirl/solve/cycle/periodic_problem.hpp"
+
+namespace whirl::solve {
+
+struct NewtonPicardOptions {
+  int turns = 1;               ///< shaft turns per period of a forced cycle
+  bool autonomous = false;     ///< the period is an unknown and a phase condition is added
+  double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
+  double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
+  double radius = 0.3;         ///< multipliers above it are solved by Newton, the rest by Picard iterations
+  int picard = 3;              ///< at most so many Picard iterations on the rest per linear solve
+  double multiplier_tolerance = 1e-9;
+  bool constant_rates = false;  ///< dF/d(dx/dt) depends on nothing but the parameter
+};
+
+/// Cycles whose unknowns are this rank's rows of the states at the nodes of all intervals. What the equations of an
+/// interval are is told by derived classes; eliminated, they give X_i = -A_i^-1 A0_i x_i + ... and x_(i+1) as its last
+/// block, so that the monodromy matrix M is known by its products only: sweeps of a state through all intervals.
+///
+/// With V an orthonormal basis of the invariant subspace of the multipliers above `radius`, Q = I - V V^T and the
+/// condensed system (I - M) x_0 - E d = R, K x_0 + D d = r_c (d = period, parameter), solve() takes in this order
+///
+///     q_R, q_E : (I - Q M) q = Q R, Q E by Picard iteration q <- Q M q + Q R
+///     [ I - V^T M V   -V^T (E + M q_E) ] [ p ]   [ V^T (R + M q_R) ]
+///     [ K V           K q_E + D        ] [ d ] = [ r_c - K q_R     ]
+///     x_0 = V p + q_R + q_E d,  then the intervals forward.
+///
+/// It preconditions GMRES around multiply(), which is exact: Newton keeps its quadratic convergence, folds stay regular
+/// and tangents are exact, while the subspace need not be. V is found by Krylov-Schur at the first linearisation, with
+/// a size that follows the radius; then orthogonal subspace iteration V <- orth(M V) keeps it, of which the first one
+/// costs nothing, because M V is known. multipliers() takes V as long as it is invariant, two generic vectors find no
+/// other multiplier above the radius, and their number stays; else Krylov-Schur again. Source: Lust (1997); van de
+/// Vrande (2001), Sec. 3.2 and (3.18), with errata.
+class SpreadCycle : public PeriodicProblem {
+public:
+  [[nodiscard]] MPI_Comm comm() const override { return system_.comm(); }
+  [[nodiscard]] core::Vector make_unknown() const override;
+  [[nodiscard]] Vec weights() const override { return weights_.get(); }
+  [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
+  void residual(Vec u, Vec r) override;
+  void linearise(Vec u, Vec row) override;
+  /// Each of their digits costs products, and Newton's method needs few of them.
+  [[nodiscard]] double linear_tolerance() const override { return 1e-5; }
+  void multiply(Vec v, Vec y) override;
+  void solve(Vec rhs, Vec x) override;
+
+  [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
+  [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return whole_scale_; }
+  [[nodiscard]] Cycle gather(Vec u) const override;
+  [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
+  /// sum weight <x - ref, ref'> = 0 over all nodes from now on.
+  void set_phase_reference(const Cycle& reference) override;
+  [[nodiscard]] double period_scale() const override { return period_scale_; }
+
+  /// All multipliers above the radius, and at least one below; renews the subspace.
+  [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
+  /// `mu` is above the radius.
+  [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
+  /// Size of the subspace, and products of the monodromy matrix with a vector since the start.
+  [[nodiscard]] Eigen::Index subspace() const { return basis_.cols(); }
+  [[nodiscard]] long products() const { return products_; }
+
+protected:
+  /// With `inexact`, products of intervals are solved by iteration: those that only precondition take few digits, as
+  /// rough() tells.
+  SpreadCycle(problem::System& system, const NewtonPicardOptions& options, Scheme scheme, std::vector<double> mesh,
+              bool inexact);
+
+  // What a derived class tells of its intervals. Collective; states are scaled, this rank's rows.
+
+  /// The parameter of the system has changed.
+  virtual void refresh() = 0;
+  /// R [m local x N] at u.
+  virtual void residuals(Vec u, double period, Eigen::MatrixXd& r) = 0;
+  /// Takes A0_i, A_i and columns(i) at u.
+  virtual void linearise_intervals(Vec u, double period) = 0;
+  /// dR_i/d(period, parameter) [m local x nb].
+  [[nodiscard]] virtual const Eigen::MatrixXd& columns(Eigen::Index i) const = 0;
+  /// X = A_i^-1 (rhs - A0_i start) [m local x k]; `rhs` may be null. With `rest` the start is zero.
+  [[nodiscard]] virtual Eigen::MatrixXd advance(Eigen::Index i, const Eigen::MatrixXd& start,
+                                                const Eigen::MatrixXd* rhs, bool rest) const = 0;
+  /// A0_i start + A_i x [m local].
+  [[nodiscard]] virtual Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
+                                                const Eigen::VectorXd& x) const = 0;
+  /// x'(s) of a reference at node l = 1..m of interval i, in scaled states [local]; `x` [local x N m] are its nodes.
+  [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
+                                                       Eigen::Index l) = 0;
+
+  [[nodiscard]] problem::System& system() const { return system_; }
+  [[nodiscard]] const NewtonPicardOptions& options() const { return options_; }
+  [[nodiscard]] Eigen::Index intervals() const { return static_cast<Eigen::Index>(mesh_.size()) - 1; }
+  [[nodiscard]] Eigen::Index local() const { return local_; }
+  [[nodiscard]] Eigen::Index borders() const { return borders_; }
+  [[nodiscard]] double length(Eigen::Index i) const;
+  [[nodiscard]] double angle(double s) const;
+  /// The nodes of u [local x N m], and the start of interval i among them.
+  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> nodes(const core::ReadArray& u) const {
+    return {u.data(), local_, intervals() * scheme_.degree};
+  }
+  [[nodiscard]] Eigen::Index before(Eigen::Index i) const { return (i == 0 ? intervals() : i) * scheme_.degree - 1; }
+  [[nodiscard]] bool rough() const { return rough_; }
+  /// Sets the parameter and returns the period.
+  [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
+  [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
+  /// Columns [local x k] of every rank as [n x k] on all ranks.
+  [[nodiscard]] Eigen::MatrixXd whole(const Eigen::MatrixXd& columns) const;
+  [[nodiscard]] const Eigen::VectorXd& local_scale() const { return scale_; }
+  /// A vector of this rank's states, for whoever needs one for a moment.
+  [[nodiscard]] Vec work() const { return work_.get(); }
+  /// Another mesh; a linearisation and a phase reference are to be set again.
+  void set_mesh(std::vector<double> mesh);
+
+private:
+  void sum(Eigen::MatrixXd& values) const;
+  /// state := that after interval i, added += rows X.
+  void carry(Eigen::Index i, Eigen::MatrixXd& state, const Eigen::MatrixXd* rhs, bool rest,
+             Eigen::MatrixXd& added) const;
+  Eigen::MatrixXd monodromy_times(const Eigen::MatrixXd& v, Eigen::MatrixXd& added) const;
+  [[nodiscard]] Eigen::MatrixXd complement(const Eigen::MatrixXd& v) const;
+  Eigen::MatrixXd picard(const Eigen::MatrixXd& right, Eigen::MatrixXd& image, Eigen::MatrixXd& added) const;
+  void orthonormalise(Eigen::MatrixXd& v, Eigen::Index from) const;
+  std::vector<std::complex<double>> find_subspace();
+  std::vector<std::complex<double>> settled_multipliers();
+  void find_image();
+  void prepare();
+
+  problem::System& system_;
+  NewtonPicardOptions options_;
+  Scheme scheme_;
+  std::vector<double> mesh_;
+  Eigen::Index local_, borders_;  // this rank's states; 1 or 2
+  bool last_, inexact_, rough_ = false;
+  double period_scale_ = 0, phase_offset_ = 0;
+  Eigen::VectorXd scale_, whole_scale_;  // of this rank's states, of all
+  core::Vector weights_, work_;
+  Eigen::MatrixXd phase_row_;  // [local x N m]
+
+  // The linearisation.
+  std::vector<Eigen::MatrixXd> rows_;            // added rows per interval, transposed [m local x nb]
+  Eigen::MatrixXd corner_, ends_, ends_added_;   // E [local x nb], and what it adds to the rows
+  Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
+  Eigen::MatrixXd q_ends_, image_q_ends_;
+  bool rough_image_ = false;
+  double contraction_ = 0;  // of the error of V by one iteration, as last seen
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  mutable long products_ = 0;
+  int solves_ = 0;  // since the linearisation: many mean that the subspace is stale
+};
+
+}  // namespace whirl::solve

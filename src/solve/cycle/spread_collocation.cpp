@@ -1,0 +1,244 @@
+#include "whirl/solve/cycle/spread_collocation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/cycle/spread_interval.hpp"
+#include "solve/newton/local_part.hpp"
+#include "solve/newton/port_maker.hpp"
+#include "solve/newton/spread_point.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/core/index.hpp"
+
+namespace whirl::solve {
+
+using core::at;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Relative residuals of intervals: of products that only precondition, and of those that multipliers are made of.
+constexpr double rough_tolerance = 1e-5, full_tolerance = 1e-11;
+
+// Films settle by whole steps, each of which may find another set of full nodes, to `settled` of their scale.
+constexpr double settling_tolerance = 1e-6, settled = 1e-10;
+constexpr int settling_steps = 40, settling_laps = 60;
+
+}  // namespace
+
+struct SpreadCollocation::Tools {
+  Tools(problem::System& system, const Scheme& scheme)
+      : point(system), maker(PortMaker::make(system)), step(system.comm(), system.local_size(), scheme) {
+    core::require(maker != nullptr, "a machine whose parts elimination keeps apart");
+  }
+  SpreadPoint point;
+  std::unique_ptr<PortMaker> maker;
+  SpreadStep step;
+  core::Matrix matrix;
+};
+
+SpreadCollocation::SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options,
+                                     std::vector<double> mesh)
+    : SpreadCycle(system, options, make_scheme(options.degree, Points::radau), std::move(mesh), true),
+      options_(options),
+      tools_(std::make_unique<Tools>(system, scheme())) {
+  for (core::Vector* v : {&value_, &rate_, &f_}) *v = core::duplicate(work());
+}
+
+SpreadCollocation::~SpreadCollocation() = default;
+
+bool SpreadCollocation::serves(const problem::System& system) {
+  return PortElimination::serves(system.fields());
+}
+
+std::vector<problem::Field> SpreadCollocation::fields() const {
+  return {{"orbit", 0, static_cast<PetscInt>(intervals() * scheme().degree * local())}};
+}
+
+void SpreadCollocation::refresh() {}
+
+void SpreadCollocation::interpolate(const Eigen::Ref<const MatrixXd>& x, Index i, Index j, double period) {
+  const Index m = scheme().degree;
+  VectorXd rate = x.middleCols(i * m, m) * scheme().slope.row(j).tail(m).transpose();
+  rate += scheme().slope(j, 0) * x.col(before(i));
+  put(x.col(i * m + j), value_.get());
+  put(rate / (length(i) * period), rate_.get());
+}
+
+void SpreadCollocation::residual_of(const Eigen::Ref<const MatrixXd>& x, Index i, double period, double* r) {
+  for (Index j = 0; j < scheme().degree; ++j) {
+    interpolate(x, i, j, period);
+    tools_->point.residual(angle(mesh()[at(i)] + length(i) * scheme().c(j)), value_.get(), rate_.get(), f_.get());
+    Map<VectorXd>(r + j * local(), local()) = get(f_.get());
+  }
+}
+
+void SpreadCollocation::residuals(Vec u, double period, MatrixXd& r) {
+  const core::ReadArray ua(u);
+  const auto x = nodes(ua);
+  r.resize(scheme().degree * local(), intervals());
+  for (Index i = 0; i < intervals(); ++i) residual_of(x, i, period, r.col(i).data());
+}
+
+// Neighbours of one length share an elimination, in runs that leave as many as may be held.
+bool SpreadCollocation::shares(Index i, Index first) const {
+  if (options_.eliminations <= 0) return false;
+  const Index run = (intervals() + options_.eliminations - 1) / options_.eliminations;
+  return i - first < run && std::abs(length(i) - length(first)) < 1e-9 * length(i);
+}
+
+std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<const MatrixXd>& x, Index i,
+                                                               double period, std::shared_ptr<const PortMatrix>& rate,
+                                                               std::shared_ptr<PortElimination>& similar,
+                                                               MatrixXd* columns) {
+  const Index m = scheme().degree;
+  const bool by_speed = !options().autonomous && system().parameter_is_speed();
+  SpreadPoint& point = tools_->point;
+  PortMaker& maker = *tools_->maker;
+  const double h = length(i) * period, own = h / tools_->step.shift();
+  std::vector<std::shared_ptr<const PortMatrix>> blocks(at(m)), rates(at(m));
+  VectorXd by_rate(local());
+  for (Index j = 0; j < m; ++j) {
+    const double here = angle(mesh()[at(i)] + length(i) * scheme().c(j));
+    interpolate(x, i, j, period);
+    if (!rate || !options().constant_rates) {
+      point.jacobian(here, value_.get(), rate_.get(), 0, 1, tools_->matrix);
+      rate = maker.blocks(tools_->matrix.get());
+    }
+    rates[at(j)] = rate;
+    point.jacobian(here, value_.get(), rate_.get(), own, 1, tools_->matrix);
+    blocks[at(j)] = maker.blocks(tools_->matrix.get());
+    if (!similar) similar = maker.eliminate(tools_->matrix.get(), *blocks[at(j)], here, point.x(), point.xdot(), own);
+    if (!columns) continue;
+    point.parameter_derivative(here, value_.get(), rate_.get(), f_.get());
+    {
+      const core::ReadArray k(rate_.get());
+      rate->multiply(k.data(), by_rate.data());
+    }
+    auto own_columns = columns->middleRows(j * local(), local());
+    VectorXd by_parameter = get(f_.get());
+    // On a forced cycle T = 2 pi k/Omega, so that the rate x'/T grows with the speed at fixed x(s).
+    if (by_speed) by_parameter += by_rate / system().speed();
+    own_columns.rightCols(1) = options().parameter_scale * by_parameter;
+    if (options().autonomous) own_columns.col(0) = -by_rate / period * period_scale();
+  }
+  return std::make_unique<SpreadInterval>(tools_->step, h, std::move(blocks), std::move(rates), similar);
+}
+
+void SpreadCollocation::linearise_intervals(Vec u, double period) {
+  const core::ReadArray ua(u);
+  const auto x = nodes(ua);
+  intervals_.clear();
+  intervals_.resize(at(intervals()));
+  columns_.assign(at(intervals()), MatrixXd(scheme().degree * local(), borders()));
+  std::shared_ptr<PortElimination> similar;
+  std::shared_ptr<const PortMatrix> rate;
+  Index first = 0;  // whose elimination it is
+  for (Index i = 0; i < intervals(); ++i) {
+    if (i > 0 && !shares(i, first)) {
+      similar.reset();
+      first = i;
+    }
+    intervals_[at(i)] = interval_at(x, i, period, rate, similar, &columns_[at(i)]);
+  }
+  constant_ = options().constant_rates ? rate : nullptr;
+}
+
+double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
+  const Index m = scheme().degree;
+  const PortLayout& layout = *tools_->maker->layout();
+  const VectorXd end = x.col(i * m + m - 1);
+  std::shared_ptr<PortElimination> similar = intervals_[at(i)]->similar();
+  MatrixXd step(m * local(), 1);
+  const auto largest_of = [&](const auto& v) {
+    double size = v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+    MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, comm());
+    return size;
+  };
+  for (int k = 0; k < settling_steps; ++k) {
+    residual_of(x, i, period, step.data());
+    SpreadStep::hold(layout, step.data(), m);
+    interval_at(x, i, period, constant_, similar, nullptr)->solve(step, settling_tolerance, true);
+    x.middleCols(i * m, m) -= Map<const MatrixXd>(step.data(), local(), m);
+    if (largest_of(step) <= settled) return largest_of(x.col(i * m + m - 1) - end);
+  }
+  throw core::NotConverged("the films did not settle within an interval");
+}
+
+bool SpreadCollocation::settle(Vec u) {
+  if (intervals_.empty()) return false;
+  MatrixXd x;
+  {
+    const core::ReadArray ua(u);
+    x = nodes(ua);
+  }
+  try {
+    const double period = begin_point(border_of(u));
+    double moved = 1;
+    for (int lap = 0; lap < settling_laps && moved > settled; ++lap) {
+      for (Index i = 0; i < intervals(); ++i) {
+        moved = settle_interval(x, i, period);
+        if (lap > 0 && moved <= settled) break;  // all behind it stays
+      }
+    }
+    if (!(moved <= settled)) return false;
+  } catch (const core::DomainError&) {
+    return false;
+  } catch (const core::NotConverged&) {
+    return false;
+  }
+  const core::WriteArray ua(u);
+  Map<MatrixXd>(ua.data(), x.rows(), x.cols()) = x;
+  return true;
+}
+
+VectorXd SpreadCollocation::product(Index i, const VectorXd& start, const VectorXd& x) const {
+  VectorXd y(x.size());
+  intervals_[at(i)]->multiply(start.data(), x.data(), y.data());
+  return y;
+}
+
+MatrixXd SpreadCollocation::advance(Index i, const MatrixXd& start, const MatrixXd* rhs, bool rest) const {
+  const SpreadInterval& interval = *intervals_[at(i)];
+  const Index m = scheme().degree;
+  MatrixXd x = MatrixXd::Zero(m * local(), start.cols());
+  if (!rest) {
+    const VectorXd zero = VectorXd::Zero(m * local());
+    VectorXd y(m * local());
+    for (Index k = 0; k < start.cols(); ++k) {
+      interval.multiply(start.col(k).data(), zero.data(), y.data());
+      x.col(k) = -y;
+    }
+  }
+  if (rhs) x += *rhs;
+  interval.solve(x, rough() ? rough_tolerance : full_tolerance);
+  return x;
+}
+
+VectorXd SpreadCollocation::reference_rate(const MatrixXd& x, double /*period*/, Index i, Index l) {
+  const Index m = scheme().degree;
+  const VectorXd w = lagrange_slope(scheme(), scheme().node(l)) / length(i);
+  return w(0) * x.col(before(i)) + x.middleCols(i * m, m) * w.tail(m);
+}
+
+bool SpreadCollocation::adapt(core::Vector& u, core::Vector& tangent) {
+  if (options_.mesh_tolerance <= 0) return false;
+  const Cycle cycle = gather(u.get()), direction = gather(tangent.get());
+  double longest = 0;
+  for (Index i = 0; i < intervals(); ++i) longest = std::max(longest, length(i));
+  const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
+  std::vector<double> better =
+      adapted_mesh(scheme(), cycle, state_scale(), options_.mesh_tolerance, base, options_.max_intervals);
+  if (better == mesh()) return false;
+  intervals_.clear();
+  set_mesh(std::move(better));
+  u = scatter(cycle);
+  tangent = scatter(direction);
+  if (options().autonomous) set_phase_reference(cycle);
+  return true;
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,165 @@
+#include "solve/cycle/spread_interval.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/core/index.hpp"
+
+namespace whirl::solve {
+
+using core::at;
+using core::check;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// Crout's T of A = T U, U with unit diagonal.
+MatrixXd lower_factor(const MatrixXd& a) {
+  const Index m = a.rows();
+  MatrixXd t = MatrixXd::Zero(m, m), u = MatrixXd::Identity(m, m);
+  for (Index k = 0; k < m; ++k) {
+    for (Index i = k; i < m; ++i) t(i, k) = a(i, k) - t.row(i).head(k).dot(u.col(k).head(k));
+    for (Index j = k + 1; j < m; ++j) u(k, j) = (a(k, j) - t.row(k).head(k).dot(u.col(j).head(k))) / t(k, k);
+  }
+  return t;
+}
+
+}  // namespace
+
+SpreadStep::SpreadStep(MPI_Comm comm, PetscInt local, const Scheme& scheme)
+    : comm_(comm), scheme_(&scheme), gate_(comm) {
+  core::require(scheme.points == Points::radau, "intervals spread over ranks have Radau points");
+  const Index m = scheme.degree;
+  triangle_ = lower_factor(scheme.slope.rightCols(m).inverse()).inverse().triangularView<Eigen::Lower>();
+  shift_ = std::pow(triangle_.diagonal().prod(), 1 / static_cast<double>(m));
+  one_ = core::make_vector(comm, local, PETSC_DETERMINE);
+  other_ = core::duplicate(one_.get());
+  const auto size = static_cast<PetscInt>(m * local);
+  rhs_ = core::make_vector(comm, size, PETSC_DETERMINE);
+  answer_ = core::duplicate(rhs_.get());
+  check(MatCreateShell(comm, size, size, PETSC_DETERMINE, PETSC_DETERMINE, this, shell_.put()));
+  check(MatShellSetOperation(shell_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+  check(KSPCreate(comm, solver_.put()));
+  check(KSPSetOptionsPrefix(solver_.get(), "interval_"));
+  check(KSPSetOperators(solver_.get(), shell_.get(), shell_.get()));
+  check(KSPSetType(solver_.get(), KSPFGMRES));
+  check(KSPSetPCSide(solver_.get(), PC_RIGHT));
+  PC pc = nullptr;
+  check(KSPGetPC(solver_.get(), &pc));
+  check(PCSetType(pc, PCSHELL));
+  check(PCShellSetContext(pc, this));
+  check(PCShellSetApply(pc, precondition));
+  check(KSPSetTolerances(solver_.get(), PETSC_DEFAULT, 1e-300, PETSC_DEFAULT, 200));
+  check(KSPSetFromOptions(solver_.get()));
+}
+
+void SpreadStep::hold(const PortLayout& layout, double* v, Index k) {
+  VectorXd parts(layout.parts()), hub(layout.hub());
+  for (Index c = 0; c < k; ++c) {
+    double* column = v + c * layout.local();
+    layout.take(column, parts.data(), hub.data());
+    hub.setZero();
+    layout.give(parts.data(), hub.data(), column);
+  }
+}
+
+PetscErrorCode SpreadStep::multiply(Mat m, Vec v, Vec y) {
+  void* raw = nullptr;
+  PetscCall(MatShellGetContext(m, &raw));
+  auto& self = *static_cast<SpreadStep*>(raw);
+  return self.gate_.run([&] {
+    const core::ReadArray x(v);
+    const core::WriteArray out(y);
+    self.interval_->multiply(nullptr, x.data(), out.data());
+    if (self.held_) hold(*self.interval_->blocks_[0]->layout(), out.data(), self.scheme_->degree);
+  });
+}
+
+PetscErrorCode SpreadStep::precondition(PC pc, Vec r, Vec y) {
+  void* raw = nullptr;
+  PetscCall(PCShellGetContext(pc, &raw));
+  auto& self = *static_cast<SpreadStep*>(raw);
+  return self.gate_.run([&] {
+    const core::ReadArray in(r);
+    const core::WriteArray out(y);
+    self.interval_->precondition(in.data(), out.data());
+  });
+}
+
+// With B = D + own J, J X = (B X - D X)/own.
+void SpreadInterval::multiply(const double* start, const double* x, double* y) const {
+  const Scheme& s = step_.scheme();
+  const Index m = s.degree, n = blocks_[0]->layout()->local();
+  const double own = length_ / step_.shift();
+  const Map<const MatrixXd> nodes(x, n, m);
+  VectorXd slope(n), part(n);
+  for (Index j = 0; j < m; ++j) {
+    slope.noalias() = nodes * s.slope.row(j).tail(m).transpose();
+    if (start) slope += s.slope(j, 0) * Map<const VectorXd>(start, n);
+    slope = slope / length_ - nodes.col(j) / own;
+    rates_[at(j)]->multiply(slope.data(), part.data());
+    Map<VectorXd> out(y + j * n, n);
+    blocks_[at(j)]->multiply(x + j * n, out.data());
+    out = out / own + part;
+  }
+}
+
+// Point by point: B X_j = own (r_j - D/H sum_(l<j) triangle(j,l) X_l).
+void SpreadInterval::precondition(const double* r, double* x) const {
+  const Index m = step_.scheme().degree, n = blocks_[0]->layout()->local();
+  const double own = length_ / step_.shift();
+  const Map<MatrixXd> nodes(x, n, m);
+  VectorXd earlier(n), part(n);
+  for (Index j = 0; j < m; ++j) {
+    part = Map<const VectorXd>(r + j * n, n);
+    if (j > 0) {
+      earlier.noalias() = nodes.leftCols(j) * step_.triangle().row(j).head(j).transpose() / -length_;
+      VectorXd rates(n);
+      rates_[at(j)]->multiply(earlier.data(), rates.data());
+      part += rates;
+    }
+    {
+      const core::WriteArray a(step_.one_.get());
+      Map<VectorXd>(a.data(), n) = own * part;
+    }
+    if (step_.held_)
+      similar_->solve_held(step_.one_.get(), step_.other_.get());
+    else
+      similar_->solve(step_.one_.get(), step_.other_.get());
+    const core::ReadArray a(step_.other_.get());
+    Map<VectorXd>(x + j * n, n) = Map<const VectorXd>(a.data(), n);
+  }
+}
+
+void SpreadInterval::solve(MatrixXd& x, double tolerance, bool held) const {
+  SpreadStep& s = step_;
+  s.interval_ = this;
+  s.held_ = held;
+  check(KSPSetTolerances(s.solver_.get(), tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+  const auto fail = [&s] {
+    core::agree(s.comm_, [] { throw core::DomainError("the linearised equations of an interval were not solved"); });
+  };
+  for (Index k = 0; k < x.cols(); ++k) {
+    {
+      const core::WriteArray a(s.rhs_.get());
+      Map<VectorXd>(a.data(), x.rows()) = x.col(k);
+    }
+    try {
+      s.gate_.rethrow(KSPSolve(s.solver_.get(), s.rhs_.get(), s.answer_.get()));
+    } catch (const core::NotConverged&) {
+      fail();
+    }
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    check(KSPGetConvergedReason(s.solver_.get(), &reason));
+    if (reason < 0) fail();
+    const core::ReadArray a(s.answer_.get());
+    x.col(k) = Map<const VectorXd>(a.data(), x.rows());
+  }
+}
+
+}  // namespace whirl::solve

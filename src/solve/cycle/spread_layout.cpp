@@ -1,0 +1,87 @@
+// A cycle spread over ranks: to and from its distributed unknown, and its phase reference.
+
+#include <cmath>
+#include <numbers>
+
+#include "solve/newton/local_part.hpp"
+#include "whirl/solve/cycle/spread_cycle.hpp"
+
+namespace whirl::solve {
+
+using core::check;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd SpreadCycle::whole(const MatrixXd& columns) const {
+  MatrixXd out(system_.size(), columns.cols());
+  core::Scatter scatter;
+  core::Vector all;
+  check(VecScatterCreateToAll(work_.get(), scatter.put(), all.put()));
+  for (Index i = 0; i < columns.cols(); ++i) {
+    put(columns.col(i), work_.get());
+    check(VecScatterBegin(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
+    out.col(i) = get(all.get());
+  }
+  return out;
+}
+
+Cycle SpreadCycle::gather(Vec u) const {
+  const VectorXd border = border_of(u);
+  const core::ReadArray ua(u);
+  Cycle cycle{mesh_, {}, 0, border(borders_ - 1) * options_.parameter_scale};
+  cycle.x = whole(scale_.asDiagonal() * nodes(ua));
+  if (options_.autonomous)
+    cycle.period = border(0) * period_scale_;
+  else
+    cycle.period =
+        2 * std::numbers::pi * options_.turns / (system_.parameter_is_speed() ? cycle.parameter : system_.speed());
+  return cycle;
+}
+
+core::Vector SpreadCycle::scatter(const Cycle& cycle) const {
+  core::require(!options_.autonomous || period_scale_ > 0, "an autonomous cycle wants its phase reference first");
+  const Cycle here = cycle.on(scheme_, mesh_);
+  core::Vector u = make_unknown();
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
+  const core::WriteArray ua(u.get());
+  Map<MatrixXd>(ua.data(), local_, intervals() * scheme_.degree) =
+      scale_.cwiseInverse().asDiagonal() * here.x.middleRows(begin, local_);
+  if (last_) {
+    if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
+    ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
+  }
+  return u;
+}
+
+void SpreadCycle::set_phase_reference(const Cycle& reference) {
+  core::require(options_.autonomous, "only an autonomous cycle has a phase condition");
+  if (period_scale_ == 0) period_scale_ = reference.period;
+  system_.set_parameter(reference.parameter);
+  refresh();
+  const core::Vector u = scatter(reference);
+  const core::ReadArray ua(u.get());
+  const MatrixXd x = nodes(ua);
+  const Index m = scheme_.degree;
+  phase_row_.resize(local_, x.cols());
+  MatrixXd values = MatrixXd::Zero(2, 1);
+  for (Index i = 0; i < intervals(); ++i)
+    for (Index l = 1; l <= m; ++l) {
+      const Index k = i * m + l - 1;
+      const double weight = length(i) * scheme_.node_weight(l - 1);
+      const VectorXd rate = reference_rate(x, reference.period, i, l);
+      phase_row_.col(k) = weight * rate;
+      values(0) += weight * rate.squaredNorm();
+      values(1) += weight * rate.dot(x.col(k));
+    }
+  sum(values);
+  const double norm = std::sqrt(values(0));
+  core::require(norm > 0, "the phase reference does not move");
+  phase_row_ /= norm;
+  phase_offset_ = values(1) / norm;
+}
+
+}  // namespace whirl::solve

@@ -1,0 +1,202 @@
+// Cycles by collocation with the states spread over ranks: the numbers of collocation on one rank, on any number.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/finite_rotor.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
+#include "whirl/solve/cycle/spread_collocation.hpp"
+#include "whirl/solve/newton/newton.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+using namespace whirl;
+
+namespace {
+
+constexpr double scale = test::finite_speed_scale;
+
+struct Case {
+  system::Train train;
+  double speed;
+  std::vector<double> parts;  // of the speed, on the way to rest
+};
+
+// Half a rotor on a liner of finite length, a* = 0.2.
+Case liner() {
+  return {test::finite_rotor(12, 4), 4.5 * scale, {0.1, 0.25, 0.5, 1}};
+}
+
+// The same in a bore whose film carries its content along, a* = 0.1, with a groove at the top under 20 kPa.
+Case content() {
+  Case out{test::finite_rotor(12, 4), 2.2 * scale, {4, 2, 1}};
+  film::Reynolds film;
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  film.states = film::Reynolds::States::dynamic;
+  film.cells = {12, 4};
+  film.grooves = {{std::numbers::pi / 2, std::numbers::pi / 6, 20e3}};
+  out.train.supports[0].film = film;
+  out.train.unbalance = {{1, 0.5 * 2.5e-6, 0}};
+  return out;
+}
+
+solve::Cycle at_rest(system::RotorSystem& s, const Case& c) {
+  s.set_forcing(false);
+  core::Vector x = system::static_guess(s);
+  for (const double part : c.parts) {
+    s.set_parameter(part * c.speed);
+    solve::NewtonOptions newton;
+    newton.max_iterations = 40;
+    EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged) << part;
+  }
+  s.set_forcing(true);
+  const std::vector<double> whole = s.gather(x.get());
+  return {{0, 1},
+          Eigen::Map<const Eigen::VectorXd>(whole.data(), static_cast<Eigen::Index>(whole.size())),
+          2 * std::numbers::pi / c.speed,
+          c.speed};
+}
+
+struct Answer {
+  solve::Cycle cycle;
+  std::vector<std::complex<double>> multipliers;
+  int iterations = 0;
+};
+
+template <class Problem>
+Answer solved(Problem& problem, const Case& c, const solve::Cycle& rest) {
+  solve::Cycle guess = rest;
+  guess.mesh = problem.mesh();
+  guess.x = rest.x.replicate(1, guess.intervals() * problem.scheme().degree);
+  core::Vector u = problem.scatter(guess), row = core::duplicate(u.get());
+  solve::parameter_row(problem, row.get());
+  solve::NewtonOptions newton;
+  newton.max_iterations = 40;
+  newton.tolerance = 1e-11;
+  const auto r = solve::newton(problem, u.get(), row.get(), c.speed / scale, newton);
+  EXPECT_TRUE(r.converged) << r.reason << " " << r.residual;
+  problem.linearise(u.get(), row.get());
+  return {problem.gather(u.get()), problem.multipliers(), r.iterations};
+}
+
+double least_film(const solve::Cycle& cycle, const system::RotorSystem& s) {
+  double least = 1;
+  for (Eigen::Index k = 0; k < cycle.x.cols(); ++k)
+    least = std::min(least, s.film_thickness(cycle.x.col(k).data()).front());
+  return least;
+}
+
+solve::SpreadCollocationOptions options(int degree) {
+  solve::SpreadCollocationOptions o;
+  o.parameter_scale = scale;
+  o.degree = degree;
+  o.radius = 0.2;
+  return o;
+}
+
+void compare(const Case& c, int degree, const std::vector<double>& mesh, const solve::SpreadCollocationOptions& o) {
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+  const solve::Cycle rest = at_rest(alone, c);
+  solve::CycleOptions one;
+  one.parameter_scale = scale;
+  one.degree = degree;
+  solve::CycleProblem dense(PETSC_COMM_SELF, alone, one, mesh);
+  const Answer expected = solved(dense, c, rest);
+  solve::SpreadCollocation spread(s, o, mesh);
+  const Answer found = solved(spread, c, rest);
+  EXPECT_LE(found.iterations, expected.iterations + 2);
+  const Eigen::VectorXd unit = dense.state_scale();
+  const Eigen::MatrixXd a = unit.cwiseInverse().asDiagonal() * expected.cycle.x,
+                        b = unit.cwiseInverse().asDiagonal() * found.cycle.x;
+  EXPECT_LE((a - b).cwiseAbs().maxCoeff(), 1e-8 * a.cwiseAbs().maxCoeff());
+  EXPECT_GT((a.colwise() - a.rowwise().mean()).cwiseAbs().maxCoeff(), 0.01);  // it moves
+  int large = 0;
+  for (const auto& mu : spectral::eigenvalues(dense.monodromy())) {
+    if (std::abs(mu) < o.radius) continue;
+    ++large;
+    double nearest = 1;
+    for (const auto& nu : found.multipliers) nearest = std::min(nearest, std::abs(mu - nu));
+    EXPECT_LE(nearest, 1e-8) << mu;
+  }
+  EXPECT_GT(large, 0);
+  EXPECT_EQ(large, std::count_if(found.multipliers.begin(), found.multipliers.end(),
+                                 [&](auto z) { return std::abs(z) >= o.radius; }));
+  EXPECT_NEAR(least_film(found.cycle, alone), least_film(expected.cycle, alone),
+              1e-8 * c.train.supports[0].geometry.clearance);
+}
+
+std::vector<double> uneven(int intervals) {
+  std::vector<double> mesh = solve::uniform_mesh(intervals);
+  mesh.insert(mesh.begin() + 3, (mesh[2] + mesh[3]) / 2);
+  return mesh;
+}
+
+}  // namespace
+
+TEST(SpreadCollocation, IsCollocationOnLiners) {
+  const Case c = liner();
+  compare(c, 2, uneven(16), options(2));
+}
+
+// One elimination for some neighbours, and points of higher degree.
+TEST(SpreadCollocation, SharesEliminations) {
+  const Case c = liner();
+  auto o = options(3);
+  o.eliminations = 3;
+  compare(c, 3, uneven(10), o);
+}
+
+TEST(SpreadCollocation, IsCollocationOnContents) {
+  const Case c = content();
+  auto o = options(2);
+  o.radius = 0.02;  // oil that a groove renews forgets
+  compare(c, 2, solve::uniform_mesh(12), o);
+}
+
+// Whatever the films hold at first, the motion of the hub decides what becomes of them.
+TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
+  for (const Case& c : {liner(), content()}) {
+    system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+    solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(12));
+    const Answer found = solved(spread, c, at_rest(alone, c));
+    solve::Cycle other = found.cycle;
+    constexpr int hub = 4;
+    other.x.bottomRows(other.x.rows() - hub) *= 0.99;
+    core::Vector u = spread.scatter(other);
+    ASSERT_TRUE(spread.settle(u.get()));
+    const solve::Cycle settled = spread.gather(u.get());
+    const double size = found.cycle.x.bottomRows(other.x.rows() - hub).cwiseAbs().maxCoeff();
+    EXPECT_LE((settled.x - found.cycle.x).cwiseAbs().maxCoeff(), 1e-7 * size);
+    EXPECT_LE((settled.x - other.x).topRows(hub).cwiseAbs().maxCoeff(), 1e-12 * size);
+  }
+}
+
+TEST(SpreadCollocation, AdaptsItsMesh) {
+  const Case c = liner();
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+  auto o = options(2);
+  o.mesh_tolerance = 1e-4;
+  o.base_intervals = 8;
+  solve::SpreadCollocation spread(s, o, solve::uniform_mesh(8));
+  solve::CycleOptions one;
+  one.parameter_scale = scale;
+  one.mesh_tolerance = o.mesh_tolerance;
+  one.base_intervals = o.base_intervals;
+  solve::CycleProblem dense(PETSC_COMM_SELF, alone, one, solve::uniform_mesh(8));
+  const Answer first = solved(dense, c, at_rest(alone, c));
+  const auto adapted = [&](auto& problem) {
+    core::Vector u = problem.scatter(first.cycle), tangent = problem.make_unknown();
+    EXPECT_TRUE(problem.adapt(u, tangent));
+    core::Vector row = core::duplicate(u.get());
+    solve::parameter_row(problem, row.get());
+    EXPECT_TRUE(solve::newton(problem, u.get(), row.get(), c.speed / scale, {}).converged);
+    return problem.gather(u.get());
+  };
+  const solve::Cycle a = adapted(dense), b = adapted(spread);
+  ASSERT_EQ(a.mesh, b.mesh);
+  EXPECT_GT(a.intervals(), 8);
+  EXPECT_LE((a.x - b.x).cwiseAbs().maxCoeff(), 1e-7 * a.x.cwiseAbs().maxCoeff());
+}
