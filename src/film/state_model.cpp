@@ -28,6 +28,10 @@ Sparse<Scalar> matrix(const Share& all, const StateResponse& r, Scalar sigma) {
 
 }  // namespace
 
+void StatePreconditioner::apply_transposed(std::span<const double> /*r*/, std::span<double> /*x*/) {
+  core::require(false, "a preconditioner that has a transpose");
+}
+
 const Share& StateModel::whole() const {
   if (!whole_) whole_ = std::make_unique<const Share>(share(0, static_cast<int>(states())));
   return *whole_;

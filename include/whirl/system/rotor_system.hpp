@@ -215,9 +215,9 @@ private:
   /// Film `bearing`, or another one in its place; a core::DomainError says which.
   void evaluate(std::size_t bearing, const FilmPart& part, const FilmInputs& in, film::Need need,
                 film::StateResponse& response) const;
-  /// settle() on several ranks, and what it works with. Collective.
-  void settle_together(Vec x);
+  /// What settle() works with; the ranks that hold each film. Made when first wanted. Collective.
   [[nodiscard]] Settling& settling();
+  const FilmComms& film_comms();
   void sum_over_ranks(std::vector<film::Response>& films) const;
   /// Factors of the cosine and the sine parts of the unbalance at a shaft angle [1/s^2].
   [[nodiscard]] std::array<double, 2> unbalance_factors(double angle) const;
