@@ -120,27 +120,25 @@ void PortElimination::solve_columns(const PortMatrix& blocks) {
   }
   core::Matrix columns, answers;
   for (const auto& [m, data] : {std::pair{&columns, const_cast<double*>(g.data())}, std::pair{&answers, x_.data()}})
-    check(MatCreateDense(l.comm(), l.parts(), PETSC_DECIDE, PETSC_DETERMINE, l.colours(), data, m->put()));
+    check(MatCreateDense(l.comm(), l.parts(), PETSC_DECIDE, PETSC_DETERMINE, l.ports().colours, data, m->put()));
   gate_->rethrow(KSPMatSolve(part_solver_.get(), columns.get(), answers.get()));
   require_answer(l.comm(), part_solver_.get());
 }
 
 void PortElimination::form_hub(const PortMatrix& blocks) {
   const PortLayout& l = *layout_;
-  const auto n_coupled = static_cast<Index>(l.coupled().size()), n_ports = static_cast<Index>(l.ports().size());
+  const auto n_coupled = static_cast<Index>(l.coupled().numbers.size()),
+             n_ports = static_cast<Index>(l.ports().numbers.size());
   from_parts_ = blocks.from_parts();
   MatrixXd product = MatrixXd::Zero(n_coupled, n_ports);
-  l.for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {
-    product.col(port).noalias() +=
-        from_parts_.middleRows(begin, rows).transpose() * x_.col(colour).segment(begin, rows);
-  });
+  l.add_products(*from_parts_, x_, product);
   MPI_Allreduce(MPI_IN_PLACE, product.data(), static_cast<int>(product.size()), MPI_DOUBLE, MPI_SUM, l.comm());
 
   const PetscInt first = l.first_of_hub();
   if (!schur_) {
     std::vector<PetscInt> count(static_cast<std::size_t>(l.hub()), 0);
     blocks.for_hub([&](PetscInt row, PetscInt, double) { ++count[static_cast<std::size_t>(row - first)]; });
-    for (const PetscInt row : l.coupled())
+    for (const PetscInt row : l.coupled().numbers)
       if (row >= first && row < first + l.hub())
         count[static_cast<std::size_t>(row - first)] += static_cast<PetscInt>(n_ports);
     schur_ = core::make_matrix(hub_alone_ ? PETSC_COMM_SELF : l.comm(), l.hub(), std::move(count));
@@ -151,10 +149,11 @@ void PortElimination::form_hub(const PortMatrix& blocks) {
   });
   std::vector<PetscScalar> row(static_cast<std::size_t>(n_ports));
   for (Index k = 0; k < n_coupled; ++k) {
-    const PetscInt at = l.coupled()[static_cast<std::size_t>(k)];
+    const PetscInt at = l.coupled().numbers[static_cast<std::size_t>(k)];
     if (at < first || at >= first + l.hub()) continue;
     for (Index p = 0; p < n_ports; ++p) row[static_cast<std::size_t>(p)] = -product(k, p);
-    check(MatSetValues(schur_.get(), 1, &at, static_cast<PetscInt>(n_ports), l.ports().data(), row.data(), ADD_VALUES));
+    check(MatSetValues(schur_.get(), 1, &at, static_cast<PetscInt>(n_ports), l.ports().numbers.data(), row.data(),
+                       ADD_VALUES));
   }
   check(MatAssemblyBegin(schur_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(schur_.get(), MAT_FINAL_ASSEMBLY));
@@ -250,17 +249,14 @@ void PortElimination::solve(Vec rhs, Vec x) {
   solve_parts(false);
   {
     const core::ReadArray y(part_answer_.get());
-    shares_.noalias() = from_parts_.transpose() * Eigen::Map<const VectorXd>(y.data(), y.size());
+    shares_.setZero(static_cast<Index>(l.coupled().numbers.size()));
+    l.add_products(l.coupled(), *from_parts_, y.data(), shares_.data());
   }
-  take_from_hub(l.coupled());
+  take_from_hub(l.coupled().numbers);
   solve_hub(false);
   {
-    const core::WriteArray a(part_answer_.get());
-    Eigen::Map<VectorXd> y(a.data(), a.size());
-    l.for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
-      y.segment(first, rows) -=
-          all_hub_(l.ports()[static_cast<std::size_t>(port)]) * x_.col(colour).segment(first, rows);
-    });
+    const core::WriteArray y(part_answer_.get());
+    l.add_columns(l.ports(), x_, -1, all_hub_.data(), y.data());
   }
   give(x);
 }
@@ -271,19 +267,14 @@ void PortElimination::solve_transposed(Vec rhs, Vec x) {
   take(rhs);
   {
     const core::ReadArray a(part_rhs_.get());
-    const Eigen::Map<const VectorXd> b(a.data(), a.size());
-    shares_.setZero(static_cast<Index>(l.ports().size()));
-    l.for_ports([&](PetscInt first, PetscInt rows, int port, int colour) {
-      shares_(port) += x_.col(colour).segment(first, rows).dot(b.segment(first, rows));
-    });
+    shares_.setZero(static_cast<Index>(l.ports().numbers.size()));
+    l.add_products(l.ports(), x_, a.data(), shares_.data());
   }
-  take_from_hub(l.ports());
+  take_from_hub(l.ports().numbers);
   solve_hub(true);
   {
-    const core::WriteArray a(part_rhs_.get());
-    Eigen::Map<VectorXd> b(a.data(), a.size());
-    for (std::size_t k = 0; k < l.coupled().size(); ++k)
-      b -= all_hub_(l.coupled()[k]) * from_parts_.col(static_cast<Index>(k));
+    const core::WriteArray b(part_rhs_.get());
+    l.add_columns(l.coupled(), *from_parts_, -1, all_hub_.data(), b.data());
   }
   solve_parts(true);
   give(x);

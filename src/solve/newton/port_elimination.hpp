@@ -36,7 +36,7 @@ public:
 
   /// `a` has the same pattern in every call.
   void factorise(Mat a);
-  /// The same of a matrix that is in its blocks already.
+  /// The same of a matrix that is in its blocks already, which take no other values from here on.
   void factorise(Mat a, const PortMatrix& blocks);
   /// The blocks of the matrix of factorise(a).
   [[nodiscard]] const PortMatrix& blocks() const { return *blocks_; }
@@ -67,8 +67,9 @@ private:
   core::Matrix parts_, schur_;          // A_pp, A_h - F X
   core::Vector part_rhs_, part_answer_, hub_rhs_, hub_answer_;
   core::LinearSolver part_solver_, hub_solver_;
-  Eigen::MatrixXd x_, from_parts_;    // X [parts x colours], F^T [parts x coupled]
-  Eigen::VectorXd shares_, all_hub_;  // work space: of one rank; the hub's answer
+  Eigen::MatrixXd x_;                                  // X [parts x colours]
+  std::shared_ptr<const Eigen::MatrixXd> from_parts_;  // F^T of the blocks
+  Eigen::VectorXd shares_, all_hub_;                   // work space: of one rank; the hub's answer
   std::unique_ptr<core::Gate> gate_;
 };
 

@@ -6,6 +6,7 @@ namespace whirl::solve {
 
 using core::check;
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -102,6 +103,9 @@ void PortLayout::number_rows(const std::vector<problem::Field>& fields) {
     ++hub;
   }
   part_offsets_ = offsets_of(comm_, at);
+  all_part_ends_.resize(part_ends_.size() * static_cast<std::size_t>(core::size_of(comm_)));
+  MPI_Allgather(part_ends_.data(), static_cast<int>(part_ends_.size()), MPIU_INT, all_part_ends_.data(),
+                static_cast<int>(part_ends_.size()), MPIU_INT, comm_);
   hub_offsets_ = offsets_of(comm_, hub);
 }
 
@@ -152,41 +156,83 @@ PortLayout::PortLayout(Mat a, const std::vector<problem::Field>& fields)
   y_.resize(parts());
   hub_x_.resize(hub());
   hub_y_.resize(hub());
-  shared_.setZero(whole_hub() + static_cast<Index>(coupled_.size()));
+  shared_.setZero(whole_hub() + static_cast<Index>(coupled_.numbers.size()));
 }
 
-// Ports get the colours of a map: those that share a part differ.
+PortLayout::Coloured::Coloured(const std::vector<std::uint64_t>& seen, std::size_t parts) {
+  std::vector<std::uint64_t> used;
+  colour.assign(seen.size(), -1);
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    if (seen[c] == 0) continue;
+    const auto free = std::find_if(used.begin(), used.end(), [&](std::uint64_t u) { return (u & seen[c]) == 0; });
+    colour[c] = static_cast<int>(free - used.begin());
+    if (free == used.end()) used.push_back(0);
+    used[static_cast<std::size_t>(colour[c])] |= seen[c];
+    numbers.push_back(static_cast<PetscInt>(c));
+  }
+  colours = static_cast<int>(used.size());
+  at.assign(parts, std::vector<int>(used.size(), -1));
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const auto c = static_cast<std::size_t>(numbers[k]);
+    for (std::size_t p = 0; p < parts; ++p)
+      if (seen[c] >> p & 1) at[p][static_cast<std::size_t>(colour[c])] = static_cast<int>(k);
+  }
+}
+
+PortLayout::Owner PortLayout::owner_of(PetscInt column) const {
+  const auto rank = static_cast<std::size_t>(std::upper_bound(part_offsets_.begin(), part_offsets_.end(), column) -
+                                             part_offsets_.begin() - 1);
+  const PetscInt first = part_offsets_[rank];
+  const auto ends = all_part_ends_.begin() + static_cast<std::ptrdiff_t>(rank * part_ends_.size());
+  const auto part =
+      std::upper_bound(ends, ends + static_cast<std::ptrdiff_t>(part_ends_.size()), column - first) - ends;
+  return {first, part_offsets_[rank + 1] - first, static_cast<std::size_t>(part)};
+}
+
+void PortLayout::add_products(const Coloured& of, const MatrixXd& columns, const double* v, double* sums) const {
+  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
+    few_.noalias() = columns.middleRows(begin, rows).transpose() * Eigen::Map<const VectorXd>(v + begin, rows);
+    for (std::size_t c = 0; c < of.at[part].size(); ++c)
+      if (const int k = of.at[part][c]; k >= 0) sums[k] += few_(static_cast<Index>(c));
+  });
+}
+
+void PortLayout::add_columns(const Coloured& of, const MatrixXd& columns, double sign, const double* hub,
+                             double* v) const {
+  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
+    few_.setZero(columns.cols());
+    for (std::size_t c = 0; c < of.at[part].size(); ++c)
+      if (const int k = of.at[part][c]; k >= 0)
+        few_(static_cast<Index>(c)) = sign * hub[of.numbers[static_cast<std::size_t>(k)]];
+    Eigen::Map<VectorXd>(v + begin, rows).noalias() += columns.middleRows(begin, rows) * few_;
+  });
+}
+
+void PortLayout::add_products(const MatrixXd& from, const MatrixXd& to, MatrixXd& sums) const {
+  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
+    const MatrixXd all = from.middleRows(begin, rows).transpose() * to.middleRows(begin, rows);
+    for (std::size_t r = 0; r < coupled_.at[part].size(); ++r)
+      for (std::size_t c = 0; c < ports_.at[part].size(); ++c)
+        if (const int row = coupled_.at[part][r], column = ports_.at[part][c]; row >= 0 && column >= 0)
+          sums(row, column) += all(static_cast<Index>(r), static_cast<Index>(c));
+  });
+}
+
 void PortLayout::find_ports(const Scan& scan) {
   const auto n = static_cast<std::size_t>(whole_hub());
-  std::vector<std::uint64_t> seen(n, 0);
-  std::vector<int> couples(n, 0);
+  std::vector<std::uint64_t> seen(2 * n, 0);  // parts that see an unknown of the hub, then those that a row of it sees
   for (const Scan::Entry& e : scan.list) {
     if (e.row >= 0 && e.column < 0) {
       const auto part = std::upper_bound(part_ends_.begin(), part_ends_.end(), e.row) - part_ends_.begin();
       seen[static_cast<std::size_t>(-1 - e.column)] |= std::uint64_t{1} << part;
     }
-    if (e.row < 0 && e.column >= 0) couples[static_cast<std::size_t>(-1 - e.row)] = 1;
+    if (e.row < 0 && e.column >= 0)
+      seen[n + static_cast<std::size_t>(-1 - e.row)] |= std::uint64_t{1} << owner_of(e.column).part;
   }
-  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(n), MPI_UINT64_T, MPI_BOR, comm_);
-  MPI_Allreduce(MPI_IN_PLACE, couples.data(), static_cast<int>(n), MPI_INT, MPI_MAX, comm_);
-  std::vector<std::uint64_t> used;
-  colour_of_.assign(n, -1);
-  for (std::size_t c = 0; c < n; ++c) {
-    if (couples[c]) coupled_.push_back(static_cast<PetscInt>(c));
-    if (seen[c] == 0) continue;
-    const auto free = std::find_if(used.begin(), used.end(), [&](std::uint64_t u) { return (u & seen[c]) == 0; });
-    colour_of_[c] = static_cast<int>(free - used.begin());
-    if (free == used.end()) used.push_back(0);
-    used[static_cast<std::size_t>(colour_of_[c])] |= seen[c];
-    ports_.push_back(static_cast<PetscInt>(c));
-  }
-  colours_ = static_cast<int>(used.size());
-  port_of_.assign(part_ends_.size(), std::vector<int>(used.size(), -1));
-  for (std::size_t k = 0; k < ports_.size(); ++k) {
-    const auto c = static_cast<std::size_t>(ports_[k]);
-    for (std::size_t p = 0; p < port_of_.size(); ++p)
-      if (seen[c] >> p & 1) port_of_[p][static_cast<std::size_t>(colour_of_[c])] = static_cast<int>(k);
-  }
+  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(2 * n), MPI_UINT64_T, MPI_BOR, comm_);
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(n);
+  ports_ = Coloured({seen.begin(), middle}, part_ends_.size());
+  coupled_ = Coloured({middle, seen.end()}, part_ends_.size());
 }
 
 // A_pp by pieces of diagonals, so that products are loops over arrays. Short gaps are filled with zeros.
@@ -236,26 +282,24 @@ void PortLayout::place_parts(const Scan& scan) {
 
 void PortLayout::place_couplings(const Scan& scan) {
   std::vector<PetscInt> to;  // where entries of F belong among the columns F^T of all ranks
-  const auto width = static_cast<PetscInt>(coupled_.size());
+  const PetscInt width = coupled_.colours;
   for (const Scan::Entry& e : scan.list) {
     if (e.row < 0 && e.column < 0) {
       hub_entries_.push_back({-1 - e.row, -1 - e.column, e.source});
     } else if (e.column < 0) {
       g_sources_.push_back(e.source);
-      g_places_.push_back(colour_of_[static_cast<std::size_t>(-1 - e.column)] * parts() + e.row);
+      g_places_.push_back(ports_.colour[static_cast<std::size_t>(-1 - e.column)] * parts() + e.row);
     } else if (e.row < 0) {
-      const auto owner =
-          std::upper_bound(part_offsets_.begin(), part_offsets_.end(), e.column) - part_offsets_.begin() - 1;
-      const PetscInt begin = part_offsets_[static_cast<std::size_t>(owner)],
-                     rows = part_offsets_[static_cast<std::size_t>(owner) + 1] - begin;
-      const auto c = std::lower_bound(coupled_.begin(), coupled_.end(), -1 - e.row) - coupled_.begin();
+      const Owner owner = owner_of(e.column);
+      const PetscInt colour = coupled_.colour[static_cast<std::size_t>(-1 - e.row)];
       f_sources_.push_back(e.source);
-      to.push_back(begin * width + static_cast<PetscInt>(c) * rows + e.column - begin);
+      to.push_back(owner.first * width + colour * owner.count + e.column - owner.first);
     }
   }
   const auto count = static_cast<PetscInt>(to.size());
   f_values_ = core::make_vector(comm_, count, PETSC_DETERMINE);
-  f_columns_ = core::make_vector(comm_, parts() * width, PETSC_DETERMINE);
+  // Stands for the F^T of a matrix that is being filled.
+  check(VecCreateMPIWithArray(comm_, 1, parts() * width, PETSC_DETERMINE, nullptr, f_columns_.put()));
   PetscInt first = 0;
   check(VecGetOwnershipRange(f_values_.get(), &first, nullptr));
   core::IndexSet from, into;
@@ -287,8 +331,8 @@ PortMatrix::PortMatrix(std::shared_ptr<const PortLayout> layout) : layout_(std::
   const PortLayout& l = *layout_;
   values_.assign(l.sources_.size(), 0.0);
   hub_.resize(l.hub_entries_.size());
-  g_.setZero(l.parts(), l.colours());
-  f_.setZero(l.parts(), static_cast<Index>(l.coupled().size()));
+  g_.setZero(l.parts(), l.ports_.colours);
+  f_ = std::make_shared<MatrixXd>(MatrixXd::Zero(l.parts(), l.coupled_.colours));
 }
 
 void PortMatrix::take(Mat a) {
@@ -307,7 +351,7 @@ void PortMatrix::take(Mat a) {
     const core::WriteArray f(l.f_values_.get());
     for (std::size_t k = 0; k < l.f_sources_.size(); ++k) f[static_cast<PetscInt>(k)] = value(l.f_sources_[k]);
   }
-  check(VecPlaceArray(l.f_columns_.get(), f_.data()));
+  check(VecPlaceArray(l.f_columns_.get(), f_->data()));
   check(VecScatterBegin(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecResetArray(l.f_columns_.get()));
@@ -318,7 +362,8 @@ void PortMatrix::multiply(const double* x, double* y) const {
   l.take(x, l.x_.data(), l.hub_x_.data());
   // What the hub's states are, and behind them what the parts do to it.
   const PetscInt n = l.whole_hub(), first = l.first_of_hub();
-  l.shared_.tail(f_.cols()).noalias() = f_.transpose() * l.x_;
+  l.shared_.tail(static_cast<Index>(l.coupled_.numbers.size())).setZero();
+  l.add_products(l.coupled_, *f_, l.x_.data(), l.shared_.data() + n);
   l.share(l.hub_x_.data(), l.shared_);
   const double* value = values_.data();
   const auto add = [&](const std::vector<PortLayout::Piece>& pieces, const double* from) {
@@ -342,14 +387,11 @@ void PortMatrix::multiply(const double* x, double* y) const {
     const core::ReadArray ghosts(l.ghosts_.get());
     add(l.ghost_pieces_, ghosts.data());
   }
-  l.for_ports([&](PetscInt begin, PetscInt rows, int port, int colour) {
-    l.y_.segment(begin, rows) +=
-        l.shared_(l.ports_[static_cast<std::size_t>(port)]) * g_.col(colour).segment(begin, rows);
-  });
+  l.add_columns(l.ports_, g_, 1, l.shared_.data(), l.y_.data());
   l.hub_y_.setZero();
   for_hub([&](PetscInt row, PetscInt column, double v) { l.hub_y_(row - first) += v * l.shared_(column); });
-  for (std::size_t k = 0; k < l.coupled_.size(); ++k)
-    if (const PetscInt row = l.coupled_[k] - first; row >= 0 && row < l.hub())
+  for (std::size_t k = 0; k < l.coupled_.numbers.size(); ++k)
+    if (const PetscInt row = l.coupled_.numbers[k] - first; row >= 0 && row < l.hub())
       l.hub_y_(row) += l.shared_(n + static_cast<Index>(k));
   l.give(l.y_.data(), l.hub_y_.data(), y);
 }

@@ -17,9 +17,10 @@ namespace whirl::solve {
 ///     [ A_pp  G   ]   rows of the parts, this rank's one after the other
 ///     [ F     A_h ]   rows of the hub
 ///
-/// A part sees few unknowns of the hub, its ports. Ports that no part sees both of share a column of G: the number of
-/// columns does not grow with that of the parts. F is held by columns, spread like the states of the parts; the
-/// assembled matrix has its rows, as long as a part, on the rank of the hub.
+/// A part sees few unknowns of the hub, its ports, and few rows of the hub see it. Ports that no part sees both of
+/// share a column of G, and rows that do not see the same part a column of F^T: their numbers do not grow with that of
+/// the parts. F^T is spread like the states of the parts; the assembled matrix has the rows of F, as long as a part, on
+/// the rank of the hub.
 class PortLayout {
 public:
   /// `fields`: the hub first, in local rows of `a`; local rows in none of them belong to the hub. Collective.
@@ -32,10 +33,6 @@ public:
   [[nodiscard]] PetscInt hub() const { return local_ - parts(); }
   [[nodiscard]] PetscInt whole_hub() const { return hub_offsets_.back(); }
   [[nodiscard]] PetscInt first_of_hub() const;
-  /// Hub unknowns that parts see, and hub rows that see parts, in rising order: numbers in the hub.
-  [[nodiscard]] const std::vector<PetscInt>& ports() const { return ports_; }
-  [[nodiscard]] const std::vector<PetscInt>& coupled() const { return coupled_; }
-  [[nodiscard]] int colours() const { return colours_; }
   [[nodiscard]] const core::IndexSet& part_rows() const { return part_rows_; }
 
   /// Entries of a vector of the matrix to those of parts and hub on this rank, and back.
@@ -44,19 +41,35 @@ public:
   /// The hub's entries of all ranks to all [whole_hub], and the sum over the ranks of what `all` holds behind them.
   /// Collective.
   void share(const double* hub, Eigen::VectorXd& all) const;
-  /// Calls f(first row of a part here, its rows, port, column of G) for all ports of all parts.
-  template <class F>
-  void for_ports(F&& f) const {
-    PetscInt begin = 0;
-    for (std::size_t p = 0; p < part_ends_.size(); ++p) {
-      for (int c = 0; c < colours_; ++c)
-        if (const int k = port_of_[p][static_cast<std::size_t>(c)]; k >= 0) f(begin, part_ends_[p] - begin, k, c);
-      begin = part_ends_[p];
-    }
-  }
+  /// Numbers in the hub, in colours of a map: those that share a part differ.
+  struct Coloured {
+    std::vector<PetscInt> numbers;     ///< rising
+    std::vector<int> colour;           ///< of any number in the hub, -1 for none
+    std::vector<std::vector<int>> at;  ///< [part][colour]: place among the numbers, -1 for none
+    int colours = 0;
+
+    Coloured() = default;
+    /// `seen` [hub]: bits of the parts.
+    Coloured(const std::vector<std::uint64_t>& seen, std::size_t parts);
+  };
+  /// Hub unknowns that parts see, and hub rows that see parts.
+  [[nodiscard]] const Coloured& ports() const { return ports_; }
+  [[nodiscard]] const Coloured& coupled() const { return coupled_; }
+  /// sums[k] += column of k-th number . v over the parts here; `columns` [parts x colours], v [parts], sums [numbers].
+  void add_products(const Coloured& of, const Eigen::MatrixXd& columns, const double* v, double* sums) const;
+  /// v += sign sum_k hub[number k] column of k; `hub` [whole hub].
+  void add_columns(const Coloured& of, const Eigen::MatrixXd& columns, double sign, const double* hub, double* v) const;
+  /// sums [coupled x ports] += from^T to, part by part; `from`, `to` [parts x colours].
+  void add_products(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to, Eigen::MatrixXd& sums) const;
 
 private:
   friend class PortMatrix;
+  /// Calls f(part, its first row here, its rows).
+  template <class F>
+  void for_parts(F&& f) const {
+    PetscInt begin = 0;
+    for (std::size_t p = 0; p < part_ends_.size(); begin = part_ends_[p++]) f(p, begin, part_ends_[p] - begin);
+  }
   struct Run {  // rows that stand side by side
     PetscInt whole, at, count;
     bool part;
@@ -69,7 +82,13 @@ private:
   struct HubEntry {
     PetscInt row, column, source;
   };
+  /// A part's column on some rank: first column of that rank, its columns, and the part.
+  struct Owner {
+    PetscInt first, count;
+    std::size_t part;
+  };
   struct Scan;
+  [[nodiscard]] Owner owner_of(PetscInt column) const;
   void number_rows(const std::vector<problem::Field>& fields);
   void find_ports(const Scan& scan);
   void place_parts(const Scan& scan);
@@ -79,20 +98,18 @@ private:
   PetscInt local_ = 0;
   std::vector<Run> runs_;
   std::vector<PetscInt> part_ends_;                   // local rows of the parts, part by part
+  std::vector<PetscInt> all_part_ends_;               // those of all ranks, one after the other
   std::vector<PetscInt> hub_offsets_, part_offsets_;  // first of each rank's among all, and their number
   core::IndexSet part_rows_;
-  std::vector<PetscInt> ports_, coupled_;
-  std::vector<std::vector<int>> port_of_;  // [part][colour]: place among the ports, -1 for none
-  std::vector<int> colour_of_;             // of a hub unknown, -1 for none
-  int colours_ = 0;
+  Coloured ports_, coupled_;
   std::vector<Piece> pieces_, ghost_pieces_;  // of A_pp: columns of this rank's parts, and of others'
   std::vector<PetscInt> sources_;             // of the values of both
   std::vector<HubEntry> hub_entries_;
   std::vector<PetscInt> g_sources_, g_places_;  // into G, column by column
   std::vector<PetscInt> f_sources_;             // entries of F on this rank
   core::Scatter to_f_, to_ghosts_;
-  core::Vector f_values_, f_columns_, part_vector_, ghosts_;  // work space of these
-  mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_;    // and of products
+  core::Vector f_values_, f_columns_, part_vector_, ghosts_;      // work space of these
+  mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_, few_;  // and of products
 };
 
 /// A matrix in these blocks.
@@ -104,9 +121,9 @@ public:
   /// y = A x, of this rank's rows. Collective.
   void multiply(const double* x, double* y) const;
   [[nodiscard]] const std::shared_ptr<const PortLayout>& layout() const { return layout_; }
-  /// G [parts x colours], F^T [parts x coupled].
+  /// G [parts x colours], F^T [parts x coupled colours].
   [[nodiscard]] const Eigen::MatrixXd& to_parts() const { return g_; }
-  [[nodiscard]] const Eigen::MatrixXd& from_parts() const { return f_; }
+  [[nodiscard]] std::shared_ptr<const Eigen::MatrixXd> from_parts() const { return f_; }
   /// Calls f(row, column, value) for the entries of A_h in this rank's rows; numbers in the hub.
   template <class F>
   void for_hub(F&& f) const {
@@ -117,7 +134,8 @@ public:
 private:
   std::shared_ptr<const PortLayout> layout_;
   std::vector<double> values_, hub_;  // of A_pp, of A_h
-  Eigen::MatrixXd g_, f_;
+  Eigen::MatrixXd g_;
+  std::shared_ptr<Eigen::MatrixXd> f_;  // which eliminations keep
 };
 
 }  // namespace whirl::solve
