@@ -5,22 +5,20 @@
 
 namespace whirl::film {
 
-using Eigen::ArrayXd;
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::Ref;
-using Eigen::VectorXd;
 
 namespace {
 
 // Gauss-Jordan by blocks of rows, without exchanging them.
-void invert(MatrixXd& a) {
+template <class Matrix>
+void invert(Matrix& a) {
   constexpr Index block = 16;
   const Index n = a.rows();
-  MatrixXd rows, columns;
+  Matrix rows, columns;
   for (Index k = 0; k < n; k += block) {
     const Index b = std::min(block, n - k);
-    const MatrixXd pivot = a.block(k, k, b, b).inverse();
+    const Matrix pivot = a.block(k, k, b, b).inverse();
     rows.noalias() = pivot * a.middleRows(k, b);
     rows.middleCols(k, b) = pivot;
     columns = a.middleCols(k, b);
@@ -33,20 +31,24 @@ void invert(MatrixXd& a) {
 
 }  // namespace
 
-void ColumnChain::factor(const Strip& strip) {
+template <class Scalar>
+void ColumnChain<Scalar>::factor(const Strip<Scalar>& strip) {
   before_ = strip.before;
   after_ = strip.after;
   inverses_.resize(static_cast<std::size_t>(strip.itself.cols()));
   for (Index k = 0; k < strip.itself.cols(); ++k) factor(strip, k);
 }
 
-void ColumnChain::factor(const Strip& strip, Index k) {
+template <class Scalar>
+void ColumnChain<Scalar>::factor(const Strip<Scalar>& strip, Index k) {
+  using Array = Eigen::Array<Scalar, Eigen::Dynamic, 1>;
+  const Scalar zero(0);
   const Index n = strip.itself.rows();
   Inverse& v = inverses_[static_cast<std::size_t>(k)];
   const Inverse* last = k > 0 ? &inverses_[static_cast<std::size_t>(k - 1)] : nullptr;
-  const ArrayXd l = strip.before.col(k), u = k > 0 ? ArrayXd(after_.col(k - 1)) : ArrayXd(ArrayXd::Zero(n));
+  const Array l = strip.before.col(k), u = k > 0 ? Array(after_.col(k - 1)) : Array(Array::Zero(n));
   std::vector<Index> place(static_cast<std::size_t>(n), -1);  // among the dense columns of the last V
-  if (last && (l != 0.0).any())
+  if (last && (l != zero).any())
     for (std::size_t p = 0; p < last->dense.size(); ++p)
       place[static_cast<std::size_t>(last->dense[p])] = static_cast<Index>(p);
 
@@ -54,22 +56,22 @@ void ColumnChain::factor(const Strip& strip, Index k) {
   v.diagonal = strip.itself.col(k);
   if (last) v.diagonal.array() -= l * last->diagonal.array() * u;
   for (Index j = 0; j < n; ++j) {
-    const bool spreads = (j > 0 && strip.above(j - 1, k) != 0.0) || (j + 1 < n && strip.below(j + 1, k) != 0.0) ||
-                         (place[static_cast<std::size_t>(j)] >= 0 && u(j) != 0.0);
+    const bool spreads = (j > 0 && strip.above(j - 1, k) != zero) || (j + 1 < n && strip.below(j + 1, k) != zero) ||
+                         (place[static_cast<std::size_t>(j)] >= 0 && u(j) != zero);
     if (spreads) v.dense.push_back(static_cast<int>(j));
   }
   const auto n_dense = static_cast<Index>(v.dense.size());
-  MatrixXd s = MatrixXd::Zero(n, n_dense), own(n_dense, n_dense);
+  Matrix s = Matrix::Zero(n, n_dense), own(n_dense, n_dense);
   for (Index p = 0; p < n_dense; ++p) {
     const Index j = v.dense[static_cast<std::size_t>(p)], from = place[static_cast<std::size_t>(j)];
-    if (from >= 0 && u(j) != 0.0) s.col(p) = -u(j) * l * last->values.col(from).array();
+    if (from >= 0 && u(j) != zero) s.col(p) = -u(j) * l * last->values.col(from).array();
     s(j, p) += v.diagonal(j);
     if (j > 0) s(j - 1, p) += strip.above(j - 1, k);
     if (j + 1 < n) s(j + 1, p) += strip.below(j + 1, k);
   }
   v.diagonal = v.diagonal.cwiseInverse();
   for (Index p = 0; p < n_dense; ++p) {
-    v.diagonal(v.dense[static_cast<std::size_t>(p)]) = 0.0;
+    v.diagonal(v.dense[static_cast<std::size_t>(p)]) = zero;
     own.row(p) = s.row(v.dense[static_cast<std::size_t>(p)]);
   }
   invert(own);
@@ -81,17 +83,19 @@ void ColumnChain::factor(const Strip& strip, Index k) {
   for (Index p = 0; p < n_dense; ++p) v.values.row(v.dense[static_cast<std::size_t>(p)]) = own.row(p);
 }
 
-MatrixXd ColumnChain::last() const {
+template <class Scalar>
+typename ColumnChain<Scalar>::Matrix ColumnChain<Scalar>::last() const {
   const Inverse& v = inverses_.back();
-  MatrixXd out = v.diagonal.asDiagonal();
+  Matrix out = v.diagonal.asDiagonal();
   for (std::size_t p = 0; p < v.dense.size(); ++p) out.col(v.dense[p]) = v.values.col(static_cast<Index>(p));
   return out;
 }
 
-MatrixXd ColumnChain::times(bool transposed, const Inverse& v, const MatrixXd& b) {
+template <class Scalar>
+typename ColumnChain<Scalar>::Matrix ColumnChain<Scalar>::times(bool transposed, const Inverse& v, const Matrix& b) {
   const bool all = static_cast<Index>(v.dense.size()) == b.rows();
   if (all && !transposed) return v.values * b;
-  MatrixXd out = v.diagonal.asDiagonal() * b;
+  Matrix out = v.diagonal.asDiagonal() * b;
   if (v.dense.empty()) return out;
   if (!transposed)
     out.noalias() += v.values * b(v.dense, Eigen::all);
@@ -100,9 +104,10 @@ MatrixXd ColumnChain::times(bool transposed, const Inverse& v, const MatrixXd& b
   return out;
 }
 
-void ColumnChain::forward(bool transposed, Ref<MatrixXd> r) const {
+template <class Scalar>
+void ColumnChain<Scalar>::forward(bool transposed, Ref<Matrix> r) const {
   const Index n = before_.rows();
-  MatrixXd b;
+  Matrix b;
   for (Index k = 0; k < columns(); ++k) {
     b = r.middleRows(k * n, n);
     if (k > 0)
@@ -111,9 +116,10 @@ void ColumnChain::forward(bool transposed, Ref<MatrixXd> r) const {
   }
 }
 
-void ColumnChain::backward(bool transposed, Ref<MatrixXd> z, const VectorXd* beyond) const {
+template <class Scalar>
+void ColumnChain<Scalar>::backward(bool transposed, Ref<Matrix> z, const Vector* beyond) const {
   const Index n = before_.rows();
-  MatrixXd b;
+  Matrix b;
   for (Index k = columns() - 1; k >= 0; --k) {
     if (k + 1 < columns())
       b = (z.middleRows((k + 1) * n, n).array().colwise() * (transposed ? before_.col(k + 1) : after_.col(k))).matrix();
@@ -124,5 +130,8 @@ void ColumnChain::backward(bool transposed, Ref<MatrixXd> z, const VectorXd* bey
     z.middleRows(k * n, n) -= times(transposed, inverses_[static_cast<std::size_t>(k)], b);
   }
 }
+
+template class ColumnChain<double>;
+template class ColumnChain<std::complex<double>>;
 
 }  // namespace whirl::film

@@ -29,7 +29,16 @@ Sparse<Scalar> matrix(const Share& all, const StateResponse& r, Scalar sigma) {
 }  // namespace
 
 void StatePreconditioner::apply_transposed(std::span<const double> /*r*/, std::span<double> /*x*/) {
-  core::require(false, "a preconditioner that has a transpose");
+  core::require(false, "a preconditioner that is exact");
+}
+
+void StatePreconditioner::set_at(std::span<const double> /*d_states*/, std::span<const double> /*d_rates*/,
+                                 Complex /*lambda*/) {
+  core::require(false, "a preconditioner that is exact");
+}
+
+void StatePreconditioner::apply_at(std::span<const Complex> /*r*/, std::span<Complex> /*x*/) {
+  core::require(false, "a preconditioner that is exact");
 }
 
 const Share& StateModel::whole() const {

@@ -20,6 +20,8 @@ public:
   [[nodiscard]] bool exact() const override { return exact_; }
   void apply(const double* r, double* y) override;
   void apply_transposed(const double* r, double* y) override;
+  void set_at(Vec x, Vec rest, std::complex<double> lambda) override;
+  void apply_at(const std::complex<double>* r, std::complex<double>* y) override;
 
 private:
   struct Film {
@@ -99,6 +101,24 @@ void RotorSystem::FilmInverse::apply_transposed(const double* r, double* y) {
     Map(film.rhs.data(), n) = ConstMap(r + film.row, n) / film.state;
     film.inverse->apply_transposed(film.rhs, {y + film.row, film.rhs.size()});
     Map(y + film.row, n) *= film.residual;
+  }
+}
+
+void RotorSystem::FilmInverse::set_at(Vec x, Vec rest, std::complex<double> lambda) {
+  const Films at = system_.films_at(x, rest, film::Need::tangents);
+  for (Film& film : films_) {
+    const film::StateResponse& own = at.own[film.bearing];
+    film.inverse->set_at(own.d_states, own.d_rates, lambda);
+  }
+}
+
+void RotorSystem::FilmInverse::apply_at(const std::complex<double>* r, std::complex<double>* y) {
+  for (Film& film : films_) {
+    const Eigen::Index n = film.state.size();
+    const Eigen::ArrayXcd rhs = film.residual * Eigen::Map<const Eigen::ArrayXcd>(r + film.row, n);
+    const auto size = static_cast<std::size_t>(n);
+    film.inverse->apply_at({rhs.data(), size}, {y + film.row, size});
+    Eigen::Map<Eigen::ArrayXcd>(y + film.row, n) /= film.state;
   }
 }
 

@@ -55,6 +55,25 @@ TEST_P(Strips, AreSolvedExactly) {
   }
 }
 
+TEST_P(Strips, AreSolvedAtComplexFrequencies) {
+  Shared s(GetParam());
+  using Complex = std::complex<double>;
+  const Complex lambda(-30, 200);
+  const auto n = static_cast<Eigen::Index>(s.film->states());
+  Eigen::VectorXcd b(n);
+  for (Eigen::Index k = 0; k < n; ++k) b(k) = std::polar(1.0, 0.37 * static_cast<double>(k * (k + 1)));
+  Eigen::SparseMatrix<Complex> a = matrix_of(*s.film, s.whole, 0).cast<Complex>();
+  for (Eigen::Index k = 0; k < n; ++k) a.coeffRef(k, k) += lambda;
+  const Eigen::VectorXcd exact = Eigen::SparseLU<Eigen::SparseMatrix<Complex>>(a).solve(b);
+  const std::vector<Complex> r(b.data() + s.share.begin, b.data() + s.share.end);
+  std::vector<Complex> x(r.size());
+  s.inverse->set_at(s.here.d_states, s.here.d_rates, lambda);
+  s.inverse->apply_at(r, x);
+  const double largest = exact.lpNorm<Eigen::Infinity>();
+  for (std::size_t k = 0; k < x.size(); ++k)
+    ASSERT_LE(std::abs(x[k] - exact(s.share.begin + static_cast<Eigen::Index>(k))), 1e-9 * largest) << k;
+}
+
 INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(content_films()),
                          [](const auto& which) { return which.param.name; });
 

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <complex>
 #include <memory>
 #include <span>
 #include <string>
@@ -57,6 +58,9 @@ public:
   virtual void apply(std::span<const double> r, std::span<double> x) = 0;
   /// x = A^-T r of an exact one; core::Bug of others.
   virtual void apply_transposed(std::span<const double> r, std::span<double> x);
+  /// The same at a complex frequency, of an exact one: A = dg/ds + lambda dg/ds'. Others are core::Bug.
+  virtual void set_at(std::span<const double> d_states, std::span<const double> d_rates, std::complex<double> lambda);
+  virtual void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> x);
 };
 
 /// A film with own states: g(motion, s, s') = 0, force = f(motion, s, s'). Not thread-safe (own workspace).

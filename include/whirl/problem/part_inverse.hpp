@@ -3,13 +3,15 @@
 
 #include <petscvec.h>
 
+#include <complex>
+
 #include "whirl/core/error.hpp"
 
 namespace whirl::problem {
 
 /// Inverses of the own equations A_pp of all parts, A = alpha dF/dx + sigma dF/d(dx/dt) in the scales of
-/// System::scales(): exact, or approximate and good to precondition only. They outlast a change of the parameter and end
-/// with the system. All members but exact() are collective on System::comm().
+/// System::scales(): exact, or approximate and good to precondition only. They outlast a change of the parameter and
+/// end with the system. All members but exact() are collective on System::comm().
 class PartInverse {
 public:
   PartInverse() = default;
@@ -26,7 +28,14 @@ public:
   virtual void apply(const double* r, double* y) = 0;
   /// y = A_pp^-T r of exact ones; core::Bug of others.
   virtual void apply_transposed(const double* /*r*/, double* /*y*/) {
-    core::require(false, "inverses of parts that have a transpose");
+    core::require(false, "inverses of parts that are exact");
+  }
+  /// The same of exact ones at rest and a complex frequency, A = dF/dx + lambda dF/d(dx/dt). Throws as set().
+  virtual void set_at(Vec /*x*/, Vec /*rest*/, std::complex<double> /*lambda*/) {
+    core::require(false, "inverses of parts that are exact");
+  }
+  virtual void apply_at(const std::complex<double>* /*r*/, std::complex<double>* /*y*/) {
+    core::require(false, "inverses of parts that are exact");
   }
 };
 
