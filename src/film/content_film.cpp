@@ -5,6 +5,7 @@
 
 #include "film/content_pad.hpp"
 #include "film/report.hpp"
+#include "film/strip_inverse.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/thickness.hpp"
 
@@ -43,6 +44,13 @@ public:
     return (near + column / 2) / column * column;
   }
   [[nodiscard]] Share share(int begin, int end) const override { return lay_out(begin, end).share; }
+  [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override {
+    const int line = solvers_.front()->column();
+    std::vector<StripInverse::Extent> strips;
+    for (std::size_t n = 0; n < pads_.size(); ++n)
+      strips.push_back({static_cast<int>(first_[n]), static_cast<int>(solvers_[n]->states()) / line});
+    return std::make_unique<StripInverse>(comm, share, line, strips, latest_);
+  }
 
   void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
                 Need need, StateResponse& response) override {
@@ -139,6 +147,7 @@ private:
   std::vector<std::size_t> first_;  // state of each pad
   std::size_t states_ = 0;
   Layout at_hand_;  // of the share that was evaluated last
+  std::shared_ptr<StripInverse::Latest> latest_ = StripInverse::nothing_yet();
 };
 
 }  // namespace

@@ -28,6 +28,19 @@ Sparse<Scalar> matrix(const Share& all, const StateResponse& r, Scalar sigma) {
 
 }  // namespace
 
+void StatePreconditioner::apply_transposed(std::span<const double> /*r*/, std::span<double> /*x*/) {
+  core::require(false, "a preconditioner that is exact");
+}
+
+void StatePreconditioner::set_at(std::span<const double> /*d_states*/, std::span<const double> /*d_rates*/,
+                                 Complex /*lambda*/) {
+  core::require(false, "a preconditioner that is exact");
+}
+
+void StatePreconditioner::apply_at(std::span<const Complex> /*r*/, std::span<Complex> /*x*/) {
+  core::require(false, "a preconditioner that is exact");
+}
+
 std::span<const Port> Film::ports() const {
   return std::span(all_ports).first(2);
 }

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "film_part.hpp"
+#include "film_comms.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::system {
@@ -11,39 +11,22 @@ using core::check;
 using Map = Eigen::Map<Eigen::ArrayXd>;
 using ConstMap = Eigen::Map<const Eigen::ArrayXd>;
 
-/// The ranks that hold each film, with a communicator for them; null on others, and for films without states.
-class RotorSystem::FilmComms {
-public:
-  /// Collective.
-  FilmComms(MPI_Comm comm, const std::vector<Bearing>& bearings) {
-    for (const Bearing& b : bearings) {
-      MPI_Comm& made = comms_.emplace_back(MPI_COMM_NULL);
-      if (b.part->count() > 0) MPI_Comm_split(comm, b.part->rows() > 0 ? 0 : MPI_UNDEFINED, core::rank_of(comm), &made);
-    }
-  }
-  FilmComms(const FilmComms&) = delete;
-  FilmComms& operator=(const FilmComms&) = delete;
-  ~FilmComms() {
-    for (MPI_Comm& comm : comms_)
-      if (comm != MPI_COMM_NULL) MPI_Comm_free(&comm);
-  }
-  [[nodiscard]] MPI_Comm of(std::size_t bearing) const { return comms_[bearing]; }
-
-private:
-  std::vector<MPI_Comm> comms_;
-};
-
 class RotorSystem::FilmInverse final : public problem::PartInverse {
 public:
   explicit FilmInverse(RotorSystem& system);
   /// Whether all films with states have a preconditioner. Collective.
   [[nodiscard]] bool complete() const;
   void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
+  [[nodiscard]] bool exact() const override { return exact_; }
   void apply(const double* r, double* y) override;
+  void apply_transposed(const double* r, double* y) override;
+  void set_at(Vec x, Vec rest, std::complex<double> lambda) override;
+  void apply_at(const std::complex<double>* r, std::complex<double>* y) override;
 
 private:
   struct Film {
     std::size_t bearing = 0;
+    Eigen::Index row = 0;  // among those of all films here
     std::unique_ptr<film::StatePreconditioner> inverse;
     Eigen::ArrayXd state, residual;  // scales of its states and rows here
     std::vector<double> rhs;
@@ -51,11 +34,17 @@ private:
   RotorSystem& system_;
   std::shared_ptr<const FilmComms> comms_;  // outlives the inverses
   std::vector<Film> films_;                 // with rows on this rank
+  bool exact_ = true;
 };
+
+const RotorSystem::FilmComms& RotorSystem::film_comms() {
+  if (!film_comms_) film_comms_ = std::make_shared<const FilmComms>(comm_, bearings_);
+  return *film_comms_;
+}
 
 std::unique_ptr<problem::PartInverse> RotorSystem::make_part_inverse() {
   if (n_own_ == 0) return nullptr;
-  if (!film_comms_) film_comms_ = std::make_shared<const FilmComms>(comm_, bearings_);
+  (void)film_comms();
   auto inverse = std::make_unique<FilmInverse>(*this);
   return inverse->complete() ? std::move(inverse) : nullptr;
 }
@@ -65,16 +54,19 @@ RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.fil
                residual = core::duplicate(state.get());
   s.scales(state.get(), residual.get());
   const core::ReadArray sa(state.get()), ra(residual.get());
-  for (std::size_t b = 0; b < s.bearings_.size(); ++b) {
+  const PetscInt machine = s.local_size() - s.own_here_;
+  for (const std::size_t b : FilmComms::in_order(*comms_, s.bearings_, [](const FilmPart&) { return true; })) {
     const FilmPart* part = s.bearings_[b].part.get();
-    if (comms_->of(b) == MPI_COMM_NULL) continue;
     Film& film = films_.emplace_back();
     film.bearing = b;
+    film.row = part->row() - machine;
     film.inverse = part->film().preconditioner(comms_->of(b), part->share());
+    exact_ = exact_ && film.inverse && film.inverse->exact();
     film.state = ConstMap(sa.data() + part->row(), part->rows());
     film.residual = ConstMap(ra.data() + part->row(), part->rows());
     film.rhs.resize(static_cast<std::size_t>(part->rows()));
   }
+  MPI_Allreduce(MPI_IN_PLACE, &exact_, 1, MPI_CXX_BOOL, MPI_LAND, s.comm_);
 }
 
 bool RotorSystem::FilmInverse::complete() const {
@@ -93,15 +85,40 @@ void RotorSystem::FilmInverse::set(double /*angle*/, Vec x, Vec xdot, double alp
   }
 }
 
-// A film's own preconditioner knows no scales.
+// A film's own inverse knows no scales.
 void RotorSystem::FilmInverse::apply(const double* r, double* y) {
   for (Film& film : films_) {
     const Eigen::Index n = film.state.size();
-    Map(film.rhs.data(), n) = film.residual * ConstMap(r, n);
-    film.inverse->apply(film.rhs, {y, film.rhs.size()});
-    Map(y, n) /= film.state;
-    r += n;
-    y += n;
+    Map(film.rhs.data(), n) = film.residual * ConstMap(r + film.row, n);
+    film.inverse->apply(film.rhs, {y + film.row, film.rhs.size()});
+    Map(y + film.row, n) /= film.state;
+  }
+}
+
+void RotorSystem::FilmInverse::apply_transposed(const double* r, double* y) {
+  for (Film& film : films_) {
+    const Eigen::Index n = film.state.size();
+    Map(film.rhs.data(), n) = ConstMap(r + film.row, n) / film.state;
+    film.inverse->apply_transposed(film.rhs, {y + film.row, film.rhs.size()});
+    Map(y + film.row, n) *= film.residual;
+  }
+}
+
+void RotorSystem::FilmInverse::set_at(Vec x, Vec rest, std::complex<double> lambda) {
+  system_.evaluate_films(x, rest, film::Need::tangents);
+  for (Film& film : films_) {
+    const film::StateResponse& own = system_.bearings_[film.bearing].part->response();
+    film.inverse->set_at(own.d_states, own.d_rates, lambda);
+  }
+}
+
+void RotorSystem::FilmInverse::apply_at(const std::complex<double>* r, std::complex<double>* y) {
+  for (Film& film : films_) {
+    const Eigen::Index n = film.state.size();
+    const Eigen::ArrayXcd rhs = film.residual * Eigen::Map<const Eigen::ArrayXcd>(r + film.row, n);
+    const auto size = static_cast<std::size_t>(n);
+    film.inverse->apply_at({rhs.data(), size}, {y + film.row, size});
+    Eigen::Map<Eigen::ArrayXcd>(y + film.row, n) /= film.state;
   }
 }
 

@@ -89,14 +89,10 @@ void FilmPart::speed_derivative(const Moment& /*at*/, double* f) const {
   if (rows() > 0) std::copy(response_.d_speed.begin(), response_.d_speed.end(), f);
 }
 
-void FilmPart::count_own_entries(std::span<PetscInt> count) const {
+void FilmPart::count_entries(std::span<PetscInt> count) const {
   for (const film::Places* places : {&share_.d_states, &share_.d_rates})
     film::for_entries(share_, *places, {},
                       [&](int row, int, double) { ++count[static_cast<std::size_t>(row_ + row)]; });
-}
-
-void FilmPart::count_entries(std::span<PetscInt> count) const {
-  count_own_entries(count);
   PetscInt inputs = 0;  // positions and velocities
   for (const PortEnds& port : ports_) inputs += 2 * static_cast<PetscInt>(port.size());
   for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;

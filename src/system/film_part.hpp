@@ -59,8 +59,6 @@ public:
   void residual(const Moment& at, double* f) const override;
   void speed_derivative(const Moment& at, double* f) const override;
   void count_entries(std::span<PetscInt> count) const override;
-  /// The same of dg/ds and dg/ds' alone.
-  void count_own_entries(std::span<PetscInt> count) const;
   /// j += alpha times the derivatives of its rows in states and journal, and of its forces in its states; sigma times
   /// those in rates. Without `values` their places alone.
   void add(core::EntryStream& j, bool values, double alpha, double sigma) const;

@@ -1,16 +1,23 @@
 #pragma once
-// What films that settle on several ranks are solved with.
+// What films that settle are solved with.
 
-#include "whirl/core/petsc.hpp"
-#include "whirl/system/rotor_system.hpp"
+#include <memory>
+#include <vector>
+
+#include "film_comms.hpp"
 
 namespace whirl::system {
 
-/// dg/ds of all films that settle, one on the diagonal of the others: rows like those of own states.
+/// The films that settle, of which this rank has rows.
 struct RotorSystem::Settling {
-  core::Matrix matrix;
-  core::Vector residual, step, rest;
-  core::LinearSolver solver;
+  struct Film {
+    std::size_t bearing;
+    std::unique_ptr<film::StatePreconditioner> inverse;
+    std::vector<double> step;
+  };
+  std::shared_ptr<const FilmComms> comms;  // outlives the inverses
+  std::vector<Film> films;
+  core::Vector rest;
 };
 
 }  // namespace whirl::system

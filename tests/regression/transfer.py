@@ -45,6 +45,26 @@ def both_ways(h):
         whole = h.run(at, f"{name}_whole", [branch(where), *more])["balanced"]
         transfer = h.run(at, f"{name}_transfer", [branch(where), *more], flags=TRANSFER)["balanced"]
         compare(h, name, whole, transfer, 1e-9)
+    searched(h)
+
+
+def searched(h):
+    """Modes say where they were looked for, and what the rotor takes part in is the same both ways."""
+    deck, _, more = CASES["conserving"]
+    modes = ["studies=[{modes: {name: modes, speeds: [420 rad/s], count: 4, max_frequency: 400 rad/s}}]", *more]
+    whole, transfer = (h.run(h.source / "inputs" / deck, f"modes_{len(flags)}", modes, flags=flags)["modes"] for flags in ([], TRANSFER))
+    h.true("the whole pencil has no region", value(whole, "search.frequency") is None)
+    h.close("the region reaches beyond the modes wanted [rad/s]", value(transfer, "search.frequency"), 400 / 0.94, 1e-9)
+    h.close("and half as far to the left", value(transfer, "search.decay"), 200 / 0.94, 1e-9)
+    h.close("none is missed", value(transfer, "search.missed"), 0, 0)
+    h.true("those found are counted", value(transfer, "search.counted") >= 2 * len(transfer["modes"]) > 0)
+    least = [m for m in whole["modes"] if m["real"] > -200 / 0.94 / 2]
+    h.true("both ways have modes near the axis", len(least) > 0)
+    for m in least:
+        same = min(transfer["modes"], key=lambda n: abs(n["real"] - m["real"]) + abs(n["imag"] - m["imag"]))
+        for what in ("real", "imag", "participation"):
+            h.close(f"{what} of the mode at {m['imag']:.0f} rad/s", same[what], m[what], 1e-6 * max(1, abs(m["imag"])))
+        h.true("the rotor takes part", m["participation"] > 1e-3)
 
 
 def missed(h):

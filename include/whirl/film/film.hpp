@@ -5,6 +5,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <complex>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,8 +24,8 @@ struct StateField {
   int begin, end;
 };
 
-/// Approximate inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one
-/// communicator. All members are collective.
+/// Inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one communicator,
+/// approximate or exact. All members but exact() are collective.
 class StatePreconditioner {
 public:
   StatePreconditioner() = default;
@@ -33,9 +34,16 @@ public:
   virtual ~StatePreconditioner() = default;
   /// Takes the derivatives of this rank's share, at its places.
   virtual void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) = 0;
-  /// x = approximately A^-1 r [rows]: good to precondition only. Neither throws: the ranks that do not hold the film
-  /// would wait for the others.
+  /// Whether apply() is A^-1 to rounding, and has a transpose; else it is good to precondition only.
+  [[nodiscard]] virtual bool exact() const { return false; }
+  /// x = A^-1 r [rows]. Neither throws: the ranks that do not hold the film would wait for the others. Of a singular
+  /// matrix the answer is not finite.
   virtual void apply(std::span<const double> r, std::span<double> x) = 0;
+  /// x = A^-T r of an exact one; core::Bug of others.
+  virtual void apply_transposed(std::span<const double> r, std::span<double> x);
+  /// The same at a complex frequency, of an exact one: A = dg/ds + lambda dg/ds'. Others are core::Bug.
+  virtual void set_at(std::span<const double> d_states, std::span<const double> d_rates, std::complex<double> lambda);
+  virtual void apply_at(std::span<const std::complex<double>> r, std::span<std::complex<double>> x);
 };
 
 /// A film: g(motion, s, s') = 0, force = f(motion, s, s') with states s of its own. Most films have none, as their
@@ -83,7 +91,7 @@ public:
   /// True if the force does not depend on s' and dg/ds' depends on nothing.
   [[nodiscard]] virtual bool constant_rates() const { return true; }
   /// True if Newton's method on a film by itself is to take whole steps even where the residual rises: a film that is
-  /// linear but for the set of its full nodes, of which a whole step finds the next one.
+  /// linear but for the set of its full nodes, of which a whole step finds the next one. Its preconditioner is exact.
   [[nodiscard]] virtual bool whole_steps() const { return false; }
   /// Rates of the states per velocity of the journal, [port][state], while nothing changes that the film remembers: the
   /// deflection of a liner, what a gap holds beyond its volume. Empty if they are zero. They do not depend on anything.

@@ -196,9 +196,9 @@ private:
   [[nodiscard]] std::vector<film::Response> responses() const;
   /// Film `bearing`, or another one in its place; a core::DomainError says which.
   void evaluate(std::size_t bearing, FilmPart& part, const FilmInputs& in, film::Need need) const;
-  /// settle() on several ranks, and what it works with. Collective.
-  void settle_together(Vec x);
+  /// What settle() works with; the ranks that hold each film. Made when first wanted. Collective.
   [[nodiscard]] Settling& settling();
+  const FilmComms& film_comms();
   void sum_over_ranks();
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
   /// What the film of a bearing sees of positions and velocities at its ports.

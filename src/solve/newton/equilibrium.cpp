@@ -143,10 +143,11 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   factorised_ = exact_factorised_ = false;
   if (std::vector<problem::Field> parts = system_.fields(); !ports_ && !exact_ && PortElimination::serves(parts)) {
     auto inverse = system_.make_part_inverse();
-    std::unique_ptr<PortElimination>& elimination = inverse ? ports_ : exact_;
+    std::unique_ptr<PortElimination>& elimination = inverse && !inverse->exact() ? ports_ : exact_;
     elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
   }
-  if (ports_) ports_->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
+  for (const PortElimination* elimination : {ports_.get(), exact_.get()})
+    if (elimination && elimination->inverse()) elimination->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
 }
 
 // Elimination by the parts' own approximate inverses, with a Krylov method around that; whether it came far enough.

@@ -34,19 +34,33 @@ constexpr int most_regions = 6;
 // as a film.
 class ByPorts final : public spectral::ShiftInverse {
 public:
-  explicit ByPorts(const std::vector<problem::Field>& fields) : ports_(fields) {}
-  void factorise(Mat a) override { ports_.factorise(a); }
+  /// Of dF/dx + target dF/d(dx/dt) at the equilibrium x.
+  ByPorts(problem::System& system, Vec x, double target)
+      : x_(x), target_(target), rest_(core::duplicate(x)), ports_(system.fields(), exact_inverse(system)) {
+    core::check(VecSet(rest_.get(), 0));
+  }
+  void factorise(Mat a) override {
+    if (ports_.inverse()) ports_.inverse()->set(0, x_, rest_.get(), 1, target_);
+    ports_.factorise(a);
+  }
   void solve(Vec rhs, Vec x) override { ports_.solve(rhs, x); }
 
 private:
+  static std::unique_ptr<problem::PartInverse> exact_inverse(problem::System& system) {
+    auto inverse = system.make_part_inverse();
+    return inverse && inverse->exact() ? std::move(inverse) : nullptr;
+  }
+
+  Vec x_;
+  double target_;
+  core::Vector rest_;
   PortElimination ports_;
 };
 
 std::vector<spectral::Mode> whole_modes(problem::System& system, Vec x, spectral::EigenOptions options) {
-  const std::vector<problem::Field> fields = system.fields();
-  if (system.size() <= options.dense_below || !PortElimination::serves(fields))
+  if (system.size() <= options.dense_below || !PortElimination::serves(system.fields()))
     return spectral::modes(system, x, options);
-  ByPorts inverse(fields);
+  ByPorts inverse(system, x, options.target);
   options.inverse = &inverse;
   return spectral::modes(system, x, options);
 }
@@ -69,7 +83,7 @@ MachineModes machine_modes(problem::System& system, Vec x, const spectral::Eigen
     if (given || 2 * std::count_if(found.modes.begin(), found.modes.end(), vibrates) >= wanted.at_least) break;
     region.frequency *= 1.5;
   }
-  return {std::move(found.modes), found.missed, std::move(found.doubt), true};
+  return {std::move(found.modes), found.missed, std::move(found.doubt), true, region.frequency, region.decay, found.counted};
 }
 
 }  // namespace whirl::solve

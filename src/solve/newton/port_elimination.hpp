@@ -17,10 +17,10 @@ namespace whirl::solve {
 ///     [ A_pp  G   ] [ x_p ]   [ b_p ]     X = A_pp^-1 G
 ///     [ F     A_h ] [ x_h ] = [ b_h ]     (A_h - F X) x_h = b_h - F A_pp^-1 b_p,   x_p = A_pp^-1 b_p - X x_h
 ///
-/// A_pp is solved by a KSP with prefix "parts_", what is left on the hub by one with prefix "hub_", both by MUMPS. With
-/// approximate inverses of the parts in place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a
-/// Krylov method around it, or take another preconditioner) it is a preconditioner; a hub on one rank then goes to KLU,
-/// because it is asked for often. A_pp has to be regular: films at given motions are. factorise() and the solves throw
+/// A_pp is solved by a KSP with prefix "parts_", what is left on the hub by one with prefix "hub_", both by MUMPS. The
+/// parts' own inverses take the place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a Krylov
+/// method around it, or take another preconditioner); a hub on one rank then goes to KLU, because it is asked for often.
+/// With approximate inverses all of it is a preconditioner. A_pp has to be regular: films at given motions are. factorise() and the solves throw
 /// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the communicator of the
 /// matrix.
 class PortElimination {
@@ -40,12 +40,12 @@ public:
   void factorise(Mat a, const PortMatrix& blocks);
   /// The blocks of the matrix of factorise(a).
   [[nodiscard]] const PortMatrix& blocks() const { return *blocks_; }
-  /// The approximate inverses, for the caller to set() before factorise(); null where there are none.
+  /// The parts' own inverses, for the caller to set() before factorise(); null where there are none.
   [[nodiscard]] problem::PartInverse* inverse() const { return inverse_.get(); }
   void solve(Vec rhs, Vec x);
   /// The same with the hub held: A_pp^-1 b_p, or what approximates it, and zeros.
   void solve_held(Vec rhs, Vec x);
-  /// Of matrices whose parts are solved by MUMPS or by another preconditioner with a transpose.
+  /// Of matrices whose parts are solved exactly, or by a preconditioner with a transpose.
   void solve_transposed(Vec rhs, Vec x);
 
 private:

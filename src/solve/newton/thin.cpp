@@ -1,6 +1,7 @@
 #include "solve/newton/thin.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace whirl::solve {
 
@@ -35,6 +36,31 @@ Eigen::MatrixXd thin(Mat m, const std::vector<PetscInt>& columns) {
     for (PetscInt k = 0; k < count; ++k)
       out(i, std::lower_bound(columns.begin(), columns.end(), at[k]) - columns.begin()) = values[k];
   });
+  return out;
+}
+
+Eigen::SparseMatrix<double> gather_matrix(Mat m) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(m));
+  PetscInt n = 0;
+  check(MatGetSize(m, &n, nullptr));
+  std::vector<double> mine;  // row, column, value
+  const PetscInt first = first_row(m);
+  for_rows(m, [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
+    for (PetscInt k = 0; k < count; ++k)
+      mine.insert(mine.end(), {static_cast<double>(first + i), static_cast<double>(columns[k]), values[k]});
+  });
+  const auto size = static_cast<std::size_t>(core::size_of(comm));
+  const int here = static_cast<int>(mine.size());
+  std::vector<int> counts(size), begins(size);
+  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
+  std::vector<double> all(static_cast<std::size_t>(begins.back() + counts.back()));
+  MPI_Allgatherv(mine.data(), here, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE, comm);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < all.size(); k += 3)
+    entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
+  Eigen::SparseMatrix<double> out(n, n);
+  out.setFromTriplets(entries.begin(), entries.end());
   return out;
 }
 

@@ -2,6 +2,7 @@
 // Rows of assembled matrices, and the few columns of a coupling.
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
@@ -31,5 +32,8 @@ void for_rows(Mat m, F&& f) {
 
 /// Those columns of the rows of this rank [local x columns]; `columns` rise and hold all that have an entry.
 [[nodiscard]] Eigen::MatrixXd thin(Mat m, const std::vector<PetscInt>& columns);
+
+/// All rows of a small distributed matrix, on every rank. Collective.
+[[nodiscard]] Eigen::SparseMatrix<double> gather_matrix(Mat m);
 
 }  // namespace whirl::solve

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "solve/newton/real_form.hpp"
 #include "solve/newton/thin.hpp"
@@ -41,32 +40,6 @@ core::Matrix transpose(const core::Matrix& m) {
   core::Matrix t;
   check(MatTranspose(m.get(), MAT_INITIAL_MATRIX, t.put()));
   return t;
-}
-
-// All rows of a small distributed matrix on every rank.
-Eigen::SparseMatrix<double> gather_matrix(Mat m) {
-  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(m));
-  PetscInt n = 0;
-  check(MatGetSize(m, &n, nullptr));
-  std::vector<double> mine;  // row, column, value
-  const PetscInt first = first_row(m);
-  for_rows(m, [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
-    for (PetscInt k = 0; k < count; ++k)
-      mine.insert(mine.end(), {static_cast<double>(first + i), static_cast<double>(columns[k]), values[k]});
-  });
-  const auto size = static_cast<std::size_t>(core::size_of(comm));
-  const int here = static_cast<int>(mine.size());
-  std::vector<int> counts(size), begins(size);
-  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
-  std::vector<double> all(static_cast<std::size_t>(begins.back() + counts.back()));
-  MPI_Allgatherv(mine.data(), here, MPI_DOUBLE, all.data(), counts.data(), begins.data(), MPI_DOUBLE, comm);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < all.size(); k += 3)
-    entries.emplace_back(static_cast<int>(all[k]), static_cast<int>(all[k + 1]), all[k + 2]);
-  Eigen::SparseMatrix<double> out(n, n);
-  out.setFromTriplets(entries.begin(), entries.end());
-  return out;
 }
 
 // `to` holds complex columns in real form: reals and imaginary parts of the rows in turn.
@@ -134,6 +107,8 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   rest_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   state_scale_ = core::duplicate(rest_.get());
   row_scale_ = core::duplicate(rest_.get());
+  x_ = core::duplicate(rest_.get());
+  if (auto inverse = system.make_part_inverse(); inverse && inverse->exact()) inverse_ = std::move(inverse);
   jx_ = system.make_jacobian();
   jd_ = system.make_jacobian();
   PetscInt begin = 0;
@@ -178,6 +153,7 @@ PetscInt TransferFunction::states(std::size_t i) const {
 }
 
 void TransferFunction::linearise(Vec x) {
+  check(VecCopy(x, x_.get()));
   system_.scales(state_scale_.get(), row_scale_.get());
   const auto at_hub = [&](Vec v) {
     core::Vector part;
@@ -215,32 +191,75 @@ void TransferFunction::linearise(Vec x) {
   }
 }
 
+template <class F>
+void TransferFunction::solve_together(F&& columns, MatrixXcd Part::*to) {
+  Index rows = 0, most = 0;
+  std::vector<MatrixXcd> right;
+  for (const auto& p : parts_) {
+    right.push_back(columns(*p));
+    ((*p).*to).resize(right.back().rows(), right.back().cols());
+    rows += right.back().rows();
+    most = std::max(most, right.back().cols());
+  }
+  VectorXcd r(rows), x(rows);
+  bool finite = true;
+  for (Index c = 0; c < most; ++c) {
+    r.setZero();
+    Index row = 0;
+    for (const MatrixXcd& m : right) {
+      if (c < m.cols()) r.segment(row, m.rows()) = m.col(c);
+      row += m.rows();
+    }
+    inverse_->apply_at(r.data(), x.data());
+    finite = finite && x.allFinite();
+    row = 0;
+    for (const auto& p : parts_) {
+      MatrixXcd& out = (*p).*to;
+      if (c < out.cols()) out.col(c) = x.segment(row, out.rows());
+      row += out.rows();
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_CXX_BOOL, MPI_LAND, comm());
+  if (!finite) throw core::NotConverged("the equations of a film are singular at this frequency");
+}
+
+void TransferFunction::factorise(Part& p, Complex lambda, PetscInt columns) const {
+  if (!p.real) p.real = make_real_form(p.a.get());
+  if (!p.right)
+    for (core::Matrix* m : {&p.right, &p.answers})
+      check(MatCreateDense(comm(), 2 * p.count, PETSC_DECIDE, PETSC_DETERMINE, columns, nullptr, m->put()));
+  put_pencil(p.a.get(), p.b.get(), lambda, p.real.get(), [](PetscInt, RealRow&) {});
+  check(MatAssemblyBegin(p.real.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(p.real.get(), MAT_FINAL_ASSEMBLY));
+  if (!p.solver) p.solver = core::make_direct_solver(comm(), "parts_");
+  check(KSPSetOperators(p.solver.get(), p.real.get(), p.real.get()));
+}
+
+// X = A^-1 G, X' = A^-1 (G' - A' X), H = F X, H' = F' X + F X'.
 TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes) {
+  const auto right = [lambda](const Part& p) -> MatrixXcd { return p.g0 + lambda * p.g1; };
+  const auto change = [](const Part& p) -> MatrixXcd { return p.g1 - p.rates_times(p.x); };
+  if (inverse_) {
+    inverse_->set_at(x_.get(), rest_.get(), lambda);
+    solve_together(right, &Part::x);
+    if (slopes) solve_together(change, &Part::dx);
+  }
   Blocks out;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& p = *parts_[i];
     const auto columns = static_cast<PetscInt>(ports_[i].seen.size());
     const auto forces = static_cast<Index>(ports_[i].forces.size());
-    if (!p.real) p.real = make_real_form(p.a.get());
-    if (!p.right)
-      for (core::Matrix* m : {&p.right, &p.answers})
-        check(MatCreateDense(comm(), 2 * p.count, PETSC_DECIDE, PETSC_DETERMINE, columns, nullptr, m->put()));
-    put_pencil(p.a.get(), p.b.get(), lambda, p.real.get(), [](PetscInt, RealRow&) {});
-    check(MatAssemblyBegin(p.real.get(), MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(p.real.get(), MAT_FINAL_ASSEMBLY));
-    if (!p.solver) p.solver = core::make_direct_solver(comm(), "parts_");
-    check(KSPSetOperators(p.solver.get(), p.real.get(), p.real.get()));
-
-    // X = A^-1 G, X' = A^-1 (G' - A' X), H = F X, H' = F' X + F X'.
-    p.solve(p.g0 + lambda * p.g1, p.x);
+    if (!inverse_) {
+      factorise(p, lambda, columns);
+      p.solve(right(p), p.x);
+      if (slopes) p.solve(change(p), p.dx);
+    }
     const MatrixXcd f = (p.f0 + lambda * p.f1).transpose();
     Block block{f * p.x, {}};
-    if (slopes) {
-      p.solve(p.g1 - p.rates_times(p.x), p.dx);
+    if (slopes)
       block.slope = p.f1.transpose().cast<Complex>() * p.x + f * p.dx;
-    } else {
+    else
       p.dx.resize(0, 0);
-    }
     for (MatrixXcd* m : {&block.value, &block.slope})
       if (m->size() > 0)
         MPI_Allreduce(MPI_IN_PLACE, m->data(), static_cast<int>(forces * columns), MPI_C_DOUBLE_COMPLEX, MPI_SUM,

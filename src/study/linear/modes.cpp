@@ -112,6 +112,33 @@ StudyResult rigid_modes(Context& context, const ModesOptions& options) {
   return context.results.finish("completed", true);
 }
 
+// The regions of searches by transfer functions, over speed; of one speed in the summary too.
+void put_searches(io::Group& group, io::StudySummary& summary, const std::vector<double>& speeds,
+                  const std::map<double, ModeSearch>& searches) {
+  std::vector<double> at, frequency, decay, counted, missed;
+  for (const double speed : speeds) {
+    const auto found = searches.find(speed);
+    if (found == searches.end() || found->second.frequency == 0) continue;
+    at.push_back(speed);
+    frequency.push_back(found->second.frequency);
+    decay.push_back(found->second.decay);
+    counted.push_back(found->second.counted);
+    missed.push_back(found->second.missed);
+  }
+  if (at.empty()) return;
+  auto& search = group.child("search");
+  search.put("speed", at, "rad/s", "shaft speed");
+  search.put("frequency", frequency, "rad/s", "up to which the region of the search reaches, and to the right as far");
+  search.put("decay", decay, "1/s", "as far as it reaches to the left");
+  search.put("counted", counted, "1", "eigenvalues in the region, both of each pair");
+  search.put("missed", missed, "1", "of these not found; -1: the count is not sure");
+  if (at.size() > 1) return;
+  summary.set("search.frequency", frequency[0], "rad/s");
+  summary.set("search.decay", decay[0], "1/s");
+  summary.set("search.counted", counted[0], "1");
+  summary.set("search.missed", missed[0], "1");
+}
+
 }  // namespace
 
 StudyResult Modes::run(Context& context) {
@@ -131,13 +158,13 @@ StudyResult Modes::run(Context& context) {
   int rounds = 0;
   Pieces pieces(results, context.resume);
   MissedModes missed;
+  std::map<double, ModeSearch> searches;  // by speed
   const auto modes_at = [&](const std::vector<double>& list) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
-      int missed_here = 0;
-      auto modes =
-          pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit, missed_here));
-      modes.push_back(missed_here);
+      ModeSearch here;
+      auto modes = pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit, here));
+      modes.insert(modes.end(), {here.frequency, here.decay, here.counted, here.missed});
       ready += static_cast<std::size_t>(layout.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
@@ -147,8 +174,11 @@ StudyResult Modes::run(Context& context) {
                                    rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
     std::vector<std::vector<ShaftMode>> out;
-    for (const auto& p : packed) {
+    for (std::size_t i = 0; i < packed.size(); ++i) {
+      const std::vector<double>& p = packed[i];
       out.push_back(unpack(p));
+      const auto end = p.size();
+      searches[list[i]] = {p[end - 4], p[end - 3], p[end - 2], p[end - 1]};
       missed.add(static_cast<int>(p.back()));
     }
     return out;
@@ -179,12 +209,12 @@ StudyResult Modes::run(Context& context) {
     for (const ShaftMode& m : stations[i].modes) sampled.back().ids.push_back(m.id);
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
-    int of_other_mesh = 0;
+    ModeSearch of_other_mesh;
     return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit, of_other_mesh));
   });
   ModeReduction reduction(system, walker, sampled);
   const std::vector<double> mass = rotor::node_masses(system.train().rotor);
-  std::vector<double> speed_column, frequency, real, decrement, factor, whirl_column, forward_column;
+  std::vector<double> speed_column, frequency, real, decrement, factor, whirl_column, forward_column, taken_column;
   std::vector<std::int64_t> id_column;
   std::vector<std::string> sense_column, stability_column;
   for (const double speed : speeds) {
@@ -201,6 +231,7 @@ StudyResult Modes::run(Context& context) {
       factor.push_back(spectral::stability_factor(m.lambda));
       whirl_column.push_back(energy.whirl);
       forward_column.push_back(energy.forward);
+      taken_column.push_back(m.participation);
       sense_column.emplace_back(sense);
       const char* const stability = name_of(m.undamped            ? StabilityClass::undamped
                                             : m.lambda.real() > 0 ? StabilityClass::unstable
@@ -208,6 +239,7 @@ StudyResult Modes::run(Context& context) {
       stability_column.emplace_back(stability);
       summary.modes.push_back({deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense,
                                unit, bars.named(m.id, speed), stability});
+      summary.modes.back().more["participation"] = m.participation;
       reduction.put(summary, speed, k);
     }
   }
@@ -230,10 +262,9 @@ StudyResult Modes::run(Context& context) {
     std::vector<int> missed_on_the_way;
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
-      int missed_there = 0;
-      const auto there =
-          shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit, missed_there);
-      missed_on_the_way.push_back(missed_there);
+      ModeSearch search;
+      const auto there = shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit, search);
+      missed_on_the_way.push_back(static_cast<int>(search.missed));
       const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
       const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
       if (found == pairs.before.end()) break;
@@ -278,7 +309,10 @@ StudyResult Modes::run(Context& context) {
   spectrum.put("forward_share", forward_column, "1", "the same, backward motion counted negative");
   spectrum.put("stability", stability_column,
                "stable, unstable, or undamped: the real part is rounding, shown as zero");
+  spectrum.put("participation", taken_column, "1",
+               "largest motion of shaft and pedestals over that of any state, in their scales");
   group.set("speed_unit", unit);
+  put_searches(group, summary, speeds, searches);
 
   std::sort(criticals.begin(), criticals.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   std::vector<double> critical_speed, critical_decrement;

@@ -9,19 +9,40 @@ namespace whirl::study {
 
 using Complex = std::complex<double>;
 
+namespace {
+
+// The largest of the machine's scaled states; the largest of all is one.
+double participation(const std::vector<Complex>& shape, const std::vector<double>& scale, PetscInt machine) {
+  double largest = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(machine); ++k)
+    largest = std::max(largest, std::abs(shape[k]) / scale[k]);
+  return largest;
+}
+
+}  // namespace
+
 std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency,
-                                   int& missed) {
+                                   ModeSearch& search) {
   spectral::EigenOptions options;
   options.count = 2 * count + 40;
   options.rounding = true;
   std::vector<ShaftMode> out;
   const solve::MachineModes found =
       solve::machine_modes(system, equilibrium, options, {std::isfinite(max_frequency) ? max_frequency : 0, 2 * count});
-  missed = found.doubt.empty() ? found.missed : -1;
+  search = {found.frequency, found.decay, static_cast<double>(found.counted),
+            static_cast<double>(found.doubt.empty() ? found.missed : -1)};
+  std::vector<double> scale;
+  {
+    core::Vector states = core::duplicate(equilibrium), rows = core::duplicate(equilibrium);
+    system.scales(states.get(), rows.get());
+    scale = core::gather(states.get());
+  }
   for (const auto& mode : found.modes) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
     if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
     if (static_cast<int>(out.size()) == count) break;
+    const double part_taken = participation(mode.shape, scale, 2 * system.coordinates());
+    if (part_taken < least_participation) continue;
     std::vector<double> part[2];
     for (int k = 0; k < 2; ++k) {
       std::vector<double> state(mode.shape.size());
@@ -29,6 +50,7 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
       part[k] = system.shaft(state.data(), 0, false);
     }
     ShaftMode m;
+    m.participation = part_taken;
     m.undamped = mode.neutral();
     m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
     Complex largest = 0;
@@ -54,7 +76,7 @@ std::vector<double> pack(std::vector<ShaftMode> modes) {
   };
   for (ShaftMode& m : modes) {
     put(m.lambda);
-    put(m.undamped ? 1.0 : 0.0);
+    put({m.undamped ? 1.0 : 0.0, m.participation});
     for (const auto* column : m.columns())
       for (const Complex& v : *column) put(v);
   }
@@ -71,7 +93,9 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
   };
   for (ShaftMode& m : modes) {
     m.lambda = take();
-    m.undamped = take().real() > 0;
+    const Complex facts = take();
+    m.undamped = facts.real() > 0;
+    m.participation = facts.imag();
     for (auto* column : m.columns())
       for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
   }

@@ -14,7 +14,8 @@ struct ShaftMode {
   std::complex<double> lambda;
   std::vector<std::complex<double>> x, y, slope_x, slope_y;  // per node
   bool undamped = false;                                     // its real part is rounding
-  int id = -1;                                               // the same for the same mode at other speeds
+  double participation = 1;  // of the machine: its largest motion over that of any state
+  int id = -1;               // the same for the same mode at other speeds
 
   [[nodiscard]] std::vector<std::complex<double>> both() const {
     std::vector<std::complex<double>> all = x;
@@ -24,10 +25,20 @@ struct ShaftMode {
   [[nodiscard]] std::array<std::vector<std::complex<double>>*, 4> columns() { return {&x, &y, &slope_x, &slope_y}; }
 };
 
-/// The `count` vibrating modes of lowest frequency up to `max_frequency` [rad/s], the largest displacement one, and in
-/// `missed` what solve::Stability::missed says of their search. Collective.
+/// What a search by transfer functions looked at and found.
+struct ModeSearch {
+  double frequency = 0, decay = 0;  ///< its region [rad/s, 1/s]; zero: no such search
+  double counted = 0;               ///< eigenvalues there, both of each pair
+  double missed = 0;                ///< as solve::Stability::missed
+};
+
+/// The `count` vibrating modes of lowest frequency up to `max_frequency` [rad/s] in which the machine takes part, the
+/// largest displacement one. A motion of the films alone is none of these: states are measured in their scales, and
+/// where shaft and pedestals do less than `least_participation` of what the films do, eigenvalues of films that carry
+/// their content along are left to rounding. Collective.
 [[nodiscard]] std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count,
-                                                 double max_frequency, int& missed);
+                                                 double max_frequency, ModeSearch& search);
+inline constexpr double least_participation = 1e-3;
 
 /// Modes of one speed as numbers, to send them between ranks, and back.
 [[nodiscard]] std::vector<double> pack(std::vector<ShaftMode> modes);

@@ -14,6 +14,9 @@ struct MachineModes {
   int missed = 0;  ///< eigenvalues that are there but not among the modes: only the count of transfer functions tells
   std::string doubt;  ///< why that count is not sure; empty if it is, or if nothing was counted
   bool transfer = false;
+  // Of a search by transfer functions: the region [rad/s, 1/s] and how many eigenvalues it holds, both of each pair.
+  double frequency = 0, decay = 0;
+  int counted = 0;
 };
 
 /// What transfer functions look for.

@@ -82,10 +82,17 @@ public:
 
 private:
   struct Part;
+  /// A_i^-1 of complex columns of all parts at once, by their own exact inverses set at a frequency: `columns(part)`
+  /// gives those of a part [local x ports], `to` takes the answers. Throws core::NotConverged if they are singular.
+  template <class F>
+  void solve_together(F&& columns, Eigen::MatrixXcd Part::*to);
+  /// Factorises a part by a direct solver.
+  void factorise(Part& part, Complex lambda, PetscInt columns) const;
   /// Gathers a state of which every rank has its own rows.
   [[nodiscard]] std::vector<Complex> whole(const std::vector<Complex>& local) const;
   problem::System& system_;
-  core::Vector rest_, state_scale_, row_scale_;
+  std::unique_ptr<problem::PartInverse> inverse_;  // exact, or null
+  core::Vector x_, rest_, state_scale_, row_scale_;
   core::Matrix jx_, jd_;
   std::vector<std::unique_ptr<Part>> parts_;
   std::vector<Ports> ports_;

@@ -1,0 +1,113 @@
+// The inverse of films that stand in strips of columns, wherever ranks cut them.
+#include "film/strip_inverse.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "film/content_cases.hpp"
+#include "whirl/core/petsc.hpp"
+
+namespace whirl::film::testing {
+namespace {
+
+// A film on all ranks, part of it empty, with its inverse and its derivatives as one rank sees them.
+struct Shared {
+  explicit Shared(const ContentCase& c) : film(make_film(c.geometry, c.options, oil())) {
+    const Motion m = motion(c.geometry, c.position, {}, 377.0);
+    const auto n = static_cast<int>(film->states()), ranks = core::size_of(MPI_COMM_WORLD),
+               rank = core::rank_of(MPI_COMM_WORLD);
+    share = film->share(film->cut(n * rank / ranks), film->cut(n * (rank + 1) / ranks));
+    std::vector<double> q = settled(*film, m), rest(q.size(), 0.0);
+    for (std::size_t k = 0; k < q.size(); k += 7) q[k] = -1e-6;  // holes in the full film
+    film->evaluate(m, q, rest, Need::tangents, whole);
+    film->evaluate(m, share, seen_of(share, q), seen_of(share, rest), Need::tangents, here);
+    inverse = film->preconditioner(MPI_COMM_WORLD, share);
+  }
+  std::unique_ptr<Film> film;
+  Share share;
+  StateResponse whole, here;
+  std::unique_ptr<StatePreconditioner> inverse;
+};
+
+class Strips : public ::testing::TestWithParam<ContentCase> {};
+
+TEST_P(Strips, AreSolvedExactly) {
+  Shared s(GetParam());
+  ASSERT_TRUE(s.inverse->exact());
+  const auto n = static_cast<Eigen::Index>(s.film->states());
+  Eigen::VectorXd b(n);
+  for (Eigen::Index k = 0; k < n; ++k) b(k) = std::sin(0.37 * static_cast<double>(k * (k + 1)));
+  const auto rows = static_cast<std::size_t>(s.share.rows());
+  const std::vector<double> r(b.data() + s.share.begin, b.data() + s.share.end);
+  std::vector<double> x(rows);
+  for (const auto& [alpha, sigma] : {std::pair{1.0, 0.0}, std::pair{2e-6, 1.0}}) {
+    s.inverse->set(s.here.d_states, s.here.d_rates, alpha, sigma);
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix_of(*s.film, s.whole, sigma / alpha));
+    for (const bool transposed : {false, true}) {
+      const Eigen::VectorXd exact = (transposed ? Eigen::VectorXd(lu.transpose().solve(b)) : lu.solve(b)) / alpha;
+      transposed ? s.inverse->apply_transposed(r, x) : s.inverse->apply(r, x);
+      const double largest = exact.lpNorm<Eigen::Infinity>();
+      for (std::size_t k = 0; k < rows; ++k)
+        ASSERT_NEAR(x[k], exact(s.share.begin + static_cast<Eigen::Index>(k)), 1e-9 * largest)
+            << GetParam().name << " " << k << (transposed ? " transposed" : "");
+    }
+  }
+}
+
+TEST_P(Strips, AreSolvedAtComplexFrequencies) {
+  Shared s(GetParam());
+  using Complex = std::complex<double>;
+  const Complex lambda(-30, 200);
+  const auto n = static_cast<Eigen::Index>(s.film->states());
+  Eigen::VectorXcd b(n);
+  for (Eigen::Index k = 0; k < n; ++k) b(k) = std::polar(1.0, 0.37 * static_cast<double>(k * (k + 1)));
+  Eigen::SparseMatrix<Complex> a = matrix_of(*s.film, s.whole, 0).cast<Complex>();
+  for (Eigen::Index k = 0; k < n; ++k) a.coeffRef(k, k) += lambda;
+  const Eigen::VectorXcd exact = Eigen::SparseLU<Eigen::SparseMatrix<Complex>>(a).solve(b);
+  const std::vector<Complex> r(b.data() + s.share.begin, b.data() + s.share.end);
+  std::vector<Complex> x(r.size());
+  s.inverse->set_at(s.here.d_states, s.here.d_rates, lambda);
+  s.inverse->apply_at(r, x);
+  const double largest = exact.lpNorm<Eigen::Infinity>();
+  for (std::size_t k = 0; k < x.size(); ++k)
+    ASSERT_LE(std::abs(x[k] - exact(s.share.begin + static_cast<Eigen::Index>(k))), 1e-9 * largest) << k;
+}
+
+INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(content_films()),
+                         [](const auto& which) { return which.param.name; });
+
+// What settled a film has factorised what Newton's method asks for next.
+TEST(StripInverses, ShareTheirFactors) {
+  Shared s(content_films().front());
+  const auto second = s.film->preconditioner(MPI_COMM_WORLD, s.share);
+  const auto made = [](const std::unique_ptr<StatePreconditioner>& i) {
+    return dynamic_cast<const StripInverse&>(*i).factorisations();
+  };
+  s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+  s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+  second->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+  EXPECT_EQ(made(s.inverse), 1);
+  EXPECT_EQ(made(second), 0);
+  // Factors that another one holds stay what they are.
+  const std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0);
+  std::vector<double> before(r.size()), after(r.size());
+  s.inverse->apply(r, before);
+  second->set(s.here.d_states, s.here.d_rates, 1.0, 50.0);
+  EXPECT_EQ(made(second), 1);
+  s.inverse->apply(r, after);
+  EXPECT_EQ(before, after);
+}
+
+// A cavity at rest keeps what it holds: nothing says how much.
+TEST(StripInverses, OfSingularFilmsAreNotFinite) {
+  Shared s(content_films().front());
+  std::fill(s.here.d_states.begin(), s.here.d_states.end(), 0.0);
+  s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+  std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0), x(r.size(), 0.0);
+  s.inverse->apply(r, x);
+  for (const double v : x) EXPECT_FALSE(std::isfinite(v));
+}
+
+}  // namespace
+}  // namespace whirl::film::testing
