@@ -32,11 +32,11 @@ Case liner() {
 
 // The same in a bore whose film carries its content along, a* = 0.1, with a groove at the top under 20 kPa.
 Case content() {
-  Case out{test::finite_rotor(12, 4), 2.2 * scale, {4, 2, 1}};
+  Case out{test::finite_rotor(12, 2), 2.2 * scale, {4, 2, 1}};
   film::Reynolds film;
   film.cavitation = film::Reynolds::Cavitation::mass_conserving;
   film.states = film::Reynolds::States::dynamic;
-  film.cells = {12, 4};
+  film.cells = {12, 2};
   film.grooves = {{std::numbers::pi / 2, std::numbers::pi / 6, 20e3}};
   out.train.supports[0].film = film;
   out.train.unbalance = {{1, 0.5 * 2.5e-6, 0}};
@@ -138,7 +138,7 @@ std::vector<double> uneven(int intervals) {
 
 TEST(SpreadCollocation, IsCollocationOnLiners) {
   const Case c = liner();
-  compare(c, 2, uneven(16), options(2));
+  compare(c, 2, uneven(10), options(2));
 }
 
 // One elimination for some neighbours, and points of higher degree.
@@ -146,21 +146,21 @@ TEST(SpreadCollocation, SharesEliminations) {
   const Case c = liner();
   auto o = options(3);
   o.eliminations = 3;
-  compare(c, 3, uneven(10), o);
+  compare(c, 3, uneven(6), o);
 }
 
 TEST(SpreadCollocation, IsCollocationOnContents) {
   const Case c = content();
   auto o = options(2);
-  o.radius = 0.02;  // oil that a groove renews forgets
-  compare(c, 2, solve::uniform_mesh(12), o);
+  o.radius = 0.05;  // oil that a groove renews forgets
+  compare(c, 2, solve::uniform_mesh(6), o);
 }
 
 // Whatever the films hold at first, the motion of the hub decides what becomes of them.
 TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
   for (const Case& c : {liner(), content()}) {
     system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
-    solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(12));
+    solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(6));
     const Answer found = solved(spread, c, at_rest(alone, c));
     solve::Cycle other = found.cycle;
     constexpr int hub = 4;

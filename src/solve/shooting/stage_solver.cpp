@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "solve/newton/port_krylov.hpp"
 #include "solve/newton/local_part.hpp"
+#include "solve/newton/port_krylov.hpp"
 
 namespace whirl::solve {
 
