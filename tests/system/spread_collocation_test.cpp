@@ -23,20 +23,21 @@ struct Case {
   system::Train train;
   double speed;
   std::vector<double> parts;  // of the speed, on the way to rest
+  bool liner = true;
 };
 
 // Half a rotor on a liner of finite length, a* = 0.2.
 Case liner() {
-  return {test::finite_rotor(12, 4), 4.5 * scale, {0.1, 0.25, 0.5, 1}};
+  return {test::finite_rotor(12, 4), 4.5 * scale, {0.1, 0.25, 0.5, 1}, true};
 }
 
 // The same in a bore whose film carries its content along, a* = 0.1, with a groove at the top under 20 kPa.
 Case content() {
-  Case out{test::finite_rotor(12, 2), 2.2 * scale, {4, 2, 1}};
+  Case out{test::finite_rotor(8, 2), 2.2 * scale, {4, 2, 1}, false};
   film::Reynolds film;
   film.cavitation = film::Reynolds::Cavitation::mass_conserving;
   film.states = film::Reynolds::States::dynamic;
-  film.cells = {12, 2};
+  film.cells = {8, 2};
   film.grooves = {{std::numbers::pi / 2, std::numbers::pi / 6, 20e3}};
   out.train.supports[0].film = film;
   out.train.unbalance = {{1, 0.5 * 2.5e-6, 0}};
@@ -153,14 +154,16 @@ TEST(SpreadCollocation, IsCollocationOnContents) {
   const Case c = content();
   auto o = options(2);
   o.radius = 0.05;  // oil that a groove renews forgets
-  compare(c, 2, solve::uniform_mesh(6), o);
+  compare(c, 2, solve::uniform_mesh(5), o);
 }
 
 // Whatever the films hold at first, the motion of the hub decides what becomes of them.
 TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
   for (const Case& c : {liner(), content()}) {
+    // Newton's method on contents settles them on any number of ranks, see above; three ranks on two cores are slow.
+    if (core::size_of(MPI_COMM_WORLD) > 1 && !c.liner) continue;
     system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
-    solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(6));
+    solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(5));
     const Answer found = solved(spread, c, at_rest(alone, c));
     solve::Cycle other = found.cycle;
     constexpr int hub = 4;
