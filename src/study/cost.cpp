@@ -60,7 +60,7 @@ double memory_of_cycles(const system::Machine& machine, double intervals, double
 }
 
 double memory_of_spread_cycles(const system::Machine& machine, double intervals, double stages) {
-  return 8 * intervals * n_states(machine) * (stages * (40 + 4 * static_cast<double>(machine.bearings.size())) + 400);
+  return 8 * intervals * n_states(machine) * (stages * (40 + 4 * static_cast<double>(machine.bearings.size())) + 150);
 }
 
 }  // namespace whirl::study
