@@ -83,7 +83,8 @@ MachineModes machine_modes(problem::System& system, Vec x, const spectral::Eigen
     if (given || 2 * std::count_if(found.modes.begin(), found.modes.end(), vibrates) >= wanted.at_least) break;
     region.frequency *= 1.5;
   }
-  return {std::move(found.modes), found.missed, std::move(found.doubt), true, region.frequency, region.decay, found.counted};
+  return {std::move(found.modes), found.missed, std::move(found.doubt), true,
+          region.frequency,       region.decay, found.counted};
 }
 
 }  // namespace whirl::solve

@@ -19,10 +19,10 @@ namespace whirl::solve {
 ///
 /// A_pp is solved by a KSP with prefix "parts_", what is left on the hub by one with prefix "hub_", both by MUMPS. The
 /// parts' own inverses take the place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a Krylov
-/// method around it, or take another preconditioner); a hub on one rank then goes to KLU, because it is asked for often.
-/// With approximate inverses all of it is a preconditioner. A_pp has to be regular: films at given motions are. factorise() and the solves throw
-/// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the communicator of the
-/// matrix.
+/// method around it, or take another preconditioner); a hub on one rank then goes to KLU, because it is asked for
+/// often. With approximate inverses all of it is a preconditioner. A_pp has to be regular: films at given motions are.
+/// factorise() and the solves throw core::NotConverged, on all ranks, if a matrix is singular. All members are
+/// collective on the communicator of the matrix.
 class PortElimination {
 public:
   /// Whether there are parts, and no more of them than this keeps apart (63).
