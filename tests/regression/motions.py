@@ -183,22 +183,21 @@ def resume(h):
 
 
 def shared(h):
-    """Of a machine whose states all ranks share no rank has a whole one, in checkpoints neither: a motion takes one
-    revolution on three ranks, the next one on two, the last one on one; likewise a run-up."""
+    """Of a machine whose states all ranks share no rank has a whole one, in checkpoints neither: a motion and a run-up begin
+    on two ranks and end on one."""
     studies = {
-        "motion": ("motion: {name: s, unbalance: [a], speed: 320 rad/s, discard: 0, revolutions: 3, samples: 8, exponents: 1, tolerance: 1e-2}", (3, 2)),
-        "run_up": ("run_up: {name: s, unbalance: [a], range: {from: 160 rad/s, to: 320 rad/s}, acceleration: 2000 rad/s^2, samples: 8, tolerance: 1e-2}", (2,))}
-    for kind, (study, ranks) in studies.items():
+        "motion": "motion: {name: s, unbalance: [a], speed: 320 rad/s, discard: 0, revolutions: 16, samples: 8, exponents: 1, tolerance: 1e-2}",
+        "run_up": "run_up: {name: s, unbalance: [a], range: {from: 160 rad/s, to: 320 rad/s}, acceleration: 400 rad/s^2, samples: 8, tolerance: 1e-2}"}
+    for kind, study in studies.items():
         path = h.work / f"{kind}.yaml"
         path.write_text(f"base: {h.source / 'inputs/compliant_rotor/finite_curve.yaml'}\nlayout: {{machine: all_ranks}}\n"
                         f"bearings: {{half: {{film: {{cells: [12, 4]}}}}}}\nstudies:\n  - {study}\n")
         h.run(path, kind, launcher=[])
         out = h.work / f"{kind} killed"
-        for n in ranks:
-            h.kill_at_checkpoint(path, out, flags=["--resume"] if out.exists() else [], launcher=[*h.launcher, "-n", str(n)])
-            with h5py.File(out / "s.checkpoint.h5") as f:
-                how = f["state/u"].id.get_create_plist()
-                h.true(f"{kind} on {n} ranks: states are written by rows", how.get_fill_time() == h5py.h5d.FILL_TIME_NEVER)
+        h.kill_at_checkpoint(path, out, launcher=[*h.launcher, "-n", "2"])
+        with h5py.File(next(p for p in (out / "s.checkpoint.h5", out / "s.checkpoint.h5.prev") if p.exists())) as f:
+            how = f["state/u"].id.get_create_plist()
+            h.true(f"{kind}: states are written by rows", how.get_fill_time() == h5py.h5d.FILL_TIME_NEVER)
         h.run(path, out.name, flags=["--resume"], launcher=[])
         for what, difference, within in same_results(h.work / kind, out):
             h.close(f"{kind} resumed: {what}", difference, 0, within)
