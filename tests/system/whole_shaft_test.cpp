@@ -72,18 +72,18 @@ system::Train short_train() {
 }  // namespace
 
 // Multipliers that the search returns are those of the dense matrix in their order: none is missing. The search
-// ends with as many as were asked for where more lie near the circle: there are 22 above 0.2.
+// ends with as many as were asked for, and those that converged beside them, where more lie near the circle.
 TEST(WholeShaft, TimeModesAndDenseTransitionsFindTheSameCycle) {
   const system::Train t = short_train();
   constexpr double speed = 350;
   constexpr int intervals = 16;
   const Answer modes = cycle_of(MPI_COMM_WORLD, t, speed, Joining::cheapest, intervals),
-               few = cycle_of(MPI_COMM_WORLD, t, speed, Joining::cheapest, intervals, 8),
+               few = cycle_of(MPI_COMM_WORLD, t, speed, Joining::cheapest, intervals, 4),
                dense = cycle_of(MPI_COMM_WORLD, t, speed, Joining::dense, intervals);
   EXPECT_EQ(modes.newton.iterations, dense.newton.iterations);
   EXPECT_LE((modes.cycle.x - dense.cycle.x).cwiseAbs().maxCoeff(), 1e-8 * dense.cycle.x.cwiseAbs().maxCoeff());
   EXPECT_EQ(dense.multipliers.size(), 432U);
-  EXPECT_GE(few.multipliers.size(), 8U);
+  EXPECT_GE(few.multipliers.size(), 4U);
   EXPECT_LT(few.multipliers.size(), modes.multipliers.size());
   for (const Answer* a : {&modes, &few})
     for (std::size_t k = 0; k < a->multipliers.size() && std::abs(a->multipliers[k]) > 0.2; ++k)
