@@ -233,7 +233,7 @@ void StripInverse::find(Entries<Scalar> entries, std::shared_ptr<Factors<Scalar>
     return yes != 0;
   };
   if (serve(at_hand)) return;
-  if (serve(known)) {
+  if (known && known != at_hand && serve(known)) {
     at_hand = std::move(known);
     return;
   }

@@ -79,6 +79,7 @@ void replace_file(const std::filesystem::path& path, MPI_Comm comm,
   } catch (...) {
     std::error_code ignored;
     if (first) std::filesystem::remove(part, ignored);
+    MPI_Barrier(comm);  // errors are agreed: all ranks are here, and none finds it any more
     throw;
   }
 }

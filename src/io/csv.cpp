@@ -66,7 +66,7 @@ public:
   // Nothing if the group is no table.
   [[nodiscard]] std::string text(const Group& group) const {
     for (const auto& [name, d] : group.datasets())
-      if (d.shape.size() > 2) return {};
+      if (d.shape.size() > 2 || d.share) return {};
     std::size_t rows = 0;
     bool known = false, two = false;
     for (const std::size_t axes : {2UL, 1UL}) {

@@ -40,7 +40,7 @@ Writer::Writer(MPI_Comm comm, fs::path directory, const std::string& title, cons
       manifest_(directory_),
       started_(std::chrono::steady_clock::now()) {
   core::agree(comm_, [&] {
-    // Every rank reads the same files; only rank 0 ever writes them.
+    // Every rank reads the same files, of arrays that were shared its rows. They are written together.
     if (!resume || !fs::exists(directory_ / "summary.json")) return;
     all_ = io::Summary::read(directory_ / "summary.json");
     earlier_seconds_ = all_.wall_seconds;

@@ -28,9 +28,12 @@ private:
     std::size_t bearing = 0;
     Eigen::Index row = 0;  // among those of all films here
     std::unique_ptr<film::StatePreconditioner> inverse;
-    Eigen::ArrayXd state, residual;  // scales of its states and rows here
+    Eigen::ArrayXd state, residual;  // scales of its states and rows here, which a parameter may change
     std::vector<double> rhs;
   };
+  /// Its derivatives at the state that was evaluated last.
+  const film::StateResponse& look(Film& film) const;
+
   RotorSystem& system_;
   std::shared_ptr<const FilmComms> comms_;  // outlives the inverses
   std::vector<Film> films_;                 // with rows on this rank
@@ -50,10 +53,6 @@ std::unique_ptr<problem::PartInverse> RotorSystem::make_part_inverse() {
 }
 
 RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.film_comms_) {
-  core::Vector state = core::make_vector(s.comm_, s.local_size(), PETSC_DETERMINE),
-               residual = core::duplicate(state.get());
-  s.scales(state.get(), residual.get());
-  const core::ReadArray sa(state.get()), ra(residual.get());
   const PetscInt machine = s.local_size() - s.own_here_;
   for (const std::size_t b : FilmComms::in_order(*comms_, s.bearings_, [](const FilmPart&) { return true; })) {
     const FilmPart* part = s.bearings_[b].part.get();
@@ -62,8 +61,8 @@ RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.fil
     film.row = part->row() - machine;
     film.inverse = part->film().preconditioner(comms_->of(b), part->share());
     exact_ = exact_ && film.inverse && film.inverse->exact();
-    film.state = ConstMap(sa.data() + part->row(), part->rows());
-    film.residual = ConstMap(ra.data() + part->row(), part->rows());
+    film.state.resize(part->rows());
+    film.residual.resize(part->rows());
     film.rhs.resize(static_cast<std::size_t>(part->rows()));
   }
   MPI_Allreduce(MPI_IN_PLACE, &exact_, 1, MPI_CXX_BOOL, MPI_LAND, s.comm_);
@@ -77,10 +76,16 @@ bool RotorSystem::FilmInverse::complete() const {
   return all;
 }
 
+const film::StateResponse& RotorSystem::FilmInverse::look(Film& film) const {
+  const FilmPart& part = *system_.bearings_[film.bearing].part;
+  part.scales(film.state.data(), film.residual.data());
+  return part.response();
+}
+
 void RotorSystem::FilmInverse::set(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma) {
   system_.evaluate_films(x, xdot, film::Need::tangents);
   for (Film& film : films_) {
-    const film::StateResponse& own = system_.bearings_[film.bearing].part->response();
+    const film::StateResponse& own = look(film);
     film.inverse->set(own.d_states, own.d_rates, alpha, sigma);
   }
 }
@@ -107,7 +112,7 @@ void RotorSystem::FilmInverse::apply_transposed(const double* r, double* y) {
 void RotorSystem::FilmInverse::set_at(Vec x, Vec rest, std::complex<double> lambda) {
   system_.evaluate_films(x, rest, film::Need::tangents);
   for (Film& film : films_) {
-    const film::StateResponse& own = system_.bearings_[film.bearing].part->response();
+    const film::StateResponse& own = look(film);
     film.inverse->set_at(own.d_states, own.d_rates, lambda);
   }
 }

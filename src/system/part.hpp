@@ -43,7 +43,7 @@ public:
   virtual void residual(const Moment& at, double* f) const = 0;
   /// f [rows()] = their derivatives in the speed, likewise.
   virtual void speed_derivative(const Moment& at, double* f) const = 0;
-  /// Adds how many entries each local row of the Jacobian has for it, whoever owns the row [local rows].
+  /// Adds how many entries its rows here have in the Jacobian [local rows].
   virtual void count_entries(std::span<PetscInt> count) const = 0;
 };
 

@@ -47,31 +47,32 @@ void RotorSystem::settle(Vec x) {
         if (!found[f.bearing]) evaluate(f.bearing, *bearings_[f.bearing].part, in, film::Need::tangents);
     });
     std::vector<double> moved(bearings_.size(), 0.0);
-    {
-      const core::WriteArray xa(x);
-      for (Settling::Film& film : s.films) {
-        if (found[film.bearing]) continue;
-        const FilmPart& part = *bearings_[film.bearing].part;
-        const film::StateResponse& own = part.response();
-        film.inverse->set(own.d_states, own.d_rates, 1, 0);
-        film.inverse->apply(own.residual, film.step);
-        for (const problem::Field& f : part.fields({}))
-          for (PetscInt j = f.begin; j < f.end; ++j) {
-            const double step = film.step[static_cast<std::size_t>(j - part.row())];
-            xa[j] -= step;
-            moved[film.bearing] += std::pow(step / f.scale, 2);
-          }
-      }
+    for (Settling::Film& film : s.films) {
+      if (found[film.bearing]) continue;
+      const FilmPart& part = *bearings_[film.bearing].part;
+      const film::StateResponse& own = part.response();
+      film.inverse->set(own.d_states, own.d_rates, 1, 0);
+      film.inverse->apply(own.residual, film.step);
+      for (const problem::Field& f : part.fields({}))
+        for (PetscInt j = f.begin; j < f.end; ++j)
+          moved[film.bearing] += std::pow(film.step[static_cast<std::size_t>(j - part.row())] / f.scale, 2);
     }
     MPI_Allreduce(MPI_IN_PLACE, moved.data(), static_cast<int>(moved.size()), MPI_DOUBLE, MPI_SUM, comm_);
+    if (!std::all_of(moved.begin(), moved.end(), [](double d) { return std::isfinite(d); }))
+      core::agree(comm_, [] { throw core::NotConverged("a film by itself is singular"); });
+    {
+      const core::WriteArray xa(x);
+      for (const Settling::Film& film : s.films)
+        for (std::size_t j = 0; !found[film.bearing] && j < film.step.size(); ++j)
+          xa[bearings_[film.bearing].part->row() + static_cast<PetscInt>(j)] -= film.step[j];
+    }
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       if (found[i]) continue;
-      if (!std::isfinite(moved[i])) throw core::NotConverged("a film by itself is singular");
       found[i] = std::sqrt(moved[i]) <= enough * std::sqrt(static_cast<double>(bearings_[i].part->count()));
     }
     if (std::find(found.begin(), found.end(), 0) == found.end()) return;
   }
-  throw core::NotConverged("the films by themselves did not settle");
+  core::agree(comm_, [] { throw core::NotConverged("the films by themselves did not settle"); });
 }
 
 }  // namespace whirl::system

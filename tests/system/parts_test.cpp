@@ -13,7 +13,7 @@ using core::check;
 
 namespace {
 
-// One film tilts, the other one has states of its own if wanted.
+// Films that tilt; the second one has states of its own if wanted.
 system::Train machine(bool states) {
   system::Train t = test::overhung(true, {24, 6});
   film::Reynolds& second = film::as<film::Reynolds>(t.supports[1].film);
@@ -77,7 +77,7 @@ TEST_P(Parts, MeetAtPortsAlone) {
         forces[static_cast<std::size_t>(2 * s.journal(b, d))] += force;
         if (d < 2 && s.pedestal(b, d) >= 0) forces[static_cast<std::size_t>(2 * s.pedestal(b, d))] -= force;
       }
-    // What holds its content feels no speed until it flows.
+    // Here only the second film feels the speed, and that not while it holds its content.
     if (!speed || !GetParam()) {
       EXPECT_GT(felt, speed ? 1e-3 : 1.0) << "N, or N s";
     }

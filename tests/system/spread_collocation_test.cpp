@@ -142,12 +142,9 @@ TEST(SpreadCollocation, IsCollocationOnLiners) {
   compare(c, 2, uneven(10), options(2));
 }
 
-// One elimination for some neighbours, and points of higher degree.
-TEST(SpreadCollocation, SharesEliminations) {
+TEST(SpreadCollocation, IsCollocationOfHigherDegree) {
   const Case c = liner();
-  auto o = options(3);
-  o.eliminations = 3;
-  compare(c, 3, uneven(6), o);
+  compare(c, 3, uneven(6), options(3));
 }
 
 TEST(SpreadCollocation, IsCollocationOnContents) {

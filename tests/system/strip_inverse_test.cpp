@@ -74,7 +74,14 @@ TEST_P(Strips, AreSolvedAtComplexFrequencies) {
     ASSERT_LE(std::abs(x[k] - exact(s.share.begin + static_cast<Eigen::Index>(k))), 1e-9 * largest) << k;
 }
 
-INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(content_films()),
+// All content films, and one of three columns: on three ranks cuts stand side by side and behind the last column.
+std::vector<ContentCase> strips() {
+  std::vector<ContentCase> out = content_films();
+  out.push_back({"three_columns", arc(), dynamic({4, 6}), {0.2, -0.6, 0.1, 0.1}, {}});
+  return out;
+}
+
+INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(strips()),
                          [](const auto& which) { return which.param.name; });
 
 // What settled a film has factorised what Newton's method asks for next.

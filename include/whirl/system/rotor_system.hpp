@@ -44,11 +44,11 @@ struct JournalState : PlaceState {
 ///
 /// in this order, so that no diagonal entry of dF/dx is zero. alpha is the shaft's angular acceleration, whose torque
 /// follows the bent axis and adds no moment of its own. f_film acts on the journal and with the opposite sign on
-/// the pedestal. Rows follow the rotor's distribution; pedestals are on its last rank. Film i is evaluated on rank i
-/// mod size, its force and tangents are summed over the ranks. The own states of films that have some follow behind
-/// all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are shared out over all ranks, cut where
-/// the films allow it; the rotor then stands with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with
-/// errata 14, 20, 23.
+/// the pedestal. Rows follow the rotor's distribution; pedestals are on its last rank. A film without own states is
+/// evaluated on one rank, film i on rank i mod size; its force and tangents are summed over the ranks. The own states
+/// of films that have some follow behind all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are
+/// shared out over all ranks, cut where the films allow it; the rotor then stands with the pedestals on the first rank.
+/// Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public Plant, public problem::Settles {
 public:
   /// The speed [rad/s] is the parameter.

@@ -50,10 +50,6 @@ SpreadCollocation::SpreadCollocation(problem::System& system, const SpreadColloc
 
 SpreadCollocation::~SpreadCollocation() = default;
 
-bool SpreadCollocation::serves(const problem::System& system) {
-  return PortElimination::serves(system.fields());
-}
-
 std::vector<problem::Field> SpreadCollocation::fields() const {
   return {{"orbit", 0, static_cast<PetscInt>(intervals() * scheme().degree * local())}};
 }
@@ -81,13 +77,6 @@ void SpreadCollocation::residuals(Vec u, double period, MatrixXd& r) {
   const auto x = nodes(ua);
   r.resize(scheme().degree * local(), intervals());
   for (Index i = 0; i < intervals(); ++i) residual_of(x, i, period, r.col(i).data());
-}
-
-// Neighbours of one length share an elimination, in runs that leave as many as may be held.
-bool SpreadCollocation::shares(Index i, Index first) const {
-  if (options_.eliminations <= 0) return false;
-  const Index run = (intervals() + options_.eliminations - 1) / options_.eliminations;
-  return i - first < run && std::abs(length(i) - length(first)) < 1e-9 * length(i);
 }
 
 std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<const MatrixXd>& x, Index i,
@@ -132,26 +121,24 @@ void SpreadCollocation::linearise_intervals(Vec u, double period) {
   const core::ReadArray ua(u);
   const auto x = nodes(ua);
   intervals_.clear();
-  intervals_.resize(at(intervals()));
   columns_.assign(at(intervals()), MatrixXd(scheme().degree * local(), borders()));
-  std::shared_ptr<PortElimination> similar;
+  constant_.reset();
+  std::vector<std::unique_ptr<SpreadInterval>> made;
   std::shared_ptr<const PortMatrix> rate;
-  Index first = 0;  // whose elimination it is
   for (Index i = 0; i < intervals(); ++i) {
-    if (i > 0 && !shares(i, first)) {
-      similar.reset();
-      first = i;
-    }
-    intervals_[at(i)] = interval_at(x, i, period, rate, similar, &columns_[at(i)]);
+    std::shared_ptr<PortElimination> own;
+    made.push_back(interval_at(x, i, period, rate, own, &columns_[at(i)]));
   }
+  intervals_ = std::move(made);
   constant_ = options().constant_rates ? rate : nullptr;
+  constant_at_ = system().parameter();
 }
 
 double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
   const Index m = scheme().degree;
-  const PortLayout& layout = *tools_->maker->layout();
   const VectorXd end = x.col(i * m + m - 1);
-  std::shared_ptr<PortElimination> similar = intervals_[at(i)]->similar();
+  // Factors of the last linearisation precondition here as well; without any, those of the first step do.
+  std::shared_ptr<PortElimination> similar = intervals_.empty() ? nullptr : intervals_[at(i)]->similar();
   MatrixXd step(m * local(), 1);
   const auto largest_of = [&](const auto& v) {
     double size = v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
@@ -160,8 +147,9 @@ double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
   };
   for (int k = 0; k < settling_steps; ++k) {
     residual_of(x, i, period, step.data());
-    SpreadStep::hold(layout, step.data(), m);
-    interval_at(x, i, period, constant_, similar, nullptr)->solve(step, settling_tolerance, true);
+    const auto interval = interval_at(x, i, period, constant_, similar, nullptr);
+    SpreadStep::hold(*tools_->maker->layout(), step.data(), m);  // known once there is a matrix
+    interval->solve(step, settling_tolerance, true);
     x.middleCols(i * m, m) -= Map<const MatrixXd>(step.data(), local(), m);
     if (largest_of(step) <= settled) return largest_of(x.col(i * m + m - 1) - end);
   }
@@ -169,7 +157,6 @@ double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
 }
 
 bool SpreadCollocation::settle(Vec u) {
-  if (intervals_.empty()) return false;
   MatrixXd x;
   {
     const core::ReadArray ua(u);
@@ -177,6 +164,7 @@ bool SpreadCollocation::settle(Vec u) {
   }
   try {
     const double period = begin_point(border_of(u));
+    if (constant_at_ != system().parameter()) constant_.reset();
     double moved = 1;
     for (int lap = 0; lap < settling_laps && moved > settled; ++lap) {
       for (Index i = 0; i < intervals(); ++i) {

@@ -17,24 +17,21 @@ struct SpreadCollocationOptions : NewtonPicardOptions {
   double mesh_tolerance = 0;  ///< error per interval for adapt(); 0 keeps the mesh
   int base_intervals = 0;     ///< adapt() never makes a mesh coarser than this uniform one; 0: its longest interval
   int max_intervals = 400;
-  int eliminations = 0;  ///< at most so many are held, which neighbours share; 0: one for each interval
 };
 
 /// The equations of CycleProblem at Radau points, F(2 pi k s, x(s), x'(s)/T; p) = 0 with x(0) = x(1), for a machine
 /// made of parts on the ranks of its own communicator. Each rank holds its rows of the states at all points and of the
-/// blocks of dF/dx and dF/d(dx/dt) there: memory grows with states times points, and with the eliminations that are
-/// held. How an interval is solved: see SpreadInterval.
+/// blocks of dF/dx and dF/d(dx/dt) there: memory grows with states times points, and with one elimination for each
+/// interval. How an interval is solved: see SpreadInterval.
 class SpreadCollocation final : public SpreadCycle {
 public:
-  /// `system` outlives this and has parts that an elimination keeps apart (see serves()).
+  /// `system` outlives this and has parts that an elimination keeps apart; core::Bug of others.
   SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh);
   ~SpreadCollocation() override;
-  /// Whether a system's parts can be told apart. Collective.
-  [[nodiscard]] static bool serves(const problem::System& system);
 
   [[nodiscard]] bool settles() const override { return true; }
   /// The films, with the hub and all that they see of it held, from interval to interval and lap after lap until what
-  /// enters each interval stays. Nothing before the first linearisation.
+  /// enters each interval stays.
   bool settle(Vec u) override;
   bool adapt(core::Vector& u, core::Vector& tangent) override;
   /// "orbit": the states at all points of time.
@@ -64,13 +61,13 @@ private:
                                                             Eigen::MatrixXd* columns);
   /// How far the end of interval i has moved.
   double settle_interval(Eigen::MatrixXd& x, Eigen::Index i, double period);
-  [[nodiscard]] bool shares(Eigen::Index i, Eigen::Index first) const;
-
   SpreadCollocationOptions options_;
   struct Tools;
   std::unique_ptr<Tools> tools_;
   core::Vector value_, rate_, f_;
-  std::shared_ptr<const PortMatrix> constant_;  // dF/d(dx/dt) of the last linearisation, if it is constant
+  // dF/d(dx/dt) of the last linearisation if it depends on nothing but the parameter, and the parameter.
+  std::shared_ptr<const PortMatrix> constant_;
+  double constant_at_ = 0;
   std::vector<std::unique_ptr<SpreadInterval>> intervals_;
   std::vector<Eigen::MatrixXd> columns_;
 };
