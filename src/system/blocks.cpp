@@ -195,8 +195,8 @@ void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::Vector
     return system_.slope().derivative(angle, vector(x).get(), vector(xdot).get(), vector(out).get());
   }
   out.resize(n + k);
-  out.head(n) = gyroscopic_ * x.head(n);
-  out.head(n) -= b_ * films.d_speed.head(b_.cols());
+  out.head(n).noalias() = gyroscopic_ * x.head(n);
+  out.head(n).noalias() -= b_ * films.d_speed.head(b_.cols());
   out.tail(k) = films.d_speed.tail(k);
   if (!system_.forcing_) return;
   const double c = 2 * system_.speed_ * std::cos(angle), s = 2 * system_.speed_ * std::sin(angle);

@@ -55,8 +55,10 @@ std::vector<JournalState> RotorSystem::journals_of(std::span<const double> input
 film::Motion RotorSystem::motion(std::size_t bearing, std::span<const double> place,
                                  std::span<const double> rate) const {
   film::Motion motion;
-  std::copy(place.begin(), place.end(), motion.position.begin());
-  std::copy(rate.begin(), rate.end(), motion.velocity.begin());
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    motion.position[k] = place[k];
+    motion.velocity[k] = rate[k];
+  }
   motion.position[1] -= train_.supports[bearing].elevation;
   for (std::size_t d = 0; d < 2; ++d) motion.position[2 + d] -= axes_[bearing][d];
   motion.speed = speed_;
@@ -64,8 +66,8 @@ film::Motion RotorSystem::motion(std::size_t bearing, std::span<const double> pl
 }
 
 std::vector<JournalState> RotorSystem::journals(const double* x) const {
-  std::vector<double> inputs;
-  for (std::size_t k = 0; k < journal_inputs_; ++k) inputs.push_back(x[wanted_[k]]);
+  std::vector<double> inputs(journal_inputs_);
+  for (std::size_t k = 0; k < journal_inputs_; ++k) inputs[k] = x[wanted_[k]];
   return journals_of(inputs);
 }
 

@@ -201,9 +201,9 @@ void ScaledPoint::matrices(const PointState& at, MatrixXd& jx, MatrixXd& jxdot) 
   const Index n = structure_->size();
   jx.setZero(size(), size());
   jxdot.setZero(size(), size());
-  const DenseBlocks all = with_blocks([](const auto& blocks) {
-    return DenseBlocks{MatrixXd(blocks.l1), MatrixXd(blocks.l0), MatrixXd(blocks.b), MatrixXd(blocks.c)};
-  });
+  DenseBlocks made;
+  if (sparse_) made = {MatrixXd(thin_.l1), MatrixXd(thin_.l0), MatrixXd(thin_.b), MatrixXd(thin_.c)};
+  const DenseBlocks& all = sparse_ ? made : dense_;
   jx.topLeftCorner(n, n) = all.l0;
   jx.topLeftCorner(n, n).noalias() -= all.b * (at.films.d_inputs * all.c);
   jxdot.topLeftCorner(n, n) = all.l1;
