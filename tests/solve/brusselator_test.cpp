@@ -8,6 +8,7 @@
 #include "reference/brusselator.hpp"
 #include "support/at_points.hpp"
 #include "support/brusselator.hpp"
+#include "support/cycle_rows.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
@@ -84,7 +85,8 @@ void newton_picard(const test::BrusselatorCycle& reference, const solve::Tableau
   solve::NewtonPicardOptions o;
   o.autonomous = true;
   solve::NewtonPicardProblem problem(s, o, tableau, steps, solve::uniform_mesh(intervals));
-  const auto start = test::at_points(points(), guess(reference.cells), solve::uniform_mesh(intervals));
+  const auto start =
+      test::rows_of(test::at_points(points(), guess(reference.cells), solve::uniform_mesh(intervals)), s);
   problem.set_phase_reference(start);
   core::Vector u = problem.scatter(start);
   const auto result = fixed(problem, u.get());
@@ -174,11 +176,11 @@ TEST(Brusselator, NewtonPicardOnAnyNumberOfRanks) {
     solve::NewtonPicardOptions o;
     o.autonomous = true;
     solve::NewtonPicardProblem problem(s, o, t, steps, solve::uniform_mesh(intervals));
-    const auto start = test::at_points(points(), guess(8), solve::uniform_mesh(intervals));
+    const auto start = test::rows_of(test::at_points(points(), guess(8), solve::uniform_mesh(intervals)), s);
     problem.set_phase_reference(start);
     core::Vector u = problem.scatter(start);
     fixed(problem, u.get());
-    return std::pair(problem.gather(u.get()), problem.multipliers());
+    return std::pair(test::whole_of(problem.gather(u.get()), s), problem.multipliers());
   };
   for (const auto& [t, intervals, steps] : {std::tuple(solve::sdirk(2), 1, 8), std::tuple(solve::heun(), 24, 1)}) {
     const auto whole = run(MPI_COMM_WORLD, t, intervals, steps), alone = run(PETSC_COMM_SELF, t, intervals, steps);
