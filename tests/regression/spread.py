@@ -78,7 +78,7 @@ def compare(one, other, studies, within):
         worst, where = 0, "all"
         for key in TABLE:
             x, y = (d[f"studies/{s}/branch/{key}"] for d in (a, b))
-            d = abs(x - y).max() / abs(y).max() if x.shape == y.shape else float("inf")
+            d = abs(x - y).max() / (abs(y).max() or 1) if x.shape == y.shape else float("inf")
             if not d <= worst:
                 worst, where = d, key
         h.close(f"{one}, {other}: {s}, worst difference, of {where}", worst, 0, within)

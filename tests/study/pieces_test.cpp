@@ -88,7 +88,7 @@ TEST_F(Interrupted, AnswersKeepTheirVectors) {
     PetscInt begin = 0;
     core::check(VecGetOwnershipRange(v.get(), &begin, nullptr));
     const core::WriteArray a(v.get());
-    for (PetscInt i = 0; i < a.size(); ++i) a[i] = 0.5 * static_cast<double>(begin + i);
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = 0.5 * static_cast<double>(begin + i + 1);
     return v;
   };
   const core::Vector kept = numbered(rank + 1), short_one = numbered(1);
