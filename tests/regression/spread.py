@@ -5,6 +5,7 @@ flip on finer films go the same way.
 
 spread.py PROGRAM SOURCE LAUNCHER
 """
+import shutil
 import subprocess
 import sys
 import time
@@ -15,7 +16,10 @@ from compare import datasets
 from harness import Harness, kill
 
 h = Harness(sys.argv[1], sys.argv[2], sys.argv[3:])
-FLIP = """      follow_flips: true
+SHORT = "      max_points: 3\n"
+FLIP = """      max_points: 3
+      at: [325 rad/s]
+      follow_flips: true
       flips: [1]
   - mesh_convergence: {name: fine, of: s, doublings: 1}
 """
@@ -42,33 +46,36 @@ studies:
       intervals: 12
       degree: 2
       mesh_tolerance: 1e-3
-      at: [325 rad/s]
-      max_points: 3
 """ + more)
     return path
 
 
-def by_rows(file, name):
-    return name in file and file[name].id.get_create_plist().get_fill_time() == h5py.h5d.FILL_TIME_NEVER
-
-
-def killed(name, ranks, more, flags, wanted):
-    """A run that is killed as soon as its checkpoint holds the dataset `wanted`, which must be by rows."""
-    out = h.work / name
-    process = subprocess.Popen(h.command(deck("all_ranks", more), out, flags=flags, launcher=on(ranks)),
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def killed(name, ranks, more, wanted):
+    """A run, resumed if there is one, that is killed as soon as its checkpoint holds the dataset `wanted`, which must be by
+    rows. One that ends before it is seen is begun again."""
+    out, before = h.work / name, h.work / "before"
     found, limit = None, time.monotonic() + 400
-    while found is None and process.poll() is None and time.monotonic() < limit:
-        time.sleep(1e-3)
-        try:
-            with h5py.File(out / "s.checkpoint.h5") as f:
-                if wanted in f:
-                    found = by_rows(f, wanted)
-        except OSError:  # there is none at this moment
-            pass
-    running = process.poll() is None
-    kill(process)
-    h.true(f"{name}: killed on {ranks} ranks with {wanted} by rows in the checkpoint", running and found, f"{running}, {found}")
+    shutil.rmtree(before, ignore_errors=True)
+    if out.exists():
+        shutil.copytree(out, before)
+    while found is None and time.monotonic() < limit:
+        shutil.rmtree(out, ignore_errors=True)
+        if before.exists():
+            shutil.copytree(before, out)
+        process = subprocess.Popen(h.command(deck("all_ranks", more), out, flags=["--resume"] if out.exists() else [],
+                                             launcher=on(ranks)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while found is None and process.poll() is None and time.monotonic() < limit:
+            time.sleep(1e-3)
+            try:
+                with h5py.File(out / "s.checkpoint.h5") as f:
+                    if wanted in f:
+                        found = f[wanted].id.get_create_plist().get_fill_time() == h5py.h5d.FILL_TIME_NEVER
+            except OSError:  # there is none at this moment
+                pass
+        if process.poll() is not None:
+            found = None
+        kill(process)
+    h.true(f"{name}: killed on {ranks} ranks with {wanted} by rows in the checkpoint", found, f"{found}")
 
 
 def compare(one, other, studies, within):
@@ -94,14 +101,16 @@ alone = h.run(deck("all_ranks"), "alone", launcher=[])
 h.true("the flip is met and followed", [s["points"] for s in alone.values()] == [3, 3, 2], f"{[s['points'] for s in alone.values()]}")
 compare("alone", "whole", ("s", "s flip 1"), 1e-6)
 # Killed within its first point, and behind it; the rest on as many ranks, with all that was left.
-killed("two", 2, FLIP, [], "journal/vector 1")
-killed("two", 2, FLIP, ["--resume"], "state/cycle/states")
-h.run(deck("all_ranks"), "two", flags=["--resume"], launcher=on(2))
-compare("two", "alone", ("s", "s flip 1"), 1e-7)
-fine = [h.studies(name)["fine"]["bifurcations"][0]["value"] for name in ("two", "alone")]
-h.close("two, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
-h.run(deck("all_ranks", ""), "branch", launcher=[])
-killed("three", 3, "", [], "state/cycle/states")
-h.run(deck("all_ranks", ""), "three", flags=["--resume"], launcher=[])
+killed("two", 2, FLIP, "state/journal/vector 1")
+killed("two", 2, FLIP, "state/state/cycle/states")
+shutil.copytree(h.work / "two", h.work / "one")
+for name, ranks in (("two", 2), ("one", 1)):
+    h.run(deck("all_ranks"), name, flags=["--resume"], launcher=on(ranks))
+    compare(name, "alone", ("s", "s flip 1"), 1e-7)
+    fine = [h.studies(run)["fine"]["bifurcations"][0]["value"] for run in (name, "alone")]
+    h.close(f"{name}, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
+h.run(deck("all_ranks", SHORT), "branch", launcher=[])
+killed("three", 1, SHORT, "state/state/cycle/states")
+h.run(deck("all_ranks", SHORT), "three", flags=["--resume"], launcher=on(3))
 compare("three", "branch", ("s",), 1e-7)
 h.finish()
