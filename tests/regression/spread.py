@@ -11,6 +11,7 @@ import sys
 import time
 
 import h5py
+import numpy
 
 from compare import datasets
 from harness import Harness, kill
@@ -100,6 +101,10 @@ h.run(deck("one_rank"), "whole", launcher=[])
 alone = h.run(deck("all_ranks"), "alone", launcher=[])
 h.true("the flip is met and followed", [s["points"] for s in alone.values()] == [3, 3, 2], f"{[s['points'] for s in alone.values()]}")
 compare("alone", "whole", ("s", "s flip 1"), 1e-6)
+found = datasets(h.work / "alone/results.h5")
+real, imag = (found[f"studies/s/branch/multipliers_{part}"] for part in ("real", "imag"))
+h.true("multipliers that were not searched for are no numbers, and none is zero",
+       numpy.isnan(real[:, -1]).all() and not numpy.any((real == 0) & (imag == 0)), f"{real[0]}")
 # Killed within its first point, and behind it; the rest on as many ranks, with all that was left.
 killed("two", 2, FLIP, "state/journal/vector 1")
 killed("two", 2, FLIP, "state/state/cycle/states")
