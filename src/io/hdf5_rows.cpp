@@ -3,7 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -78,23 +81,31 @@ void write_rows(MPI_Comm comm, const std::filesystem::path& part, const Group& r
   core::agree(comm, [&] { file->close(); });
 }
 
+// Counts of messages are int: more numbers than that go in several.
+constexpr std::uint64_t most_at_once = 1 << 28;
+
 template <class T>
 std::vector<T> gather(const std::vector<T>& here, std::size_t begin, std::size_t total, MPI_Datatype type,
                       MPI_Comm comm) {
-  std::vector<int> counts(static_cast<std::size_t>(core::size_of(comm))), places(counts.size());
-  const int count = static_cast<int>(here.size()), place = static_cast<int>(begin);
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  MPI_Allgather(&place, 1, MPI_INT, places.data(), 1, MPI_INT, comm);
   std::vector<T> all(total);
-  MPI_Allgatherv(here.data(), count, type, all.data(), counts.data(), places.data(), type, comm);
+  std::copy(here.begin(), here.end(), all.begin() + static_cast<std::ptrdiff_t>(begin));
+  for (int rank = 0; rank < core::size_of(comm); ++rank) {
+    std::array<std::uint64_t, 2> run{begin, here.size()};
+    MPI_Bcast(run.data(), 2, MPI_UINT64_T, rank, comm);
+    for (std::uint64_t done = 0; done < run[1]; done += most_at_once)
+      MPI_Bcast(all.data() + run[0] + done, static_cast<int>(std::min(most_at_once, run[1] - done)), type, rank, comm);
+  }
   return all;
 }
 
 }  // namespace
 
 void make_whole(Group& root, MPI_Comm comm) {
-  for (const auto& [name, data] : std::map(root.datasets())) {
-    if (!data.share) continue;
+  std::vector<std::string> shared;
+  for (const auto& [name, data] : root.datasets())
+    if (data.share) shared.push_back(name);
+  for (const std::string& name : shared) {
+    const Dataset& data = root.dataset(name);
     std::size_t row = 1;
     for (std::size_t axis = 1; axis < data.shape.size(); ++axis) row *= data.shape[axis];
     Dataset whole{data.whole_shape(), {}, data.unit, data.description};

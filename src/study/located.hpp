@@ -23,7 +23,8 @@ struct Located {
 
 /// Whether a study of the deck goes on from the bifurcations of the study `name`, which then keeps them.
 [[nodiscard]] bool is_followed(const Context& context, const std::string& name);
-void write_located(io::Group& group, const std::vector<Located>& all);
-[[nodiscard]] std::vector<Located> read_located(const io::Group& group);
+/// `like` as of write_cycle().
+void write_located(io::Group& group, const std::vector<Located>& all, Vec like = nullptr);
+[[nodiscard]] std::vector<Located> read_located(const io::Group& group, Vec like = nullptr);
 
 }  // namespace whirl::study

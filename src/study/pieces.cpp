@@ -11,20 +11,40 @@ namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
+constexpr std::int64_t as_rows = -1;  // the size of a vector that is a dataset of its own
+
+std::string name_of_rows(std::size_t k) {
+  return "vector " + std::to_string(k);
+}
+
 void write_journal(io::Group& group, const solve::Journal& journal) {
   std::vector<double> numbers;
   std::vector<std::int64_t> sizes;
   std::vector<std::string> texts;
+  const auto add = [&](const std::vector<double>& part) {
+    numbers.insert(numbers.end(), part.begin(), part.end());
+    sizes.push_back(static_cast<std::int64_t>(part.size()));
+  };
+  std::size_t by_rows = 0;
   for (const auto& e : journal.entries()) {
-    for (const auto* part : {&e.question, &e.answer.numbers}) {
-      numbers.insert(numbers.end(), part->begin(), part->end());
-      sizes.push_back(static_cast<std::int64_t>(part->size()));
-    }
+    add(e.question);
+    add(e.answer.numbers);
     sizes.push_back(static_cast<std::int64_t>(e.state));
+    sizes.push_back(static_cast<std::int64_t>(e.answer.vectors.size()));
+    for (const solve::Journal::Rows& v : e.answer.vectors) {
+      if (v.whole) {
+        add(v.values);
+        continue;
+      }
+      sizes.push_back(as_rows);
+      group.put(name_of_rows(++by_rows),
+                io::Dataset{{v.values.size()}, v.values, "1", "of an answer", io::Share{v.begin, v.total}});
+    }
     texts.insert(texts.end(), {e.kind, e.answer.text});
   }
-  group.put("numbers", std::move(numbers), "1", "questions and answers");
-  group.put("sizes", std::move(sizes), "numbers of question and answer, and state");
+  group.put("numbers", std::move(numbers), "1", "questions and answers, and their vectors unless these stand apart");
+  group.put("sizes", std::move(sizes),
+            "of each entry: of question and answer, state, number of vectors and their sizes; -1: stands apart");
   group.put("texts", std::move(texts), "kind of question, and what was said");
 }
 
@@ -37,12 +57,23 @@ std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
     const auto begin = std::exchange(at, at + n);
     return std::vector<double>(begin, at);
   };
-  for (std::size_t k = 0; 3 * k < sizes.size(); ++k) {
-    std::vector<double> question = next(sizes[3 * k]), answer = next(sizes[3 * k + 1]);
-    entries.push_back({texts[2 * k],
-                       std::move(question),
-                       {std::move(answer), texts[2 * k + 1]},
-                       static_cast<solve::Journal::State>(sizes[3 * k + 2])});
+  std::size_t by_rows = 0;
+  for (std::size_t k = 0, s = 0; s < sizes.size(); ++k) {
+    solve::Journal::Entry e{texts[2 * k], next(sizes[s]), {next(sizes[s + 1]), texts[2 * k + 1]}};
+    e.state = static_cast<solve::Journal::State>(sizes[s + 2]);
+    const std::int64_t vectors = sizes[s + 3];
+    s += 4;
+    for (std::int64_t v = 0; v < vectors; ++v, ++s) {
+      if (sizes[s] != as_rows) {
+        e.answer.vectors.push_back({true, 0, static_cast<std::size_t>(sizes[s]), next(sizes[s])});
+        continue;
+      }
+      const io::Dataset& data = group.dataset(name_of_rows(++by_rows));
+      const auto& rows = std::get<std::vector<double>>(data.values);
+      const io::Share share = data.share.value_or(io::Share{0, rows.size()});
+      e.answer.vectors.push_back({!data.share, share.begin, share.total, rows});
+    }
+    entries.push_back(std::move(e));
   }
   return entries;
 }

@@ -18,7 +18,7 @@ namespace whirl::study {
 /// computes now. What a piece that is under way has found, and what is found between pieces, is in the journal. The
 /// checkpoint is the state() of the study with pieces and journal since then. It is saved after each of them if half a
 /// second has passed since it was saved last (more if saving takes long), so that a kill costs less than a second and
-/// the work under way. Every rank holds the same; all members are collective.
+/// the work under way. Every rank holds the same, but for its rows of shared datasets; all members are collective.
 class Pieces {
 public:
   /// With `resume`, takes over the checkpoint of an earlier run if there is one. Without `save` no file is written.
@@ -27,7 +27,7 @@ public:
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
 
-  /// What else the checkpoint holds; empty until set.
+  /// What else the checkpoint holds, with the rows of shared datasets that fell to this rank; empty until set.
   [[nodiscard]] const io::Group& state() const { return state_; }
 
   /// Whether the state was saved with unknowns in the order of this run.

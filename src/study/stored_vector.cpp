@@ -5,8 +5,13 @@
 namespace whirl::study {
 
 using core::check;
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
 
 namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr const char* unit = "1";  // of scaled entries
 
@@ -16,6 +21,12 @@ io::Share place_of(Vec v) {
   check(VecGetOwnershipRange(v, &begin, nullptr));
   check(VecGetSize(v, &size));
   return {static_cast<std::size_t>(begin), static_cast<std::size_t>(size)};
+}
+
+std::size_t rows_here(Vec v) {
+  PetscInt local = 0;
+  check(VecGetLocalSize(v, &local));
+  return static_cast<std::size_t>(local);
 }
 
 }  // namespace
@@ -40,46 +51,37 @@ void take_vector(const io::Group& group, const std::string& name, Vec v) {
     core::fill(v, group.reals(name));
 }
 
-// Whole ones stand one after the other; shared ones side by side, so that a rank's rows are rows of the array.
-void put_vectors(io::Group& group, const std::string& name, const std::vector<std::vector<double>>& vectors, Vec like,
-                 bool shared, const std::string& description) {
-  const std::size_t count = vectors.size();
-  std::vector<double> flat;
-  if (!shared) {
-    PetscInt size = 0;
-    check(VecGetSize(like, &size));
-    for (const auto& v : vectors) {
-      core::require(v.size() == static_cast<std::size_t>(size), "whole vectors, or shared ones");
-      flat.insert(flat.end(), v.begin(), v.end());
-    }
-    return group.put(name, {count, static_cast<std::size_t>(size)}, std::move(flat), unit, description);
-  }
-  const std::size_t n = entries_here(like).size();
-  for (std::size_t i = 0; i < n; ++i)
-    for (const auto& v : vectors) flat.push_back(v[i]);
-  group.put(name, io::Dataset{{n, count}, std::move(flat), unit, description + ", side by side", place_of(like)});
+void put_columns(io::Group& group, const std::string& name, const MatrixXd& columns, Vec like, const std::string& unit,
+                 const std::string& description) {
+  // A cycle that is none has no rows either; its ranks have their place nevertheless.
+  const std::size_t rows = like ? rows_here(like) : static_cast<std::size_t>(columns.rows()),
+                    count = static_cast<std::size_t>(columns.cols());
+  core::require(count == 0 || static_cast<std::size_t>(columns.rows()) == rows, "columns with the rows of this rank");
+  std::vector<double> flat(rows * count);
+  if (count > 0) Map<RowMajor>(flat.data(), columns.rows(), columns.cols()) = columns;
+  io::Dataset data{{rows, count}, std::move(flat), unit, description};
+  if (like) data.share = place_of(like);
+  group.put(name, std::move(data));
 }
 
-std::vector<std::vector<double>> take_vectors(const io::Group& group, const std::string& name, Vec like) {
+MatrixXd take_columns(const io::Group& group, const std::string& name, Vec like) {
   const io::Dataset& data = group.dataset(name);
-  const core::Vector v = core::duplicate(like);
-  std::vector<std::vector<double>> out;
-  if (!data.share) {
-    const auto& flat = group.reals(name);
-    for (std::size_t k = 0; k < data.shape.at(0); ++k) {
-      const auto begin = flat.begin() + static_cast<std::ptrdiff_t>(k * data.shape.at(1));
-      core::fill(v.get(), {begin, begin + static_cast<std::ptrdiff_t>(data.shape.at(1))});
-      out.push_back(entries_here(v.get()));
-    }
-    return out;
-  }
+  core::require(like || !data.share, "shared columns want a vector with the rows of this rank");
   const auto& flat = std::get<std::vector<double>>(data.values);
-  const std::size_t n = data.shape.at(0), count = data.shape.at(1);
-  for (std::size_t k = 0; k < count; ++k) {
-    std::vector<double> rows(n);
-    for (std::size_t i = 0; i < n; ++i) rows[i] = flat[i * count + k];
-    core::fill(v.get(), data.share->begin, rows);
-    out.push_back(entries_here(v.get()));
+  const Map<const RowMajor> rows(flat.data(), static_cast<Index>(data.shape.at(0)),
+                                 static_cast<Index>(data.shape.at(1)));
+  if (!like) return rows;
+  MatrixXd out(static_cast<Index>(rows_here(like)), rows.cols());
+  const core::Vector v = core::duplicate(like);
+  std::vector<double> column(data.shape.at(0));
+  for (Index k = 0; k < rows.cols(); ++k) {
+    Map<Eigen::VectorXd>(column.data(), rows.rows()) = rows.col(k);
+    if (data.share)
+      core::fill(v.get(), data.share->begin, column);
+    else
+      core::fill(v.get(), column);
+    const core::ReadArray a(v.get());
+    out.col(k) = Map<const Eigen::VectorXd>(a.data(), a.size());
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Vectors in checkpoints.
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,13 @@ void put_vector(io::Group& group, const std::string& name, Vec v, bool shared, c
 /// What put_vector() put into v, on whatever ranks. core::Error if it is of another size. Collective.
 void take_vector(const io::Group& group, const std::string& name, Vec v);
 
-/// The same of several vectors in the layout of `like`, of which each rank has its own entries: vectors that several
-/// ranks have are shared.
-void put_vectors(io::Group& group, const std::string& name, const std::vector<std::vector<double>>& vectors, Vec like,
-                 bool shared, const std::string& description);
-[[nodiscard]] std::vector<std::vector<double>> take_vectors(const io::Group& group, const std::string& name, Vec like);
+/// The same of several vectors side by side, columns [rows here x k], as the array [row][column]. `like` is one of
+/// which this rank has these rows, and they are shared; null: every rank has the same whole columns. Collective.
+void put_columns(io::Group& group, const std::string& name, const Eigen::MatrixXd& columns, Vec like,
+                 const std::string& unit, const std::string& description);
+/// Of what put_columns() put, on whatever ranks, the rows that this rank has of `like`; null: all of columns that are
+/// not shared.
+[[nodiscard]] Eigen::MatrixXd take_columns(const io::Group& group, const std::string& name, Vec like);
 
 /// This rank's entries.
 [[nodiscard]] std::vector<double> entries_here(Vec v);

@@ -76,6 +76,11 @@ std::vector<PlaceState> RotorSystem::shown(const double* x) const {
   return {all.begin(), all.end()};
 }
 
+std::vector<PlaceState> RotorSystem::shown_at(Vec x) {
+  const std::vector<JournalState> all = journals_of(gather_inputs(x));
+  return {all.begin(), all.end()};
+}
+
 film::Motion RotorSystem::motion(const JournalState& journal) const {
   film::Motion motion;
   for (std::size_t d = 0; d < 2; ++d) {

@@ -1,6 +1,7 @@
 #include "whirl/system/rotor_system.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "blocks.hpp"
@@ -191,6 +192,18 @@ PetscInt RotorSystem::local_size() const {
 
 int RotorSystem::ports(int b) const {
   return static_cast<int>(bearings_[static_cast<std::size_t>(b)].part->ports().size());
+}
+
+// They stand at the beginning of a whole state, and of each rank's rows.
+std::vector<double> RotorSystem::shaft(Vec x, int component, bool with_gravity) const {
+  const int here = static_cast<int>(hub_->rows()), size = core::size_of(comm_);
+  std::vector<int> counts(static_cast<std::size_t>(size)), places(counts.size(), 0);
+  MPI_Allgather(&here, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
+  std::partial_sum(counts.begin(), counts.end() - 1, places.begin() + 1);
+  std::vector<double> hub(static_cast<std::size_t>(2 * n_));
+  const core::ReadArray xa(x);
+  MPI_Allgatherv(xa.data(), here, MPI_DOUBLE, hub.data(), counts.data(), places.data(), MPI_DOUBLE, comm_);
+  return shaft(hub.data(), component, with_gravity);
 }
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {

@@ -34,15 +34,20 @@ def leaves(node, path=""):
 
 
 def difference(key, a, b, scale):
-    """Largest difference over the largest magnitude; infinite if the shapes or texts differ."""
+    """Largest difference over the largest magnitude; infinite if the shapes, the texts or the places
+    without a number differ."""
     a, b = numpy.asarray(a), numpy.asarray(b)
     if a.shape != b.shape:
         return float("inf")
     if a.dtype.kind not in "fiu" or b.dtype.kind not in "fiu":
         return 0.0 if numpy.array_equal(a, b) else float("inf")
-    if a.size == 0:
+    a, b = a.astype(float), b.astype(float)
+    if not numpy.array_equal(numpy.isnan(a), numpy.isnan(b)):
+        return float("inf")
+    there = ~numpy.isnan(a)
+    if not there.any():
         return 0.0
-    return float(numpy.max(numpy.abs(a.astype(float) - b.astype(float))) / (scale or numpy.max(numpy.abs(a)) or 1.0))
+    return float(numpy.max(numpy.abs(a[there] - b[there])) / (scale or numpy.max(numpy.abs(a[there])) or 1.0))
 
 
 def same_results(one, other, within=1e-8):
@@ -65,12 +70,12 @@ def same_results(one, other, within=1e-8):
             # So has the bar of a number that of the number.
             for found in (found, key.removesuffix("_uncertainty"), key.replace("_uncertainty/values/", "/values/")):
                 if ("uncertainty" in key or of_parameters) and found != key and a.get(found) is not None and numpy.asarray(a[found]).dtype.kind in "fiu":
-                    scale = numpy.max(numpy.abs(a[found]), initial=0) or None
+                    scale = numpy.nanmax(numpy.abs(a[found]), initial=0) or None
             if "normal_uncertainty" in key:
                 scale = 1.0  # the widths of both ranges
             if key.endswith("_imag") and key[:-4] + "real" in a:
                 # A complex number has one accuracy: where all of them are real, imaginary parts are rounding.
-                scale = max(numpy.max(numpy.abs(x), initial=0) for x in (a[key], a[key[:-4] + "real"]))
+                scale = max(numpy.nanmax(numpy.abs(x), initial=0) for x in (a[key], a[key[:-4] + "real"]))
             d = difference(key, a[key], b[key], scale)
             if "uncertainty" in key:
                 d /= 100  # of a bar as small a part of its number as this says nothing

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "cycle_systems.hpp"
 #include "reference/brusselator.hpp"
 #include "support/at_points.hpp"
 #include "support/brusselator.hpp"
+#include "support/cycle_rows.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
@@ -84,7 +87,8 @@ void newton_picard(const test::BrusselatorCycle& reference, const solve::Tableau
   solve::NewtonPicardOptions o;
   o.autonomous = true;
   solve::NewtonPicardProblem problem(s, o, tableau, steps, solve::uniform_mesh(intervals));
-  const auto start = test::at_points(points(), guess(reference.cells), solve::uniform_mesh(intervals));
+  const auto start =
+      test::rows_of(test::at_points(points(), guess(reference.cells), solve::uniform_mesh(intervals)), s);
   problem.set_phase_reference(start);
   core::Vector u = problem.scatter(start);
   const auto result = fixed(problem, u.get());
@@ -174,11 +178,11 @@ TEST(Brusselator, NewtonPicardOnAnyNumberOfRanks) {
     solve::NewtonPicardOptions o;
     o.autonomous = true;
     solve::NewtonPicardProblem problem(s, o, t, steps, solve::uniform_mesh(intervals));
-    const auto start = test::at_points(points(), guess(8), solve::uniform_mesh(intervals));
+    const auto start = test::rows_of(test::at_points(points(), guess(8), solve::uniform_mesh(intervals)), s);
     problem.set_phase_reference(start);
     core::Vector u = problem.scatter(start);
     fixed(problem, u.get());
-    return std::pair(problem.gather(u.get()), problem.multipliers());
+    return std::pair(test::whole_of(problem.gather(u.get()), s), problem.multipliers());
   };
   for (const auto& [t, intervals, steps] : {std::tuple(solve::sdirk(2), 1, 8), std::tuple(solve::heun(), 24, 1)}) {
     const auto whole = run(MPI_COMM_WORLD, t, intervals, steps), alone = run(PETSC_COMM_SELF, t, intervals, steps);
@@ -186,4 +190,34 @@ TEST(Brusselator, NewtonPicardOnAnyNumberOfRanks) {
     EXPECT_LE((whole.first.x - alone.first.x).cwiseAbs().maxCoeff(), 1e-8);
     EXPECT_NEAR(std::abs(whole.second[1]), std::abs(alone.second[1]), 1e-8);
   }
+}
+
+// Five multipliers lie above the radius. The subspace of fewer preconditions as well: the cycle is the same.
+TEST(Brusselator, NoMoreMultipliersAreSearchedForThanAskedFor) {
+  const auto run = [](int most) {
+    test::Brusselator s(MPI_COMM_WORLD, 8);
+    solve::NewtonPicardOptions o;
+    o.autonomous = true;
+    o.radius = 0.1;
+    o.multipliers = most;
+    const auto mesh = solve::uniform_mesh(1);
+    solve::NewtonPicardProblem problem(s, o, solve::sdirk(2), 40, mesh);
+    const auto start = test::rows_of(test::at_points(points(), guess(8), mesh), s);
+    problem.set_phase_reference(start);
+    core::Vector u = problem.scatter(start);
+    fixed(problem, u.get());
+    const auto first = problem.multipliers();
+    EXPECT_EQ(problem.multipliers().size(), first.size());
+    return std::pair(problem.gather(u.get()).period, first);
+  };
+  const auto [period, all] = run(1 << 20);
+  const auto [same_period, few] = run(2);
+  const auto above = [](const auto& values) {
+    return std::count_if(values.begin(), values.end(), [](auto mu) { return std::abs(mu) > 0.1; });
+  };
+  ASSERT_EQ(above(all), 5);
+  ASSERT_GE(few.size(), 2U);
+  EXPECT_LT(few.size(), 5U);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_LE(std::abs(few[k] - all[k]), 1e-7) << k;
+  EXPECT_NEAR(same_period, period, 1e-9);
 }

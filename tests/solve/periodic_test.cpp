@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cycle_systems.hpp"
+#include "support/cycle_rows.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
 
@@ -35,10 +36,10 @@ struct HalfTurn {
   }
 };
 
-void expect_answers(solve::PeriodicProblem& problem, const char* what) {
+void expect_answers(solve::PeriodicProblem& problem, const problem::System& system, const char* what) {
   const auto guess = test::sampled(problem.scheme(), problem.mesh(), period, parameter,
                                    [](double) { return Eigen::VectorXd(Eigen::VectorXd::Zero(2)); });
-  core::Vector u = problem.scatter(guess), row = core::duplicate(u.get());
+  core::Vector u = problem.scatter(test::rows_of(guess, system)), row = core::duplicate(u.get());
   solve::parameter_row(problem, row.get());
   ASSERT_TRUE(solve::newton(problem, u.get(), row.get(), parameter, test::sharp()).converged) << what;
   problem.linearise(u.get(), row.get());
@@ -48,7 +49,7 @@ void expect_answers(solve::PeriodicProblem& problem, const char* what) {
   ASSERT_FALSE(values.empty());
   EXPECT_NEAR(std::abs(values[0] - mu), 0, 1e-5) << what;
 
-  const Eigen::MatrixXd motion = problem.critical_motion(mu);
+  const Eigen::MatrixXd motion = test::whole_of({problem.mesh(), problem.critical_motion(mu)}, system).x;
   ASSERT_EQ(motion.cols(), guess.x.cols()) << what;
   const double sign = motion(0, motion.cols() - 1) < 0 ? 1 : -1;  // v(1) = mu v(0)
   for (Eigen::Index i = 0; i < guess.intervals(); ++i)
@@ -60,7 +61,7 @@ void expect_answers(solve::PeriodicProblem& problem, const char* what) {
       EXPECT_LE((sign * motion.col(i * problem.scheme().degree + l - 1) - exact).norm(), 2e-5) << what << " " << s;
     }
 
-  const solve::Cycle orbit = problem.orbit(u.get());
+  const solve::Cycle orbit = test::whole_of(problem.orbit(u.get()), system);
   EXPECT_NEAR(orbit.period, period, 1e-12);
   for (int k = 0; k < 50; ++k) {
     const double s = k / 50.0 + 0.003;
@@ -76,13 +77,13 @@ TEST(Periodic, EverySolverAnswersWhatBranchesAsk) {
     solve::CycleOptions o;
     o.degree = 4;
     solve::CycleProblem collocation(MPI_COMM_WORLD, s, o, test::uneven_mesh(3));
-    expect_answers(collocation, "collocation");
+    expect_answers(collocation, s, "collocation");
     solve::ShootingProblem single(PETSC_COMM_SELF, s, {}, solve::radau_iia(3), 40, {0, 1}),
         multiple(MPI_COMM_WORLD, s, {}, solve::sdirk(4), 20, test::uneven_mesh(0)),
         differences(MPI_COMM_WORLD, s, {}, solve::classical(), 1, test::uneven_mesh(4));
-    expect_answers(single, "single shooting");
-    expect_answers(multiple, "multiple shooting");
-    expect_answers(differences, "finite differences");
+    expect_answers(single, s, "single shooting");
+    expect_answers(multiple, s, "multiple shooting");
+    expect_answers(differences, s, "finite differences");
   }
   // Two states have room on two ranks.
   const MPI_Comm space = core::size_of(MPI_COMM_WORLD) <= 2 ? MPI_COMM_WORLD : PETSC_COMM_SELF;
@@ -91,6 +92,6 @@ TEST(Periodic, EverySolverAnswersWhatBranchesAsk) {
   solve::NewtonPicardProblem shooting(s, o, solve::sdirk(4), 80, {0, 1});
   o.constant_rates = true;
   solve::NewtonPicardProblem differences(s, o, solve::classical(), 1, test::uneven_mesh(4));
-  expect_answers(shooting, "shooting-based Newton-Picard");
-  expect_answers(differences, "finite-difference-based Newton-Picard");
+  expect_answers(shooting, s, "shooting-based Newton-Picard");
+  expect_answers(differences, s, "finite-difference-based Newton-Picard");
 }

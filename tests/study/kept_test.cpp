@@ -25,7 +25,7 @@ void expect_kept(const E& error) {
   EXPECT_EQ(summary.values[1].second.value, 1) << "the first solution stays";
   ASSERT_EQ(summary.warnings.size(), 1U);
   EXPECT_NE(summary.warnings[0].find("no start"), std::string::npos) << summary.warnings[0];
-  EXPECT_TRUE(read_solutions(group).empty());
+  EXPECT_TRUE(solutions_in(group).empty());
 }
 
 TEST(Kept, ABranchWhoseDeflationFails) {

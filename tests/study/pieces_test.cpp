@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "study/pieces.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::study {
@@ -46,12 +47,13 @@ protected:
   }
   int works_ = 0;
 
-private:
   void remove() const {
     if (core::rank_of(PETSC_COMM_WORLD) == 0)
       for (const char* end : {"", ".prev", ".next"}) fs::remove(path_.string() + end);
     MPI_Barrier(PETSC_COMM_WORLD);
   }
+
+private:
   fs::path path_;
   std::optional<Findings> findings_;
   std::optional<Pieces> pieces_;
@@ -76,6 +78,50 @@ TEST_F(Interrupted, AnotherOrderOfUnknownsLeavesTheJournal) {
   Pieces& other = begin(true, 2);
   EXPECT_FALSE(other.same_layout());
   EXPECT_EQ(ask(other, "part", 3), 3);
+}
+
+// Vectors that ranks share are written by rows, others as a whole; each comes back in whatever layout.
+TEST_F(Interrupted, AnswersKeepTheirVectors) {
+  const int rank = core::rank_of(PETSC_COMM_WORLD);
+  const auto numbered = [](PetscInt local) {
+    core::Vector v = core::make_vector(PETSC_COMM_WORLD, local, PETSC_DETERMINE);
+    PetscInt begin = 0;
+    core::check(VecGetOwnershipRange(v.get(), &begin, nullptr));
+    const core::WriteArray a(v.get());
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = 0.5 * static_cast<double>(begin + i + 1);
+    return v;
+  };
+  const core::Vector kept = numbered(rank + 1), short_one = numbered(1);
+  for (const bool by_rows : {false, true}) {
+    using solve::Journal;
+    Pieces& first = begin(false);
+    first.journal()->by_rows = by_rows;
+    const auto answer = [&](const Journal* journal) {
+      return Journal::Answer{
+          {3, 4}, "found", {Journal::keep(journal, kept.get()), Journal::keep(journal, short_one.get())}};
+    };
+    (void)first.journal()->ask("one", {1}, [&](const auto&) {
+      return Journal::Answer{{}, {}, answer(first.journal()).vectors};
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    (void)first.journal()->ask("two", {2}, [&](const auto&) { return answer(first.journal()); });
+    Pieces& second = begin(true);
+    const auto never = [](const auto&) -> Journal::Answer { throw Kill(); };
+    (void)second.journal()->ask("one", {1}, never);
+    const Journal::Answer found = second.journal()->ask("two", {2}, never);
+    EXPECT_EQ(found.numbers, (std::vector<double>{3, 4}));
+    EXPECT_EQ(found.text, "found");
+    ASSERT_EQ(found.vectors.size(), 2U);
+    EXPECT_EQ(found.vectors[0].whole, !by_rows);
+    core::Vector back = core::duplicate(kept.get());
+    Journal::give(found.vectors[0], back.get());
+    core::check(VecAXPY(back.get(), -1, kept.get()));
+    EXPECT_EQ(core::norm(back.get()), 0) << by_rows;
+    EXPECT_GT(core::norm(kept.get()), 0);
+    EXPECT_THROW(Journal::give(found.vectors[0], core::make_vector(PETSC_COMM_WORLD, 7, PETSC_DETERMINE).get()),
+                 core::Error);
+    remove();
+  }
 }
 
 // A state takes the place of what was found since the last one, which was more than has been repeated so far.

@@ -32,20 +32,34 @@ TEST_P(StoredVector, ComesBackInAnotherLayout) {
   EXPECT_EQ(entries_here(to.get()), entries_here(wanted.get()));
 }
 
+// Numbered ones times 1, 2, 3 side by side: the rows of this rank, or all.
+Eigen::MatrixXd three(Vec like) {
+  PetscInt begin = 0, local = 0;
+  core::check(VecGetOwnershipRange(like, &begin, nullptr));
+  core::check(VecGetLocalSize(like, &local));
+  const Eigen::VectorXd first =
+      Eigen::VectorXd::LinSpaced(local, static_cast<double>(begin), static_cast<double>(begin + local - 1));
+  return first * Eigen::RowVector3d(1, 2, 3);
+}
+
+// Whole ones, which every rank has, are wanted whole or by rows.
 TEST_P(StoredVector, SeveralComeBackInTheirOrder) {
-  std::vector<std::vector<double>> from, wanted;
-  const core::Vector like = numbered(0, 20, true), other = numbered(0, 20, false);
-  for (const double factor : {1.0, 2.0, 3.0}) {
-    from.push_back(entries_here(numbered(factor, 20, true).get()));
-    wanted.push_back(entries_here(numbered(factor, 20, false).get()));
-  }
+  const core::Vector like = numbered(0, 20, true), other = numbered(0, 20, false),
+                     alone = core::make_vector(PETSC_COMM_SELF, 20, 20);
   io::Group group;
-  if (GetParam() || core::size_of(PETSC_COMM_WORLD) == 1) {
-    put_vectors(group, "v", from, like.get(), GetParam(), "test");
-    EXPECT_EQ(take_vectors(group, "v", other.get()), wanted);
-    put_vectors(group, "none", {}, like.get(), GetParam(), "test");
-    EXPECT_TRUE(take_vectors(group, "none", other.get()).empty());
+  if (GetParam())
+    put_columns(group, "v", three(like.get()), like.get(), "m", "test");
+  else
+    put_columns(group, "v", three(alone.get()), nullptr, "m", "test");
+  EXPECT_EQ(group.dataset("v").whole_shape(), (io::Shape{20, 3}));
+  EXPECT_TRUE(take_columns(group, "v", other.get()) == three(other.get()));
+  if (!GetParam()) {
+    EXPECT_TRUE(take_columns(group, "v", nullptr) == three(alone.get()));
   }
+  // Of a cycle that there is not.
+  put_columns(group, "none", {}, GetParam() ? like.get() : nullptr, "m", "test");
+  EXPECT_EQ(group.dataset("none").whole_shape(), (io::Shape{GetParam() ? 20U : 0U, 0}));
+  EXPECT_EQ(take_columns(group, "none", GetParam() ? other.get() : nullptr).cols(), 0);
 }
 
 TEST_P(StoredVector, OneOfAnotherSizeIsTold) {

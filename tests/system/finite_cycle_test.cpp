@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/cycle_rows.hpp"
 #include "support/finite_rotor.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
@@ -28,13 +29,13 @@ solve::Cycle compared(const system::Train& train) {
   solve::NewtonPicardOptions options;
   options.parameter_scale = speed_scale;
   solve::NewtonPicardProblem picard(s, options, solve::sdirk(4), steps, solve::uniform_mesh(1));
-  core::Vector u = picard.scatter(start), row = core::duplicate(u.get());
+  core::Vector u = picard.scatter(test::rows_of(start, s)), row = core::duplicate(u.get());
   solve::parameter_row(picard, row.get());
   const auto r = solve::newton(picard, u.get(), row.get(), speed / speed_scale, newton);
   EXPECT_TRUE(r.converged) << r.reason;
   picard.linearise(u.get(), row.get());
   const auto mu = picard.multipliers();
-  const solve::Cycle cycle = picard.gather(u.get());
+  const solve::Cycle cycle = test::whole_of(picard.gather(u.get()), s);
 
   solve::CycleOptions dense_options;
   dense_options.parameter_scale = speed_scale;
@@ -98,12 +99,12 @@ TEST(FiniteFilmCycle, RanksWithoutStatesGoAlong) {
   solve::CycleOptions dense_options;
   dense_options.parameter_scale = speed_scale;
   solve::ShootingProblem dense(PETSC_COMM_SELF, alone, dense_options, solve::sdirk(2), steps, solve::uniform_mesh(1));
-  const auto linearised = [&](auto& problem) {
-    const core::Vector u = problem.scatter(start), row = core::duplicate(u.get());
+  const auto linearised = [&](auto& problem, const system::RotorSystem& system) {
+    const core::Vector u = problem.scatter(test::rows_of(start, system)), row = core::duplicate(u.get());
     solve::parameter_row(problem, row.get());
     problem.linearise(u.get(), row.get());
     return problem.multipliers().front();
   };
-  const auto mu = linearised(picard), expected = linearised(dense);
+  const auto mu = linearised(picard, s), expected = linearised(dense, alone);
   EXPECT_LE(std::min(std::abs(mu - expected), std::abs(mu - std::conj(expected))), 1e-8);
 }

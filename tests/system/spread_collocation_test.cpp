@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/cycle_rows.hpp"
 #include "support/finite_rotor.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/spread_collocation.hpp"
@@ -68,11 +69,11 @@ struct Answer {
 };
 
 template <class Problem>
-Answer solved(Problem& problem, const Case& c, const solve::Cycle& rest) {
+Answer solved(Problem& problem, const Case& c, const solve::Cycle& rest, const problem::System& system) {
   solve::Cycle guess = rest;
   guess.mesh = problem.mesh();
   guess.x = rest.x.replicate(1, guess.intervals() * problem.scheme().degree);
-  core::Vector u = problem.scatter(guess), row = core::duplicate(u.get());
+  core::Vector u = problem.scatter(test::rows_of(guess, system)), row = core::duplicate(u.get());
   solve::parameter_row(problem, row.get());
   solve::NewtonOptions newton;
   newton.max_iterations = 40;
@@ -80,7 +81,7 @@ Answer solved(Problem& problem, const Case& c, const solve::Cycle& rest) {
   const auto r = solve::newton(problem, u.get(), row.get(), c.speed / scale, newton);
   EXPECT_TRUE(r.converged) << r.reason << " " << r.residual;
   problem.linearise(u.get(), row.get());
-  return {problem.gather(u.get()), problem.multipliers(), r.iterations};
+  return {test::whole_of(problem.gather(u.get()), system), problem.multipliers(), r.iterations};
 }
 
 double least_film(const solve::Cycle& cycle, const system::RotorSystem& s) {
@@ -105,9 +106,9 @@ void compare(const Case& c, int degree, const std::vector<double>& mesh, const s
   one.parameter_scale = scale;
   one.degree = degree;
   solve::CycleProblem dense(PETSC_COMM_SELF, alone, one, mesh);
-  const Answer expected = solved(dense, c, rest);
+  const Answer expected = solved(dense, c, rest, alone);
   solve::SpreadCollocation spread(s, o, mesh);
-  const Answer found = solved(spread, c, rest);
+  const Answer found = solved(spread, c, rest, s);
   EXPECT_LE(found.iterations, expected.iterations + 2);
   const Eigen::VectorXd unit = dense.state_scale();
   const Eigen::MatrixXd a = unit.cwiseInverse().asDiagonal() * expected.cycle.x,
@@ -161,13 +162,13 @@ TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
     if (core::size_of(MPI_COMM_WORLD) > 1 && !c.liner) continue;
     system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
     solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(5));
-    const Answer found = solved(spread, c, at_rest(alone, c));
+    const Answer found = solved(spread, c, at_rest(alone, c), s);
     solve::Cycle other = found.cycle;
     constexpr int hub = 4;
     other.x.bottomRows(other.x.rows() - hub) *= 0.99;
-    core::Vector u = spread.scatter(other);
+    core::Vector u = spread.scatter(test::rows_of(other, s));
     ASSERT_TRUE(spread.settle(u.get()));
-    const solve::Cycle settled = spread.gather(u.get());
+    const solve::Cycle settled = test::whole_of(spread.gather(u.get()), s);
     const double size = found.cycle.x.bottomRows(other.x.rows() - hub).cwiseAbs().maxCoeff();
     EXPECT_LE((settled.x - found.cycle.x).cwiseAbs().maxCoeff(), 1e-7 * size);
     EXPECT_LE((settled.x - other.x).topRows(hub).cwiseAbs().maxCoeff(), 1e-12 * size);
@@ -186,16 +187,16 @@ TEST(SpreadCollocation, AdaptsItsMesh) {
   one.mesh_tolerance = o.mesh_tolerance;
   one.base_intervals = o.base_intervals;
   solve::CycleProblem dense(PETSC_COMM_SELF, alone, one, solve::uniform_mesh(8));
-  const Answer first = solved(dense, c, at_rest(alone, c));
-  const auto adapted = [&](auto& problem) {
-    core::Vector u = problem.scatter(first.cycle), tangent = problem.make_unknown();
+  const Answer first = solved(dense, c, at_rest(alone, c), alone);
+  const auto adapted = [&](auto& problem, const problem::System& system) {
+    core::Vector u = problem.scatter(test::rows_of(first.cycle, system)), tangent = problem.make_unknown();
     EXPECT_TRUE(problem.adapt(u, tangent));
     core::Vector row = core::duplicate(u.get());
     solve::parameter_row(problem, row.get());
     EXPECT_TRUE(solve::newton(problem, u.get(), row.get(), c.speed / scale, {}).converged);
-    return problem.gather(u.get());
+    return test::whole_of(problem.gather(u.get()), system);
   };
-  const solve::Cycle a = adapted(dense), b = adapted(spread);
+  const solve::Cycle a = adapted(dense, alone), b = adapted(spread, s);
   ASSERT_EQ(a.mesh, b.mesh);
   EXPECT_GT(a.intervals(), 8);
   EXPECT_LE((a.x - b.x).cwiseAbs().maxCoeff(), 1e-7 * a.x.cwiseAbs().maxCoeff());
@@ -216,6 +217,7 @@ TEST(SpreadCollocation, ProductsAreDerivativesOfTheResidual) {
     for (Eigen::Index k = 0; k < cycle.x.cols(); ++k)
       for (Eigen::Index i = 0; i < cycle.x.rows(); ++i)
         cycle.x(i, k) *= 1 + 0.02 * std::sin(0.3 * static_cast<double>(k) + 1.7 * static_cast<double>(i));
+    cycle = test::rows_of(cycle, s);
     if (autonomous) spread.set_phase_reference(cycle);
     core::Vector u = spread.scatter(cycle), row = core::duplicate(u.get()), v = core::duplicate(u.get()),
                  y = core::duplicate(u.get()), above = core::duplicate(u.get()), below = core::duplicate(u.get());

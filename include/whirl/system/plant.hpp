@@ -43,6 +43,8 @@ public:
   /// Smallest film thickness of each place at a whole state, in Places::unit: in the mid-plane of its bearing, or over
   /// the whole length where the film tilts; infinite where there is no film, empty if no place has one. Not collective.
   [[nodiscard]] virtual std::vector<double> film_thickness(const double* /*x*/) const { return {}; }
+  /// shown() at a distributed state.
+  [[nodiscard]] virtual std::vector<PlaceState> shown_at(Vec x) { return shown(gather(x).data()); }
   /// Both at a distributed state.
   [[nodiscard]] virtual Observed observe(Vec x) {
     const std::vector<double> whole = gather(x);

@@ -94,6 +94,8 @@ public:
   /// Of rigid bores from the place of the journal, over the whole length where the film sees its tilt; of films with
   /// thicknesses as states the least of these.
   [[nodiscard]] std::vector<double> film_thickness(const double* x) const override;
+  /// What the films see is gathered, no more.
+  [[nodiscard]] std::vector<PlaceState> shown_at(Vec x) override;
   /// Each rank looks at the films and shares of films that it holds: no state is gathered.
   [[nodiscard]] Observed observe(Vec x) override;
   [[nodiscard]] core::Vector guess() override;
@@ -144,6 +146,8 @@ public:
   /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes
   /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
+  /// The same from a distributed state, of which rotor and pedestals alone are gathered.
+  [[nodiscard]] std::vector<double> shaft(Vec x, int component, bool with_gravity) const;
   /// Force of unbalance per Omega^2 on each coordinate as cosine and sine parts [coordinates()], whole on every rank.
   [[nodiscard]] const std::vector<double>& unbalance_cosine() const;
   [[nodiscard]] const std::vector<double>& unbalance_sine() const;

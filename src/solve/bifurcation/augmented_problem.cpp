@@ -363,14 +363,14 @@ std::optional<Refined> refine(CycleProblem& problem, const LocatedEvent& event, 
   const auto answer = options.journal->ask("refine", question, [&](const Journal::Answer&) {
     const auto r = refine_here(problem, event, u, tangent, options);
     if (!r) return Journal::Answer{};
-    std::vector<double> numbers = core::gather(r->u.get());
-    numbers.insert(numbers.end(), {r->parameter, r->error, r->quadratic, r->critical.real(), r->critical.imag()});
-    return Journal::Answer{std::move(numbers), {}};
+    return Journal::Answer{{r->parameter, r->error, r->quadratic, r->critical.real(), r->critical.imag()},
+                           {},
+                           {Journal::keep(options.journal, r->u.get())}};
   });
   if (answer.numbers.empty()) return std::nullopt;
-  const auto end = answer.numbers.end() - 5;
-  Refined r{core::duplicate(u), end[0], end[1], end[2], {end[3], end[4]}};
-  core::fill(r.u.get(), {answer.numbers.begin(), end});
+  const std::vector<double>& facts = answer.numbers;
+  Refined r{core::duplicate(u), facts[0], facts[1], facts[2], {facts[3], facts[4]}};
+  Journal::give(answer.vectors.at(0), r.u.get());
   return r;
 }
 

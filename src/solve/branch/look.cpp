@@ -11,8 +11,8 @@ using core::check;
 
 namespace {
 
-// A point, what a look at it found and what that left: counts, values, monitors and warm start, then the tangent.
-Journal::Answer pack(const State& s, const std::vector<double>& warm) {
+// A point, what a look at it found and what that left: counts, values, monitors and warm start; the tangent.
+Journal::Answer pack(const Journal& journal, const State& s, const std::vector<double>& warm) {
   const Stability& all = s.point.stability;
   std::vector<double> out{static_cast<double>(all.values.size()),
                           static_cast<double>(all.distance.size()),
@@ -23,13 +23,11 @@ Journal::Answer pack(const State& s, const std::vector<double>& warm) {
                           static_cast<double>(s.point.newton_iterations),
                           static_cast<double>(all.missed)};
   for (const auto& v : all.values) out.insert(out.end(), {v.real(), v.imag()});
-  for (const auto& list : {all.distance, s.point.monitors, warm, core::gather(s.tangent.get())})
-    out.insert(out.end(), list.begin(), list.end());
-  return {std::move(out), {}};
+  for (const auto& list : {all.distance, s.point.monitors, warm}) out.insert(out.end(), list.begin(), list.end());
+  return {std::move(out), {}, {Journal::keep(&journal, s.tangent.get())}};
 }
 
-// Returns where the rest begins.
-const double* unpack(const Journal::Answer& answer, State& s, std::vector<double>& warm) {
+void unpack(const Journal::Answer& answer, State& s, std::vector<double>& warm) {
   const double* at = answer.numbers.data();
   const auto next = [&at](double n) {
     const double* begin = std::exchange(at, at + static_cast<std::ptrdiff_t>(n));
@@ -46,10 +44,7 @@ const double* unpack(const Journal::Answer& answer, State& s, std::vector<double
   s.point.newton_iterations = static_cast<int>(counts[6]);
   s.point.stability.missed = static_cast<int>(counts[7]);
   s.tangent = core::duplicate(s.u.get());
-  PetscInt size = 0;
-  check(VecGetSize(s.u.get(), &size));
-  core::fill(s.tangent.get(), next(size));
-  return at;
+  Journal::give(answer.vectors.at(0), s.tangent.get());
 }
 
 }  // namespace
@@ -60,9 +55,9 @@ void Follower::inspect(State& s, Vec along) {
                                        along ? 1.0 : 0.0};
     const auto found = journal->ask("look", question, [&](const Journal::Answer&) {
       look_at(s, along);
-      return pack(s, memory_.warm);
+      return pack(*journal, s, memory_.warm);
     });
-    (void)unpack(found, s, memory_.warm);
+    unpack(found, s, memory_.warm);
   } else {
     look_at(s, along);
   }
@@ -78,17 +73,16 @@ bool Follower::locate(const State& a, const State& b, const Test& test, double t
   const std::vector<double> question{core::norm(a.u.get()), core::norm(b.u.get()), b.point.step, tolerance};
   const auto answer = journal->ask("locate", question, [&](const Journal::Answer&) {
     const bool done = search(a, b, test, tolerance, found, at);
-    Journal::Answer out = pack(at, memory_.warm);
-    const std::vector<double> u = core::gather(at.u.get());
-    out.numbers.insert(out.numbers.end(), u.begin(), u.end());
+    Journal::Answer out = pack(*journal, at, memory_.warm);
+    out.vectors.push_back(Journal::keep(journal, at.u.get()));
     out.numbers.insert(out.numbers.end(), {done ? 1.0 : 0.0, found.parameter, found.bracket, found.sensitivity});
     return out;
   });
   at.u = copy(b.u.get());
   at.point = a.point;
-  const double* rest = unpack(answer, at, memory_.warm);
+  unpack(answer, at, memory_.warm);
   const double* facts = answer.numbers.data() + answer.numbers.size() - 4;
-  core::fill(at.u.get(), {rest, facts});
+  Journal::give(answer.vectors.at(1), at.u.get());
   at.point.parameter = last_entry(problem_.comm(), at.u.get());
   at.point.slope = last_entry(problem_.comm(), at.tangent.get());
   found.parameter = facts[1];

@@ -108,14 +108,22 @@ Cycle through(const Cycle& points) {
   return out;
 }
 
-std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale) {
+std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
+                                    MPI_Comm comm) {
   const Index n = cycle.intervals(), m = scheme.degree;
   std::vector<Eigen::VectorXd> top(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i)
     top[static_cast<std::size_t>(i)] = top_derivative(scheme, cycle, i).cwiseQuotient(scale);
   const Eigen::VectorXd centre = cycle.x.rowwise().mean();
-  const double size =
-      (cycle.x.colwise() - centre).cwiseQuotient(scale.replicate(1, cycle.x.cols())).cwiseAbs().maxCoeff();
+  // Of this rank's rows: jumps of the top derivative from the interval before, and the deviation. Some may have none.
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(n + 1);
+  for (Index i = 0; i < n && scale.size() > 0; ++i)
+    largest(i) =
+        (top[static_cast<std::size_t>(i)] - top[static_cast<std::size_t>((i + n - 1) % n)]).cwiseAbs().maxCoeff();
+  if (scale.size() > 0)
+    largest(n) = (cycle.x.colwise() - centre).cwiseQuotient(scale.replicate(1, cycle.x.cols())).cwiseAbs().maxCoeff();
+  MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(n + 1), MPI_DOUBLE, MPI_MAX, comm);
+  const double size = largest(n);
   double error_constant = 1;  // of the interpolation at the nodes, with equal spacing as a bound
   for (Index k = 1; k <= m + 1; ++k) error_constant /= 2.0 * static_cast<double>(k);
   std::vector<double> error(static_cast<std::size_t>(n));
@@ -123,8 +131,7 @@ std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, co
     const Index left = (i + n - 1) % n, right = (i + 1) % n;
     const double h = length(cycle.mesh, i);
     const auto jump = [&](Index a, Index b) {
-      const double distance = (length(cycle.mesh, a) + length(cycle.mesh, b)) / 2;
-      return (top[static_cast<std::size_t>(b)] - top[static_cast<std::size_t>(a)]).cwiseAbs().maxCoeff() / distance;
+      return largest(b) / ((length(cycle.mesh, a) + length(cycle.mesh, b)) / 2);
     };
     const double derivative = std::max(jump(left, i), jump(i, right));
     error[static_cast<std::size_t>(i)] =
@@ -134,8 +141,8 @@ std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle, co
 }
 
 std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
-                                 double tolerance, int base, int max_intervals) {
-  const std::vector<double> error = interval_errors(scheme, cycle, scale);
+                                 double tolerance, int base, int max_intervals, MPI_Comm comm) {
+  const std::vector<double> error = interval_errors(scheme, cycle, scale, comm);
   const double unit = 1.0 / base, ratio = std::pow(2.0, scheme.degree + 1);
   // The level of an interval: how many times 1/base was halved (negative: doubled).
   struct Piece {
@@ -168,7 +175,7 @@ std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const
     }
   }
   if (static_cast<int>(merged.size()) > max_intervals && base <= max_intervals)
-    return adapted_mesh(scheme, cycle, scale, 2 * tolerance, base, max_intervals);
+    return adapted_mesh(scheme, cycle, scale, 2 * tolerance, base, max_intervals, comm);
   std::vector<double> mesh;
   for (const Piece& p : merged) {
     const double h = unit / std::pow(2.0, p.level);

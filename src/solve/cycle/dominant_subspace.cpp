@@ -116,4 +116,17 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
   }
 }
 
+DominantSubspace dominant_multipliers(const std::function<void(Vec)>& multiply, Vec start, SubspaceOptions options,
+                                      double& radius) {
+  constexpr double above_a_band = 0.5;
+  options.radius = radius;
+  try {
+    return dominant_subspace(multiply, start, options);
+  } catch (const core::NotConverged&) {
+    if (radius >= above_a_band) throw;
+  }
+  options.radius = radius = above_a_band;
+  return dominant_subspace(multiply, start, options);
+}
+
 }  // namespace whirl::solve

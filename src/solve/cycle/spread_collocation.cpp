@@ -29,6 +29,8 @@ constexpr int settling_steps = 40, settling_laps = 60;
 
 }  // namespace
 
+static_assert(SpreadCollocation::most_parts == PortElimination::most_parts);
+
 struct SpreadCollocation::Tools {
   Tools(problem::System& system, const Scheme& scheme)
       : point(system), maker(PortMaker::make(system)), step(system.comm(), system.local_size(), scheme) {
@@ -219,7 +221,7 @@ bool SpreadCollocation::adapt(core::Vector& u, core::Vector& tangent) {
   for (Index i = 0; i < intervals(); ++i) longest = std::max(longest, length(i));
   const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
   std::vector<double> better =
-      adapted_mesh(scheme(), cycle, state_scale(), options_.mesh_tolerance, base, options_.max_intervals);
+      adapted_mesh(scheme(), cycle, state_scale(), options_.mesh_tolerance, base, options_.max_intervals, comm());
   if (better == mesh()) return false;
   intervals_.clear();
   set_mesh(std::move(better));

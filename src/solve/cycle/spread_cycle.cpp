@@ -38,6 +38,7 @@ SpreadCycle::SpreadCycle(problem::System& system, const NewtonPicardOptions& opt
                          std::vector<double> mesh, bool inexact)
     : system_(system),
       options_(options),
+      radius_(options.radius),
       scheme_(std::move(scheme)),
       local_(system.local_size()),
       borders_(options.autonomous ? 2 : 1),
@@ -47,7 +48,6 @@ SpreadCycle::SpreadCycle(problem::System& system, const NewtonPicardOptions& opt
   const core::Vector scale = core::duplicate(work_.get()), unused = core::duplicate(work_.get());
   system.scales(scale.get(), unused.get());
   scale_ = get(scale.get());
-  whole_scale_ = whole(scale_);
   set_mesh(std::move(mesh));
 }
 

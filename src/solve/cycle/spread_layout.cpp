@@ -3,36 +3,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "solve/newton/local_part.hpp"
 #include "whirl/solve/cycle/spread_cycle.hpp"
 
 namespace whirl::solve {
 
-using core::check;
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd SpreadCycle::whole(const MatrixXd& columns) const {
-  MatrixXd out(system_.size(), columns.cols());
-  core::Scatter scatter;
-  core::Vector all;
-  check(VecScatterCreateToAll(work_.get(), scatter.put(), all.put()));
-  for (Index i = 0; i < columns.cols(); ++i) {
-    put(columns.col(i), work_.get());
-    check(VecScatterBegin(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
-    check(VecScatterEnd(scatter.get(), work_.get(), all.get(), INSERT_VALUES, SCATTER_FORWARD));
-    out.col(i) = get(all.get());
-  }
-  return out;
-}
-
 Cycle SpreadCycle::gather(Vec u) const {
   const VectorXd border = border_of(u);
   const core::ReadArray ua(u);
   Cycle cycle{mesh_, {}, 0, border(borders_ - 1) * options_.parameter_scale};
-  cycle.x = whole(scale_.asDiagonal() * nodes(ua));
+  cycle.x = scale_.asDiagonal() * nodes(ua);
   if (options_.autonomous)
     cycle.period = border(0) * period_scale_;
   else
@@ -43,13 +27,11 @@ Cycle SpreadCycle::gather(Vec u) const {
 
 core::Vector SpreadCycle::scatter(const Cycle& cycle) const {
   core::require(!options_.autonomous || period_scale_ > 0, "an autonomous cycle wants its phase reference first");
+  core::require(cycle.x.rows() == local_, "of a cycle each rank has its rows");
   const Cycle here = cycle.on(scheme_, mesh_);
   core::Vector u = make_unknown();
-  PetscInt begin = 0;
-  check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
   const core::WriteArray ua(u.get());
-  Map<MatrixXd>(ua.data(), local_, intervals() * scheme_.degree) =
-      scale_.cwiseInverse().asDiagonal() * here.x.middleRows(begin, local_);
+  Map<MatrixXd>(ua.data(), local_, intervals() * scheme_.degree) = scale_.cwiseInverse().asDiagonal() * here.x;
   if (last_) {
     if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
     ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;

@@ -74,17 +74,18 @@ std::vector<std::complex<double>> SpreadCycle::find_subspace() {
   core::Vector first = core::duplicate(work_.get());
   put(start, first.get());
   SubspaceOptions options;
-  options.radius = options_.radius;
+  options.most = options_.multipliers;
   options.tolerance = rough_ ? subspace_tolerance : options_.multiplier_tolerance;
   options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
-  DominantSubspace found = dominant_subspace(
+  DominantSubspace found = dominant_multipliers(
       [this](Vec v) {
         MatrixXd state = get(v);
         for (Index i = 0; i < intervals(); ++i) state = advance(i, state, nullptr, false).bottomRows(local_).eval();
         put(state, v);
         ++products_;
       },
-      first.get(), options);
+      first.get(), options, radius_);
+  limited_ = !found.values.empty() && std::abs(found.values.back()) > radius_;
   if (found.basis.cols() != basis_.cols()) contraction_ = 0;
   basis_ = std::move(found.basis);
   return found.values;
@@ -99,6 +100,7 @@ std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
   constexpr double below_radius = 1e-6, slow = 1e-2;
   const Index p = basis_.cols();
   if (!image_known_ || p == 0 || p + probes > system_.size()) return {};
+  if (limited_) return {};  // what V leaves out may have grown beyond what it holds
   PetscInt begin = 0;
   check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
   MatrixXd x(local_, p + probes), y = x, added(borders_, p + probes), new_added;
@@ -127,13 +129,12 @@ std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
     for (Index c = 0; c < x.cols(); ++c) {
       values.push_back(modes.values(c));
       const double size = std::abs(values.back());
-      settled = settled &&
-                std::sqrt(sizes(c)) <= (size > options_.radius ? options_.multiplier_tolerance * size : below_radius);
+      settled =
+          settled && std::sqrt(sizes(c)) <= (size > radius_ ? options_.multiplier_tolerance * size : below_radius);
     }
     std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
     if (settled) {
-      const auto large =
-          std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > options_.radius; });
+      const auto large = std::count_if(values.begin(), values.end(), [&](auto z) { return std::abs(z) > radius_; });
       if (large != p) return {};
       if (k == 0) return values;
       basis_ = x.leftCols(p);
@@ -170,7 +171,7 @@ MatrixXd SpreadCycle::critical_motion(double mu) {
     state = x.bottomRows(local_);
     for (Index l = 0; l < m; ++l) motion.col(i * m + l) = scale_.cwiseProduct(x.col(0).segment(l * local_, local_));
   }
-  return whole(motion);
+  return motion;
 }
 
 }  // namespace whirl::solve

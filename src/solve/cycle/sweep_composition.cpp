@@ -175,27 +175,15 @@ std::vector<std::complex<double>> SweepComposition::multipliers() {
   SubspaceOptions options;
   options.guess = std::max(4, static_cast<int>(basis_.cols()) + 1);
   options.most = run_->multipliers;
-  options.restarts = 20;
   // From the last point's subspace a few vectors do: what is left of M falls by orders of magnitude.
   if (basis_.cols() > 0) options.spare = 4;
   DominantSubspace found;
-  for (bool done = false; !done;) {
-    options.radius = radius_;
-    try {
-      found = dominant_subspace(times_m, first.get(), options);
-      done = true;
-    } catch (const core::NotConverged&) {
-      // Films on soft liners at high speed have a dense band of multipliers, as have stiff films at Gauss points: it
-      // takes no part in what the cycle does, and is left below a larger radius from here on.
-      if (radius_ < 0.5) {
-        radius_ = 0.5;
-      } else if (n > whole_up_to) {
-        throw;
-      } else {
-        found_ = false;
-        return spectral::eigenvalues(run_->comm, monodromy());
-      }
-    }
+  try {
+    found = dominant_multipliers(times_m, first.get(), options, radius_);
+  } catch (const core::NotConverged&) {
+    if (n > whole_up_to) throw;
+    found_ = false;
+    return spectral::eigenvalues(run_->comm, monodromy());
   }
   found_ = true;
   basis_ = std::move(found.basis);

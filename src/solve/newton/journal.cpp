@@ -70,6 +70,23 @@ void Journal::note(const std::function<Answer()>& so_far) {
   if (changed) changed();
 }
 
+Journal::Rows Journal::keep(const Journal* journal, Vec v) {
+  PetscInt begin = 0, size = 0;
+  core::check(VecGetOwnershipRange(v, &begin, nullptr));
+  core::check(VecGetSize(v, &size));
+  const auto total = static_cast<std::size_t>(size);
+  if (journal && !journal->by_rows) return {true, 0, total, core::gather(v)};
+  const core::ReadArray a(v);
+  return {false, static_cast<std::size_t>(begin), total, {a.data(), a.data() + a.size()}};
+}
+
+void Journal::give(const Rows& rows, Vec v) {
+  if (rows.whole)
+    core::fill(v, rows.values);
+  else
+    core::fill(v, rows.begin, rows.values);
+}
+
 void Journal::forget_from(std::size_t place) {
   entries_.resize(std::min(place, entries_.size()));
   next_ = std::min(place, next_);

@@ -28,22 +28,6 @@ struct SolveContext {
   std::vector<double> residuals;  // of the last nonlinear solve, which writes them
 };
 
-// Numbers, then u.
-std::vector<double> with_unknowns(std::vector<double> head, Vec u) {
-  const std::vector<double> all = core::gather(u);
-  head.insert(head.end(), all.begin(), all.end());
-  return head;
-}
-
-// The unknowns into u; returns the numbers before them.
-std::vector<double> take_unknowns(const std::vector<double>& both, Vec u) {
-  PetscInt size = 0;
-  check(VecGetSize(u, &size));
-  core::require(both.size() >= static_cast<std::size_t>(size), "an answer of Newton's method holds its unknowns");
-  core::fill(u, {both.end() - size, both.end()});
-  return {both.begin(), both.end() - size};
-}
-
 void bordered_residual(SolveContext& c, Vec u, Vec r) {
   c.problem.residual(u, r);
   double value = 0;
@@ -67,7 +51,7 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
       c.journal->note([&] {
         std::vector<double> norms = c.earlier;
         norms.insert(norms.end(), c.residuals.begin(), c.residuals.begin() + iteration);
-        return Journal::Answer{with_unknowns(std::move(norms), u), {}};
+        return Journal::Answer{std::move(norms), {}, {Journal::keep(c.journal, u)}};
       });
     c.problem.linearise(u, c.row);
   });
@@ -297,14 +281,14 @@ NewtonResult Newton::solve(Vec u, Vec row, double offset) {
   if (!options_.journal) return solve_from(u, row, offset, {});
   const Journal::Answer found =
       options_.journal->ask("newton", {core::norm(u), offset}, [&](const Journal::Answer& so_far) {
-        std::vector<double> earlier;
-        if (!so_far.numbers.empty()) earlier = take_unknowns(so_far.numbers, u);
-        const NewtonResult r = solve_from(u, row, offset, std::move(earlier));
+        for (const Journal::Rows& iterate : so_far.vectors) Journal::give(iterate, u);
+        const NewtonResult r = solve_from(u, row, offset, so_far.numbers);
         std::vector<double> facts{r.converged ? 1.0 : 0.0, static_cast<double>(r.iterations),
                                   static_cast<double>(r.effort), static_cast<double>(r.linear_iterations), r.residual};
-        return Journal::Answer{with_unknowns(std::move(facts), u), r.reason};
+        return Journal::Answer{std::move(facts), r.reason, {Journal::keep(options_.journal, u)}};
       });
-  const std::vector<double> facts = take_unknowns(found.numbers, u);
+  Journal::give(found.vectors.at(0), u);
+  const std::vector<double>& facts = found.numbers;
   return {facts[0] != 0, static_cast<int>(facts[1]), static_cast<int>(facts[2]), static_cast<int>(facts[3]), facts[4],
           found.text};
 }

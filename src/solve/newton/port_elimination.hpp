@@ -25,10 +25,11 @@ namespace whirl::solve {
 /// collective on the communicator of the matrix.
 class PortElimination {
 public:
-  /// Whether there are parts, and no more of them than this keeps apart (63).
+  static constexpr std::size_t most_parts = 63;  // a bit each, and one of the hub
+  /// Whether there are parts, and no more of them than this keeps apart.
   [[nodiscard]] static bool serves(const std::vector<problem::Field>& fields) {
     const std::size_t parts = problem::parts_of(fields).size();
-    return parts > 1 && parts <= 64;
+    return parts > 1 && parts <= 1 + most_parts;
   }
   /// `fields`: the hub first, in local rows of the matrices to come; local rows in none of them belong to the hub.
   /// `inverse` of the parts may be null.

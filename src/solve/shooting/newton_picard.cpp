@@ -116,19 +116,17 @@ VectorXd NewtonPicardProblem::reference_rate(const MatrixXd& x, double /*period*
 Cycle NewtonPicardProblem::orbit(Vec u) {
   const double period = begin_point(border_of(u));
   const Cycle ends = gather(u);
-  Cycle points{refined(mesh(), steps_), MatrixXd(system().size(), intervals() * steps_), ends.period, ends.parameter};
+  Cycle points{refined(mesh(), steps_), MatrixXd(local(), intervals() * steps_), ends.period, ends.parameter};
   const core::ReadArray ua(u);
   const auto x = nodes(ua);
   core::Vector state = core::duplicate(work());
-  MatrixXd states(local(), steps_);
   for (Index i = 0; i < intervals(); ++i) {
     put(x.col(before(i)), state.get());
     const double begin = mesh()[at(i)], h = length(i) / steps_;
     for (int k = 0; k < steps_; ++k) {
       stepper_->step(angle(begin + k * h), angle(h), h * period, state.get(), nullptr);
-      states.col(k) = local_scale().cwiseProduct(get(state.get()));
+      points.x.col(i * steps_ + k) = state_scale().cwiseProduct(get(state.get()));
     }
-    points.x.middleCols(i * steps_, steps_) = whole(states);
   }
   return through(points);
 }

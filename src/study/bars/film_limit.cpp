@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "study/state_rows.hpp"
+
 namespace whirl::study {
 
 FilmLimit::FilmLimit(const system::Places& places)
@@ -70,11 +72,11 @@ std::vector<double> film_column(std::vector<double> thickness, std::size_t place
   return thickness;
 }
 
-std::vector<double> least_films(const solve::Cycle& cycle, const system::Plant& plant) {
+std::vector<double> least_films(const solve::Cycle& cycle, system::Plant& plant) {
+  StateRows states(plant);
   std::vector<std::vector<double>> films;  // [node][place]
   for (Eigen::Index k = 0; k < cycle.x.cols(); ++k) {
-    const Eigen::VectorXd x = cycle.x.col(k);
-    films.push_back(plant.film_thickness(x.data()));
+    films.push_back(states.film_thickness(cycle.x.col(k)));
     if (films.back().empty()) return {};
   }
   const std::size_t n = films.size();

@@ -60,6 +60,7 @@ void put_contact(io::StudySummary& summary, double place, const std::string& uni
 [[nodiscard]] std::vector<double> film_column(std::vector<double> thickness, std::size_t places);
 
 /// Smallest thickness of each place over a cycle, by the parabola through the least node and its neighbours.
-[[nodiscard]] std::vector<double> least_films(const solve::Cycle& cycle, const system::Plant& plant);
+/// Collective on the plant's communicator.
+[[nodiscard]] std::vector<double> least_films(const solve::Cycle& cycle, system::Plant& plant);
 
 }  // namespace whirl::study

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "study/state_rows.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/study/layout_options.hpp"
 
@@ -78,15 +79,14 @@ core::Vector resampled(const system::Plant& to, const system::Plant& from, const
   return x;
 }
 
-solve::Cycle resampled(const system::Plant& to, const system::Plant& from, solve::Cycle c) {
+// One state after another is whole on every rank, each of which resamples all of it.
+solve::Cycle resampled(const system::Plant& to, system::Plant& from, solve::Cycle c) {
   if (to.size() == from.size()) return c;
+  StateRows states(from);
   const Eigen::MatrixXd x = c.x;
-  c.x.resize(to.size(), x.cols());
-  for (Eigen::Index k = 0; k < x.cols(); ++k) {
-    const Eigen::VectorXd column = x.col(k);
-    const std::vector<double> there = to.resampled(from, column.data());
-    c.x.col(k) = Eigen::Map<const Eigen::VectorXd>(there.data(), to.size());
-  }
+  c.x.resize(to.local_size(), x.cols());
+  for (Eigen::Index k = 0; k < x.cols(); ++k)
+    c.x.col(k) = rows_of(resampled(to, from, core::gather(states.vector(x.col(k)))).get());
   return c;
 }
 

@@ -44,7 +44,7 @@ struct FilmMesh {
 /// The whole state of `from` on the film meshes of `to`, distributed. Collective.
 [[nodiscard]] core::Vector resampled(const system::Plant& to, const system::Plant& from,
                                      const std::vector<double>& whole);
-/// The same of a cycle, point by point.
-[[nodiscard]] solve::Cycle resampled(const system::Plant& to, const system::Plant& from, solve::Cycle cycle);
+/// The same of a cycle, point by point: of each rank its rows of `from`, and then of `to`.
+[[nodiscard]] solve::Cycle resampled(const system::Plant& to, system::Plant& from, solve::Cycle cycle);
 
 }  // namespace whirl::study

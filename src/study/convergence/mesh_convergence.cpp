@@ -78,7 +78,11 @@ StudyResult MeshConvergence::run(Context& context) {
   if (!of.has_group("located"))
     throw core::NotConverged(
         fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
-  const std::vector<Located> all = read_located(of.group("located"));
+  const EquilibriumBranch* const rest = equilibria_called(context, options.of);
+  // Cycles are read where they are wanted: on the machine of the deck.
+  const std::unique_ptr<Level> deck =
+      rest ? nullptr : std::make_unique<Level>(context, options_of(context, options.of), 0);
+  const std::vector<Located> all = rest ? read_located(of.group("located")) : deck->follower->read(of.group("located"));
   std::vector<int> chosen = options.bifurcations;
   if (chosen.empty()) {
     chosen.resize(all.size());
@@ -89,8 +93,7 @@ StudyResult MeshConvergence::run(Context& context) {
     if (static_cast<std::size_t>(k) > all.size())
       throw core::NotConverged(fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), k));
 
-  if (const EquilibriumBranch* rest = equilibria_called(context, options.of))
-    return converge(context, options, rest->options, all, chosen);
+  if (rest) return converge(context, options, rest->options, all, chosen);
   const CycleBranchOptions branch = options_of(context, options.of);
   auto& results = context.results;
   const std::string& unit = branch.parameter.range.unit;
@@ -104,8 +107,7 @@ StudyResult MeshConvergence::run(Context& context) {
   if (const io::Group& state = pieces.state(); state.has_group("rows")) {
     rows.read(state.group("rows"));
     first = static_cast<std::size_t>(state.integer("bifurcation"));
-    now = {read_located(state.group("located")).front(), state.reals("value"), state.reals("bracket"),
-           state.reals("seconds"), state.real("time_error")};
+    now = {{}, state.reals("value"), state.reals("bracket"), state.reals("seconds"), state.real("time_error")};
     read_summary(state.group("summary"), results.summary());
     trouble = state.text("trouble");
   }
@@ -117,6 +119,8 @@ StudyResult MeshConvergence::run(Context& context) {
     }
     if (now.value.empty()) now = {origin, {origin.cycle.parameter / scale}, {0}, {0}, io::no_value};
     auto coarse = std::make_unique<Level>(context, branch, static_cast<int>(now.value.size()) - 1);
+    if (pieces.state().has_group("rows") && i == first && now.value.size() > 1)
+      now.last = coarse->follower->read(pieces.state().group("located")).front();
     if (now.value.size() == 1)
       now.time_error =
           pieces.number(fmt::format("time error {}", i), [&] { return coarse->follower->time_error(origin); });
@@ -144,7 +148,7 @@ StudyResult MeshConvergence::run(Context& context) {
       io::Group state;
       rows.write(state.child("rows"));
       state.set("bifurcation", static_cast<int>(i));
-      write_located(state.child("located"), {now.last});
+      coarse->follower->write(state.child("located"), {now.last});
       state.put("value", now.value, unit, "per level");
       state.put("bracket", now.bracket, unit, "per level");
       state.put("seconds", now.seconds, "s", "per level");

@@ -113,7 +113,7 @@ solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& sch
 }
 
 std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
-                                        const std::function<std::vector<solve::Cycle>()>& find) {
+                                        const std::function<std::vector<solve::Cycle>()>& find, Vec like) {
   std::vector<solve::Cycle> further;
   const auto lost = [&](const core::Error& e) {
     summary.warnings.push_back(
@@ -128,16 +128,16 @@ std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summ
   }
   auto& all = group.child("solutions");
   all.set("count", static_cast<int>(further.size()));
-  for (std::size_t k = 0; k < further.size(); ++k) write_cycle(all.child(fmt::format("{}", k + 2)), further[k]);
+  for (std::size_t k = 0; k < further.size(); ++k) write_cycle(all.child(fmt::format("{}", k + 2)), further[k], like);
   summary.set("solutions", static_cast<double>(further.size() + 1), "1");
   return further;
 }
 
-std::vector<solve::Cycle> read_solutions(const io::Group& group) {
-  std::vector<solve::Cycle> out;
+std::vector<io::Group> solutions_in(const io::Group& group) {
+  std::vector<io::Group> out;
   if (!group.has_group("solutions")) return out;
   const io::Group& all = group.group("solutions");
-  for (long k = 0; k < all.integer("count"); ++k) out.push_back(read_cycle(all.group(fmt::format("{}", k + 2))));
+  for (long k = 0; k < all.integer("count"); ++k) out.push_back(all.group(fmt::format("{}", k + 2)));
   return out;
 }
 

@@ -30,10 +30,11 @@ namespace whirl::study {
 
 /// What `find` finds into `group`/solutions, and the number of solutions with the first one as the value `solutions`. A
 /// search that ends in core::NotConverged or core::DomainError found nothing, which a warning says: the branch itself
-/// stays. Returns what was found.
+/// stays. `like` as of write_cycle(). Returns what was found.
 std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
-                                        const std::function<std::vector<solve::Cycle>()>& find);
-[[nodiscard]] std::vector<solve::Cycle> read_solutions(const io::Group& group);
+                                        const std::function<std::vector<solve::Cycle>()>& find, Vec like = nullptr);
+/// The cycles of put_solutions(), for read_cycle(), in what it was given.
+[[nodiscard]] std::vector<io::Group> solutions_in(const io::Group& group);
 
 /// Name of the branch that begins at the k-th solution (the first is the branch's own) of the study `name`.
 [[nodiscard]] std::string name_of_solution(const std::string& name, std::size_t k);

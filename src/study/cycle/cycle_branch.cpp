@@ -13,36 +13,42 @@ namespace {
 // The branch born at one flip of another one.
 class DoubledBranch final : public Study {
 public:
-  DoubledBranch(std::string name, CycleBranchOptions options, std::vector<FlipSeed> flips, std::size_t from)
+  DoubledBranch(std::string name, CycleBranchOptions options, io::Group flips, std::size_t from)
       : name_(std::move(name)), options_(std::move(options)), flips_(std::move(flips)), from_(from) {}
   [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
   [[nodiscard]] std::string name() const override { return name_; }
   void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
   [[nodiscard]] StudyResult run(Context& context) override {
-    return CycleFollower(context, options_, flips_[from_], flips_).run();
+    CycleFollower follower(context, options_);
+    follower.leave_from(flips_, from_);
+    return follower.run();
   }
 
 private:
   std::string name_;
   CycleBranchOptions options_;
-  std::vector<FlipSeed> flips_;
+  io::Group flips_;
   std::size_t from_;  // of them this branch is born
 };
 
 // The branch that begins at a forced cycle beside the first one of another branch.
 class BesideCycleBranch final : public Study {
 public:
-  BesideCycleBranch(std::string name, CycleBranchOptions options, solve::Cycle first)
+  BesideCycleBranch(std::string name, CycleBranchOptions options, io::Group first)
       : name_(std::move(name)), options_(std::move(options)), first_(std::move(first)) {}
   [[nodiscard]] std::string_view kind() const override { return CycleBranch::key; }
   [[nodiscard]] std::string name() const override { return name_; }
   void validate(const system::Machine& /*machine*/, const deck::Report& /*report*/) const override {}
-  [[nodiscard]] StudyResult run(Context& context) override { return CycleFollower(context, options_, first_).run(); }
+  [[nodiscard]] StudyResult run(Context& context) override {
+    CycleFollower follower(context, options_);
+    follower.begin_at(first_);
+    return follower.run();
+  }
 
 private:
   std::string name_;
   CycleBranchOptions options_;
-  solve::Cycle first_;
+  io::Group first_;
 };
 
 // A flip that was asked for and not found.
@@ -72,19 +78,19 @@ std::vector<std::unique_ptr<Study>> CycleBranch::further(const io::Group& result
   CycleBranchOptions beside = options;
   beside.parameter.deflation.reset();
   beside.follow_flips = false;
-  for (std::size_t k = 2; auto& first : read_solutions(result))
+  for (std::size_t k = 2; auto& first : solutions_in(result))
     born.push_back(std::make_unique<BesideCycleBranch>(name_of_solution(name(), k++), beside, std::move(first)));
   if (!options.follow_flips) return born;
-  std::vector<FlipSeed> seeds;
-  if (result.has_group("flips")) seeds = read_seeds(result.group("flips"));
-  for (std::size_t k = 1; k <= seeds.size(); ++k) {
+  const io::Group* flips = result.has_group("flips") ? &result.group("flips") : nullptr;
+  const std::size_t count = flips ? count_seeds(*flips) : 0;
+  for (std::size_t k = 1; k <= count; ++k) {
     const auto& chosen = options.flips;
     if (!chosen.empty() && std::find(chosen.begin(), chosen.end(), static_cast<int>(k)) == chosen.end()) continue;
     born.push_back(
-        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), seeds, k - 1));
+        std::make_unique<DoubledBranch>(name_of_doubled(name(), k), of_twice_the_period(options), *flips, k - 1));
   }
   for (const int k : options.flips)
-    if (static_cast<std::size_t>(k) > seeds.size()) born.push_back(std::make_unique<NoFlip>(name(), k, seeds.size()));
+    if (static_cast<std::size_t>(k) > count) born.push_back(std::make_unique<NoFlip>(name(), k, count));
   return born;
 }
 

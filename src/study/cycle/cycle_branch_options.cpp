@@ -99,7 +99,7 @@ void describe(deck::Description<CycleBranchOptions>& d) {
         "parameter values inside the range at which the cycle is solved and reported as at.VALUE.*");
   d.add("multipliers", &O::multipliers, deck::in(1, 1e4),
         "Floquet multipliers to report, the largest; where they are searched for (films with states, whole shafts), "
-        "those above 0.2, as many as this or 24; where the states are spread over ranks, all of those");
+        "those above 0.2, as many as this or 24");
   d.add("period", &O::period, deck::in(1, 1e4), "revolutions per cycle");
   d.add("max_points", &O::max_points, deck::positive, "points after which the branch ends");
   d.add("max_eccentricity", &O::max_eccentricity, deck::between(0, 1),

@@ -9,21 +9,25 @@
 
 namespace whirl::study {
 
-void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds) {
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds, Vec like) {
   group.set("count", static_cast<int>(seeds.size()));
   group.set("restart", 1);
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     auto& g = group.child(fmt::format("{}", k + 1));
-    write_cycle(g.child("cycle"), seeds[k].cycle);
-    write_cycle(g.child("direction"), seeds[k].direction);
+    write_cycle(g.child("cycle"), seeds[k].cycle, like);
+    write_cycle(g.child("direction"), seeds[k].direction, like);
   }
 }
 
-std::vector<FlipSeed> read_seeds(const io::Group& group) {
+std::size_t count_seeds(const io::Group& group) {
+  return static_cast<std::size_t>(group.integer("count"));
+}
+
+std::vector<FlipSeed> read_seeds(const io::Group& group, Vec like) {
   std::vector<FlipSeed> seeds;
-  for (std::int64_t k = 1; k <= group.integer("count"); ++k) {
+  for (std::size_t k = 1; k <= count_seeds(group); ++k) {
     const auto& g = group.group(fmt::format("{}", k));
-    seeds.push_back({read_cycle(g.group("cycle")), read_cycle(g.group("direction"))});
+    seeds.push_back({read_cycle(g.group("cycle"), like), read_cycle(g.group("direction"), like)});
   }
   return seeds;
 }
@@ -46,9 +50,9 @@ void CycleFollower::renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent) {
   try {
     const auto renewed = solve::Journal::ask(newton_.journal, "phase", {core::norm(u)}, [&](const auto&) {
       renew();
-      return solve::Journal::Answer{core::gather(tangent), {}};
+      return solve::Journal::Answer{{}, {}, {solve::Journal::keep(newton_.journal, tangent)}};
     });
-    core::fill(tangent, renewed.numbers);
+    solve::Journal::give(renewed.vectors.at(0), tangent);
   } catch (const core::NotConverged&) {  // singular, at a branch point for one: the old one serves
   }
 }
@@ -73,10 +77,10 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   record_.write(state.child("record"), true);
   nodes_.write(state);
   multiplier_bars_.write(state.child("multiplier_bars"));
-  write_cycle(state.child("cycle"), cycle);
-  write_cycle(state.child("tangent"), direction);
+  write_cycle(state.child("cycle"), cycle, stored());
+  write_cycle(state.child("tangent"), direction, stored());
   // Cycles asked for begin there, on the mesh before its adaptation.
-  if (last_ && !options_.at.empty()) write_cycle(state.child("last"), *last_);
+  if (last_ && !options_.at.empty()) write_cycle(state.child("last"), *last_, stored());
   state.set("period_scale", problem_->period_scale());
   solve::BranchPoint now = at.point;
   now.slope = solve::last_entry(problem_->comm(), tangent);
@@ -86,8 +90,8 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   state.set("largest_difference", largest_);
   state.set("events", events_);
   write_summary(state.child("summary"), context_.results.summary());
-  write_seeds(state.child("flips"), seeds_);
-  write_located(state.child("located"), located_);
+  write_seeds(state.child("flips"), seeds_, stored());
+  write(state.child("located"), located_);
   pieces_->save(std::move(state));
 }
 
@@ -95,12 +99,14 @@ std::optional<solve::Restart> CycleFollower::restore() {
   pieces_ =
       std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(layout().space));
   newton_.journal = continuation_.newton.journal = pieces_->journal();
+  if (newton_.journal) newton_.journal->by_rows = layout().shared;
   if (!pieces_->state().has_group("cycle")) return std::nullopt;
-  const io::Group state = pieces_->state();
+  const io::Group& state = pieces_->state();
   record_.read(state.group("record"));
   nodes_.read(state);
   multiplier_bars_.read(state.group("multiplier_bars"));
-  const solve::Cycle cycle = read_cycle(state.group("cycle")), direction = read_cycle(state.group("tangent"));
+  const solve::Cycle cycle = read_cycle(state.group("cycle"), stored()),
+                     direction = read_cycle(state.group("tangent"), stored());
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) {
     solve::Cycle first = cycle;  // gives the period its unit
@@ -116,9 +122,9 @@ std::optional<solve::Restart> CycleFollower::restore() {
                          read_point(state.group("point")),
                          {}};
   if (pieces_->same_layout()) restart.memory = read_memory(state.group("memory"), restart.u.get());
-  seeds_ = read_seeds(state.group("flips"));
-  located_ = read_located(state.group("located"));
-  last_ = state.has_group("last") ? read_cycle(state.group("last")) : cycle;
+  seeds_ = read_seeds(state.group("flips"), stored());
+  located_ = read(state.group("located"));
+  last_ = state.has_group("last") ? read_cycle(state.group("last"), stored()) : cycle;
   largest_ = state.real("largest_difference");
   system_->set_parameter(cycle.parameter);
   const solve::Cycle orbit = problem_->orbit(restart.u.get());

@@ -21,15 +21,13 @@ double distance_of_multiplier(std::complex<double> mu) {
   return std::abs(mu) - 1;
 }
 
-CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed,
-                             std::vector<FlipSeed> siblings)
+CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
     : context_(context),
       options_(std::move(options)),
-      seed_(std::move(seed)),
-      siblings_(std::move(siblings)),
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
       system_(make_system({1, 1})),
+      state_(core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE)),
       record_(system_->places(), unit_, options_.multipliers),
       films_(system_->places()),
       nodes_(options_.nodes, unit_),
@@ -53,9 +51,13 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, std::
   continuation_.newton = newton_;
 }
 
-CycleFollower::CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first)
-    : CycleFollower(context, std::move(options)) {
-  first_ = std::move(first);
+void CycleFollower::leave_from(const io::Group& flips, std::size_t which) {
+  siblings_ = read_seeds(flips, stored());
+  seed_ = siblings_.at(which);
+}
+
+void CycleFollower::begin_at(const io::Group& cycle) {
+  first_ = read_cycle(cycle, stored());
 }
 
 std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells) const {
@@ -75,12 +77,12 @@ solve::Stability CycleFollower::stability_of(solve::PeriodicProblem& problem) co
   return solve::make_stability(std::move(values), distance_of_multiplier);
 }
 
-double CycleFollower::room(const solve::Cycle& orbit, const system::Plant& system) const {
+double CycleFollower::room(const solve::Cycle& orbit, system::Plant& system) const {
   if (!options_.max_eccentricity) return std::numeric_limits<double>::infinity();
   return *options_.max_eccentricity - record_.eccentricity(orbit, problem_->orbit_scheme(), system);
 }
 
-double CycleFollower::margin(const solve::Cycle& orbit, const system::Plant& system) const {
+double CycleFollower::margin(const solve::Cycle& orbit, system::Plant& system) const {
   return std::min(films_.margin(least_films(orbit, system)), room(orbit, system));
 }
 
@@ -236,13 +238,15 @@ StudyResult CycleFollower::run() {
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
   group.set("period_turns", options_.period);
   results.summary().points = end.points - (returned_ ? 1 : 0);
-  if (options_.follow_flips) write_seeds(group.child("flips"), seeds_);
-  if (keeps_located_) write_located(group.child("located"), located_);
+  if (options_.follow_flips) write_seeds(group.child("flips"), seeds_, stored());
+  if (keeps_located_) write(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
   if (end.limited && last_)
     put_contact(results.summary(), end.parameter, unit_, end.bracket, margins_.value(), law(), margins_there(*last_));
   results.summary().stability = record_.verdict();
-  if (options_.parameter.deflation) put_solutions(group, results.summary(), [this] { return coexisting(); });
+  if (options_.parameter.deflation)
+    put_solutions(
+        group, results.summary(), [this] { return coexisting(); }, stored());
   return results.finish(returned_ || (end.limited && contact) ? "completed" : branch_status(end, unit_),
                         end.points > 0);
 }

@@ -27,8 +27,11 @@ namespace whirl::study {
 struct FlipSeed {
   solve::Cycle cycle, direction;
 };
-void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds);
-[[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group);
+/// `like` as of write_cycle().
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds, Vec like);
+[[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group, Vec like);
+/// Their number.
+[[nodiscard]] std::size_t count_seeds(const io::Group& group);
 
 /// A bifurcation found again on another film mesh.
 struct Relocated {
@@ -72,15 +75,19 @@ struct Parabola {
 /// The solver's problem, what is recorded of the branch, and how to restart it. Collective throughout.
 class CycleFollower {
 public:
-  /// Follows the branch of `options`; with a seed, the one of twice the period that is born at that flip (then the
-  /// options are those of that branch: period and intervals doubled), with all flips of the simple branch.
-  CycleFollower(Context& context, CycleBranchOptions options, std::optional<FlipSeed> seed = std::nullopt,
-                std::vector<FlipSeed> siblings = {});
-  /// Follows the branch that begins at a given forced cycle.
-  CycleFollower(Context& context, CycleBranchOptions options, solve::Cycle first);
+  /// Follows the branch of `options`.
+  CycleFollower(Context& context, CycleBranchOptions options);
+  /// Follows the branch of twice the period that is born at one of the flips in `group` (write_seeds()). The options
+  /// are those of that branch: period and intervals doubled.
+  void leave_from(const io::Group& flips, std::size_t which);
+  /// Follows the branch that begins at a given forced cycle (write_cycle()).
+  void begin_at(const io::Group& cycle);
   /// Solves and records. The study that runs is finished.
   [[nodiscard]] StudyResult run();
   [[nodiscard]] const system::Plant& system() const { return *system_; }
+  /// Bifurcations as write_located() has them, whoever shares the states here.
+  void write(io::Group& group, const std::vector<Located>& located) const { write_located(group, located, stored()); }
+  [[nodiscard]] std::vector<Located> read(const io::Group& group) const { return read_located(group, stored()); }
   /// Finds the bifurcation that `other` found on another film mesh, with what the journal (may be null) knows of the
   /// way. Throws core::NotConverged or core::DomainError.
   [[nodiscard]] Relocated relocate(const Located& from, const CycleFollower& other, solve::Journal* journal);
@@ -113,21 +120,25 @@ private:
                        double sensitivity) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
-  [[nodiscard]] double margin(const solve::Cycle& orbit, const system::Plant& system) const;
+  [[nodiscard]] double margin(const solve::Cycle& orbit, system::Plant& system) const;
   /// Of a point of the branch, for the slope at which it meets its limit.
   void add_margin(double parameter, const solve::Cycle& orbit);
   [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
-  /// What vanishes where the branch runs back into what it was born of [states x times]. Its sign changes beyond.
+  /// The layout of states where the ranks share them, for what is stored of them; else null.
+  [[nodiscard]] Vec stored() const { return layout().shared ? state_.get() : nullptr; }
+  /// What vanishes where the branch runs back into what it was born of [rows here x times]. Its sign changes beyond.
   [[nodiscard]] Eigen::MatrixXd vanishing(const solve::Cycle& orbit) const;
+  /// The sum of products of entries, of all ranks.
+  [[nodiscard]] double product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const;
   [[nodiscard]] bool may_return() const { return seed_ || autonomous(); }
   /// Little is left of that, or its sign has just changed.
   [[nodiscard]] bool at_its_origin(const solve::Cycle& orbit) const;
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
-  [[nodiscard]] double room(const solve::Cycle& orbit, const system::Plant& system) const;
+  [[nodiscard]] double room(const solve::Cycle& orbit, system::Plant& system) const;
   void on_point(const solve::BranchPoint& point, Vec u);
   void on_event(const solve::LocatedEvent& found, Vec u);
   /// Name of a piece of work about the event that comes next.
@@ -166,7 +177,8 @@ private:
   /// The cycle with the own states of its films on the meshes of `to`.
   [[nodiscard]] solve::Cycle on_film_of(const system::Plant& to, solve::Cycle cycle) const;
   void correct(Vec u, Vec row, double offset, const solve::NewtonOptions& newton, Relocated& out);
-  [[nodiscard]] std::vector<double> read_off(Vec u, Vec row, const std::function<std::vector<double>()>& work);
+  [[nodiscard]] solve::Journal::Answer read_off(Vec u, Vec row,
+                                                const std::function<void(solve::Journal::Answer&)>& work);
   void relocate_crossing(core::Vector& u, Relocated& out);
   void relocate_fold(core::Vector& u, Relocated& out);
   void renew_phase(const solve::Cycle& cycle, Vec u, Vec tangent);
@@ -184,6 +196,7 @@ private:
   solve::NewtonOptions newton_;
   solve::ContinuationOptions continuation_;
   std::unique_ptr<system::Plant> system_;
+  core::Vector state_;  // of the system
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   FilmLimit films_;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "study/cycle/cycle_follower.hpp"
+#include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/solve/shooting/newton_picard.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
@@ -66,6 +67,8 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
     steps = static_cast<int>(std::lround(steps * finer));
 
   const auto common = [&](auto o) {
+    // One multiplier of a self-excited cycle says nothing.
+    o.multipliers = std::max(solve::CycleOptions().multipliers, options_.multipliers + 1);
     o.turns = turns;
     o.autonomous = autonomous();
     o.parameter_scale = scale_;
@@ -91,7 +94,6 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
   }
   auto o = common(solve::CycleOptions());
   o.degree = options_.degree;
-  o.multipliers = std::max(o.multipliers, options_.multipliers + 1);  // one of a self-excited cycle says nothing
   o.points = options_.points == CycleBranchOptions::Points::radau ? solve::Points::radau : solve::Points::gauss;
   o.base_intervals = options_.intervals * laps;
   o.mesh_tolerance = tolerance;

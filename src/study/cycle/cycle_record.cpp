@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/verdict.hpp"
+#include "study/state_rows.hpp"
+#include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -17,16 +20,14 @@ struct Extremes {
 };
 
 // What is shown of all places at `count` equidistant times: [time][place][x, y].
-std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
-                           int count) {
+std::vector<double> sample(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, int count) {
   std::vector<double> out;
-  for (int k = 0; k < count; ++k) {
-    const Eigen::VectorXd x = cycle.at(scheme, static_cast<double>(k) / count);
-    for (const auto& j : system.shown(x.data())) {
+  StateRows states(system);
+  for (int k = 0; k < count; ++k)
+    for (const auto& j : states.shown(cycle.at(scheme, static_cast<double>(k) / count))) {
       out.push_back(j.position[0]);
       out.push_back(j.position[1]);
     }
-  }
   return out;
 }
 
@@ -75,7 +76,7 @@ std::vector<io::Table::Column> columns(const system::Places& places, const std::
       {"film_min", length,
        "smallest film thickness over the cycle, at mid-plane of films that do not tilt, not a number without a film",
        b},
-      {"multipliers_real", "1", "leading Floquet multipliers, the largest first", m},
+      {"multipliers_real", "1", "leading Floquet multipliers, the largest first; not a number: beyond those found", m},
       {"multipliers_imag", "1", "their imaginary parts", m}};
 }
 
@@ -105,8 +106,8 @@ std::vector<double> CycleRecord::per_clearance(const std::vector<double>& radius
   return eccentricity;
 }
 
-void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                       const system::Plant& system, double scale) const {
+void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
+                       double scale) const {
   const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
   end.append({{cycle.parameter / scale},
               {cycle.period},
@@ -118,13 +119,11 @@ void CycleRecord::keep(io::Table& end, const solve::Cycle& cycle, const solve::S
               film_column(least_films(cycle, system), places_.names.size())});
 }
 
-void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
-                        double scale) {
+void CycleRecord::begin(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale) {
   keep(birth_, cycle, scheme, system, scale);
 }
 
-void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
-                        double scale) {
+void CycleRecord::close(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale) {
   keep(closing_, cycle, scheme, system, scale);
 }
 
@@ -135,10 +134,11 @@ void CycleRecord::drop_last() {
 }
 
 void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                         const system::Plant& system, double scale) {
+                         system::Plant& system, double scale) {
   std::vector<double> motion = sample(cycle, scheme, system, samples_per_orbit);
   const Extremes e = extremes(motion, places_.names.size());
-  std::vector<double> re(static_cast<std::size_t>(multipliers_), 0.0), im = re;
+  // Only so many were searched for, and zero would be a multiplier.
+  std::vector<double> re(static_cast<std::size_t>(multipliers_), std::numeric_limits<double>::quiet_NaN()), im = re;
   for (std::size_t k = 0; k < re.size() && k < point.stability.values.size(); ++k) {
     re[k] = point.stability.values[k].real();
     im[k] = point.stability.values[k].imag();
@@ -162,8 +162,7 @@ void CycleRecord::append(const solve::BranchPoint& point, const solve::Cycle& cy
   orbits_.push_back(std::move(motion));
 }
 
-double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
-                                 const system::Plant& system) const {
+double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system) const {
   const Extremes e = extremes(sample(cycle, scheme, system, samples_per_orbit), places_.names.size());
   double largest = 0;
   for (std::size_t i = 0; i < e.radius.size(); ++i)
@@ -179,7 +178,7 @@ std::string CycleRecord::verdict() const {
 }
 
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                         const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
+                         system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
   const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());
   const std::string head = "at." + key + ".";
   for (std::size_t i = 0; i < places_.names.size(); ++i) {
@@ -239,23 +238,17 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
 }
 
-void write_cycle(io::Group& group, const solve::Cycle& cycle) {
+void write_cycle(io::Group& group, const solve::Cycle& cycle, Vec like) {
   group.put("mesh", cycle.mesh, "1", "s = t/T");
-  // Nodes are the slow index.
-  group.put("x", {static_cast<std::size_t>(cycle.x.cols()), static_cast<std::size_t>(cycle.x.rows())},
-            std::vector<double>(cycle.x.data(), cycle.x.data() + cycle.x.size()), "SI",
-            "states at the nodes, natural order");
+  put_columns(group, "states", cycle.x, like, "SI", "in natural order [state][node]");
   group.set("period", cycle.period);
   group.set("parameter", cycle.parameter);
 }
 
-solve::Cycle read_cycle(const io::Group& group) {
+solve::Cycle read_cycle(const io::Group& group, Vec like) {
   solve::Cycle cycle;
   cycle.mesh = group.reals("mesh");
-  const auto& data = group.dataset("x");
-  const auto& values = group.reals("x");
-  cycle.x = Eigen::Map<const Eigen::MatrixXd>(values.data(), static_cast<Eigen::Index>(data.shape[1]),
-                                              static_cast<Eigen::Index>(data.shape[0]));
+  cycle.x = take_columns(group, "states", like);
   cycle.period = group.real("period");
   cycle.parameter = group.real("parameter");
   return cycle;

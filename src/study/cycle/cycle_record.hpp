@@ -22,22 +22,22 @@ public:
 
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
   void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
-              const system::Plant& system, double scale);
+              system::Plant& system, double scale);
   /// Keeps the cycle that the branch leaves from, of no amplitude at a Hopf point or run through twice at a flip: it
   /// belongs to the branch, but is no point of it.
-  void begin(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system, double scale);
+  void begin(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale);
   /// Keeps the cycle that the branch runs into, likewise: the simple one at a flip.
-  void close(const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system, double scale);
+  void close(const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system, double scale);
   /// Removes the last point.
   void drop_last();
   /// Largest eccentricity per clearance of any journal on a cycle.
   [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
-                                    const system::Plant& system) const;
+                                    system::Plant& system) const;
   /// Verdict on the stability of the points so far.
   [[nodiscard]] std::string verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
-  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
-              const system::Plant& system, const solve::Stability& stability, io::StudySummary& summary);
+  void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
+              const solve::Stability& stability, io::StudySummary& summary);
   [[nodiscard]] bool reported(const std::string& key) const { return reported_.contains(key); }
 
   /// Parameter of the last point, in the unit of the branch.
@@ -52,7 +52,7 @@ public:
   void write_orbits(io::Group& group, int count) const;
 
 private:
-  void keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system,
+  void keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
             double scale) const;
   [[nodiscard]] std::vector<double> per_clearance(const std::vector<double>& radius) const;
   system::Places places_;
@@ -63,8 +63,10 @@ private:
   std::set<std::string> reported_;
 };
 
-void write_cycle(io::Group& group, const solve::Cycle& cycle);
-[[nodiscard]] solve::Cycle read_cycle(const io::Group& group);
+/// `like`: null where every rank has the whole cycle, else a state of which it has these rows (see put_columns()).
+/// Collective.
+void write_cycle(io::Group& group, const solve::Cycle& cycle, Vec like = nullptr);
+[[nodiscard]] solve::Cycle read_cycle(const io::Group& group, Vec like = nullptr);
 void write_stability(io::Group& group, const solve::Stability& stability);
 [[nodiscard]] solve::Stability read_stability(const io::Group& group);
 void write_point(io::Group& group, const solve::BranchPoint& point);

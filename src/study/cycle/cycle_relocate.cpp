@@ -32,6 +32,7 @@ solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) 
 
 Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other, solve::Journal* journal) {
   newton_.journal = journal;
+  if (journal) journal->by_rows = layout().shared;
   const solve::Cycle cycle = other.on_film_of(*system_, from.cycle);
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);
@@ -52,19 +53,22 @@ void CycleFollower::correct(Vec u, Vec row, double offset, const solve::NewtonOp
 }
 
 // What a secant reads off the cycle u, once; with a warm start for the next ones.
-std::vector<double> CycleFollower::read_off(Vec u, Vec row, const std::function<std::vector<double>()>& work) {
-  auto all = solve::Journal::ask(newton_.journal, "secant", {core::norm(u)}, [&](const auto&) {
-               problem_->linearise(u, row);
-               std::vector<double> found = work();
-               const std::vector<double> warm = problem_->warm_start();
-               found.insert(found.end(), warm.begin(), warm.end());
-               found.push_back(static_cast<double>(warm.size()));
-               return solve::Journal::Answer{std::move(found), {}};
-             }).numbers;
-  const auto warm = static_cast<std::ptrdiff_t>(all.back());
-  all.pop_back();
-  problem_->take_warm_start({all.end() - warm, all.end()});
-  all.resize(all.size() - static_cast<std::size_t>(warm));
+solve::Journal::Answer CycleFollower::read_off(Vec u, Vec row,
+                                               const std::function<void(solve::Journal::Answer&)>& work) {
+  solve::Journal::Answer all = solve::Journal::ask(newton_.journal, "secant", {core::norm(u)}, [&](const auto&) {
+    problem_->linearise(u, row);
+    solve::Journal::Answer found;
+    work(found);
+    const std::vector<double> warm = problem_->warm_start();
+    found.numbers.insert(found.numbers.end(), warm.begin(), warm.end());
+    found.numbers.push_back(static_cast<double>(warm.size()));
+    return found;
+  });
+  std::vector<double>& numbers = all.numbers;
+  const auto warm = static_cast<std::ptrdiff_t>(numbers.back());
+  numbers.pop_back();
+  problem_->take_warm_start({numbers.end() - warm, numbers.end()});
+  numbers.resize(numbers.size() - static_cast<std::size_t>(warm));
   return all;
 }
 
@@ -77,7 +81,7 @@ void CycleFollower::relocate_crossing(core::Vector& u, Relocated& out) {
   if (slope == 0) not_found("the multiplier does not move with the parameter");
   for (;;) {
     correct(u.get(), row.get(), p, newton_, out);
-    const std::vector<double> read = read_off(u.get(), row.get(), [&] {
+    const solve::Journal::Answer read = read_off(u.get(), row.get(), [&](solve::Journal::Answer& found) {
       double nearest = std::numeric_limits<double>::infinity();
       std::complex<double> closest;
       for (const auto& mu : problem_->multipliers())
@@ -86,9 +90,9 @@ void CycleFollower::relocate_crossing(core::Vector& u, Relocated& out) {
             nearest = std::abs(z - out.found.critical);
             closest = z;
           }
-      return std::vector<double>{closest.real(), closest.imag()};
+      found.numbers = {closest.real(), closest.imag()};
     });
-    const std::complex<double> critical(read[0], read[1]);
+    const std::complex<double> critical(read.numbers[0], read.numbers[1]);
     out.found.critical = critical;
     const double f = distance_of_multiplier(critical);
     if (out.solves > 1 && p != last_p) slope = (f - last_f) / (p - last_p);
@@ -132,11 +136,12 @@ void CycleFollower::relocate_fold(core::Vector& u, Relocated& out) {
       longest = std::abs(step);
       check(VecWAXPY(u.get(), step, tangent.get(), last.get()));
     }
-    core::fill(tangent.get(), read_off(u.get(), row.get(), [&] {
-                 (void)solve::solve_linear(*problem_, rhs.get(), tangent.get(), "tangent_");
-                 check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
-                 return core::gather(tangent.get());
-               }));
+    const solve::Journal::Answer read = read_off(u.get(), row.get(), [&](solve::Journal::Answer& found) {
+      (void)solve::solve_linear(*problem_, rhs.get(), tangent.get(), "tangent_");
+      check(VecScale(tangent.get(), 1 / std::sqrt(solve::inner(*problem_, tangent.get(), tangent.get()))));
+      found.vectors = {solve::Journal::keep(newton_.journal, tangent.get())};
+    });
+    solve::Journal::give(read.vectors.at(0), tangent.get());
     const double f = solve::last_entry(problem_->comm(), tangent.get());
     if (out.solves > 1 && f != last_f) curvature = (f - last_f) / step;
     const double next = curvature != 0 ? std::clamp(-f / curvature, -longest, longest) : 0.02 * continuation_.max_step;

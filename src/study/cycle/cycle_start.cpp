@@ -10,6 +10,8 @@
 #include "study/cycle/cycle_follower.hpp"
 #include "study/first_guess.hpp"
 #include "study/make_plant.hpp"
+#include "study/state_rows.hpp"
+#include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
@@ -34,10 +36,9 @@ std::vector<double> two_laps(const std::vector<double>& mesh) {
 // The first guess is the equilibrium, held for the whole turn: Newton adds the vibration.
 core::Vector CycleFollower::start(const solve::PeriodicProblem& problem) const {
   if (first_) return problem.scatter(*first_);
-  const std::vector<double> whole = system_->gather(find_rest(*system_).get());
+  const Eigen::VectorXd rest = rows_of(find_rest(*system_).get());
   solve::Cycle guess{problem.mesh(), {}, two_pi * options_.period / system_->speed(), system_->parameter()};
-  guess.x = Eigen::Map<const Eigen::VectorXd>(whole.data(), system_->size())
-                .replicate(1, guess.intervals() * problem.scheme().degree);
+  guess.x = rest.replicate(1, guess.intervals() * problem.scheme().degree);
   return problem.scatter(guess);
 }
 
@@ -76,23 +77,19 @@ solve::Restart CycleFollower::start_at_hopf() {
     o.newton.max_iterations = 20;
     const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), o, callbacks);
     if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
-    std::vector<double> found{parameter, hopf.parameter, hopf.bracket, hopf.sensitivity};
-    const auto rest = system_->gather(at_hopf.get());
-    found.insert(found.end(), rest.begin(), rest.end());
-    return found;
   };
-  const std::vector<double> known = pieces_->numbers("hopf", search);
+  const io::Group& piece = pieces_->get("hopf", [&](io::Group& found) {
+    search();
+    found.put("values", {parameter, hopf.parameter, hopf.bracket, hopf.sensitivity}, "1", "where");
+    put_vector(found, "state", at_hopf.get(), layout().shared, "equilibrium, SI");
+  });
+  const std::vector<double>& known = piece.reals("values");
   parameter = known[0];
   hopf.parameter = known[1];
   hopf.bracket = known[2];
   hopf.sensitivity = known[3];
   at_hopf = core::duplicate(x.get());
-  {
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(at_hopf.get(), &begin, nullptr));
-    const core::WriteArray a(at_hopf.get());
-    for (PetscInt i = 0; i < a.size(); ++i) a[i] = known[static_cast<std::size_t>(4 + begin + i)];
-  }
+  take_vector(piece, "state", at_hopf.get());
 
   system_->set_parameter(parameter);
   const auto modes = solve::machine_modes(*system_, at_hopf.get(), {}).modes;
@@ -101,17 +98,20 @@ solve::Restart CycleFollower::start_at_hopf() {
     if (m.lambda.imag() > 0 && (!critical || std::abs(m.lambda.real()) < std::abs(critical->lambda.real())))
       critical = &m;
   core::require(critical != nullptr, "a Hopf point has a complex eigenvalue");
-  const std::vector<double> rest = system_->gather(at_hopf.get());
-  const auto n = static_cast<Eigen::Index>(rest.size());
+  const Eigen::VectorXd rest = rows_of(at_hopf.get());
+  const Eigen::Index n = rest.size();
+  PetscInt first = 0;
+  check(VecGetOwnershipRange(at_hopf.get(), &first, nullptr));
   Eigen::VectorXcd phi(n);
-  for (Eigen::Index k = 0; k < n; ++k) phi(k) = critical->shape[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k < n; ++k) phi(k) = critical->shape[static_cast<std::size_t>(first + k)];
   // The phase in which the motion is largest at s = 0: there it stands at right angles to its rate, so that even one
   // point of the cycle fixes the phase and is not moved by it.
-  const std::complex<double> square = phi.cwiseQuotient(problem_->state_scale()).array().square().sum();
+  std::complex<double> square = phi.cwiseQuotient(problem_->state_scale()).array().square().sum();
+  square = {sum_over(system_->comm(), square.real()), sum_over(system_->comm(), square.imag())};
   phi *= std::exp(std::complex<double>(0, -0.5 * std::arg(square)));
   solve::Cycle still{problem_->mesh(), {}, two_pi / critical->lambda.imag(), parameter}, mode = still;
   const auto& scheme = problem_->scheme();
-  still.x = Eigen::Map<const Eigen::VectorXd>(rest.data(), n).replicate(1, still.intervals() * scheme.degree);
+  still.x = rest.replicate(1, still.intervals() * scheme.degree);
   mode.x.resize(n, still.x.cols());
   for (Eigen::Index i = 0; i < still.intervals(); ++i)
     for (Eigen::Index l = 1; l <= scheme.degree; ++l) {
@@ -216,7 +216,7 @@ solve::Restart CycleFollower::start_at_flip() {
 }
 
 // Of a branch born at a flip the first lap minus the second one, of one born at a Hopf point the motion about its mean:
-// at equidistant times, scaled.
+// at equidistant times, scaled; the rows of this rank.
 Eigen::MatrixXd CycleFollower::vanishing(const solve::Cycle& orbit) const {
   constexpr int samples = 24;
   const auto at = [&](double s) -> Eigen::VectorXd {
@@ -231,11 +231,15 @@ Eigen::MatrixXd CycleFollower::vanishing(const solve::Cycle& orbit) const {
   return motion;
 }
 
+double CycleFollower::product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) const {
+  return sum_over(system_->comm(), (a.array() * b.array()).sum());
+}
+
 // Where the branch runs into what it was born of its parameter turns as at a fold, which it is not.
 bool CycleFollower::at_its_origin(const solve::Cycle& orbit) const {
-  if (!may_return() || vanishing_.size() == 0) return false;
+  if (!may_return() || vanishing_.cols() == 0) return false;
   const Eigen::MatrixXd motion = vanishing(orbit);
-  return (motion.array() * vanishing_.array()).sum() < 0 || motion.norm() < 0.02 * largest_;
+  return product(motion, vanishing_) < 0 || std::sqrt(product(motion, motion)) < 0.02 * largest_;
 }
 
 // A branch may run back into what it was born of: the cycle of half the period, or an equilibrium. Beyond that point it
@@ -243,9 +247,10 @@ bool CycleFollower::at_its_origin(const solve::Cycle& orbit) const {
 // the step has landed on the simple cycle run twice or on the equilibrium, when nothing is left of it.
 bool CycleFollower::returned(const solve::Cycle& orbit) {
   Eigen::MatrixXd motion = vanishing(orbit);
-  const bool turned = vanishing_.size() > 0 && (motion.array() * vanishing_.array()).sum() < 0;
-  largest_ = std::max(largest_, motion.norm());
-  const bool vanished = motion.norm() < 1e-3 * largest_;
+  const bool turned = vanishing_.cols() > 0 && product(motion, vanishing_) < 0;
+  const double size = std::sqrt(product(motion, motion));
+  largest_ = std::max(largest_, size);
+  const bool vanished = size < 1e-3 * largest_;
   vanishing_ = std::move(motion);
   return turned || vanished;
 }

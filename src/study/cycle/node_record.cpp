@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/state_rows.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 namespace whirl::study {
@@ -24,13 +25,14 @@ NodeRecord::NodeRecord(std::vector<int> nodes, std::string unit)
     : nodes_(std::move(nodes)), unit_(std::move(unit)), table_(columns(unit_, nodes_.size())) {}
 
 void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
-                        const system::Plant& system) {
+                        system::Plant& system) {
   const auto* rotor = dynamic_cast<const system::RotorSystem*>(&system);
   if (nodes_.empty() || !rotor) return;
+  StateRows states(system);
   std::vector<std::vector<double>> x(nodes_.size()), y(nodes_.size());
   for (int k = 0; k < samples_per_turn; ++k) {
-    const Eigen::VectorXd state = cycle.at(scheme, static_cast<double>(k) / samples_per_turn);
-    const std::vector<double> shaft = rotor->shaft(state.data(), 0, false);
+    Vec state = states.vector(cycle.at(scheme, static_cast<double>(k) / samples_per_turn));
+    const std::vector<double> shaft = rotor->shaft(state, 0, false);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const auto at = static_cast<std::size_t>(4 * (nodes_[i] - 1));
       x[i].push_back(shaft[at]);

@@ -18,7 +18,7 @@ public:
 
   /// Adds a cycle with its parameter in the unit of the branch. Collective on the system's communicator. Nothing
   /// happens without nodes, or if the system is no rotor.
-  void append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme, const system::Plant& system);
+  void append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system);
   /// Removes the last row, if there is one.
   void drop_last();
   /// Table of parameter, `amplitude` (largest distance from the mean position), `x` and `y` (half the travel) [m],

@@ -12,6 +12,7 @@
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
 #include "study/cycle/coexisting.hpp"
+#include "study/cycle/cycle_record.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "study/first_guess.hpp"
 #include "study/layout.hpp"
@@ -277,8 +278,8 @@ std::vector<std::unique_ptr<Study>> EquilibriumBranch::further(const io::Group& 
   std::vector<std::unique_ptr<Study>> beside;
   EquilibriumBranchOptions own = options;
   own.parameter.deflation.reset();
-  for (std::size_t k = 2; auto& first : read_solutions(result))
-    beside.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), own, std::move(first)));
+  for (std::size_t k = 2; const auto& first : solutions_in(result))
+    beside.push_back(std::make_unique<BesideBranch>(name_of_solution(name(), k++), own, read_cycle(first)));
   return beside;
 }
 

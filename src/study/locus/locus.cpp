@@ -19,6 +19,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
+#include "whirl/io/hdf5.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
 #include "whirl/solve/bifurcation/normal_form.hpp"
@@ -46,7 +47,10 @@ LocusFollower::LocusFollower(Context& context, const LocusOptions& options) : co
   if (!group.has_group("located"))
     throw core::NotConverged(
         fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
-  const std::vector<Located> all = read_located(group.group("located"));
+  // Every rank follows the curve on a whole machine.
+  io::Group located = group.group("located");
+  io::make_whole(located, context.comm);
+  const std::vector<Located> all = read_located(located);
   if (static_cast<std::size_t>(options.bifurcation) > all.size())
     throw core::NotConverged(
         fmt::format("'{}' has {} bifurcations, number {} is wanted", options.of, all.size(), options.bifurcation));

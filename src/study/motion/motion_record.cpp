@@ -219,7 +219,10 @@ void MotionRecord::save(io::Group& group, bool shared) const {
   MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(like_));
   MPI_Allreduce(MPI_IN_PLACE, &squares, 1, MPI_DOUBLE, MPI_SUM, comm);
   group.set("squares", squares);
-  put_vectors(group, "points", points_, like_, shared, "scaled states at the ends of revolutions");
+  Eigen::MatrixXd points(static_cast<Eigen::Index>(sum_.size()), static_cast<Eigen::Index>(points_.size()));
+  for (Eigen::Index k = 0; k < points.cols(); ++k)
+    points.col(k) = Eigen::Map<const Eigen::VectorXd>(points_[static_cast<std::size_t>(k)].data(), points.rows());
+  put_columns(group, "points", points, shared ? like_ : nullptr, "1", "scaled states at the ends of revolutions");
   group.put("growth", exponents_.growth(), "1", "of deviations");
   group.put("durations", exponents_.durations(), "s", "of revolutions");
 }
@@ -227,7 +230,9 @@ void MotionRecord::save(io::Group& group, bool shared) const {
 void MotionRecord::load(const io::Group& group) {
   samples_ = group.reals("samples");
   ends_ = group.reals("ends");
-  points_ = take_vectors(group, "points", like_);
+  points_.clear();
+  const Eigen::MatrixXd points = take_columns(group, "points", like_);
+  for (const auto& column : points.colwise()) points_.emplace_back(column.begin(), column.end());
   core::Vector sum = core::duplicate(like_);
   take_vector(group, "sum", sum.get());
   sum_ = entries_here(sum.get());

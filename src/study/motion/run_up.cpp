@@ -128,7 +128,7 @@ private:
       if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
       for (std::size_t b = 0; b < n; ++b) r.samples[b].push_back(seen.shown[b].position);
       if (options_.nodes.empty()) continue;
-      const std::vector<double> shaft = system_.shaft(system_.gather(x_.get()).data(), 0, false);
+      const std::vector<double> shaft = system_.shaft(x_.get(), 0, false);
       for (std::size_t i = 0; i < options_.nodes.size(); ++i) {
         const auto at = static_cast<std::size_t>(4 * (options_.nodes[i] - 1));
         r.samples[n + i].push_back({shaft[at], shaft[at + 1]});

@@ -1,6 +1,8 @@
 #pragma once
 // A periodic solution as data.
 
+#include <mpi.h>
+
 #include <Eigen/Core>
 #include <vector>
 
@@ -8,8 +10,9 @@
 
 namespace whirl::solve {
 
-/// A periodic solution x(s), s = t/T in [0, 1], by its values at the nodes of a collocation mesh; the same copy on
-/// every rank.
+/// A periodic solution x(s), s = t/T in [0, 1], by its values at the nodes of a collocation mesh. Each rank has the
+/// rows of the states that it holds of the system, problem::System::local_size(): all of them where every rank holds a
+/// whole system. What follows is done row by row, without other ranks.
 ///
 /// Column i m + l - 1 of `x` [n x N m] (SI) is node l = 1..m of interval i; the start of interval i is the end of
 /// interval i - 1.
@@ -40,15 +43,17 @@ struct Cycle {
 
 /// Estimated local error of each interval, as a fraction of the largest scaled deviation from the mean (at least 1e-6,
 /// so that rounding in a resting state is no error): |h^(m+1) x^(m+1)|/(2^(m+1) (m+1)!) by the jump of the m-th
-/// derivative between neighbours (de Boor 1973; Ascher, Mattheij and Russell 1995, 9.3). `scale` [n] divides the
-/// states.
+/// derivative between neighbours (de Boor 1973; Ascher, Mattheij and Russell 1995, 9.3). `scale` [n_local] divides the
+/// states, the rows of which are those of the ranks of `comm`; all get the same answer. Collective on `comm`.
 [[nodiscard]] std::vector<double> interval_errors(const Scheme& scheme, const Cycle& cycle,
-                                                  const Eigen::VectorXd& scale);
+                                                  const Eigen::VectorXd& scale, MPI_Comm comm = MPI_COMM_SELF);
 
 /// A mesh whose intervals are split or merged by factors of two until their estimated errors stand between tolerance/8
 /// and tolerance; lengths stay powers of two of 1/base, so that few distinct lengths occur and each is factorised once.
 /// Where more than `max_intervals` would be needed the tolerance is doubled until they suffice (but for `base` itself).
+/// `scale` and `comm` as of interval_errors().
 [[nodiscard]] std::vector<double> adapted_mesh(const Scheme& scheme, const Cycle& cycle, const Eigen::VectorXd& scale,
-                                               double tolerance, int base, int max_intervals);
+                                               double tolerance, int base, int max_intervals,
+                                               MPI_Comm comm = MPI_COMM_SELF);
 
 }  // namespace whirl::solve

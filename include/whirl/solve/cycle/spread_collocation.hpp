@@ -25,7 +25,9 @@ struct SpreadCollocationOptions : NewtonPicardOptions {
 /// interval. How an interval is solved: see SpreadInterval.
 class SpreadCollocation final : public SpreadCycle {
 public:
-  /// `system` outlives this and has parts that an elimination keeps apart; core::Bug of others.
+  /// An elimination keeps so many parts apart.
+  static constexpr std::size_t most_parts = 63;
+  /// `system` outlives this and has parts that an elimination keeps apart, at least one; core::Bug of others.
   SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh);
   ~SpreadCollocation() override;
 

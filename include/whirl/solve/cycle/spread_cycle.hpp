@@ -17,6 +17,7 @@ struct NewtonPicardOptions {
   double parameter_scale = 1;  ///< physical value of one unit of the scaled parameter
   double state_weight = 1;     ///< squared weight of the mean square scaled state in the arclength
   double radius = 0.3;         ///< multipliers above it are solved by Newton, the rest by Picard iterations
+  int multipliers = 1 << 20;   ///< at most so many of them, the largest, are searched for
   int picard = 3;              ///< at most so many Picard iterations on the rest per linear solve
   double multiplier_tolerance = 1e-9;
   bool constant_rates = false;  ///< dF/d(dx/dt) depends on nothing but the parameter
@@ -55,14 +56,15 @@ public:
 
   [[nodiscard]] const Scheme& scheme() const override { return scheme_; }
   [[nodiscard]] const std::vector<double>& mesh() const override { return mesh_; }
-  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return whole_scale_; }
+  [[nodiscard]] const Eigen::VectorXd& state_scale() const override { return scale_; }
   [[nodiscard]] Cycle gather(Vec u) const override;
   [[nodiscard]] core::Vector scatter(const Cycle& cycle) const override;
   /// sum weight <x - ref, ref'> = 0 over all nodes from now on.
   void set_phase_reference(const Cycle& reference) override;
   [[nodiscard]] double period_scale() const override { return period_scale_; }
 
-  /// All multipliers above the radius, and at least one below; renews the subspace.
+  /// All multipliers above the radius, and at least one below, or the largest if there are more than the options say;
+  /// renews the subspace. Where a dense band of them lies above the radius, this is 0.5 from here on.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
   /// `mu` is above the radius.
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
@@ -112,9 +114,6 @@ protected:
   /// Sets the parameter and returns the period.
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
   [[nodiscard]] Eigen::VectorXd border_of(Vec u) const;
-  /// Columns [local x k] of every rank as [n x k] on all ranks.
-  [[nodiscard]] Eigen::MatrixXd whole(const Eigen::MatrixXd& columns) const;
-  [[nodiscard]] const Eigen::VectorXd& local_scale() const { return scale_; }
   /// A vector of this rank's states, for whoever needs one for a moment.
   [[nodiscard]] Vec work() const { return work_.get(); }
   /// Another mesh; a linearisation and a phase reference are to be set again.
@@ -136,12 +135,14 @@ private:
 
   problem::System& system_;
   NewtonPicardOptions options_;
+  double radius_;         // multipliers above it are found
+  bool limited_ = false;  // and there are more than were asked for
   Scheme scheme_;
   std::vector<double> mesh_;
   Eigen::Index local_, borders_;  // this rank's states; 1 or 2
   bool last_, inexact_, rough_ = false;
   double period_scale_ = 0, phase_offset_ = 0;
-  Eigen::VectorXd scale_, whole_scale_;  // of this rank's states, of all
+  Eigen::VectorXd scale_;  // of this rank's states
   core::Vector weights_, work_;
   Eigen::MatrixXd phase_row_;  // [local x N m]
 

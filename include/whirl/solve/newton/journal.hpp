@@ -1,9 +1,12 @@
 #pragma once
 // What a computation that may be interrupted has found, so that its repetition goes on where it was.
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "whirl/core/petsc.hpp"
 
 namespace whirl::solve {
 
@@ -12,13 +15,20 @@ namespace whirl::solve {
 /// The repetition of an interrupted computation asks the same questions again, up to rounding, and is given the answers
 /// that were found. The first question that is another one ends that: the rest of what was found is forgotten. A
 /// question may ask others on its way, whose answers are of no use any more once it is answered itself. NotConverged
-/// and DomainError are answers too. Every rank asks alike and holds the same; nothing here communicates but
-/// `due` and `changed`.
+/// and DomainError are answers too. Every rank asks alike and holds the same, but for its rows of distributed vectors.
+/// Nothing here communicates but keep(), give(), `due` and `changed`.
 class Journal {
 public:
+  /// A distributed vector: the whole of it on every rank, or of each rank some rows.
+  struct Rows {
+    bool whole = true;                 ///< the same on all ranks
+    std::size_t begin = 0, total = 0;  ///< place of the first one here, and their number on all ranks
+    std::vector<double> values;
+  };
   struct Answer {
     std::vector<double> numbers;
     std::string text;
+    std::vector<Rows> vectors{};
   };
   enum class State { under_way, answered, not_converged, outside };
   struct Entry {
@@ -39,6 +49,12 @@ public:
   /// What the question under way has come to, if anybody wants to know now (see `due`).
   void note(const std::function<Answer()>& so_far);
 
+  /// What an answer keeps of v: this rank's entries if the ranks of a study share its states (by_rows) or nothing is
+  /// saved (`journal` is null), else all of them. Collective on v.
+  [[nodiscard]] static Rows keep(const Journal* journal, Vec v);
+  /// The other way, into a vector in whatever layout. core::Error if it is of another size. Collective on v.
+  static void give(const Rows& rows, Vec v);
+
   /// Where the next question stands, and forgetting what was asked from there on.
   [[nodiscard]] std::size_t place() const { return next_; }
   /// Whether answers of an interrupted computation wait for their questions.
@@ -49,6 +65,7 @@ public:
   /// Begins anew with the entries of an interrupted computation.
   void begin(std::vector<Entry> entries = {});
 
+  bool by_rows = false;           ///< answers keep vectors by rows
   std::function<bool()> due;      ///< whether it is time to save; collective
   std::function<void()> changed;  ///< called after each answer and note; collective
 

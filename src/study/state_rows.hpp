@@ -1,0 +1,32 @@
+#pragma once
+// States of which each rank has the rows that it holds of a plant, as those of a cycle.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "whirl/core/petsc.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// What a plant shows of such states. Collective on its communicator.
+class StateRows {
+public:
+  explicit StateRows(system::Plant& plant);
+  /// Of the rows [local_size()] (SI): as Plant::shown(), Plant::film_thickness().
+  [[nodiscard]] std::vector<system::PlaceState> shown(const Eigen::VectorXd& rows);
+  [[nodiscard]] std::vector<double> film_thickness(const Eigen::VectorXd& rows);
+  /// The rows as a vector of the plant, until the next ones come.
+  [[nodiscard]] Vec vector(const Eigen::VectorXd& rows);
+
+private:
+  system::Plant& plant_;
+  core::Vector x_;
+};
+
+/// The entries of x on this rank.
+[[nodiscard]] Eigen::VectorXd rows_of(Vec x);
+/// The sum over the ranks of `comm`.
+[[nodiscard]] double sum_over(MPI_Comm comm, double here);
+
+}  // namespace whirl::study

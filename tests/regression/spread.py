@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Cycles of films whose states the ranks share, by collocation: those of one rank with a whole machine, on any number of
+ranks. What a killed run leaves is written by rows and serves any number of ranks. A flip, the branch born there and the
+flip on finer films go the same way.
+
+spread.py PROGRAM SOURCE LAUNCHER
+"""
+import shutil
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy
+
+from compare import datasets
+from harness import Harness, kill
+
+h = Harness(sys.argv[1], sys.argv[2], sys.argv[3:])
+SHORT = "      max_points: 3\n"
+FLIP = """      max_points: 3
+      at: [325 rad/s]
+      follow_flips: true
+      flips: [1]
+  - mesh_convergence: {name: fine, of: s, doublings: 1}
+"""
+TABLE = ("parameter", "period", "x_max", "x_min", "y_max", "y_min", "film_min", "unstable_count", "intervals")
+
+
+def on(ranks):
+    return [*h.launcher, "-n", str(ranks)] if ranks > 1 else []
+
+
+def deck(machine, more=FLIP):
+    path = h.work / f"{machine}{len(more)}.yaml"
+    path.write_text(f"""base: {h.source / 'inputs/compliant_rotor/finite_curve.yaml'}
+layout: {{machine: {machine}}}
+bearings: {{half: {{film: {{cells: [16, 4]}}}}}}
+studies:
+  - cycle_branch:
+      name: s
+      unbalance: [a]
+      parameter: speed
+      range: {{from: 320 rad/s, to: 350 rad/s}}
+      step: {{initial: 4 rad/s, min: 0.001 rad/s, max: 20 rad/s}}
+      method: collocation
+      intervals: 12
+      degree: 2
+      mesh_tolerance: 1e-3
+""" + more)
+    return path
+
+
+def killed(name, ranks, more, wanted):
+    """A run, resumed if there is one, that is killed as soon as its checkpoint holds the dataset `wanted`, which must be by
+    rows. One that ends before it is seen is begun again."""
+    out, before = h.work / name, h.work / "before"
+    found, limit = None, time.monotonic() + 400
+    shutil.rmtree(before, ignore_errors=True)
+    if out.exists():
+        shutil.copytree(out, before)
+    while found is None and time.monotonic() < limit:
+        shutil.rmtree(out, ignore_errors=True)
+        if before.exists():
+            shutil.copytree(before, out)
+        process = subprocess.Popen(h.command(deck("all_ranks", more), out, flags=["--resume"] if out.exists() else [],
+                                             launcher=on(ranks)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while found is None and process.poll() is None and time.monotonic() < limit:
+            time.sleep(1e-3)
+            try:
+                with h5py.File(out / "s.checkpoint.h5") as f:
+                    if wanted in f:
+                        found = f[wanted].id.get_create_plist().get_fill_time() == h5py.h5d.FILL_TIME_NEVER
+            except OSError:  # there is none at this moment
+                pass
+        if process.poll() is not None:
+            found = None
+        kill(process)
+    h.true(f"{name}: killed on {ranks} ranks with {wanted} by rows in the checkpoint", found, f"{found}")
+
+
+def compare(one, other, studies, within):
+    """Of both runs: tables, leading multipliers, bifurcations."""
+    a, b = (datasets(h.work / name / "results.h5") for name in (one, other))
+    for s in studies:
+        worst, where = 0, "all"
+        for key in TABLE:
+            x, y = (d[f"studies/{s}/branch/{key}"] for d in (a, b))
+            d = abs(x - y).max() / (abs(y).max() or 1) if x.shape == y.shape else float("inf")
+            if not d <= worst:
+                worst, where = d, key
+        h.close(f"{one}, {other}: {s}, worst difference, of {where}", worst, 0, within)
+        mu = [abs(d[f"studies/{s}/branch/multipliers_real"][:, :2] + 1j * d[f"studies/{s}/branch/multipliers_imag"][:, :2])
+              for d in (a, b)]
+        h.close(f"{one}, {other}: {s}, moduli of the first two multipliers", abs(mu[0] - mu[1]).max(), 0, within)
+    for k, (x, y) in enumerate(zip(h.studies(one)["s"]["bifurcations"], h.studies(other)["s"]["bifurcations"], strict=True)):
+        h.close(f"{one}, {other}: bifurcation {k + 1} [rad/s]", x["value"], y["value"], 1e-4)
+
+
+h.run(deck("one_rank"), "whole", launcher=[])
+alone = h.run(deck("all_ranks"), "alone", launcher=[])
+h.true("the flip is met and followed", [s["points"] for s in alone.values()] == [3, 3, 2], f"{[s['points'] for s in alone.values()]}")
+compare("alone", "whole", ("s", "s flip 1"), 1e-6)
+found = datasets(h.work / "alone/results.h5")
+real, imag = (found[f"studies/s/branch/multipliers_{part}"] for part in ("real", "imag"))
+h.true("multipliers that were not searched for are no numbers, and none is zero",
+       numpy.isnan(real[:, -1]).all() and not numpy.any((real == 0) & (imag == 0)), f"{real[0]}")
+# Killed within its first point, and behind it; the rest on as many ranks, with all that was left.
+killed("two", 2, FLIP, "state/journal/vector 1")
+killed("two", 2, FLIP, "state/state/cycle/states")
+shutil.copytree(h.work / "two", h.work / "one")
+for name, ranks in (("two", 2), ("one", 1)):
+    h.run(deck("all_ranks"), name, flags=["--resume"], launcher=on(ranks))
+    compare(name, "alone", ("s", "s flip 1"), 1e-7)
+    fine = [h.studies(run)["fine"]["bifurcations"][0]["value"] for run in (name, "alone")]
+    h.close(f"{name}, alone: the flip's limit of fine films [rad/s]", fine[0], fine[1], 1e-4)
+h.run(deck("all_ranks", SHORT), "branch", launcher=[])
+killed("three", 1, SHORT, "state/state/cycle/states")
+h.run(deck("all_ranks", SHORT), "three", flags=["--resume"], launcher=on(3))
+compare("three", "branch", ("s",), 1e-7)
+h.finish()
