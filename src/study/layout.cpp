@@ -38,6 +38,10 @@ void describe(deck::Description<LayoutOptions>& d) {
   d.add("film_states", &LayoutOptions::film_states, deck::positive,
         "states of all films together from which all ranks share one machine")
       .only(&LayoutOptions::machine, {automatic});
+  d.add("cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
+        "what the intervals of a cycle by collocation at Radau points take on whole machines, in all, up to which each "
+        "rank has a whole machine and the ranks share intervals, however many states films have")
+      .only(&LayoutOptions::machine, {automatic});
   d.add(
       "refined_states", &LayoutOptions::refined_states, deck::positive,
       "states of all films together up to which error bars take finer film meshes too, of up to twice as many; beyond, "
@@ -61,11 +65,12 @@ std::string reason_to_share(const LayoutOptions& options, const system::Machine&
 
 }  // namespace
 
-bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine) {
+bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine, double intervals, double stages) {
   using enum LayoutOptions::Machine;
   if (!system::is_rotor(machine) || options.machine == one_rank) return false;
   const double own = n_film_states(machine);
-  return own > 0 && (options.machine == all_ranks || own >= options.film_states);
+  if (own == 0 || options.machine == all_ranks) return own > 0;
+  return own >= options.film_states && memory_of_cycles(machine, intervals, stages, true) > options.cycle_memory;
 }
 
 Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
@@ -74,9 +79,8 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   Layout out;
   out.world = context.comm;
   out.large = !reason.empty();
-  out.spread = sharing == Sharing::cycles && spreads_cycles(context.layout, context.machine);
-  const bool in_time = (sharing == Sharing::intervals || sharing == Sharing::cycles) && !out.spread,
-             whole = in_time || sharing == Sharing::nothing;  // on every rank
+  out.spread = sharing == Sharing::cycles;
+  const bool in_time = sharing == Sharing::intervals, whole = in_time || sharing == Sharing::nothing;  // on every rank
   out.shared = out.large && !whole;
   if (out.shared) {
     out.space = context.comm;
