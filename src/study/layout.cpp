@@ -11,6 +11,7 @@
 #include "pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/study/layout_options.hpp"
 #include "whirl/study/study.hpp"
 
@@ -40,7 +41,7 @@ void describe(deck::Description<LayoutOptions>& d) {
       .only(&LayoutOptions::machine, {automatic});
   d.add("cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
         "what the intervals of a cycle by collocation at Radau points take on whole machines, in all, up to which each "
-        "rank has a whole machine and the ranks share intervals, however many states films have")
+        "rank has a whole machine and the ranks share intervals, however many states films have that fill and empty")
       .only(&LayoutOptions::machine, {automatic});
   d.add(
       "refined_states", &LayoutOptions::refined_states, deck::positive,
@@ -70,7 +71,13 @@ bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine
   if (!system::is_rotor(machine) || options.machine == one_rank) return false;
   const double own = n_film_states(machine);
   if (own == 0 || options.machine == all_ranks) return own > 0;
-  return own >= options.film_states && memory_of_cycles(machine, intervals, stages, true) > options.cycle_memory;
+  if (own < options.film_states) return false;
+  // Whole machines have films settle that fill and empty, but none that lie on a liner.
+  const bool liners = std::any_of(machine.bearings.begin(), machine.bearings.end(), [](const system::Bearing& b) {
+    const film::Facts f = film::facts(b.film);
+    return f.own_states && f.gives_way;
+  });
+  return liners || memory_of_cycles(machine, intervals, stages, true) > options.cycle_memory;
 }
 
 Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {

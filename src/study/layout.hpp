@@ -46,9 +46,9 @@ struct Layout {
 /// computes all of them.
 [[nodiscard]] Layout plan(const Context& context, Sharing sharing, std::size_t intervals = 1);
 
-/// Whether cycles by collocation at Radau points, on `intervals` intervals of `stages` points, are solved with the states
-/// of the films apart, on all ranks (see Layout::spread). A long shaft alone has its own way, modes in time on whole
-/// machines.
+/// Whether cycles by collocation at Radau points, on `intervals` intervals of `stages` points, are solved with the
+/// states of the films apart, on all ranks (see Layout::spread). A long shaft alone has its own way, modes in time on
+/// whole machines.
 [[nodiscard]] bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine, double intervals,
                                   double stages);
 

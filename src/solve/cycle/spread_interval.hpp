@@ -51,8 +51,8 @@ private:
 /// which is what elimination of the parts serves. One eliminated matrix, with the mean theta of the diagonal of T^-1,
 /// serves all points of one interval, or of some. The iteration matrix is nilpotent where H J or D is small. Where J
 /// jumps from point to point, as at the nodes of a film that become full, the matrix of another point is no
-/// preconditioner: an entry may be a thousand times as large. There each point has its own. Source: van der Houwen and de
-/// Swart (1997), SIAM J. Sci. Comput. 18, 41.
+/// preconditioner: an entry may be a thousand times as large. There each point has its own. Source: van der Houwen and
+/// de Swart (1997), SIAM J. Sci. Comput. 18, 41.
 class SpreadInterval {
 public:
   /// `blocks` of D + H/theta J and `rates` of D at the points [m]; all of `rates` may be one. `similar`: eliminated
