@@ -41,21 +41,44 @@ double memory_of_equilibria(const system::Machine& machine) {
   return 3000 * n_states(machine);
 }
 
+namespace {
+
+// What an interval holds of the films' own states: two matrices and the factors of a band with blocks of stages x
+// stages, as many columns beside it as a ring has separators, and the tangents at its points. The width of the band is
+// that of a node which sees the columns of the mesh beside its own.
+double numbers_of_films(const system::Machine& machine, double stages, std::int64_t& width) {
+  double all = 0;
+  for (const system::Bearing& b : machine.bearings) {
+    const film::Facts f = film::facts(b.film, b.geometry.value_or(film::Geometry{}));
+    if (f.states == 0) continue;
+    const double line = std::max(1.0, std::round(f.states / std::max(1.0, static_cast<double>(f.cells[0]))));
+    width = std::max(width, 2 * static_cast<std::int64_t>(line) + 1);
+    all += f.states * ((2 * line + 1) * (3 * stages + stages * stages) + stages * stages * (4 + line) + 50 * stages);
+  }
+  return all;
+}
+
+}  // namespace
+
 double memory_of_cycles(const system::Machine& machine, double intervals, double stages, bool radau) {
   const double n = n_states(machine);
-  const bool own =
-      system::is_rotor(machine) && std::any_of(machine.bearings.begin(), machine.bearings.end(),
-                                               [](const auto& b) { return film::facts(b.film).own_states; });
+  const bool rotor = system::is_rotor(machine);
+  std::int64_t width = 0;
+  const double films = rotor ? numbers_of_films(machine, stages, width) : 0;
   // Of a whole shaft no interval has a matrix, only the modes in time have their factors.
   // A node sees two others: 13 entries a state.
   const core::cost::Cycle counts{.states = std::llround(n),
                                  .intervals = std::llround(intervals),
                                  .degree = std::llround(stages),
+                                 .own = std::llround(n_film_states(machine)),
+                                 .band = width,
                                  .forces = 2 * static_cast<std::int64_t>(machine.bearings.size()),
                                  .entries = std::llround(13 * n)};
-  const bool whole = radau && !own && system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
+  const bool sweeps = films > 0 && core::cost::sweeps(counts) < core::cost::dense_joining(counts);
+  const bool whole = radau && films == 0 && rotor && machine.rotor.type == rotor::Options::Type::shaft &&
                      machine.rotor.reduction.type == rotor::Reduction::Type::none &&
                      core::cost::time_modes(counts) < core::cost::dense_joining(counts);
+  if (films > 0) return 8 * intervals * (400 + films + (sweeps ? 0 : n * n));
   return 8 * intervals * (400 + 30 * (stages + 1) * n + (whole ? 40 * stages * n : n * n));
 }
 

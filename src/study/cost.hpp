@@ -16,7 +16,8 @@ namespace whirl::study {
 [[nodiscard]] double memory_of_equilibria(const system::Machine& machine);
 
 /// Cycles on `intervals` intervals of `stages` time points each, condensed to one dense block an interval; with `radau`
-/// (collocation at Radau points) those of a whole shaft are solved by modes in time, without blocks [byte].
+/// (collocation at Radau points) those of a whole shaft are solved by modes in time, without blocks. Films with states
+/// of their own are bands, and where there are many no block is formed [byte].
 [[nodiscard]] double memory_of_cycles(const system::Machine& machine, double intervals, double stages, bool radau);
 
 /// The same by collocation with the states spread over ranks: the blocks of each point, an eliminated matrix for each

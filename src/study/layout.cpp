@@ -39,6 +39,10 @@ void describe(deck::Description<LayoutOptions>& d) {
   d.add("film_states", &LayoutOptions::film_states, deck::positive,
         "states of all films together from which all ranks share one machine")
       .only(&LayoutOptions::machine, {automatic});
+  d.add("cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
+        "what the intervals of a cycle by collocation at Radau points take on whole machines, in all, up to which each "
+        "rank has a whole machine and the ranks share intervals, however many states films have that fill and empty")
+      .only(&LayoutOptions::machine, {automatic});
   d.add(
       "refined_states", &LayoutOptions::refined_states, deck::positive,
       "states of all films together up to which error bars take finer film meshes too, of up to twice as many; beyond, "
@@ -62,7 +66,7 @@ std::string reason_to_share(const LayoutOptions& options, const system::Machine&
 
 }  // namespace
 
-bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine) {
+bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine, double intervals, double stages) {
   using enum LayoutOptions::Machine;
   if (!system::is_rotor(machine) || options.machine == one_rank) return false;
   // Films with states are the parts.
@@ -71,7 +75,14 @@ bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine
                                              [](const auto& bearing) { return film::facts(bearing.film).own_states; }));
   if (parts > solve::SpreadCollocation::most_parts) return false;
   const double own = n_film_states(machine);
-  return own > 0 && (options.machine == all_ranks || own >= options.film_states);
+  if (own == 0 || options.machine == all_ranks) return own > 0;
+  if (own < options.film_states) return false;
+  // Whole machines have films settle that fill and empty, but none that lie on a liner.
+  const bool liners = std::any_of(machine.bearings.begin(), machine.bearings.end(), [](const system::Bearing& b) {
+    const film::Facts f = film::facts(b.film);
+    return f.own_states && f.gives_way;
+  });
+  return liners || memory_of_cycles(machine, intervals, stages, true) > options.cycle_memory;
 }
 
 Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
@@ -80,9 +91,8 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   Layout out;
   out.world = context.comm;
   out.large = !reason.empty();
-  out.spread = sharing == Sharing::cycles && spreads_cycles(context.layout, context.machine);
-  const bool in_time = (sharing == Sharing::intervals || sharing == Sharing::cycles) && !out.spread,
-             whole = in_time || sharing == Sharing::nothing;  // on every rank
+  out.spread = sharing == Sharing::cycles;
+  const bool in_time = sharing == Sharing::intervals, whole = in_time || sharing == Sharing::nothing;  // on every rank
   out.shared = out.large && !whole;
   if (out.shared) {
     out.space = context.comm;

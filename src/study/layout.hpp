@@ -21,7 +21,7 @@ enum class Sharing {
   machine,    ///< one state after another: branches of equilibria, motions in time, Newton-Picard's cycles
   speeds,     ///< independent problems of one machine: modes, responses
   intervals,  ///< pieces of a cycle in time, each of which needs the whole machine on its rank
-  cycles,     ///< the same, or the states at all points of time where films have many: cycles by collocation
+  cycles,     ///< the states at all points of time: cycles by collocation where spreads_cycles() says so
   nothing,    ///< neither: single shooting
 };
 
@@ -46,9 +46,11 @@ struct Layout {
 /// computes all of them.
 [[nodiscard]] Layout plan(const Context& context, Sharing sharing, std::size_t intervals = 1);
 
-/// Whether cycles by collocation at Radau points are solved with the states of the films apart, on all ranks (see
-/// Layout::spread). A long shaft alone has its own way, modes in time on whole machines.
-[[nodiscard]] bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine);
+/// Whether cycles by collocation at Radau points, on `intervals` intervals of `stages` points, are solved with the
+/// states of the films apart, on all ranks (see Layout::spread). A long shaft alone has its own way, modes in time on
+/// whole machines.
+[[nodiscard]] bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine, double intervals,
+                                  double stages);
 
 /// Runs work(0), ..., work(n - 1), shared between the groups in contiguous runs, and gives all answers to all ranks.
 /// `work` is collective on the space communicator. If one item throws, all ranks throw. Collective on the world.

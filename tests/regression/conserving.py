@@ -155,6 +155,20 @@ def train_dynamic(h):
         h.close(f"{end}, largest difference [m]", abs(x - y).max(), 0, 5e-7)
 
 
+def train_contents(h):
+    """The cycle in films with states of their own on the meshes of the deck, with its multipliers: near that of condensed films."""
+    study = CYCLE.replace("at: [3600 rpm]", "max_points: 2, intervals: 32")
+    cycle(h, study, [*GUYAN, *every_bearing("film.states", "dynamic")])
+    h.run("mass_conserving.yaml", "condensed", [only(study), *GUYAN])
+    a, b = (datasets(h.work / name / "results.h5") for name in ("cycle_1", "condensed"))
+    for end in ("x_max", "x_min", "y_max", "y_min"):
+        x, y = (f[f"studies/cycle/branch/{end}"] for f in (a, b))
+        h.close(f"{end}, largest difference [m]", abs(x - y).max(), 0, 3e-7)
+    largest = [abs(f["studies/cycle/branch/multipliers_real"] + 1j * f["studies/cycle/branch/multipliers_imag"]).max()
+               for f in (a, b)]
+    h.close("largest multiplier", largest[0], largest[1], 1e-3)
+
+
 def train_ranks(h):
     cycle(h, CYCLE, [*GUYAN, *every_bearing("film.cells", "[24, 8]")])
 
@@ -180,5 +194,5 @@ def train_whole(h):
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
     {"whole": whole, "ranks": ranks, "train": train, "train_ranks": train_ranks,
-     "train_dynamic": train_dynamic, "train_whole": train_whole}[sys.argv[3]](harness)
+     "train_dynamic": train_dynamic, "train_contents": train_contents, "train_whole": train_whole}[sys.argv[3]](harness)
     harness.finish()

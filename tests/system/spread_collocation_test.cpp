@@ -33,12 +33,12 @@ Case liner() {
 }
 
 // The same in a bore whose film carries its content along, a* = 0.1, with a groove at the top under 20 kPa.
-Case content() {
-  Case out{test::finite_rotor(8, 2), 2.2 * scale, {4, 2, 1}, false};
+Case content(int around = 8, int along = 2) {
+  Case out{test::finite_rotor(around, along), 2.2 * scale, {4, 2, 1}, false};
   film::Reynolds film;
   film.cavitation = film::Reynolds::Cavitation::mass_conserving;
   film.states = film::Reynolds::States::dynamic;
-  film.cells = {8, 2};
+  film.cells = {around, along};
   film.grooves = {{std::numbers::pi / 2, std::numbers::pi / 6, 20e3}};
   out.train.supports[0].film = film;
   out.train.unbalance = {{1, 0.5 * 2.5e-6, 0}};
@@ -173,6 +173,31 @@ TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
     EXPECT_LE((settled.x - found.cycle.x).cwiseAbs().maxCoeff(), 1e-7 * size);
     EXPECT_LE((settled.x - other.x).topRows(hub).cwiseAbs().maxCoeff(), 1e-12 * size);
   }
+}
+
+// Which nodes are full differs from point to point of an interval, and no two points have similar matrices.
+TEST(SpreadCollocation, SettlesWhereFrontsMoveWithinAnInterval) {
+  const Case c = content(48, 6);
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+  solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(8));
+  solve::CycleOptions one;
+  one.parameter_scale = scale;
+  one.degree = 2;
+  solve::CycleProblem dense(PETSC_COMM_SELF, alone, one, spread.mesh());
+  solve::Cycle orbit = at_rest(alone, c);
+  orbit.mesh = spread.mesh();
+  orbit.x = orbit.x.replicate(1, 16).eval();
+  for (Eigen::Index k = 0; k < 16; ++k) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k + 1) / 16;
+    orbit.x(0, k) += 5e-6 * std::cos(angle);
+    orbit.x(2, k) += 5e-6 * std::sin(angle);
+  }
+  core::Vector u = spread.scatter(orbit), v = dense.scatter(orbit);
+  ASSERT_TRUE(spread.settle(u.get()));
+  ASSERT_TRUE(dense.settle(v.get()));
+  const Eigen::MatrixXd found = spread.gather(u.get()).x, expected = dense.gather(v.get()).x;
+  EXPECT_GT((expected - orbit.x).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-8 * 25e-6);
 }
 
 TEST(SpreadCollocation, AdaptsItsMesh) {

@@ -9,6 +9,7 @@
 #include "solve/newton/spread_point.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/index.hpp"
+#include "whirl/problem/settles.hpp"
 
 namespace whirl::solve {
 
@@ -35,11 +36,14 @@ struct SpreadCollocation::Tools {
   Tools(problem::System& system, const Scheme& scheme)
       : point(system), maker(PortMaker::make(system)), step(system.comm(), system.local_size(), scheme) {
     core::require(maker != nullptr, "a machine whose parts elimination keeps apart");
+    const auto* const jumping = dynamic_cast<problem::Settles*>(&system);
+    each_point = jumping && jumping->settles();
   }
   SpreadPoint point;
   std::unique_ptr<PortMaker> maker;
   SpreadStep step;
   core::Matrix matrix;
+  bool each_point = false;  // derivatives jump within an interval
 };
 
 SpreadCollocation::SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options,
@@ -83,17 +87,18 @@ void SpreadCollocation::residuals(Vec u, double period, MatrixXd& r) {
 
 std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<const MatrixXd>& x, Index i,
                                                                double period, std::shared_ptr<const PortMatrix>& rate,
-                                                               std::shared_ptr<PortElimination>& similar,
+                                                               std::vector<std::shared_ptr<PortElimination>>& similar,
                                                                MatrixXd* columns) {
   const Index m = scheme().degree;
   const bool by_speed = !options().autonomous && system().parameter_is_speed();
   SpreadPoint& point = tools_->point;
   PortMaker& maker = *tools_->maker;
-  const double h = length(i) * period, own = h / tools_->step.shift();
+  const double h = length(i) * period;
+  const bool eliminate = similar.empty(), each = eliminate ? tools_->each_point : similar.size() > 1;
   std::vector<std::shared_ptr<const PortMatrix>> blocks(at(m)), rates(at(m));
   VectorXd by_rate(local());
   for (Index j = 0; j < m; ++j) {
-    const double here = angle(mesh()[at(i)] + length(i) * scheme().c(j));
+    const double here = angle(mesh()[at(i)] + length(i) * scheme().c(j)), own = h * tools_->step.own(j, each);
     interpolate(x, i, j, period);
     if (!rate || !options().constant_rates) {
       point.jacobian(here, value_.get(), rate_.get(), 0, 1, tools_->matrix);
@@ -102,7 +107,9 @@ std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<
     rates[at(j)] = rate;
     point.jacobian(here, value_.get(), rate_.get(), own, 1, tools_->matrix);
     blocks[at(j)] = maker.blocks(tools_->matrix.get());
-    if (!similar) similar = maker.eliminate(tools_->matrix.get(), *blocks[at(j)], here, point.x(), point.xdot(), own);
+    if (eliminate && (each || j == 0))
+      similar.push_back(maker.eliminate(tools_->matrix.get(), *blocks[at(j)], here, point.x(), point.xdot(), own,
+                                        columns == nullptr));
     if (!columns) continue;
     point.parameter_derivative(here, value_.get(), rate_.get(), f_.get());
     {
@@ -128,7 +135,7 @@ void SpreadCollocation::linearise_intervals(Vec u, double period) {
   std::vector<std::unique_ptr<SpreadInterval>> made;
   std::shared_ptr<const PortMatrix> rate;
   for (Index i = 0; i < intervals(); ++i) {
-    std::shared_ptr<PortElimination> own;
+    std::vector<std::shared_ptr<PortElimination>> own;
     made.push_back(interval_at(x, i, period, rate, own, &columns_[at(i)]));
   }
   intervals_ = std::move(made);
@@ -139,8 +146,9 @@ void SpreadCollocation::linearise_intervals(Vec u, double period) {
 double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
   const Index m = scheme().degree;
   const VectorXd end = x.col(i * m + m - 1);
-  // Factors of the last linearisation precondition here as well; without any, those of the first step do.
-  std::shared_ptr<PortElimination> similar = intervals_.empty() ? nullptr : intervals_[at(i)]->similar();
+  // Smooth films: factors of the last linearisation precondition here as well; without any, those of the first step do.
+  std::vector<std::shared_ptr<PortElimination>> similar;
+  if (!tools_->each_point && !intervals_.empty()) similar = intervals_[at(i)]->similar();
   MatrixXd step(m * local(), 1);
   const auto largest_of = [&](const auto& v) {
     double size = v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
@@ -148,6 +156,7 @@ double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
     return size;
   };
   for (int k = 0; k < settling_steps; ++k) {
+    if (tools_->each_point) similar.clear();
     residual_of(x, i, period, step.data());
     const auto interval = interval_at(x, i, period, constant_, similar, nullptr);
     SpreadStep::hold(*tools_->maker->layout(), step.data(), m);  // known once there is a matrix

@@ -95,10 +95,10 @@ PetscErrorCode SpreadStep::precondition(PC pc, Vec r, Vec y) {
 void SpreadInterval::multiply(const double* start, const double* x, double* y) const {
   const Scheme& s = step_.scheme();
   const Index m = s.degree, n = blocks_[0]->layout()->local();
-  const double own = length_ / step_.shift();
   const Map<const MatrixXd> nodes(x, n, m);
   VectorXd slope(n), part(n);
   for (Index j = 0; j < m; ++j) {
+    const double own = this->own(j);
     slope.noalias() = nodes * s.slope.row(j).tail(m).transpose();
     if (start) slope += s.slope(j, 0) * Map<const VectorXd>(start, n);
     slope = slope / length_ - nodes.col(j) / own;
@@ -112,7 +112,6 @@ void SpreadInterval::multiply(const double* start, const double* x, double* y) c
 // Point by point: B X_j = own (r_j - D/H sum_(l<j) triangle(j,l) X_l).
 void SpreadInterval::precondition(const double* r, double* x) const {
   const Index m = step_.scheme().degree, n = blocks_[0]->layout()->local();
-  const double own = length_ / step_.shift();
   const Map<MatrixXd> nodes(x, n, m);
   VectorXd earlier(n), part(n);
   for (Index j = 0; j < m; ++j) {
@@ -125,12 +124,13 @@ void SpreadInterval::precondition(const double* r, double* x) const {
     }
     {
       const core::WriteArray a(step_.one_.get());
-      Map<VectorXd>(a.data(), n) = own * part;
+      Map<VectorXd>(a.data(), n) = own(j) * part;
     }
+    PortElimination& point = *similar_[similar_.size() > 1 ? at(j) : 0];
     if (step_.held_)
-      similar_->solve_held(step_.one_.get(), step_.other_.get());
+      point.solve_held(step_.one_.get(), step_.other_.get());
     else
-      similar_->solve(step_.one_.get(), step_.other_.get());
+      point.solve(step_.one_.get(), step_.other_.get());
     const core::ReadArray a(step_.other_.get());
     Map<VectorXd>(x + j * n, n) = Map<const VectorXd>(a.data(), n);
   }

@@ -19,6 +19,8 @@ public:
   /// Lower triangle near the slopes (over h) at the points [m x m], and the mean of its diagonal.
   [[nodiscard]] const Eigen::MatrixXd& triangle() const { return triangle_; }
   [[nodiscard]] double shift() const { return shift_; }
+  /// H/theta at point j over the length: of its own matrix, or of one that serves all points.
+  [[nodiscard]] double own(Eigen::Index j, bool each) const { return 1 / (each ? triangle_(j, j) : shift_); }
   /// v [local x k] := zero in the rows of the hub of matrices with this layout.
   static void hold(const PortLayout& layout, double* v, Eigen::Index k);
 
@@ -47,13 +49,17 @@ private:
 /// of the Runge-Kutta scheme, slope = A^-1 without its first column, and A = T U with T lower triangular and U of unit
 /// diagonal: T^-1 in place of A^-1 leaves points that are solved one after the other, each a system D + H/theta J,
 /// which is what elimination of the parts serves. One eliminated matrix, with the mean theta of the diagonal of T^-1,
-/// serves all points of one interval, or of some. The iteration matrix is nilpotent where H J or D is small. Source:
-/// van der Houwen and de Swart (1997), SIAM J. Sci. Comput. 18, 41.
+/// serves all points of one interval, or of some. The iteration matrix is nilpotent where H J or D is small. Where J
+/// jumps from point to point, as at the nodes of a film that become full, the matrix of another point is no
+/// preconditioner: an entry may be a thousand times as large. There each point has its own. Source: van der Houwen and
+/// de Swart (1997), SIAM J. Sci. Comput. 18, 41.
 class SpreadInterval {
 public:
-  /// `blocks` of D + H/theta J and `rates` of D at the points [m]; all of `rates` may be one.
+  /// `blocks` of D + H/theta J and `rates` of D at the points [m]; all of `rates` may be one. `similar`: eliminated
+  /// matrices of the points [m], whose theta are then the diagonal of the triangle, or one for all of them.
   SpreadInterval(SpreadStep& step, double length, std::vector<std::shared_ptr<const PortMatrix>> blocks,
-                 std::vector<std::shared_ptr<const PortMatrix>> rates, std::shared_ptr<PortElimination> similar)
+                 std::vector<std::shared_ptr<const PortMatrix>> rates,
+                 std::vector<std::shared_ptr<PortElimination>> similar)
       : step_(step),
         length_(length),
         blocks_(std::move(blocks)),
@@ -66,15 +72,16 @@ public:
   /// of the parts, the hub being held: x is zero there before and after. Throws core::DomainError, on all ranks, if it
   /// does not come that far.
   void solve(Eigen::MatrixXd& x, double tolerance, bool held = false) const;
-  [[nodiscard]] const std::shared_ptr<PortElimination>& similar() const { return similar_; }
+  [[nodiscard]] const std::vector<std::shared_ptr<PortElimination>>& similar() const { return similar_; }
 
 private:
   friend class SpreadStep;
   void precondition(const double* r, double* x) const;
+  [[nodiscard]] double own(Eigen::Index j) const { return length_ * step_.own(j, similar_.size() > 1); }
   SpreadStep& step_;
   double length_;
   std::vector<std::shared_ptr<const PortMatrix>> blocks_, rates_;
-  std::shared_ptr<PortElimination> similar_;
+  std::vector<std::shared_ptr<PortElimination>> similar_;
 };
 
 }  // namespace whirl::solve

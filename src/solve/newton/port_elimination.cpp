@@ -165,7 +165,7 @@ void PortElimination::factorise(Mat a) {
   factorise(a, *blocks_);
 }
 
-void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
+void PortElimination::factorise_parts(Mat a, const PortMatrix& blocks) {
   layout_ = blocks.layout();
   if (!part_solver_) make_solvers();
   if (!by_inverse_) {
@@ -176,6 +176,10 @@ void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
         MatCreateSubMatrix(a, rows, rows, first ? MAT_INITIAL_MATRIX : MAT_REUSE_MATRIX, first ? parts_.put() : &raw));
     check(KSPSetOperators(part_solver_.get(), parts_.get(), parts_.get()));
   }
+}
+
+void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
+  factorise_parts(a, blocks);
   solve_columns(blocks);
   form_hub(blocks);
   check(KSPSetOperators(hub_solver_.get(), schur_.get(), schur_.get()));

@@ -39,6 +39,8 @@ public:
   void factorise(Mat a);
   /// The same of a matrix that is in its blocks already, which take no other values from here on.
   void factorise(Mat a, const PortMatrix& blocks);
+  /// Of the parts alone, for solve_held().
+  void factorise_parts(Mat a, const PortMatrix& blocks);
   /// The blocks of the matrix of factorise(a).
   [[nodiscard]] const PortMatrix& blocks() const { return *blocks_; }
   /// The parts' own inverses, for the caller to set() before factorise(); null where there are none.

@@ -27,11 +27,14 @@ std::shared_ptr<const PortMatrix> PortMaker::blocks(Mat a) {
 }
 
 std::shared_ptr<PortElimination> PortMaker::eliminate(Mat a, const PortMatrix& blocks, double angle, Vec x, Vec xdot,
-                                                      double own) {
+                                                      double own, bool held) {
   std::shared_ptr<PortElimination> out = unused(own != 0);
   if (out->inverse()) out->inverse()->set(angle, x, xdot, own, 1);
   try {
-    out->factorise(a, blocks);
+    if (held)
+      out->factorise_parts(a, blocks);
+    else
+      out->factorise(a, blocks);
   } catch (const core::NotConverged&) {
     core::agree(system_.comm(), [] { throw core::DomainError("the parts in a stage are singular"); });
   }

@@ -18,10 +18,11 @@ public:
   /// The blocks of `a`, a Jacobian of the system, scaled.
   [[nodiscard]] std::shared_ptr<const PortMatrix> blocks(Mat a);
   /// Of `a` = dF/d(dx/dt) + own dF/dx with its `blocks`, scaled, at (angle, x, xdot) in SI; own = 0 never takes the
-  /// parts' inverses, which may know nothing of such a matrix. What nobody holds any more is used again. Throws
-  /// core::DomainError, on all ranks, if a part is singular.
+  /// parts' inverses, which may know nothing of such a matrix. With `held` only of the parts, for
+  /// PortElimination::solve_held(). What nobody holds any more is used again. Throws core::DomainError, on all ranks,
+  /// if a part is singular.
   [[nodiscard]] std::shared_ptr<PortElimination> eliminate(Mat a, const PortMatrix& blocks, double angle, Vec x,
-                                                           Vec xdot, double own);
+                                                           Vec xdot, double own, bool held = false);
   /// Of the blocks; null before the first of them.
   [[nodiscard]] const PortLayout* layout() const { return layout_.get(); }
 

@@ -137,8 +137,9 @@ double CycleBranch::memory(const system::Machine& machine, const LayoutOptions& 
   // Newton-Picard never forms a dense block; the bound of a sparse one holds for it.
   if (o.method == newton_picard) return memory_of_equilibria(machine) * (1 + intervals / 100);
   const double stored = std::min(o.orbits, o.max_points) * 8 * intervals * stages * n_states(machine);
-  const double one = radau && spreads_cycles(layout, machine) ? memory_of_spread_cycles(machine, intervals, stages)
-                                                              : memory_of_cycles(machine, intervals, stages, radau);
+  const double one = radau && spreads_cycles(layout, machine, intervals, stages)
+                         ? memory_of_spread_cycles(machine, intervals, stages)
+                         : memory_of_cycles(machine, intervals, stages, radau);
   // Flips are followed on twice the intervals.
   return one * (o.follow_flips ? 2 : 1) + stored + 64 * intervals * steps;
 }

@@ -45,10 +45,12 @@ double CycleFollower::order_of_scheme() const {
 
 Layout CycleFollower::layout(std::size_t intervals) const {
   const bool radau = options_.method == Method::collocation && options_.points == CycleBranchOptions::Points::radau;
-  const Sharing sharing = options_.method == Method::newton_picard ? Sharing::machine
-                          : options_.method == Method::shooting    ? Sharing::nothing
-                          : radau                                  ? Sharing::cycles
-                                                                   : Sharing::intervals;
+  const Sharing sharing =
+      options_.method == Method::newton_picard ? Sharing::machine
+      : options_.method == Method::shooting    ? Sharing::nothing
+      : radau && spreads_cycles(context_.layout, context_.machine, options_.intervals, options_.degree)
+          ? Sharing::cycles
+          : Sharing::intervals;
   return plan(context_, sharing, intervals);
 }
 

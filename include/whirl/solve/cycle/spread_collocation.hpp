@@ -22,7 +22,8 @@ struct SpreadCollocationOptions : NewtonPicardOptions {
 /// The equations of CycleProblem at Radau points, F(2 pi k s, x(s), x'(s)/T; p) = 0 with x(0) = x(1), for a machine
 /// made of parts on the ranks of its own communicator. Each rank holds its rows of the states at all points and of the
 /// blocks of dF/dx and dF/d(dx/dt) there: memory grows with states times points, and with one elimination for each
-/// interval. How an interval is solved: see SpreadInterval.
+/// interval, or for each point of systems that settle (problem::Settles). How an interval is solved: see
+/// SpreadInterval.
 class SpreadCollocation final : public SpreadCycle {
 public:
   /// An elimination keeps so many parts apart.
@@ -56,10 +57,11 @@ private:
   void interpolate(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, Eigen::Index j, double period);
   /// F of interval i [m local].
   void residual_of(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, double period, double* r);
-  /// The linearised interval; `rate` is dF/d(dx/dt) if that is constant, once it is known.
+  /// The linearised interval; `rate` is dF/d(dx/dt) if that is constant, once it is known. What is eliminated of it
+  /// stands in `similar` already, or is put there, if there are no `columns` of the parts alone.
   [[nodiscard]] std::unique_ptr<SpreadInterval> interval_at(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i,
                                                             double period, std::shared_ptr<const PortMatrix>& rate,
-                                                            std::shared_ptr<PortElimination>& similar,
+                                                            std::vector<std::shared_ptr<PortElimination>>& similar,
                                                             Eigen::MatrixXd* columns);
   /// How far the end of interval i has moved.
   double settle_interval(Eigen::MatrixXd& x, Eigen::Index i, double period);
