@@ -29,14 +29,14 @@ TEST(LayoutTest, CyclesAreSpreadWhereEliminationServes) {
   LayoutOptions options;
   options.machine = LayoutOptions::Machine::all_ranks;
   constexpr std::size_t most = solve::SpreadCollocation::most_parts;
-  EXPECT_FALSE(spreads_cycles(options, machine_of(0)));
-  EXPECT_TRUE(spreads_cycles(options, machine_of(1)));
-  EXPECT_TRUE(spreads_cycles(options, machine_of(most)));
-  EXPECT_FALSE(spreads_cycles(options, machine_of(most + 1)));
+  EXPECT_FALSE(spreads_cycles(options, machine_of(0), 24, 2));
+  EXPECT_TRUE(spreads_cycles(options, machine_of(1), 24, 2));
+  EXPECT_TRUE(spreads_cycles(options, machine_of(most), 24, 2));
+  EXPECT_FALSE(spreads_cycles(options, machine_of(most + 1), 24, 2));
   // Films without states are no parts.
   system::Machine more = machine_of(most);
   more.bearings.resize(most + 5);
-  EXPECT_TRUE(spreads_cycles(options, more));
+  EXPECT_TRUE(spreads_cycles(options, more, 24, 2));
 }
 
 }  // namespace
