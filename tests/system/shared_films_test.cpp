@@ -164,7 +164,9 @@ TEST_P(SharedFilmsOf, ListTheJacobian) {
     check(MatMult(j.get(), v.get(), w.get()));
     ASSERT_TRUE(s.entries(0, x.get(), rates.get(), alpha, sigma, entries));
     ASSERT_EQ(entries.values().size(), entries.places().size());
-    if (count > 0) EXPECT_EQ(entries.values().size(), count);  // the same places again
+    if (count > 0) {
+      EXPECT_EQ(entries.values().size(), count);  // the same places again
+    }
     count = entries.values().size();
     check(VecSet(listed.get(), 0));
     for (std::size_t k = 0; k < count; ++k) {
