@@ -117,7 +117,7 @@ void ColumnChain<Scalar>::forward(bool transposed, Ref<Matrix> r) const {
 }
 
 template <class Scalar>
-void ColumnChain<Scalar>::backward(bool transposed, Ref<Matrix> z, const Vector* beyond) const {
+void ColumnChain<Scalar>::backward(bool transposed, Ref<Matrix> z, const Matrix* beyond) const {
   const Index n = before_.rows();
   Matrix b;
   for (Index k = columns() - 1; k >= 0; --k) {

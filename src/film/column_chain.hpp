@@ -37,9 +37,9 @@ public:
   [[nodiscard]] Matrix last() const;
   /// r [nodes of all columns x right-hand sides] becomes z.
   void forward(bool transposed, Eigen::Ref<Matrix> r) const;
-  /// z becomes x. `beyond` [nodes] is U x of what follows behind the last column; null: nothing does. One right-hand
-  /// side then.
-  void backward(bool transposed, Eigen::Ref<Matrix> z, const Vector* beyond = nullptr) const;
+  /// z becomes x. `beyond` [nodes x right-hand sides] is U x of what follows behind the last column; null: nothing
+  /// does.
+  void backward(bool transposed, Eigen::Ref<Matrix> z, const Matrix* beyond = nullptr) const;
 
 private:
   struct Inverse {           // V of one column

@@ -33,7 +33,8 @@ public:
   Piece(MPI_Comm comm, int line, const Cut& cut) : comm_(comm), line_(line), cut_(cut) {}
   /// `entries` [5 rows of the film here]. Collective if the strip is cut, as solve().
   void factor(const Entries<Scalar>& entries);
-  void solve(bool transposed, const Scalar* r, Scalar* x) const;
+  // Of `sides` right-hand sides, `rows` apart.
+  void solve(bool transposed, const Scalar* r, Scalar* x, Index rows, Index sides) const;
 
 private:
   [[nodiscard]] Index inner() const { return std::max(cut_.columns - (cut_.mine >= 0 ? 1 : 0), 0); }
@@ -117,41 +118,44 @@ void StripInverse::Piece<Scalar>::join(const Strip<Scalar>& here) {
 }
 
 template <class Scalar>
-void StripInverse::Piece<Scalar>::solve(bool transposed, const Scalar* r, Scalar* x) const {
+void StripInverse::Piece<Scalar>::solve(bool transposed, const Scalar* r, Scalar* x, Index rows, Index sides) const {
   const Index m = line_, n = inner(), first = cut_.columns - n;
   const bool mine = cut_.mine >= 0, next = cut_.next >= 0, behind = from_behind();
   const Vector &to_first = transposed ? from_first_ : to_first_, &from_first = transposed ? to_first_ : from_first_;
   const Vector &to_last = transposed ? from_last_ : to_last_, &from_last = transposed ? to_last_ : from_last_;
-  const Eigen::Map<const Matrix> given(r, m, cut_.columns);
+  using Columns = Eigen::Map<Matrix>;
+  // Right-hand side k: all columns of the strip, and those between cuts in their order of elimination.
+  const auto given = [&](Index k) { return Eigen::Map<const Matrix>(r + k * rows, m, cut_.columns); };
+  Matrix z(m * n, sides);
+  const auto inner_of = [&](Index k) { return Columns(z.col(k).data(), m, n); };
   const auto in_order = [&](const Eigen::Ref<const Matrix>& columns) -> Matrix {
     if (behind) return columns.rowwise().reverse();
     return columns;
   };
-  Matrix z = in_order(given.rightCols(n));
-  const auto flat = [&] { return Eigen::Map<Matrix>(z.data(), m * n, 1); };
-  if (n > 0) chain_.forward(transposed, flat());
-  Vector at_cuts, beyond;
+  for (Index k = 0; k < sides; ++k) inner_of(k) = in_order(given(k).rightCols(n));
+  if (n > 0) chain_.forward(transposed, z);
+  Matrix at_cuts, beyond;
   if (cut_.cuts > 0) {
-    at_cuts.setZero(m * cut_.cuts);
-    const auto at = [&](int k) { return at_cuts.segment(k * m, m); };
-    if (n > 0 && mine && next) chain_.backward(transposed, flat());
-    if (mine) at(cut_.mine) += given.col(0);
-    if (n > 0 && mine) at(cut_.mine) -= from_first.cwiseProduct(behind ? z.col(n - 1) : z.col(0));
-    if (n > 0 && next) at(cut_.next) -= from_last.cwiseProduct(z.col(n - 1));
+    at_cuts.setZero(m * cut_.cuts, sides);
+    const auto at = [&](int cut) { return at_cuts.middleRows(cut * m, m); };
+    if (n > 0 && mine && next) chain_.backward(transposed, z);
+    for (Index k = 0; mine && k < sides; ++k) at(cut_.mine).col(k) += given(k).col(0);
+    if (n > 0 && mine) at(cut_.mine) -= from_first.asDiagonal() * (behind ? z.bottomRows(m) : z.topRows(m));
+    if (n > 0 && next) at(cut_.next) -= from_last.asDiagonal() * z.bottomRows(m);
     sum_over_ranks(comm_, at_cuts.data(), at_cuts.size());
-    at_cuts = transposed ? Vector(joint_.transpose().solve(at_cuts)) : Vector(joint_.solve(at_cuts));
+    at_cuts = transposed ? Matrix(joint_.transpose().solve(at_cuts)) : Matrix(joint_.solve(at_cuts));
     if (n > 0 && mine && next) {
-      z = given.rightCols(n);
-      z.col(0) -= to_first.cwiseProduct(at(cut_.mine));
-      chain_.forward(transposed, flat());
+      for (Index k = 0; k < sides; ++k) inner_of(k) = given(k).rightCols(n);
+      z.topRows(m) -= to_first.asDiagonal() * at(cut_.mine);
+      chain_.forward(transposed, z);
     }
-    if (n > 0 && next) beyond = to_last.cwiseProduct(at(cut_.next));
-    if (n > 0 && behind) beyond = to_first.cwiseProduct(at(cut_.mine));
-    if (mine) Eigen::Map<Vector>(x, m) = at(cut_.mine);
+    if (n > 0 && next) beyond = to_last.asDiagonal() * at(cut_.next);
+    if (n > 0 && behind) beyond = to_first.asDiagonal() * at(cut_.mine);
+    for (Index k = 0; mine && k < sides; ++k) Eigen::Map<Vector>(x + k * rows, m) = at(cut_.mine).col(k);
   }
   if (n == 0) return;
-  chain_.backward(transposed, flat(), beyond.size() > 0 ? &beyond : nullptr);
-  Eigen::Map<Matrix>(x + first * m, m, n) = in_order(z);
+  chain_.backward(transposed, z, beyond.size() > 0 ? &beyond : nullptr);
+  for (Index k = 0; k < sides; ++k) Columns(x + k * rows + first * m, m, n) = in_order(inner_of(k));
 }
 
 template <class Scalar>
@@ -256,19 +260,24 @@ void StripInverse::set_at(std::span<const double> d_states, std::span<const doub
   find(entries(d_states, d_rates, 1.0, lambda), factors_at_, {});
 }
 
-void StripInverse::apply(std::span<const double> r, std::span<double> x) {
+template <class Scalar>
+void StripInverse::solve(const Factors<Scalar>& factors, bool transposed, std::span<const Scalar> r,
+                         std::span<Scalar> x) const {
+  const Index sides = rows_ > 0 ? static_cast<Index>(r.size()) / rows_ : 0;
   for (std::size_t k = 0; k < cuts_.size(); ++k)
-    factors_->pieces[k].solve(false, r.data() + cuts_[k].row, x.data() + cuts_[k].row);
+    factors.pieces[k].solve(transposed, r.data() + cuts_[k].row, x.data() + cuts_[k].row, rows_, sides);
+}
+
+void StripInverse::apply(std::span<const double> r, std::span<double> x) {
+  solve(*factors_, false, r, x);
 }
 
 void StripInverse::apply_transposed(std::span<const double> r, std::span<double> x) {
-  for (std::size_t k = 0; k < cuts_.size(); ++k)
-    factors_->pieces[k].solve(true, r.data() + cuts_[k].row, x.data() + cuts_[k].row);
+  solve(*factors_, true, r, x);
 }
 
 void StripInverse::apply_at(std::span<const Complex> r, std::span<Complex> x) {
-  for (std::size_t k = 0; k < cuts_.size(); ++k)
-    factors_at_->pieces[k].solve(false, r.data() + cuts_[k].row, x.data() + cuts_[k].row);
+  solve(*factors_at_, false, r, x);
 }
 
 }  // namespace whirl::film

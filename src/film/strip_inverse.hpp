@@ -58,6 +58,8 @@ private:
   template <class Scalar>
   [[nodiscard]] Entries<Scalar> entries(std::span<const double> d_states, std::span<const double> d_rates, double alpha,
                                         Scalar sigma) const;
+  template <class Scalar>
+  void solve(const Factors<Scalar>& factors, bool transposed, std::span<const Scalar> r, std::span<Scalar> x) const;
   // Factors of these from those at hand, `known` ones or anew.
   template <class Scalar>
   void find(Entries<Scalar> entries, std::shared_ptr<Factors<Scalar>>& at_hand, std::shared_ptr<Factors<Scalar>> known);

@@ -71,7 +71,7 @@ std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, cons
   const std::vector<double> theta = pad.reals("theta"), z = pad.reals("z");
   const Shape shape = {theta.size(), z.size()};
   StructuredGrid wrapped{name, shape, path + "/node_xyz", {}};
-  std::optional<Share> share;
+  std::optional<RowRange> share;
   std::size_t rows = theta.size();
   for (const auto& [field, data] : pad.datasets())
     if (data.whole_shape() == shape && std::holds_alternative<std::vector<double>>(data.values) &&

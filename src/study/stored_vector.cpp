@@ -16,7 +16,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr const char* unit = "1";  // of scaled entries
 
 // Where this rank's entries stand.
-io::Share place_of(Vec v) {
+io::RowRange place_of(Vec v) {
   PetscInt begin = 0, size = 0;
   check(VecGetOwnershipRange(v, &begin, nullptr));
   check(VecGetSize(v, &size));

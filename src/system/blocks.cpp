@@ -157,11 +157,7 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
     const auto n = static_cast<std::size_t>(ports);
     const film::Motion motion = system_.motion(k, {at, n}, {at + ports, n});
     FilmPart& part = *system_.bearings_[k].part;
-    try {
-      part.evaluate(motion, own, rates, need);
-    } catch (const core::DomainError& e) {
-      throw core::DomainError("bearing " + system_.train_.supports[k].name + ": " + e.what());
-    }
+    system_.at_bearing(k, [&] { part.evaluate(motion, own, rates, need); });
     const film::StateResponse& here = part.response();
     const film::Response& response = here.journal;
     for (Eigen::Index d = 0; d < ports; ++d) films.forces(first + d) = response.force[static_cast<std::size_t>(d)];

@@ -79,6 +79,7 @@ void RotorSystem::set_train(Train train) {
     fill_constant_parts();
   else if (change.pedestals && j_at_rest_)
     hub_->set_pedestals(j_at_rest_.get(), j_rates_.get());
+  if (matrices || change.pedestals) hub_entries_.clear();
   if (blocks_ && (matrices || change.pedestals)) blocks_->rebuild();
   slope_.reset();
 }

@@ -18,10 +18,11 @@ public:
   [[nodiscard]] bool complete() const;
   void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
   [[nodiscard]] bool exact() const override { return exact_; }
-  void apply(const double* r, double* y) override;
+  void apply(const double* r, double* y) override { apply_columns(r, y, 0, 1); }
+  void apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) override;
   void apply_transposed(const double* r, double* y) override;
   void set_at(Vec x, Vec rest, std::complex<double> lambda) override;
-  void apply_at(const std::complex<double>* r, std::complex<double>* y) override;
+  void apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows, int columns) override;
 
 private:
   struct Film {
@@ -31,6 +32,10 @@ private:
     Eigen::ArrayXd state, residual;  // scales of its states and rows here, which a parameter may change
     std::vector<double> rhs;
   };
+  /// Columns of a film among those of all: y = answer(r) / its scales of states, r times those of its rows.
+  template <class Scalar, class Answer>
+  static void in_scales(const Film& film, const Scalar* r, Scalar* y, std::ptrdiff_t rows, int columns,
+                        Answer&& answer);
   /// Its derivatives at the state that was evaluated last.
   const film::StateResponse& look(Film& film) const;
 
@@ -91,13 +96,29 @@ void RotorSystem::FilmInverse::set(double /*angle*/, Vec x, Vec xdot, double alp
 }
 
 // A film's own inverse knows no scales.
-void RotorSystem::FilmInverse::apply(const double* r, double* y) {
-  for (Film& film : films_) {
-    const Eigen::Index n = film.state.size();
-    Map(film.rhs.data(), n) = film.residual * ConstMap(r + film.row, n);
-    film.inverse->apply(film.rhs, {y + film.row, film.rhs.size()});
-    Map(y + film.row, n) /= film.state;
-  }
+template <class Scalar, class Answer>
+void RotorSystem::FilmInverse::in_scales(const Film& film, const Scalar* r, Scalar* y, std::ptrdiff_t rows, int columns,
+                                         Answer&& answer) {
+  using Matrix = Eigen::Array<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  const Eigen::Index n = film.state.size();
+  const Eigen::OuterStride<> stride(rows);
+  const Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> from(r + film.row, n, columns, stride);
+  Eigen::Map<Matrix, 0, Eigen::OuterStride<>> to(y + film.row, n, columns, stride);
+  const Matrix right = from.colwise() * film.residual.template cast<Scalar>();
+  Matrix found(n, columns);
+  const auto size = static_cast<std::size_t>(right.size());
+  answer(std::span<const Scalar>(right.data(), size), std::span<Scalar>(found.data(), size));
+  to = found.colwise() / film.state.template cast<Scalar>();
+}
+
+void RotorSystem::FilmInverse::apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) {
+  for (Film& film : films_)
+    in_scales(film, r, y, rows, columns, [&](std::span<const double> right, std::span<double> found) {
+      if (film.inverse->exact()) return film.inverse->apply(right, found);
+      const auto n = static_cast<std::size_t>(film.state.size());
+      for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c)
+        film.inverse->apply(right.subspan(c * n, n), found.subspan(c * n, n));
+    });
 }
 
 void RotorSystem::FilmInverse::apply_transposed(const double* r, double* y) {
@@ -117,14 +138,12 @@ void RotorSystem::FilmInverse::set_at(Vec x, Vec rest, std::complex<double> lamb
   }
 }
 
-void RotorSystem::FilmInverse::apply_at(const std::complex<double>* r, std::complex<double>* y) {
-  for (Film& film : films_) {
-    const Eigen::Index n = film.state.size();
-    const Eigen::ArrayXcd rhs = film.residual * Eigen::Map<const Eigen::ArrayXcd>(r + film.row, n);
-    const auto size = static_cast<std::size_t>(n);
-    film.inverse->apply_at({rhs.data(), size}, {y + film.row, size});
-    Eigen::Map<Eigen::ArrayXcd>(y + film.row, n) /= film.state;
-  }
+void RotorSystem::FilmInverse::apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows,
+                                        int columns) {
+  using Complex = std::complex<double>;
+  for (Film& film : films_)
+    in_scales(film, r, y, rows, columns,
+              [&](std::span<const Complex> right, std::span<Complex> found) { film.inverse->apply_at(right, found); });
 }
 
 }  // namespace whirl::system

@@ -1,7 +1,9 @@
 #include "film_part.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "whirl/core/entry_stream.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -44,22 +46,42 @@ void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gath
   row_ = row + std::clamp<PetscInt>(first_ - begin, 0, end - begin);
   gathered_ = gathered;
   here_ = count_ > 0 ? rows() > 0 : without_states;
+  asked_.reset();
 }
 
 void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
                         film::Need need) {
   const std::size_t n = share_.seen.size();
-  film_->evaluate(motion, share_, own.subspan(gathered_, n), rates.subspan(gathered_, n), need, response_);
+  const std::span<const double> s = own.subspan(gathered_, n), moving = rates.subspan(gathered_, n);
+  if (asked_ && (asked_->need == need || need == film::Need::force) && asked_->motion == motion &&
+      std::equal(s.begin(), s.end(), asked_->own.begin()) &&
+      std::equal(moving.begin(), moving.end(), asked_->rates.begin()))
+    return;
+  std::optional<Asked> now = std::exchange(asked_, std::nullopt);
+  film_->evaluate(motion, share_, s, moving, need, response_);
+  if (n == 0) return;
+  if (!now) now.emplace();
+  now->motion = motion;
+  now->own.assign(s.begin(), s.end());
+  now->rates.assign(moving.begin(), moving.end());
+  now->need = need;
+  asked_ = std::move(now);
 }
 
 void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need) {
   const auto n = static_cast<std::size_t>(count_);
+  asked_.reset();
   film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response_);
 }
 
-std::vector<double> FilmPart::relaxed(const film::Motion& motion) const {
+std::vector<double> FilmPart::unloaded(const film::Motion& motion) const {
   std::vector<double> states(static_cast<std::size_t>(count_));
   film_->unloaded(motion, states);
+  return states;
+}
+
+std::vector<double> FilmPart::relaxed(const film::Motion& motion) const {
+  std::vector<double> states = unloaded(motion);
   film::relax(*film_, motion, states);
   return states;
 }
@@ -98,7 +120,8 @@ void FilmPart::count_entries(std::span<PetscInt> count) const {
   for (PetscInt k = row_; k < row_ + rows(); ++k) count[static_cast<std::size_t>(k)] += inputs;
 }
 
-void FilmPart::add(core::EntryStream& j, bool values, double alpha, double sigma) const {
+template <class Entries>
+void FilmPart::add(Entries& j, bool values, double alpha, double sigma) const {
   if (rows() == 0) return;
   const PetscInt begin = begin_ + share_.begin;
   const auto matrix = [&](const film::Places& places, const std::vector<double>& of, double factor) {
@@ -125,5 +148,8 @@ void FilmPart::add(core::EntryStream& j, bool values, double alpha, double sigma
       }
     }
 }
+
+template void FilmPart::add(core::EntryStream& j, bool values, double alpha, double sigma) const;
+template void FilmPart::add(problem::Entries& j, bool values, double alpha, double sigma) const;
 
 }  // namespace whirl::system

@@ -3,12 +3,12 @@
 // where its derivatives go. A film without states of its own has no rows; all else is the same.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "part.hpp"
-#include "whirl/core/entry_stream.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/system/train.hpp"
 
@@ -44,13 +44,17 @@ public:
   /// This rank evaluates it, or a share of it.
   [[nodiscard]] bool here() const { return here_; }
 
-  /// This rank's share; `own` and `rates`: what all films of this rank see.
+  /// This rank's share; `own` and `rates`: what all films of this rank see. A film with states that is where it was
+  /// keeps its answer: residual, derivatives, inverse and d/dp of one linearisation are one evaluation.
   void evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
                 film::Need need);
   /// The whole film; `own` and `rates`: those of all films, null if there are none.
   void evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need);
-  /// What it answered last.
+  /// What it answered last: of the journal, what this rank adds.
   [[nodiscard]] const film::StateResponse& response() const { return response_; }
+  /// All of that of the journal, once the ranks have taken their sum; on a single rank it is the same.
+  [[nodiscard]] const film::Response& journal() const { return sum_ ? *sum_ : response_.journal; }
+  void take(const film::Response& sum) { sum_ = sum; }
 
   [[nodiscard]] PetscInt row() const override { return row_; }
   [[nodiscard]] PetscInt rows() const override { return share_.rows(); }
@@ -61,7 +65,8 @@ public:
   void count_entries(std::span<PetscInt> count) const override;
   /// j += alpha times the derivatives of its rows in states and journal, and of its forces in its states; sigma times
   /// those in rates. Without `values` their places alone.
-  void add(core::EntryStream& j, bool values, double alpha, double sigma) const;
+  template <class Entries>  // core::EntryStream or problem::Entries
+  void add(Entries& j, bool values, double alpha, double sigma) const;
 
   /// The states of the film from those of a machine held as a whole.
   [[nodiscard]] std::span<const double> of(const double* x) const {
@@ -72,6 +77,8 @@ public:
   [[nodiscard]] bool settles() const { return film_->whole_steps(); }
   /// The states at which it rests with the journal where it is.
   [[nodiscard]] std::vector<double> relaxed(const film::Motion& motion) const;
+  /// Those of a film that carries nothing.
+  [[nodiscard]] std::vector<double> unloaded(const film::Motion& motion) const;
 
 private:
   std::unique_ptr<film::Film> film_;
@@ -81,6 +88,13 @@ private:
   film::Share share_;
   std::vector<PortEnds> ports_;
   film::StateResponse response_;
+  std::optional<film::Response> sum_;
+  struct Asked {  // what response_ answers
+    film::Motion motion;
+    std::vector<double> own, rates;
+    film::Need need;
+  };
+  std::optional<Asked> asked_;  // of a share with states
 };
 
 }  // namespace whirl::system

@@ -120,7 +120,7 @@ RotorSystem::FilmInputs RotorSystem::film_inputs(Vec x, Vec xdot) {
 
 std::vector<film::Response> RotorSystem::responses() const {
   std::vector<film::Response> out;
-  for (const Bearing& b : bearings_) out.push_back(b.response);
+  for (const Bearing& b : bearings_) out.push_back(b.part->journal());
   return out;
 }
 
@@ -129,11 +129,7 @@ void RotorSystem::evaluate_films(Vec x, Vec xdot, film::Need need) {
 }
 
 void RotorSystem::evaluate(std::size_t bearing, FilmPart& part, const FilmInputs& in, film::Need need) const {
-  try {
-    part.evaluate(motion(in.journals[bearing]), in.own, in.rates, need);
-  } catch (const core::DomainError& e) {
-    throw core::DomainError("bearing " + train_.supports[bearing].name + ": " + e.what());
-  }
+  at_bearing(bearing, [&] { part.evaluate(motion(in.journals[bearing]), in.own, in.rates, need); });
 }
 
 void RotorSystem::evaluate_films(const FilmInputs& in, film::Need need) {
@@ -142,7 +138,6 @@ void RotorSystem::evaluate_films(const FilmInputs& in, film::Need need) {
       FilmPart& part = *bearings_[i].part;
       if (!part.here()) continue;
       evaluate(i, part, in, need);
-      bearings_[i].response = part.response().journal;
     }
   });
   if (core::size_of(comm_) > 1) sum_over_ranks();
@@ -171,36 +166,19 @@ void RotorSystem::sum_over_ranks() {
   std::vector<double> flat, thickness;
   for (Bearing& b : bearings_) {
     const bool here = b.part->here();
-    each(b.response, b.part->ports().size(), [&](double value) { flat.push_back(here ? value : 0.0); });
-    thickness.push_back(here ? b.response.min_thickness : infinite);
+    film::Response own = b.part->response().journal;
+    each(own, b.part->ports().size(), [&](double value) { flat.push_back(here ? value : 0.0); });
+    thickness.push_back(here ? own.min_thickness : infinite);
   }
   MPI_Allreduce(MPI_IN_PLACE, flat.data(), static_cast<int>(flat.size()), MPI_DOUBLE, MPI_SUM, comm_);
   MPI_Allreduce(MPI_IN_PLACE, thickness.data(), static_cast<int>(thickness.size()), MPI_DOUBLE, MPI_MIN, comm_);
   const double* from = flat.data();
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    each(bearings_[i].response, bearings_[i].part->ports().size(), [&](double& value) { value = *from++; });
-    bearings_[i].response.min_thickness = thickness[i];
+    film::Response all;
+    each(all, bearings_[i].part->ports().size(), [&](double& value) { value = *from++; });
+    all.min_thickness = thickness[i];
+    bearings_[i].part->take(all);
   }
-}
-
-void RotorSystem::add_films(Mat j, bool values, double alpha, double sigma) {
-  static const film::Response none;
-  film_entries_.begin(j);
-  for (const Bearing& b : bearings_) {
-    const film::Response& r = values ? b.response : none;
-    const std::vector<PortEnds>& ports = b.part->ports();
-    for (std::size_t d = 0; d < ports.size(); ++d)
-      for (const auto& [row, to] : ports[d]) {
-        if (!hub_->owns(row)) continue;
-        for (std::size_t e = 0; e < ports.size(); ++e)
-          for (const auto& [column, side] : ports[e]) {
-            film_entries_.add(2 * row, 2 * column, -alpha * to * side * r.d_position[d][e]);
-            film_entries_.add(2 * row, 2 * column + 1, -alpha * to * side * r.d_velocity[d][e]);
-          }
-      }
-    b.part->add(film_entries_, values, alpha, sigma);
-  }
-  film_entries_.end();
 }
 
 Observed RotorSystem::observe(Vec x) {
@@ -228,9 +206,27 @@ bool RotorSystem::constant_rates() const {
   return std::all_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.part->constant_rates(); });
 }
 
-film::Summary RotorSystem::film_summary(int b, const double* x) {
-  const auto i = static_cast<std::size_t>(b);
-  return bearings_[i].part->film().summary(motion(journals(x)[i]), bearings_[i].part->of(x));
+std::vector<film::Summary> RotorSystem::film_summaries(const double* x) {
+  const auto rank = static_cast<std::size_t>(core::rank_of(comm_)),
+             size = static_cast<std::size_t>(core::size_of(comm_));
+  const std::vector<JournalState> at = journals(x);
+  std::vector<film::Summary> out(bearings_.size());
+  core::agree(comm_, [&] {
+    for (std::size_t i = rank; i < out.size(); i += size)
+      out[i] = bearings_[i].part->film().summary(motion(at[i]), bearings_[i].part->of(x));
+  });
+  for (std::size_t i = 0; i < out.size() && size > 1; ++i) {
+    film::Summary& s = out[i];
+    const int from = static_cast<int>(i % size);
+    int holes = static_cast<int>(s.hole_flows.size());
+    MPI_Bcast(&holes, 1, MPI_INT, from, comm_);
+    s.hole_flows.resize(static_cast<std::size_t>(holes));
+    for (double* value :
+         {&s.min_thickness, &s.max_pressure, &s.side_flow, &s.power_loss, &s.inlet_flow, &s.outlet_flow, &s.imbalance})
+      MPI_Bcast(value, 1, MPI_DOUBLE, from, comm_);
+    MPI_Bcast(s.hole_flows.data(), holes, MPI_DOUBLE, from, comm_);
+  }
+  return out;
 }
 
 std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
@@ -238,8 +234,8 @@ std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
   return bearings_[i].part->film().fields(motion(journals(x)[i]), bearings_[i].part->of(x));
 }
 
-// Every rank relaxes the whole of a film that it holds a share of: a sparse LU of the film per Newton step, on each of
-// its ranks at the same time.
+// Films that settle do so together, each on its ranks. Of another one every rank relaxes the whole that it holds a
+// share of: a sparse LU of the film per Newton step, on each of its ranks at the same time.
 void RotorSystem::relax_films(Vec x) {
   const std::vector<JournalState> journals = journals_of(gather_inputs(x));
   core::agree(comm_, [&] {
@@ -249,23 +245,42 @@ void RotorSystem::relax_films(Vec x) {
       if (part.rows() == 0) continue;
       film::Motion at = motion(journals[i]);
       at.velocity = {};
-      const std::vector<double> states = part.relaxed(at);
-      std::copy_n(states.begin() + part.share().begin, part.rows(), xa.data() + part.row());
+      at_bearing(i, [&] {
+        const std::vector<double> states = part.settles() ? part.unloaded(at) : part.relaxed(at);
+        std::copy_n(states.begin() + part.share().begin, part.rows(), xa.data() + part.row());
+      });
     }
   });
+  if (settles()) settle(x, true);
+}
+
+template <class Wanted>
+void RotorSystem::resample_films(const RotorSystem& other, const double* x, double* to, Wanted&& wanted) const {
+  core::require(other.n_ == n_, "systems that differ in more than film meshes");
+  const std::vector<JournalState> at = journals(x);
+  for (std::size_t i = 0; i < bearings_.size(); ++i) {
+    const FilmPart &here = *bearings_[i].part, &from = *other.bearings_[i].part;
+    if (wanted(here))
+      here.film().resample(motion(at[i]), from.film(), from.of(x),
+                           {to + 2 * n_ + here.first(), static_cast<std::size_t>(here.count())});
+  }
+}
+
+void RotorSystem::resample(const Plant& of, const double* x, Vec to) const {
+  const auto& other = dynamic_cast<const RotorSystem&>(of);
+  std::vector<double> all(x, x + 2 * n_);
+  all.resize(static_cast<std::size_t>(size()));
+  core::agree(comm_, [&] { resample_films(other, x, all.data(), [](const FilmPart& p) { return p.rows() > 0; }); });
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(to, &begin, nullptr));
+  const core::WriteArray a(to);
+  std::copy_n(all.begin() + begin, a.size(), a.data());
 }
 
 std::vector<double> RotorSystem::resampled(const Plant& of, const double* x) const {
-  const auto& other = dynamic_cast<const RotorSystem&>(of);
-  core::require(other.n_ == n_, "systems that differ in more than film meshes");
   std::vector<double> out(x, x + 2 * n_);
   out.resize(static_cast<std::size_t>(size()));
-  const std::vector<JournalState> at = journals(x);
-  for (std::size_t i = 0; i < bearings_.size(); ++i) {
-    const FilmPart &to = *bearings_[i].part, &from = *other.bearings_[i].part;
-    to.film().resample(motion(at[i]), from.film(), from.of(x),
-                       {out.data() + 2 * n_ + to.first(), static_cast<std::size_t>(to.count())});
-  }
+  resample_films(dynamic_cast<const RotorSystem&>(of), x, out.data(), [](const FilmPart&) { return true; });
   return out;
 }
 

@@ -78,7 +78,7 @@ void RotorSystem::subtract(const std::vector<std::array<double, 4>>& forces, dou
 
 void RotorSystem::subtract(std::array<double, 4> film::Response::*of, double* rows) const {
   std::vector<std::array<double, 4>> forces;
-  for (const Bearing& b : bearings_) forces.push_back(b.response.*of);
+  for (const Bearing& b : bearings_) forces.push_back(b.part->journal().*of);
   subtract(forces, rows);
 }
 

@@ -34,14 +34,16 @@ RotorSystem::Settling& RotorSystem::settling() {
 }
 
 // All films at once, each until its own step is small: as film::relax does with one film on one rank.
-void RotorSystem::settle(Vec x) {
+void RotorSystem::settle(Vec x, bool still) {
   constexpr int most_steps = 60;
   constexpr double enough = 1e-10;  // of the typical state
   Settling& s = settling();
   std::vector<char> found;
   for (const Bearing& b : bearings_) found.push_back(!b.part->settles());
   for (int k = 0; k < most_steps; ++k) {
-    const FilmInputs in = film_inputs(x, s.rest.get());
+    FilmInputs in = film_inputs(x, s.rest.get());
+    for (JournalState& j : in.journals)
+      if (still) j.velocity = j.tilt_rate = {};
     core::agree(comm_, [&] {
       for (const Settling::Film& f : s.films)
         if (!found[f.bearing]) evaluate(f.bearing, *bearings_[f.bearing].part, in, film::Need::tangents);

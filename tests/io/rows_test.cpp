@@ -46,7 +46,7 @@ template <class T>
 Dataset rows(std::size_t begin, std::size_t end, std::size_t total, double factor) {
   std::vector<T> values;
   for (std::size_t i = 2 * begin; i < 2 * end; ++i) values.push_back(static_cast<T>(factor * static_cast<double>(i)));
-  return {{end - begin, 2}, std::move(values), "m", "places", Share{begin, total}};
+  return {{end - begin, 2}, std::move(values), "m", "places", RowRange{begin, total}};
 }
 
 // A tree with what ranks share. The first rank of several has no rows of the one and most of the other.
@@ -59,7 +59,7 @@ Group tree(std::size_t total, double factor, MPI_Comm comm = world) {
   g.put("small", {1.5, 2.5}, "1", "on every rank");
   g.put("first", rows<double>(uneven(rank), uneven(rank + 1), total, factor));
   g.put("rows of nothing",
-        {{uneven(rank + 1) - uneven(rank), 0}, std::vector<double>(), "m", "", Share{uneven(rank), total}});
+        {{uneven(rank + 1) - uneven(rank), 0}, std::vector<double>(), "m", "", RowRange{uneven(rank), total}});
   g.child("deep").put("second", rows<std::int64_t>(without(rank), without(rank + 1), total, factor));
   return g;
 }
@@ -209,8 +209,8 @@ TEST(Rows, AFullDiskIsAnErrorOfAllRanks) {
 
 TEST(Rows, MisuseIsABug) {
   Group g;
-  EXPECT_THROW(g.put("x", Dataset{{2}, std::vector<double>{1, 2}, "m", "", Share{9, 10}}), core::Bug);
-  EXPECT_THROW(g.put("x", Dataset{{1}, std::vector<std::string>{"a"}, "", "", Share{0, 1}}), core::Bug);
+  EXPECT_THROW(g.put("x", Dataset{{2}, std::vector<double>{1, 2}, "m", "", RowRange{9, 10}}), core::Bug);
+  EXPECT_THROW(g.put("x", Dataset{{1}, std::vector<std::string>{"a"}, "", "", RowRange{0, 1}}), core::Bug);
   const Group shared = tree(10, 1, MPI_COMM_SELF);
   EXPECT_THROW((void)to_bytes(shared), core::Bug);
   EXPECT_THROW(write_hdf5("never.h5", shared), core::Bug);

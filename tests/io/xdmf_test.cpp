@@ -77,14 +77,14 @@ TEST(Xdmf, CoordinatesAreSharedLikeFields) {
   Group whole = pad(), part;
   part.put("theta", whole.dataset("theta"));
   part.put("z", whole.dataset("z"));
-  part.put("pressure", {{2, 2}, std::vector<double>(4, 1.0), "Pa", "rows 1 and 2 of three", Share{1, 3}});
+  part.put("pressure", {{2, 2}, std::vector<double>(4, 1.0), "Pa", "rows 1 and 2 of three", RowRange{1, 3}});
   const auto grids = film_grids(part, "/p", "pad", {0.09, 0, 0, 0});
   (void)film_grids(whole, "/p", "pad", {0.09, 0, 0, 0});
   EXPECT_EQ(grids[0].nodes, (Shape{3, 2})) << "the file has all";
   ASSERT_EQ(grids[0].fields.size(), 1u);
   for (const char* name : {"node_xyz", "node_flat"}) {
     const Dataset& rows = part.dataset(name);
-    EXPECT_EQ(rows.share, (Share{1, 3}));
+    EXPECT_EQ(rows.share, (RowRange{1, 3}));
     const auto& all = whole.reals(name);
     EXPECT_EQ(std::get<std::vector<double>>(rows.values), std::vector(all.begin() + 6, all.end()));
   }

@@ -145,6 +145,45 @@ TEST(PortMatrix, MultipliesLikeTheWholeMatrix) {
   }
 }
 
+// Each rank tells what its parts do to the hub, wherever the rows of the hub stand, and some entries in two pieces.
+TEST(PortMatrix, TakesAListOfEntriesToo) {
+  Machine m;
+  const MatrixXd whole = test::dense(m.a.get());
+  problem::Entries entries;
+  const auto here = [&](PetscInt k) { return k >= m.first && k < m.first + m.local; };
+  const auto list = [&](double factor) {
+    entries.begin();
+    for (PetscInt j = 0; j < m.n; ++j)
+      for (PetscInt i = 0; i < m.n; ++i) {
+        const bool of_part = Machine::part_of(i) == 0 && Machine::part_of(j) != 0;
+        if (whole(i, j) == 0 || !here(of_part ? j : i)) continue;
+        const bool twice = (i + j) % 3 == 0 && Machine::part_of(i) == Machine::part_of(j);
+        for (int k = 0; k < (twice ? 2 : 1); ++k) entries.add(i, j, factor * whole(i, j) / (twice ? 2 : 1));
+      }
+  };
+  list(1);
+  solve::PortMatrix blocks(
+      std::make_shared<const solve::PortLayout>(MPI_COMM_WORLD, m.local, m.fields, entries.places()));
+  core::Vector v = some(m), y = core::duplicate(v.get()), rows = core::duplicate(v.get()),
+               columns = core::duplicate(v.get());
+  check(VecSetRandom(rows.get(), nullptr));
+  check(VecSetRandom(columns.get(), nullptr));
+  for (const double factor : {1.0, -0.6}) {
+    list(factor);
+    blocks.take(entries.values());
+    solve::PortKrylov::multiply(blocks, v.get(), y.get());
+    EXPECT_LT((factor * whole * test::dense(v.get()) - test::dense(y.get())).norm(), 1e-13);
+    blocks.scale(rows.get(), columns.get());
+    solve::PortKrylov::multiply(blocks, v.get(), y.get());
+    const MatrixXd scaled =
+        factor * test::dense(rows.get()).asDiagonal() * whole * test::dense(columns.get()).asDiagonal();
+    EXPECT_LT((scaled * test::dense(v.get()) - test::dense(y.get())).norm(), 1e-13);
+    solve::PortElimination elimination(m.fields, std::make_unique<OfOwnRows>(m));
+    EXPECT_FALSE(elimination.wants_matrix(blocks));
+    EXPECT_TRUE(solve::PortElimination(m.fields).wants_matrix(blocks));
+  }
+}
+
 // At a fold the machine's own matrix is singular, the bordered one is not.
 TEST(PortElimination, TheBorderMayHoldTheHubUp) {
   Machine m;

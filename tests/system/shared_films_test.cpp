@@ -12,6 +12,7 @@
 #include "support/train_system.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
+#include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;
@@ -142,6 +143,82 @@ TEST_P(SharedFilmsOf, HaveTheEquationsOfOneRank) {
   }
   EXPECT_GT(taylor.rate_order, 1.9);
   EXPECT_GT(taylor.parameter_order, 1.9);
+}
+
+// The list of entries is the Jacobian, and no rank tells rows of parts on another one.
+TEST_P(SharedFilmsOf, ListTheJacobian) {
+  const system::Train train = GetParam() ? on_content() : test::train_on_liners({12, 5}, 0.05);
+  system::RotorSystem s(MPI_COMM_WORLD, train, 377);
+  core::Vector x = state_of(s), rates = core::duplicate(x.get()), v = core::duplicate(x.get()),
+               w = core::duplicate(x.get()), listed = core::duplicate(x.get());
+  check(VecSet(rates.get(), 0));
+  check(VecSetRandom(v.get(), nullptr));
+  const std::vector<double> all = s.gather(v.get());
+  core::Matrix j = s.make_jacobian();
+  problem::Entries entries;
+  PetscInt first = 0, last = 0;
+  check(VecGetOwnershipRange(x.get(), &first, &last));
+  std::size_t count = 0;
+  for (const auto& [alpha, sigma] : {std::pair{1.0, 0.0}, std::pair{0.0, 1.0}, std::pair{0.7, 30.0}}) {
+    s.jacobian(0, x.get(), rates.get(), alpha, sigma, j.get());
+    check(MatMult(j.get(), v.get(), w.get()));
+    ASSERT_TRUE(s.entries(0, x.get(), rates.get(), alpha, sigma, entries));
+    ASSERT_EQ(entries.values().size(), entries.places().size());
+    if (count > 0) {
+      EXPECT_EQ(entries.values().size(), count);  // the same places again
+    }
+    count = entries.values().size();
+    check(VecSet(listed.get(), 0));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [row, column] = entries.places()[k];
+      EXPECT_TRUE((row >= first && row < last) || (row < 2 * s.coordinates() && column >= first && column < last));
+      check(VecSetValue(listed.get(), row, entries.values()[k] * all[static_cast<std::size_t>(column)], ADD_VALUES));
+    }
+    check(VecAssemblyBegin(listed.get()));
+    check(VecAssemblyEnd(listed.get()));
+    const double size = core::norm(w.get());
+    EXPECT_GT(size, 0);
+    check(VecAXPY(w.get(), -1, listed.get()));
+    EXPECT_LT(core::norm(w.get()), 1e-12 * size) << alpha << ' ' << sigma;
+  }
+}
+
+namespace {
+
+class CountsMatrices : public system::RotorSystem {
+public:
+  using RotorSystem::RotorSystem;
+  int made = 0;
+  [[nodiscard]] core::Matrix make_jacobian() override {
+    ++made;
+    return RotorSystem::make_jacobian();
+  }
+};
+
+}  // namespace
+
+// Films by their own inverses need no matrix that is assembled; whoever asks for one has it.
+TEST(SharedFilms, AreSolvedWithoutAMatrix) {
+  CountsMatrices s(MPI_COMM_WORLD, on_content(), 377);
+  core::Vector x = s.guess();
+  solve::NewtonOptions newton;
+  newton.max_iterations = 40;
+  EXPECT_TRUE(solve::find_equilibrium(s, x.get(), newton).converged);
+  EXPECT_EQ(s.made, 0);
+  solve::TransferFunction transfer(s);
+  transfer.linearise(x.get());
+  const auto h = transfer.evaluate({0, 377}, false);
+  EXPECT_EQ(s.made, 0);
+  const auto again = transfer.evaluate({0, 377}, true);
+  EXPECT_GT(s.made, 0);  // slopes take the rates of the parts
+  for (std::size_t b = 0; b < h.size(); ++b) EXPECT_EQ(h[b].value, again[b].value);
+  // The same through assembled matrices and MUMPS.
+  const test::WithOptions options({{"-parts_pc_type", "lu"}, {"-parts_pc_factor_mat_solver_type", "mumps"}});
+  core::Vector by_matrix = s.guess();
+  EXPECT_TRUE(solve::find_equilibrium(s, by_matrix.get(), newton).converged);
+  const double size = core::norm(x.get());
+  check(VecAXPY(by_matrix.get(), -1, x.get()));
+  EXPECT_LT(core::norm(by_matrix.get()), 1e-9 * size);
 }
 
 // What results show comes from the shares: the same as from the whole state.

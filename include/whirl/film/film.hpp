@@ -36,8 +36,9 @@ public:
   virtual void set(std::span<const double> d_states, std::span<const double> d_rates, double alpha, double sigma) = 0;
   /// Whether apply() is A^-1 to rounding, and has a transpose; else it is good to precondition only.
   [[nodiscard]] virtual bool exact() const { return false; }
-  /// x = A^-1 r [rows]. Neither throws: the ranks that do not hold the film would wait for the others. Of a singular
-  /// matrix the answer is not finite.
+  /// x = A^-1 r [rows], of an exact one also of several columns [rows x columns] at once, as in its other members.
+  /// Neither throws: the ranks that do not hold the film would wait for the others. Of a singular matrix the answer is
+  /// not finite.
   virtual void apply(std::span<const double> r, std::span<double> x) = 0;
   /// x = A^-T r of an exact one; core::Bug of others.
   virtual void apply_transposed(std::span<const double> r, std::span<double> x);

@@ -19,18 +19,18 @@ using Values = std::variant<std::vector<double>, std::vector<std::int64_t>, std:
 
 /// Which rows a rank holds of an array that several ranks share: [begin, begin + shape[0]) of `total` along the first
 /// axis. The other ranks hold the other ones, each once.
-struct Share {
+struct RowRange {
   std::size_t begin = 0, total = 0;
-  bool operator==(const Share&) const = default;
+  bool operator==(const RowRange&) const = default;
 };
 
 /// An array of rank shape.size() in row-major order; an empty shape is one scalar.
 struct Dataset {
   Shape shape;  ///< of the rows here, if it is shared
   Values values;
-  std::string unit;              ///< UDUNITS text, "1" if dimensionless, empty for names and counts
-  std::string description;       ///< what a reader of the file should know
-  std::optional<Share> share{};  ///< numbers only; none: all is here
+  std::string unit;                 ///< UDUNITS text, "1" if dimensionless, empty for names and counts
+  std::string description;          ///< what a reader of the file should know
+  std::optional<RowRange> share{};  ///< numbers only; none: all is here
 
   /// Shape of the whole array.
   [[nodiscard]] Shape whole_shape() const;

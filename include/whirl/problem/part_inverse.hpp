@@ -4,6 +4,7 @@
 #include <petscvec.h>
 
 #include <complex>
+#include <cstddef>
 
 #include "whirl/core/error.hpp"
 
@@ -26,6 +27,10 @@ public:
   /// y = A_pp^-1 r: this rank's rows of all parts, one after the other in the order of System::fields(). Not finite if
   /// A_pp is singular.
   virtual void apply(const double* r, double* y) = 0;
+  /// The same of columns that stand one behind the other [rows x columns].
+  virtual void apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) {
+    for (int c = 0; c < columns; ++c) apply(r + c * rows, y + c * rows);
+  }
   /// y = A_pp^-T r of exact ones; core::Bug of others.
   virtual void apply_transposed(const double* /*r*/, double* /*y*/) {
     core::require(false, "inverses of parts that are exact");
@@ -34,7 +39,9 @@ public:
   virtual void set_at(Vec /*x*/, Vec /*rest*/, std::complex<double> /*lambda*/) {
     core::require(false, "inverses of parts that are exact");
   }
-  virtual void apply_at(const std::complex<double>* /*r*/, std::complex<double>* /*y*/) {
+  /// Of columns one behind the other.
+  virtual void apply_at(const std::complex<double>* /*r*/, std::complex<double>* /*y*/, std::ptrdiff_t /*rows*/,
+                        int /*columns*/) {
     core::require(false, "inverses of parts that are exact");
   }
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
+#include "whirl/problem/entries.hpp"
 #include "whirl/problem/part_inverse.hpp"
 
 namespace whirl::problem {
@@ -58,6 +59,12 @@ public:
   [[nodiscard]] virtual core::Matrix make_jacobian() = 0;
   /// j = alpha dF/dx + sigma dF/d(dx/dt) at (angle, x, xdot).
   virtual void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) = 0;
+  /// One pass of the same entries into `out`, for whoever needs no assembled matrix: false, and nothing done, of a
+  /// system that knows its matrix only as a whole. The same answer on all ranks.
+  virtual bool entries(double /*angle*/, Vec /*x*/, Vec /*xdot*/, double /*alpha*/, double /*sigma*/,
+                       Entries& /*out*/) {
+    return false;
+  }
   /// f = dF/dp at fixed angle, x and xdot.
   virtual void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) = 0;
 

@@ -65,6 +65,8 @@ public:
   [[nodiscard]] virtual std::vector<double> resampled(const Plant& /*other*/, const double* x) const {
     return {x, x + size()};
   }
+  /// The same into the distributed state `to`, each rank its rows. Collective; throws as the films do.
+  virtual void resample(const Plant& other, const double* x, Vec to) const { core::fill(to, resampled(other, x)); }
   /// Nondimensional groups of a rigid rotor in equal bearings; empty for all else. Not collective.
   [[nodiscard]] virtual std::optional<Groups> groups() const { return {}; }
   /// Whole state on every rank [size()].

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "whirl/core/entry_stream.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/problem/settles.hpp"
 #include "whirl/rotor/rotor.hpp"
@@ -67,6 +68,8 @@ public:
   void residual(double angle, Vec x, Vec xdot, Vec f) override;
   [[nodiscard]] core::Matrix make_jacobian() override;
   void jacobian(double angle, Vec x, Vec xdot, double alpha, double sigma, Mat j) override;
+  /// Where films have states.
+  bool entries(double angle, Vec x, Vec xdot, double alpha, double sigma, problem::Entries& out) override;
   void parameter_derivative(double angle, Vec x, Vec xdot, Vec f) override;
   void scales(Vec state_scale, Vec residual_scale) override;
   /// "machine" (rotor and pedestals), then the fields of every film with own states by the name of its bearing.
@@ -103,6 +106,8 @@ public:
   [[nodiscard]] bool has_film_mesh() const override;
   [[nodiscard]] std::optional<Groups> groups() const override { return groups_of(train_); }
   [[nodiscard]] std::vector<double> resampled(const Plant& other, const double* x) const override;
+  /// Films by the ranks that hold a share of them.
+  void resample(const Plant& other, const double* x, Vec to) const override;
 
   // Facts about the machine, for studies.
   [[nodiscard]] const Train& train() const { return train_; }
@@ -135,14 +140,15 @@ public:
   /// Number of own states of all films, which stand at the end of a whole state; of film b.
   [[nodiscard]] PetscInt own_states() const { return n_own_; }
   [[nodiscard]] PetscInt own_states(int b) const;
-  /// Report quantities and fields of film b at a whole state [size()]. Not collective.
-  [[nodiscard]] film::Summary film_summary(int b, const double* x);
+  /// Report quantities of all films at a whole state [size()]: each by one rank, the same answer on all. Collective.
+  [[nodiscard]] std::vector<film::Summary> film_summaries(const double* x);
+  /// Fields of film b at a whole state [size()]. Not collective.
   [[nodiscard]] std::vector<film::Field> film_fields(int b, const double* x);
   /// Gives every film the own states at which it rests with the journals where x has them. Collective.
   void relax_films(Vec x);
   /// Films that are linear but for the set of their full nodes settle.
   [[nodiscard]] bool settles() const override;
-  void settle(Vec x) override;
+  void settle(Vec x) override { settle(x, false); }
   /// Displacements of all shaft nodes (x, y, dx/dz, dy/dz per node) [4 n_nodes] from a whole state; `component` 0 takes
   /// q, 1 takes v. Static shapes of a reduced rotor need the gravity offset: `with_gravity`. Collective.
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
@@ -157,7 +163,6 @@ private:
     std::array<PetscInt, 4> journal{-1, -1, -1, -1};
     std::array<PetscInt, 2> pedestal{-1, -1};
     std::unique_ptr<FilmPart> part;
-    film::Response response;  // of the film evaluated last, on all ranks
     [[nodiscard]] bool tilts() const { return journal[2] >= 0; }
   };
   class Blocks;
@@ -192,6 +197,11 @@ private:
   /// j += alpha times the derivatives of the film forces and rows as evaluated last, sigma times those in the rates;
   /// without `values` zeros at their places. Collective: assembles j.
   void add_films(Mat j, bool values, double alpha, double sigma);
+  /// The same into a list of entries or a stream.
+  template <class Entries>
+  void list_films(Entries& out, bool values, double alpha, double sigma) const;
+  /// Entries of the hub in its rows here, likewise the constant parts. Collective.
+  void list_hub();
   [[nodiscard]] FilmInputs film_inputs(Vec x, Vec xdot);
   /// All films, each by the ranks that hold it: the parts then hold their rows here, and the bearings the responses of
   /// the journals, the same on all ranks. Collective.
@@ -200,10 +210,24 @@ private:
   [[nodiscard]] std::vector<film::Response> responses() const;
   /// Film `bearing`, or another one in its place; a core::DomainError says which.
   void evaluate(std::size_t bearing, FilmPart& part, const FilmInputs& in, film::Need need) const;
+  /// Runs f; its core::DomainError says at which bearing.
+  template <class F>
+  void at_bearing(std::size_t bearing, F&& f) const {
+    try {
+      f();
+    } catch (const core::DomainError& e) {
+      throw core::DomainError("bearing " + train_.supports[bearing].name + ": " + e.what());
+    }
+  }
   /// What settle() works with; the ranks that hold each film. Made when first wanted. Collective.
   [[nodiscard]] Settling& settling();
+  /// `still`: as if the journals did not move.
+  void settle(Vec x, bool still);
   const FilmComms& film_comms();
   void sum_over_ranks();
+  /// The films that are `wanted` of a whole state of another machine in `to`, one of this.
+  template <class Wanted>
+  void resample_films(const RotorSystem& other, const double* x, double* to, Wanted&& wanted) const;
   [[nodiscard]] film::Motion motion(const JournalState& journal) const;
   /// What the film of a bearing sees of positions and velocities at its ports.
   [[nodiscard]] film::Motion motion(std::size_t bearing, std::span<const double> place,
@@ -229,7 +253,12 @@ private:
   PetscInt n_ = 0, n_own_ = 0, own_here_ = 0;        // coordinates; own states of films: all, on this rank
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;  // constant parts of the Jacobian, made when first wanted
   core::EntryStream film_entries_;                   // of the films in matrices of make_jacobian()'s pattern
-  std::vector<PetscInt> wanted_;                     // entries of a state that gather_inputs() gathers
+  struct HubEntry {
+    PetscInt row, column;
+    double at_rest, gyroscopic, rates;
+  };
+  std::vector<HubEntry> hub_entries_;  // made when first wanted
+  std::vector<PetscInt> wanted_;       // entries of a state that gather_inputs() gathers
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::size_t journal_inputs_ = 0;  // before the own states among them: position and velocity of each end of each port

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "solve/newton/port_krylov.hpp"
+#include "solve/newton/thin.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
@@ -72,8 +75,25 @@ void EquilibriumProblem::residual(Vec u, Vec r) {
   for (PetscInt i = 0; i < fa.size(); ++i) ra[i] = fa[i] / s[i];
 }
 
+// Of parts it is filled when it is asked for, and from then on with every linearisation.
 Mat EquilibriumProblem::matrix() {
   if (bordered_) return bordered_.get();
+  if (blocks_) {
+    std::vector<PetscInt> rows, columns;
+    for (const problem::Entries::Place& p : entries_.places()) {
+      rows.push_back(p.row);
+      columns.push_back(p.column);
+    }
+    const auto count = static_cast<PetscCount>(rows.size());
+    check(MatCreate(comm(), bordered_.put()));
+    PetscInt local = 0;
+    check(VecGetLocalSize(rows_.get(), &local));
+    check(MatSetSizes(bordered_.get(), local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+    check(MatSetType(bordered_.get(), MATAIJ));
+    check(MatSetPreallocationCOO(bordered_.get(), count, rows.data(), columns.data()));
+    fill_bordered();
+    return bordered_.get();
+  }
   PetscBool filled = PETSC_FALSE;
   if (jacobian_) check(MatAssembled(jacobian_.get(), &filled));
   if (!filled) return nullptr;
@@ -90,6 +110,11 @@ Mat EquilibriumProblem::matrix() {
   }
   bordered_ = core::make_matrix(comm(), rows, std::move(count));
   return bordered_.get();
+}
+
+void EquilibriumProblem::fill_bordered() {
+  check(MatSetValuesCOO(bordered_.get(), entries_.values().data(), INSERT_VALUES));
+  check(MatDiagonalScale(bordered_.get(), rows_.get(), columns_.get()));
 }
 
 bool EquilibriumProblem::settles() const {
@@ -113,8 +138,88 @@ bool EquilibriumProblem::settle(Vec u) {
   return true;
 }
 
+void EquilibriumProblem::list() {
+  problem::Entries& out = entries_;
+  if (!system_.entries(0, x_.get(), rest_.get(), 1, 0, out)) {
+    if (!jacobian_) jacobian_ = system_.make_jacobian();
+    system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
+    out.begin();
+    const PetscInt first = first_row(jacobian_.get());
+    for_rows(jacobian_.get(), [&](PetscInt i, const PetscInt* columns, const PetscScalar* values, PetscInt count) {
+      for (PetscInt k = 0; k < count; ++k) out.add(first + i, columns[k], values[k]);
+    });
+  }
+  // The border; entries of its row in the hub's columns belong to the rank that has this row.
+  const bool last = core::rank_of(comm()) == core::size_of(comm()) - 1;
+  const PetscInt n = system_.size();
+  const problem::Field hub = system_.fields().front();
+  PetscInt first = 0;
+  check(VecGetOwnershipRange(row_.get(), &first, nullptr));
+  const core::ReadArray row(row_.get()), dp(f_.get()), columns(columns_.get());
+  std::vector<double> of_hub(hub_.size(), 0.0);
+  for (std::size_t k = 0; k < hub_.size(); ++k)
+    if (const PetscInt i = hub_[k] - first; i >= 0 && i < dp.size()) of_hub[k] = row[i] / columns[i];
+  MPI_Allreduce(MPI_IN_PLACE, of_hub.data(), static_cast<int>(of_hub.size()), MPI_DOUBLE, MPI_SUM, comm());
+  for (PetscInt i = 0; i < dp.size(); ++i) out.add(first + i, n, dp[i] * parameter_scale_);
+  for (PetscInt i = 0; i < dp.size(); ++i)
+    if (i < hub.begin || i >= hub.end) out.add(n, first + i, row[i] / columns[i]);
+  if (!last) return;
+  for (std::size_t k = 0; k < hub_.size(); ++k) out.add(n, hub_[k], of_hub[k]);
+  out.add(n, n, row[row.size() - 1]);
+}
+
 void EquilibriumProblem::linearise(Vec u, Vec row) {
   prepare(u);
+  if (PortElimination::serves(system_.fields()))
+    linearise_parts(row);
+  else
+    linearise_whole(row);
+}
+
+void EquilibriumProblem::linearise_parts(Vec row) {
+  std::vector<problem::Field> parts = system_.fields();
+  if (!row_) {
+    for (core::Vector* v : {&row_, &rows_, &columns_}) *v = make_unknown();
+    for (const auto& [to, from] :
+         {std::pair{rows_.get(), row_scale_.get()}, std::pair{columns_.get(), state_scale_.get()}}) {
+      check(VecSet(to, 1));
+      const core::ReadArray a(from);
+      const core::WriteArray b(to);
+      std::copy_n(a.data(), a.size(), b.data());
+    }
+    PetscInt first = 0;
+    check(VecGetOwnershipRange(x_.get(), &first, nullptr));
+    std::vector<int> counts(static_cast<std::size_t>(core::size_of(comm()))), begins = counts;
+    const auto count = static_cast<int>(parts.front().end - parts.front().begin);
+    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm());
+    std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
+    std::vector<PetscInt> here(static_cast<std::size_t>(count));
+    std::iota(here.begin(), here.end(), first + parts.front().begin);
+    hub_.resize(static_cast<std::size_t>(begins.back() + counts.back()));
+    MPI_Allgatherv(here.data(), count, MPIU_INT, hub_.data(), counts.data(), begins.data(), MPIU_INT, comm());
+  }
+  check(VecCopy(row, row_.get()));
+  system_.parameter_derivative(0, x_.get(), rest_.get(), f_.get());
+  list();
+  if (!blocks_) {
+    PetscInt local = 0;
+    check(VecGetLocalSize(row_.get(), &local));
+    blocks_ = std::make_unique<PortMatrix>(std::make_shared<const PortLayout>(comm(), local, parts, entries_.places()));
+  }
+  blocks_->take(entries_.values());
+  blocks_->scale(rows_.get(), columns_.get());
+  if (bordered_) fill_bordered();
+  factorised_ = exact_factorised_ = false;
+  if (!ports_ && !exact_) {
+    auto inverse = system_.make_part_inverse();
+    std::unique_ptr<PortElimination>& elimination = inverse && !inverse->exact() ? ports_ : exact_;
+    elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
+  }
+  for (const PortElimination* elimination : {ports_.get(), exact_.get()})
+    if (elimination && elimination->inverse()) elimination->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
+}
+
+void EquilibriumProblem::linearise_whole(Vec row) {
   if (!jacobian_) jacobian_ = system_.make_jacobian();
   system_.jacobian(0, x_.get(), rest_.get(), 1, 0, jacobian_.get());
   (void)matrix();
@@ -141,23 +246,16 @@ void EquilibriumProblem::linearise(Vec u, Vec row) {
   check(MatAssemblyBegin(bordered_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(bordered_.get(), MAT_FINAL_ASSEMBLY));
   factorised_ = exact_factorised_ = false;
-  if (std::vector<problem::Field> parts = system_.fields(); !ports_ && !exact_ && PortElimination::serves(parts)) {
-    auto inverse = system_.make_part_inverse();
-    std::unique_ptr<PortElimination>& elimination = inverse && !inverse->exact() ? ports_ : exact_;
-    elimination = std::make_unique<PortElimination>(std::move(parts), std::move(inverse));
-  }
-  for (const PortElimination* elimination : {ports_.get(), exact_.get()})
-    if (elimination && elimination->inverse()) elimination->inverse()->set(0, x_.get(), rest_.get(), 1, 0);
 }
 
 // Elimination by the parts' own approximate inverses, with a Krylov method around that; whether it came far enough.
 bool EquilibriumProblem::solve_by_inverses(Vec rhs, Vec x) {
   constexpr double tolerance = 1e-12;
   try {
-    if (!factorised_) ports_->factorise(bordered_.get());
+    if (!factorised_) ports_->factorise(ports_->wants_matrix(*blocks_) ? matrix() : nullptr, *blocks_);
     factorised_ = true;
-    if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*ports_->blocks().layout(), "equilibrium_");
-    (void)krylov_->solve(ports_->blocks(), *ports_, rhs, x, tolerance);
+    if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*blocks_->layout(), "equilibrium_");
+    (void)krylov_->solve(*blocks_, *ports_, rhs, x, tolerance);
     return true;
   } catch (const core::DomainError&) {  // these are agreed on
     return false;
@@ -172,7 +270,7 @@ void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
   const bool by_inverses = ports_ && !transposed && !exact_factorised_;
   if (by_inverses && solve_by_inverses(rhs, x)) return;
   if (!exact_) exact_ = std::make_unique<PortElimination>(system_.fields());
-  if (!exact_factorised_) exact_->factorise(bordered_.get());
+  if (!exact_factorised_) exact_->factorise(exact_->wants_matrix(*blocks_) ? matrix() : nullptr, *blocks_);
   exact_factorised_ = true;
   if (transposed)
     exact_->solve_transposed(rhs, x);
@@ -205,7 +303,13 @@ void EquilibriumProblem::solve(bool transposed, Vec rhs, Vec x) {
 }
 
 void EquilibriumProblem::multiply(Vec v, Vec y) {
-  check(MatMult(bordered_.get(), v, y));
+  if (!blocks_) {
+    check(MatMult(bordered_.get(), v, y));
+    return;
+  }
+  const core::ReadArray va(v);
+  const core::WriteArray ya(y);
+  blocks_->multiply(va.data(), ya.data());
 }
 
 void EquilibriumProblem::solve(Vec rhs, Vec x) {

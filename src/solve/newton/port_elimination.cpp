@@ -115,7 +115,7 @@ void PortElimination::solve_columns(const PortMatrix& blocks) {
   const MatrixXd& g = blocks.to_parts();
   x_.resize(g.rows(), g.cols());
   if (by_inverse_) {
-    for (Index c = 0; c < g.cols(); ++c) inverse_->apply(g.col(c).data(), x_.col(c).data());
+    inverse_->apply_columns(g.data(), x_.data(), g.rows(), static_cast<int>(g.cols()));
     return;
   }
   core::Matrix columns, answers;
@@ -141,6 +141,7 @@ void PortElimination::form_hub(const PortMatrix& blocks) {
     for (const PetscInt row : l.coupled().numbers)
       if (row >= first && row < first + l.hub())
         count[static_cast<std::size_t>(row - first)] += static_cast<PetscInt>(n_ports);
+    for (PetscInt& c : count) c = std::min(c, l.whole_hub());
     schur_ = core::make_matrix(hub_alone_ ? PETSC_COMM_SELF : l.comm(), l.hub(), std::move(count));
   }
   check(MatZeroEntries(schur_.get()));
@@ -165,10 +166,14 @@ void PortElimination::factorise(Mat a) {
   factorise(a, *blocks_);
 }
 
-void PortElimination::factorise_parts(Mat a, const PortMatrix& blocks) {
+bool PortElimination::wants_matrix(const PortMatrix& blocks) {
   layout_ = blocks.layout();
   if (!part_solver_) make_solvers();
-  if (!by_inverse_) {
+  return !by_inverse_;
+}
+
+void PortElimination::factorise_parts(Mat a, const PortMatrix& blocks) {
+  if (wants_matrix(blocks)) {
     const bool first = !parts_;
     Mat raw = parts_.get();
     IS rows = layout_->part_rows().get();

@@ -37,10 +37,13 @@ public:
 
   /// `a` has the same pattern in every call.
   void factorise(Mat a);
-  /// The same of a matrix that is in its blocks already, which take no other values from here on.
+  /// The same of a matrix that is in its blocks already, which take no other values from here on; `a` is null if it is
+  /// not wanted.
   void factorise(Mat a, const PortMatrix& blocks);
   /// Of the parts alone, for solve_held().
   void factorise_parts(Mat a, const PortMatrix& blocks);
+  /// Whether the parts are solved with what an assembled matrix holds of them: not by their own inverses alone.
+  [[nodiscard]] bool wants_matrix(const PortMatrix& blocks);
   /// The blocks of the matrix of factorise(a).
   [[nodiscard]] const PortMatrix& blocks() const { return *blocks_; }
   /// The parts' own inverses, for the caller to set() before factorise(); null where there are none.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solve/newton/stored.hpp"
+
 namespace whirl::solve {
 
 using core::check;
@@ -10,18 +12,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-// This rank's rows as PETSc holds them: columns of its own rows, then those of others.
-struct Stored {
-  Mat own = nullptr, others = nullptr;
-  const PetscInt* columns = nullptr;  // of `others`: global numbers
-
-  explicit Stored(Mat a) : own(a) {
-    PetscBool several = PETSC_FALSE;
-    check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(a), MATMPIAIJ, &several));
-    if (several) check(MatMPIAIJGetSeqAIJ(a, &own, &others, &columns));
-  }
-};
 
 class Values {
 public:
@@ -40,292 +30,7 @@ private:
   const PetscScalar* values_ = nullptr;
 };
 
-PetscInt entries(Mat m) {
-  MatInfo info;
-  check(MatGetInfo(m, MAT_LOCAL, &info));
-  return static_cast<PetscInt>(info.nz_used);
-}
-
-std::vector<PetscInt> offsets_of(MPI_Comm comm, PetscInt local) {
-  std::vector<PetscInt> all(static_cast<std::size_t>(core::size_of(comm)) + 1, 0);
-  MPI_Allgather(&local, 1, MPIU_INT, all.data() + 1, 1, MPIU_INT, comm);
-  for (std::size_t r = 1; r < all.size(); ++r) all[r] += all[r - 1];
-  return all;
-}
-
 }  // namespace
-
-// All entries of this rank's rows: row and column are numbers among the parts (>= 0, the row counted on this rank) or
-// in the hub (-1 - number).
-struct PortLayout::Scan {
-  struct Entry {
-    PetscInt row, column, source;
-  };
-  std::vector<Entry> list;
-
-  template <class NumberOf>
-  void read(Mat m, PetscInt first_source, const std::vector<PetscInt>& rows, const NumberOf& number_of) {
-    PetscInt n = 0;
-    const PetscInt *begin = nullptr, *columns = nullptr;
-    PetscBool done = PETSC_FALSE;
-    check(MatGetRowIJ(m, 0, PETSC_FALSE, PETSC_FALSE, &n, &begin, &columns, &done));
-    for (PetscInt i = 0; i < n; ++i)
-      for (PetscInt k = begin[i]; k < begin[i + 1]; ++k)
-        list.push_back({rows[static_cast<std::size_t>(i)], number_of(columns[k]), first_source + k});
-    check(MatRestoreRowIJ(m, 0, PETSC_FALSE, PETSC_FALSE, &n, &begin, &columns, &done));
-  }
-};
-
-PetscInt PortLayout::first_of_hub() const {
-  return hub_offsets_[static_cast<std::size_t>(core::rank_of(comm_))];
-}
-
-void PortLayout::number_rows(const std::vector<problem::Field>& fields) {
-  const std::vector<problem::Field> parts = problem::parts_of(fields);
-  std::vector<bool> taken(static_cast<std::size_t>(local_), false);
-  PetscInt at = 0;
-  for (std::size_t f = 1; f < parts.size(); ++f) {
-    const PetscInt count = parts[f].end - parts[f].begin;
-    std::fill(taken.begin() + parts[f].begin, taken.begin() + parts[f].end, true);
-    if (!runs_.empty() && runs_.back().whole + runs_.back().count == parts[f].begin)
-      runs_.back().count += count;
-    else if (count > 0)
-      runs_.push_back({parts[f].begin, at, count, true});
-    part_ends_.push_back(at += count);
-  }
-  PetscInt hub = 0;
-  for (PetscInt i = 0; i < local_; ++i) {
-    if (taken[static_cast<std::size_t>(i)]) continue;
-    if (!runs_.empty() && !runs_.back().part && runs_.back().whole + runs_.back().count == i)
-      ++runs_.back().count;
-    else
-      runs_.push_back({i, hub, 1, false});
-    ++hub;
-  }
-  part_offsets_ = offsets_of(comm_, at);
-  all_part_ends_.resize(part_ends_.size() * static_cast<std::size_t>(core::size_of(comm_)));
-  MPI_Allgather(part_ends_.data(), static_cast<int>(part_ends_.size()), MPIU_INT, all_part_ends_.data(),
-                static_cast<int>(part_ends_.size()), MPIU_INT, comm_);
-  hub_offsets_ = offsets_of(comm_, hub);
-}
-
-PortLayout::PortLayout(Mat a, const std::vector<problem::Field>& fields)
-    : comm_(PetscObjectComm(reinterpret_cast<PetscObject>(a))) {
-  check(MatGetLocalSize(a, &local_, nullptr));
-  number_rows(fields);
-  const auto rank = static_cast<std::size_t>(core::rank_of(comm_));
-  // What every row is, of this rank's rows and of the columns that these see of others.
-  core::Vector code = core::make_vector(comm_, local_, PETSC_DETERMINE);
-  std::vector<PetscInt> rows(static_cast<std::size_t>(local_)), columns(rows.size()), part_rows;
-  PetscInt first = 0;
-  check(MatGetOwnershipRange(a, &first, nullptr));
-  {
-    const core::WriteArray values(code.get());
-    for (const Run& run : runs_)
-      for (PetscInt i = 0; i < run.count; ++i) {
-        const auto k = static_cast<std::size_t>(run.whole + i);
-        rows[k] = run.part ? run.at + i : -1 - (hub_offsets_[rank] + run.at + i);
-        columns[k] = run.part ? part_offsets_[rank] + run.at + i : rows[k];
-        values[run.whole + i] = static_cast<double>(columns[k]);
-      }
-  }
-  for (const Run& run : runs_)
-    for (PetscInt i = 0; run.part && i < run.count; ++i) part_rows.push_back(first + run.whole + i);
-  check(ISCreateGeneral(comm_, static_cast<PetscInt>(part_rows.size()), part_rows.data(), PETSC_COPY_VALUES,
-                        part_rows_.put()));
-  const Stored stored(a);
-  Scan scan;
-  scan.read(stored.own, 0, rows, [&](PetscInt c) { return columns[static_cast<std::size_t>(c)]; });
-  if (stored.others) {
-    PetscInt seen = 0;
-    check(MatGetSize(stored.others, nullptr, &seen));
-    core::IndexSet from;
-    check(ISCreateGeneral(PETSC_COMM_SELF, seen, stored.columns, PETSC_COPY_VALUES, from.put()));
-    core::Vector other = core::make_vector(PETSC_COMM_SELF, seen, PETSC_DETERMINE);
-    core::Scatter scatter;
-    check(VecScatterCreate(code.get(), from.get(), other.get(), nullptr, scatter.put()));
-    check(VecScatterBegin(scatter.get(), code.get(), other.get(), INSERT_VALUES, SCATTER_FORWARD));
-    check(VecScatterEnd(scatter.get(), code.get(), other.get(), INSERT_VALUES, SCATTER_FORWARD));
-    const core::ReadArray number(other.get());
-    scan.read(stored.others, entries(stored.own), rows, [&](PetscInt c) { return static_cast<PetscInt>(number[c]); });
-  }
-  find_ports(scan);
-  place_parts(scan);
-  place_couplings(scan);
-  x_.resize(parts());
-  y_.resize(parts());
-  hub_x_.resize(hub());
-  hub_y_.resize(hub());
-  shared_.setZero(whole_hub() + static_cast<Index>(coupled_.numbers.size()));
-}
-
-PortLayout::Coloured::Coloured(const std::vector<std::uint64_t>& seen, std::size_t parts) {
-  std::vector<std::uint64_t> used;
-  colour.assign(seen.size(), -1);
-  for (std::size_t c = 0; c < seen.size(); ++c) {
-    if (seen[c] == 0) continue;
-    const auto free = std::find_if(used.begin(), used.end(), [&](std::uint64_t u) { return (u & seen[c]) == 0; });
-    colour[c] = static_cast<int>(free - used.begin());
-    if (free == used.end()) used.push_back(0);
-    used[static_cast<std::size_t>(colour[c])] |= seen[c];
-    numbers.push_back(static_cast<PetscInt>(c));
-  }
-  colours = static_cast<int>(used.size());
-  at.assign(parts, std::vector<int>(used.size(), -1));
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const auto c = static_cast<std::size_t>(numbers[k]);
-    for (std::size_t p = 0; p < parts; ++p)
-      if (seen[c] >> p & 1) at[p][static_cast<std::size_t>(colour[c])] = static_cast<int>(k);
-  }
-}
-
-PortLayout::Owner PortLayout::owner_of(PetscInt column) const {
-  const auto rank = static_cast<std::size_t>(std::upper_bound(part_offsets_.begin(), part_offsets_.end(), column) -
-                                             part_offsets_.begin() - 1);
-  const PetscInt first = part_offsets_[rank];
-  const auto ends = all_part_ends_.begin() + static_cast<std::ptrdiff_t>(rank * part_ends_.size());
-  const auto part =
-      std::upper_bound(ends, ends + static_cast<std::ptrdiff_t>(part_ends_.size()), column - first) - ends;
-  return {first, part_offsets_[rank + 1] - first, static_cast<std::size_t>(part)};
-}
-
-void PortLayout::add_products(const Coloured& of, const MatrixXd& columns, const double* v, double* sums) const {
-  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
-    few_.noalias() = columns.middleRows(begin, rows).transpose() * Eigen::Map<const VectorXd>(v + begin, rows);
-    for (std::size_t c = 0; c < of.at[part].size(); ++c)
-      if (const int k = of.at[part][c]; k >= 0) sums[k] += few_(static_cast<Index>(c));
-  });
-}
-
-void PortLayout::add_columns(const Coloured& of, const MatrixXd& columns, double sign, const double* hub,
-                             double* v) const {
-  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
-    few_.setZero(columns.cols());
-    for (std::size_t c = 0; c < of.at[part].size(); ++c)
-      if (const int k = of.at[part][c]; k >= 0)
-        few_(static_cast<Index>(c)) = sign * hub[of.numbers[static_cast<std::size_t>(k)]];
-    Eigen::Map<VectorXd>(v + begin, rows).noalias() += columns.middleRows(begin, rows) * few_;
-  });
-}
-
-void PortLayout::add_products(const MatrixXd& from, const MatrixXd& to, MatrixXd& sums) const {
-  for_parts([&](std::size_t part, PetscInt begin, PetscInt rows) {
-    const MatrixXd all = from.middleRows(begin, rows).transpose() * to.middleRows(begin, rows);
-    for (std::size_t r = 0; r < coupled_.at[part].size(); ++r)
-      for (std::size_t c = 0; c < ports_.at[part].size(); ++c)
-        if (const int row = coupled_.at[part][r], column = ports_.at[part][c]; row >= 0 && column >= 0)
-          sums(row, column) += all(static_cast<Index>(r), static_cast<Index>(c));
-  });
-}
-
-void PortLayout::find_ports(const Scan& scan) {
-  const auto n = static_cast<std::size_t>(whole_hub());
-  std::vector<std::uint64_t> seen(2 * n, 0);  // parts that see an unknown of the hub, then those that a row of it sees
-  for (const Scan::Entry& e : scan.list) {
-    if (e.row >= 0 && e.column < 0) {
-      const auto part = std::upper_bound(part_ends_.begin(), part_ends_.end(), e.row) - part_ends_.begin();
-      seen[static_cast<std::size_t>(-1 - e.column)] |= std::uint64_t{1} << part;
-    }
-    if (e.row < 0 && e.column >= 0)
-      seen[n + static_cast<std::size_t>(-1 - e.row)] |= std::uint64_t{1} << owner_of(e.column).part;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, seen.data(), static_cast<int>(2 * n), MPI_UINT64_T, MPI_BOR, comm_);
-  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(n);
-  ports_ = Coloured({seen.begin(), middle}, part_ends_.size());
-  coupled_ = Coloured({middle, seen.end()}, part_ends_.size());
-}
-
-// A_pp by pieces of diagonals, so that products are loops over arrays. Short gaps are filled with zeros.
-void PortLayout::place_parts(const Scan& scan) {
-  constexpr PetscInt gap = 4;
-  const auto rank = static_cast<std::size_t>(core::rank_of(comm_));
-  const PetscInt first = part_offsets_[rank], end = part_offsets_[rank + 1];
-  std::vector<Scan::Entry> own, other;
-  std::vector<PetscInt> ghosts;
-  for (const Scan::Entry& e : scan.list) {
-    if (e.row < 0 || e.column < 0) continue;
-    if (e.column >= first && e.column < end) {
-      own.push_back({e.row, e.column - first, e.source});
-    } else {
-      other.push_back(e);
-      ghosts.push_back(e.column);
-    }
-  }
-  std::sort(ghosts.begin(), ghosts.end());
-  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
-  for (Scan::Entry& e : other)
-    e.column = static_cast<PetscInt>(std::lower_bound(ghosts.begin(), ghosts.end(), e.column) - ghosts.begin());
-  const auto cut = [&](std::vector<Scan::Entry>& all, std::vector<Piece>& pieces) {
-    std::sort(all.begin(), all.end(), [](const Scan::Entry& a, const Scan::Entry& b) {
-      return a.column - a.row != b.column - b.row ? a.column - a.row < b.column - b.row : a.row < b.row;
-    });
-    for (const Scan::Entry& e : all) {
-      Piece* last = pieces.empty() ? nullptr : &pieces.back();
-      if (!last || last->column - last->row != e.column - e.row || e.row > last->row + last->count + gap) {
-        pieces.push_back({e.row, e.column, 0});
-        last = &pieces.back();
-      }
-      for (; last->row + last->count < e.row; ++last->count) sources_.push_back(-1);
-      ++last->count;
-      sources_.push_back(e.source);
-    }
-  };
-  cut(own, pieces_);
-  cut(other, ghost_pieces_);
-  part_vector_ = core::make_vector(comm_, parts(), PETSC_DETERMINE);
-  ghosts_ = core::make_vector(PETSC_COMM_SELF, static_cast<PetscInt>(ghosts.size()), PETSC_DETERMINE);
-  core::IndexSet from;
-  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(ghosts.size()), ghosts.data(), PETSC_COPY_VALUES,
-                        from.put()));
-  check(VecScatterCreate(part_vector_.get(), from.get(), ghosts_.get(), nullptr, to_ghosts_.put()));
-}
-
-void PortLayout::place_couplings(const Scan& scan) {
-  std::vector<PetscInt> to;  // where entries of F belong among the columns F^T of all ranks
-  const PetscInt width = coupled_.colours;
-  for (const Scan::Entry& e : scan.list) {
-    if (e.row < 0 && e.column < 0) {
-      hub_entries_.push_back({-1 - e.row, -1 - e.column, e.source});
-    } else if (e.column < 0) {
-      g_sources_.push_back(e.source);
-      g_places_.push_back(ports_.colour[static_cast<std::size_t>(-1 - e.column)] * parts() + e.row);
-    } else if (e.row < 0) {
-      const Owner owner = owner_of(e.column);
-      const PetscInt colour = coupled_.colour[static_cast<std::size_t>(-1 - e.row)];
-      f_sources_.push_back(e.source);
-      to.push_back(owner.first * width + colour * owner.count + e.column - owner.first);
-    }
-  }
-  const auto count = static_cast<PetscInt>(to.size());
-  f_values_ = core::make_vector(comm_, count, PETSC_DETERMINE);
-  // Stands for the F^T of a matrix that is being filled.
-  check(VecCreateMPIWithArray(comm_, 1, parts() * width, PETSC_DETERMINE, nullptr, f_columns_.put()));
-  PetscInt first = 0;
-  check(VecGetOwnershipRange(f_values_.get(), &first, nullptr));
-  core::IndexSet from, into;
-  check(ISCreateStride(comm_, count, first, 1, from.put()));
-  check(ISCreateGeneral(comm_, count, to.data(), PETSC_COPY_VALUES, into.put()));
-  check(VecScatterCreate(f_values_.get(), from.get(), f_columns_.get(), into.get(), to_f_.put()));
-}
-
-void PortLayout::take(const double* whole, double* parts, double* hub) const {
-  for (const Run& r : runs_) std::copy_n(whole + r.whole, r.count, (r.part ? parts : hub) + r.at);
-}
-
-void PortLayout::give(const double* parts, const double* hub, double* whole) const {
-  for (const Run& r : runs_) std::copy_n((r.part ? parts : hub) + r.at, r.count, whole + r.whole);
-}
-
-void PortLayout::share(const double* hub, VectorXd& all) const {
-  const PetscInt n = whole_hub();
-  if (core::size_of(comm_) > 1) {
-    all.head(n).setZero();
-    std::copy_n(hub, this->hub(), all.data() + first_of_hub());
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  } else {
-    std::copy_n(hub, n, all.data());
-  }
-}
 
 PortMatrix::PortMatrix(std::shared_ptr<const PortLayout> layout) : layout_(std::move(layout)) {
   const PortLayout& l = *layout_;
@@ -336,15 +41,22 @@ PortMatrix::PortMatrix(std::shared_ptr<const PortLayout> layout) : layout_(std::
 }
 
 void PortMatrix::take(Mat a) {
-  const PortLayout& l = *layout_;
   const Stored stored(a);
-  const PetscInt n = stored.others ? entries(stored.own) : PETSC_MAX_INT;
+  const PetscInt n = stored.others ? stored.entries() : PETSC_MAX_INT;
   const Values own(stored.own), others(stored.others);
-  const auto value = [n, here = own.data(), there = others.data()](PetscInt k) {
-    return k < n ? here[k] : there[k - n];
-  };
+  place([n, here = own.data(), there = others.data()](PetscInt k) { return k < n ? here[k] : there[k - n]; });
+}
+
+void PortMatrix::take(std::span<const double> values) {
+  place([from = values.data()](PetscInt k) { return from[k]; });
+}
+
+template <class Value>
+void PortMatrix::place(const Value& value) {
+  const PortLayout& l = *layout_;
   for (std::size_t k = 0; k < values_.size(); ++k)
     if (l.sources_[k] >= 0) values_[k] = value(l.sources_[k]);
+  for (const auto& [k, source] : l.added_) values_[k] += value(source);
   for (std::size_t k = 0; k < hub_.size(); ++k) hub_[k] = value(l.hub_entries_[k].source);
   for (std::size_t k = 0; k < l.g_sources_.size(); ++k) g_.data()[l.g_places_[k]] = value(l.g_sources_[k]);
   {
@@ -355,6 +67,47 @@ void PortMatrix::take(Mat a) {
   check(VecScatterBegin(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
   check(VecResetArray(l.f_columns_.get()));
+}
+
+void PortMatrix::scale(Vec rows, Vec columns) {
+  const PortLayout& l = *layout_;
+  VectorXd of_parts[2], of_hub[2];
+  for (const int side : {0, 1}) {
+    of_parts[side].resize(l.parts());
+    of_hub[side].resize(l.whole_hub());
+    VectorXd here(l.hub());
+    const core::ReadArray all(side == 0 ? rows : columns);
+    l.take(all.data(), of_parts[side].data(), here.data());
+    l.share(here.data(), of_hub[side]);
+  }
+  double* value = values_.data();
+  const auto apply = [&](const std::vector<PortLayout::Piece>& pieces, const double* column) {
+    for (const PortLayout::Piece& p : pieces)
+      for (PetscInt i = 0; i < p.count; ++i) *value++ *= of_parts[0](p.row + i) * column[p.column + i];
+  };
+  apply(l.pieces_, of_parts[1].data());
+  if (core::size_of(l.comm_) > 1) {
+    {
+      const core::WriteArray v(l.part_vector_.get());
+      std::copy_n(of_parts[1].data(), of_parts[1].size(), v.data());
+    }
+    check(VecScatterBegin(l.to_ghosts_.get(), l.part_vector_.get(), l.ghosts_.get(), INSERT_VALUES, SCATTER_FORWARD));
+    check(VecScatterEnd(l.to_ghosts_.get(), l.part_vector_.get(), l.ghosts_.get(), INSERT_VALUES, SCATTER_FORWARD));
+    const core::ReadArray ghosts(l.ghosts_.get());
+    apply(l.ghost_pieces_, ghosts.data());
+  }
+  const auto thin = [&](const PortLayout::Coloured& of, MatrixXd& m, const VectorXd& along, const VectorXd& hub) {
+    l.for_parts([&](std::size_t part, PetscInt begin, PetscInt count) {
+      for (std::size_t c = 0; c < of.at[part].size(); ++c)
+        if (const int k = of.at[part][c]; k >= 0)
+          m.col(static_cast<Index>(c)).segment(begin, count).array() *=
+              hub(of.numbers[static_cast<std::size_t>(k)]) * along.segment(begin, count).array();
+    });
+  };
+  thin(l.ports_, g_, of_parts[0], of_hub[1]);
+  thin(l.coupled_, *f_, of_parts[1], of_hub[0]);
+  for (std::size_t k = 0; k < hub_.size(); ++k)
+    hub_[k] *= of_hub[0](l.hub_entries_[k].row) * of_hub[1](l.hub_entries_[k].column);
 }
 
 void PortMatrix::multiply(const double* x, double* y) const {

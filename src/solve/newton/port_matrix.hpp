@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "whirl/core/petsc.hpp"
@@ -11,7 +13,7 @@
 
 namespace whirl::solve {
 
-/// Where the entries of an assembled matrix belong among the blocks of hub and parts, which see the hub but not each
+/// Where the entries of a matrix belong among the blocks of hub and parts, which see the hub but not each
 /// other,
 ///
 ///     [ A_pp  G   ]   rows of the parts, this rank's one after the other
@@ -19,12 +21,15 @@ namespace whirl::solve {
 ///
 /// A part sees few unknowns of the hub, its ports, and few rows of the hub see it. Ports that no part sees both of
 /// share a column of G, and rows that do not see the same part a column of F^T: their numbers do not grow with that of
-/// the parts. F^T is spread like the states of the parts; the assembled matrix has the rows of F, as long as a part, on
-/// the rank of the hub.
+/// the parts. F^T is spread like the states of the parts; an assembled matrix has the rows of F, as long as a part, on
+/// the rank of the hub, a list of entries (`problem::Entries`) has them where they belong.
 class PortLayout {
 public:
   /// `fields`: the hub first, in local rows of `a`; local rows in none of them belong to the hub. Collective.
   PortLayout(Mat a, const std::vector<problem::Field>& fields);
+  /// Of a matrix with `local` rows here that is told by such a list. Collective.
+  PortLayout(MPI_Comm comm, PetscInt local, const std::vector<problem::Field>& fields,
+             std::span<const problem::Entries::Place> places);
 
   [[nodiscard]] MPI_Comm comm() const { return comm_; }
   [[nodiscard]] PetscInt local() const { return local_; }
@@ -77,8 +82,8 @@ private:
   struct Piece {  // of a diagonal of A_pp: entries (row + i, column + i)
     PetscInt row, column, count;
   };
-  /// A place in a block, and the entry of this rank's rows that belongs there: diagonal block first, as PETSc stores
-  /// them; -1 is a zero.
+  /// A place in a block, and the entry that belongs there: that of the list, or of this rank's rows, diagonal block
+  /// first, as PETSc stores them; -1 is a zero.
   struct HubEntry {
     PetscInt row, column, source;
   };
@@ -88,6 +93,15 @@ private:
     std::size_t part;
   };
   struct Scan;
+  /// What every local row is, as a row and as a column; and all these columns, of which others' are seen.
+  struct Numbers {
+    std::vector<PetscInt> rows, columns;
+    core::Vector all;
+    /// The columns with these numbers in the matrix. Collective.
+    [[nodiscard]] std::vector<PetscInt> seen(const std::vector<PetscInt>& in_matrix) const;
+  };
+  [[nodiscard]] Numbers numbers() const;
+  void place(const Scan& scan);
   [[nodiscard]] Owner owner_of(PetscInt column) const;
   void number_rows(const std::vector<problem::Field>& fields);
   void find_ports(const Scan& scan);
@@ -102,8 +116,9 @@ private:
   std::vector<PetscInt> hub_offsets_, part_offsets_;  // first of each rank's among all, and their number
   core::IndexSet part_rows_;
   Coloured ports_, coupled_;
-  std::vector<Piece> pieces_, ghost_pieces_;  // of A_pp: columns of this rank's parts, and of others'
-  std::vector<PetscInt> sources_;             // of the values of both
+  std::vector<Piece> pieces_, ghost_pieces_;             // of A_pp: columns of this rank's parts, and of others'
+  std::vector<PetscInt> sources_;                        // of the values of both
+  std::vector<std::pair<std::size_t, PetscInt>> added_;  // further entries of a place: which value, and the source
   std::vector<HubEntry> hub_entries_;
   std::vector<PetscInt> g_sources_, g_places_;  // into G, column by column
   std::vector<PetscInt> f_sources_;             // entries of F on this rank
@@ -118,6 +133,10 @@ public:
   explicit PortMatrix(std::shared_ptr<const PortLayout> layout);
   /// The values of `a`, which has the pattern of the layout. Collective.
   void take(Mat a);
+  /// The values of the list of entries that the layout was made of. Collective.
+  void take(std::span<const double> values);
+  /// Row i times rows[i], column k times columns[k]. Collective.
+  void scale(Vec rows, Vec columns);
   /// y = A x, of this rank's rows. Collective.
   void multiply(const double* x, double* y) const;
   [[nodiscard]] const std::shared_ptr<const PortLayout>& layout() const { return layout_; }
@@ -132,6 +151,9 @@ public:
   }
 
 private:
+  /// The values of the sources, value(source).
+  template <class Value>
+  void place(const Value& value);
   std::shared_ptr<const PortLayout> layout_;
   std::vector<double> values_, hub_;  // of A_pp, of A_h
   Eigen::MatrixXd g_;

@@ -49,6 +49,10 @@ Eigen::SparseMatrix<double> gather_matrix(Mat m) {
     for (PetscInt k = 0; k < count; ++k)
       mine.insert(mine.end(), {static_cast<double>(first + i), static_cast<double>(columns[k]), values[k]});
   });
+  return gather_entries(comm, n, mine);
+}
+
+Eigen::SparseMatrix<double> gather_entries(MPI_Comm comm, Eigen::Index n, const std::vector<double>& mine) {
   const auto size = static_cast<std::size_t>(core::size_of(comm));
   const int here = static_cast<int>(mine.size());
   std::vector<int> counts(size), begins(size);

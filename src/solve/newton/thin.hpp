@@ -24,6 +24,10 @@ void for_rows(Mat m, F&& f) {
   }
 }
 
+/// The sum of entries (row, column, value) that ranks have [n x n], whole on every rank. Collective.
+[[nodiscard]] Eigen::SparseMatrix<double> gather_entries(MPI_Comm comm, Eigen::Index n,
+                                                         const std::vector<double>& mine);
+
 /// Number of the first row of this rank.
 [[nodiscard]] PetscInt first_row(Mat m);
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "solve/newton/real_form.hpp"
-#include "solve/newton/thin.hpp"
+#include "solve/newton/transfer_part.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -30,18 +30,6 @@ PetscInt kept_up_to() {
   return states;
 }
 
-core::Matrix block(Mat a, IS rows, IS columns) {
-  core::Matrix m;
-  check(MatCreateSubMatrix(a, rows, columns, MAT_INITIAL_MATRIX, m.put()));
-  return m;
-}
-
-core::Matrix transpose(const core::Matrix& m) {
-  core::Matrix t;
-  check(MatTranspose(m.get(), MAT_INITIAL_MATRIX, t.put()));
-  return t;
-}
-
 // `to` holds complex columns in real form: reals and imaginary parts of the rows in turn.
 template <class F>
 void with_columns(Mat m, F&& use) {
@@ -59,48 +47,36 @@ void with_columns(Mat m, F&& use) {
 
 }  // namespace
 
-struct TransferFunction::Part {
-  core::IndexSet rows;
-  PetscInt first = 0, count = 0;      // its local rows
-  core::Matrix a, b;                  // A_i = a + lambda b
-  MatrixXd g0, g1, f0, f1;            // G_i and F_i^T likewise [local x ports], [local x forces]
-  core::Matrix real, right, answers;  // A_i in real form, and its columns
-  core::LinearSolver solver;
-  MatrixXcd x, dx;  // A_i^-1 G_i where it was evaluated last [local x ports], and its derivative
+void TransferFunction::Coupled::solve(const MatrixXcd& columns, MatrixXcd& out) {
+  with_columns(right.get(), [&](PetscInt k, auto to) { to = columns.col(k); });
+  check(KSPMatSolve(solver.get(), right.get(), answers.get()));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(solver.get(), &reason));
+  if (reason < 0) throw core::NotConverged("the equations of a film are singular at this frequency");
+  out.resize(columns.rows(), columns.cols());
+  with_columns(answers.get(), [&](PetscInt k, auto from) { out.col(k) = from; });
+}
 
-  // out = A_i^-1 right, for all columns.
-  void solve(const MatrixXcd& columns, MatrixXcd& out) {
-    with_columns(right.get(), [&](PetscInt k, auto to) { to = columns.col(k); });
-    check(KSPMatSolve(solver.get(), right.get(), answers.get()));
-    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-    check(KSPGetConvergedReason(solver.get(), &reason));
-    if (reason < 0) throw core::NotConverged("the equations of a film are singular at this frequency");
-    out.resize(columns.rows(), columns.cols());
-    with_columns(answers.get(), [&](PetscInt k, auto from) { out.col(k) = from; });
-  }
-
-  // b times complex columns.
-  [[nodiscard]] MatrixXcd rates_times(const MatrixXcd& columns) const {
-    core::Vector in, out;
-    check(MatCreateVecs(b.get(), in.put(), out.put()));
-    MatrixXcd product(columns.rows(), columns.cols());
-    for (Index k = 0; k < columns.cols(); ++k)
-      for (const bool real_part : {true, false}) {
-        {
-          const core::WriteArray v(in.get());
-          for (Index i = 0; i < columns.rows(); ++i)
-            v[static_cast<PetscInt>(i)] = real_part ? columns(i, k).real() : columns(i, k).imag();
-        }
-        check(MatMult(b.get(), in.get(), out.get()));
-        const core::ReadArray v(out.get());
-        for (Index i = 0; i < columns.rows(); ++i) {
-          const double value = v[static_cast<PetscInt>(i)];
-          product(i, k) = real_part ? Complex(value, 0) : Complex(product(i, k).real(), value);
-        }
+MatrixXcd TransferFunction::Coupled::rates_times(const MatrixXcd& columns) const {
+  core::Vector in, out;
+  check(MatCreateVecs(b.get(), in.put(), out.put()));
+  MatrixXcd product(columns.rows(), columns.cols());
+  for (Index k = 0; k < columns.cols(); ++k)
+    for (const bool real_part : {true, false}) {
+      {
+        const core::WriteArray v(in.get());
+        for (Index i = 0; i < columns.rows(); ++i)
+          v[static_cast<PetscInt>(i)] = real_part ? columns(i, k).real() : columns(i, k).imag();
       }
-    return product;
-  }
-};
+      check(MatMult(b.get(), in.get(), out.get()));
+      const core::ReadArray v(out.get());
+      for (Index i = 0; i < columns.rows(); ++i) {
+        const double value = v[static_cast<PetscInt>(i)];
+        product(i, k) = real_part ? Complex(value, 0) : Complex(product(i, k).real(), value);
+      }
+    }
+  return product;
+}
 
 TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   core::require(system.fields().size() > 1, "a transfer function needs parts");
@@ -109,8 +85,6 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   row_scale_ = core::duplicate(rest_.get());
   x_ = core::duplicate(rest_.get());
   if (auto inverse = system.make_part_inverse(); inverse && inverse->exact()) inverse_ = std::move(inverse);
-  jx_ = system.make_jacobian();
-  jd_ = system.make_jacobian();
   PetscInt begin = 0;
   check(VecGetOwnershipRange(rest_.get(), &begin, nullptr));
   std::vector<bool> taken(static_cast<std::size_t>(system.local_size()), false);
@@ -119,7 +93,7 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   };
   const std::vector<problem::Field> fields = problem::parts_of(system.fields());
   for (std::size_t f = 1; f < fields.size(); ++f) {
-    auto part = std::make_unique<Part>();
+    auto part = std::make_unique<Coupled>();
     std::vector<PetscInt> rows;
     for (PetscInt i = fields[f].begin; i < fields[f].end; ++i) {
       rows.push_back(begin + i);
@@ -152,47 +126,8 @@ PetscInt TransferFunction::states(std::size_t i) const {
   return n;
 }
 
-void TransferFunction::linearise(Vec x) {
-  check(VecCopy(x, x_.get()));
-  system_.scales(state_scale_.get(), row_scale_.get());
-  const auto at_hub = [&](Vec v) {
-    core::Vector part;
-    std::vector<double> out(static_cast<std::size_t>(hub_), 0);
-    const core::ReadArray a(v);
-    PetscInt begin = 0;
-    check(VecGetOwnershipRange(v, &begin, nullptr));
-    for (std::size_t k = 0; k < out.size(); ++k)
-      if (const PetscInt i = hub_numbers_[k] - begin; i >= 0 && i < a.size()) out[k] = a[i];
-    MPI_Allreduce(MPI_IN_PLACE, out.data(), static_cast<int>(out.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
-    return out;
-  };
-  hub_scale_ = at_hub(state_scale_.get());
-  hub_row_scale_ = at_hub(row_scale_.get());
-  check(VecReciprocal(row_scale_.get()));
-  system_.jacobian(0, x, rest_.get(), 1, 0, jx_.get());
-  system_.jacobian(0, x, rest_.get(), 0, 1, jd_.get());
-  for (Mat j : {jx_.get(), jd_.get()}) check(MatDiagonalScale(j, row_scale_.get(), state_scale_.get()));
-  a_hub_ = gather_matrix(block(jx_.get(), hub_rows_.get(), hub_rows_.get()).get());
-  b_hub_ = gather_matrix(block(jd_.get(), hub_rows_.get(), hub_rows_.get()).get());
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    Part& p = *parts_[i];
-    p.a = block(jx_.get(), p.rows.get(), p.rows.get());
-    p.b = block(jd_.get(), p.rows.get(), p.rows.get());
-    const core::Matrix g = block(jx_.get(), p.rows.get(), hub_rows_.get());
-    const core::Matrix f = transpose(block(jx_.get(), hub_rows_.get(), p.rows.get()));
-    ports_[i].seen = used_columns(g.get());
-    ports_[i].forces = used_columns(f.get());
-    p.g0 = thin(g.get(), ports_[i].seen);
-    p.f0 = thin(f.get(), ports_[i].forces);
-    p.g1 = thin(block(jd_.get(), p.rows.get(), hub_rows_.get()).get(), ports_[i].seen);
-    p.f1 = thin(transpose(block(jd_.get(), hub_rows_.get(), p.rows.get())).get(), ports_[i].forces);
-    p.x.resize(0, 0);
-    p.dx.resize(0, 0);
-  }
-}
-
 template <class F>
-void TransferFunction::solve_together(F&& columns, MatrixXcd Part::*to) {
+void TransferFunction::solve_together(F&& columns, MatrixXcd Coupled::*to) {
   Index rows = 0, most = 0;
   std::vector<MatrixXcd> right;
   for (const auto& p : parts_) {
@@ -201,29 +136,25 @@ void TransferFunction::solve_together(F&& columns, MatrixXcd Part::*to) {
     rows += right.back().rows();
     most = std::max(most, right.back().cols());
   }
-  VectorXcd r(rows), x(rows);
-  bool finite = true;
-  for (Index c = 0; c < most; ++c) {
-    r.setZero();
-    Index row = 0;
-    for (const MatrixXcd& m : right) {
-      if (c < m.cols()) r.segment(row, m.rows()) = m.col(c);
-      row += m.rows();
-    }
-    inverse_->apply_at(r.data(), x.data());
-    finite = finite && x.allFinite();
-    row = 0;
-    for (const auto& p : parts_) {
-      MatrixXcd& out = (*p).*to;
-      if (c < out.cols()) out.col(c) = x.segment(row, out.rows());
-      row += out.rows();
-    }
+  MatrixXcd r = MatrixXcd::Zero(rows, most), x(rows, most);
+  Index row = 0;
+  for (const MatrixXcd& m : right) {
+    r.block(row, 0, m.rows(), m.cols()) = m;
+    row += m.rows();
+  }
+  inverse_->apply_at(r.data(), x.data(), rows, static_cast<int>(most));
+  bool finite = x.allFinite();
+  row = 0;
+  for (const auto& p : parts_) {
+    MatrixXcd& out = (*p).*to;
+    out = x.block(row, 0, out.rows(), out.cols());
+    row += out.rows();
   }
   MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_CXX_BOOL, MPI_LAND, comm());
   if (!finite) throw core::NotConverged("the equations of a film are singular at this frequency");
 }
 
-void TransferFunction::factorise(Part& p, Complex lambda, PetscInt columns) const {
+void TransferFunction::factorise(Coupled& p, Complex lambda, PetscInt columns) const {
   if (!p.real) p.real = make_real_form(p.a.get());
   if (!p.right)
     for (core::Matrix* m : {&p.right, &p.answers})
@@ -237,16 +168,19 @@ void TransferFunction::factorise(Part& p, Complex lambda, PetscInt columns) cons
 
 // X = A^-1 G, X' = A^-1 (G' - A' X), H = F X, H' = F' X + F X'.
 TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes) {
-  const auto right = [lambda](const Part& p) -> MatrixXcd { return p.g0 + lambda * p.g1; };
-  const auto change = [](const Part& p) -> MatrixXcd { return p.g1 - p.rates_times(p.x); };
+  const auto right = [lambda](const Coupled& p) -> MatrixXcd { return p.g0 + lambda * p.g1; };
+  const auto change = [](const Coupled& p) -> MatrixXcd { return p.g1 - p.rates_times(p.x); };
   if (inverse_) {
     inverse_->set_at(x_.get(), rest_.get(), lambda);
-    solve_together(right, &Part::x);
-    if (slopes) solve_together(change, &Part::dx);
+    solve_together(right, &Coupled::x);
+    if (slopes) {
+      assemble();  // whose rates these take
+      solve_together(change, &Coupled::dx);
+    }
   }
   Blocks out;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    Part& p = *parts_[i];
+    Coupled& p = *parts_[i];
     const auto columns = static_cast<PetscInt>(ports_[i].seen.size());
     const auto forces = static_cast<Index>(ports_[i].forces.size());
     if (!inverse_) {
@@ -350,7 +284,7 @@ std::vector<Complex> TransferFunction::state(const VectorXcd& z, Complex ahead) 
     if (const PetscInt i = hub_numbers_[k]; i >= begin && i < end)
       mine[static_cast<std::size_t>(i - begin)] = z(static_cast<Index>(k));
   for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const Part& part = *parts_[p];
+    const Coupled& part = *parts_[p];
     VectorXcd seen(static_cast<Index>(ports_[p].seen.size()));
     for (Index k = 0; k < seen.size(); ++k) seen(k) = z(ports_[p].seen[static_cast<std::size_t>(k)]);
     VectorXcd x = part.x * seen;
@@ -367,7 +301,8 @@ std::vector<Complex> TransferFunction::state(std::size_t i, const std::vector<Co
 }
 
 std::vector<TransferFunction::Pole> TransferFunction::poles(std::size_t i, double target, double radius) const {
-  const Part& p = *parts_[i];
+  assemble();
+  const Coupled& p = *parts_[i];
   std::vector<Pole> out;
   for (const spectral::LocalMode& m : spectral::modes_within(p.a.get(), p.b.get(), target, radius)) {
     const Eigen::Map<const VectorXcd> v(m.shape.data(), static_cast<Index>(m.shape.size()));

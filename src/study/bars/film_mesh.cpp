@@ -71,11 +71,7 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOp
 
 core::Vector resampled(const system::Plant& to, const system::Plant& from, const std::vector<double>& whole) {
   core::Vector x = core::make_vector(to.comm(), to.local_size(), PETSC_DETERMINE);
-  const std::vector<double> there = to.resampled(from, whole.data());
-  PetscInt begin = 0;
-  core::check(VecGetOwnershipRange(x.get(), &begin, nullptr));
-  const core::WriteArray a(x.get());
-  for (PetscInt i = 0; i < a.size(); ++i) a[i] = there[static_cast<std::size_t>(begin + i)];
+  to.resample(from, whole.data(), x.get());
   return x;
 }
 

@@ -88,6 +88,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
   const std::vector<double> thickness = system.observe(at).film_thickness;
   // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
   const std::vector<FilmCoefficients> coefficients = film_coefficients(system, x, system.speed());
+  const std::vector<film::Summary> reports = system.film_summaries(x.data());
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
@@ -100,8 +101,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
     if (support.geometry.clearance > 0) {
       for (std::size_t d = 0; d < 2; ++d)
         summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
-      film::Summary report;
-      core::agree(context.comm, [&] { report = system.film_summary(static_cast<int>(b), x.data()); });
+      const film::Summary& report = reports[b];
       // Between the nodes of a mesh, too.
       const double thinnest = std::min(report.min_thickness, thickness[b]);
       summary.set(head + "min_thickness", thinnest, "m");

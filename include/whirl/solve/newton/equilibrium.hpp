@@ -12,13 +12,15 @@ namespace whirl::solve {
 
 class PortElimination;
 class PortKrylov;
+class PortMatrix;
 
 /// R(u) = F(angle 0, x, 0; p), without forcing of order one in the angle: for balanced machines and static positions.
 ///
-/// The bordered matrix [dF/dx dF/dp; row] is assembled. Films with own states are eliminated on their ports
-/// (`port_elimination`), with the border part of what is left, by their own preconditioners where all have one; a
-/// machine without any is factorised as a whole (MUMPS). All are regular at folds. The Krylov method around
-/// preconditioners, and MUMPS for the whole, have the prefix "equilibrium_".
+/// The matrix is [dF/dx dF/dp; row]. Films with own states are eliminated on their ports (`port_elimination`), with the
+/// border part of what is left, by their own preconditioners where all have one: from blocks that are spread like the
+/// films, so that no matrix is assembled unless somebody asks for it. A machine without any is assembled and factorised
+/// as a whole (MUMPS). All are regular at folds. The Krylov method around preconditioners, and MUMPS for the whole,
+/// have the prefix "equilibrium_".
 class EquilibriumProblem : public ExtendedProblem, public Adjoint {
 public:
   /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
@@ -52,6 +54,11 @@ public:
 
 private:
   void prepare(Vec u);
+  /// The entries of the bordered matrix at x_, not scaled: dF/dp is f_.
+  void list();
+  void linearise_parts(Vec row);
+  void linearise_whole(Vec row);
+  void fill_bordered();
   [[nodiscard]] bool solve_by_inverses(Vec rhs, Vec x);
   void solve_by_parts(bool transposed, Vec rhs, Vec x);
   void solve_as_whole(bool transposed, Vec rhs, Vec x);
@@ -60,6 +67,10 @@ private:
   double parameter_scale_;
   core::Vector weights_, state_scale_, residual_scale_, row_scale_, x_, rest_, f_;
   core::Matrix jacobian_, bordered_;
+  problem::Entries entries_;                            // of the bordered matrix of machines with parts,
+  std::unique_ptr<PortMatrix> blocks_;                  // these in blocks, scaled by
+  core::Vector rows_, columns_, row_;                   // these; and the last row
+  std::vector<PetscInt> hub_;                           // numbers of the hub's states
   std::unique_ptr<PortElimination> ports_, exact_;      // by approximate inverses while these serve; by MUMPS
   std::unique_ptr<PortKrylov> krylov_;                  // around `ports_`
   core::LinearSolver solver_;                           // of machines without parts

@@ -81,20 +81,28 @@ public:
   [[nodiscard]] MPI_Comm comm() const { return system_.comm(); }
 
 private:
-  struct Part;
+  struct Coupled;
   /// A_i^-1 of complex columns of all parts at once, by their own exact inverses set at a frequency: `columns(part)`
   /// gives those of a part [local x ports], `to` takes the answers. Throws core::NotConverged if they are singular.
   template <class F>
-  void solve_together(F&& columns, Eigen::MatrixXcd Part::*to);
+  void solve_together(F&& columns, Eigen::MatrixXcd Coupled::*to);
+  /// Couplings of hub and parts and the hub by itself from the system's list of entries; false if it has none.
+  bool take_entries();
+  struct Listed;
+  /// The same from assembled Jacobians.
+  void take_assembled();
+  /// A_i of all parts as matrices, where they are not made yet.
+  void assemble() const;
   /// Factorises a part by a direct solver.
-  void factorise(Part& part, Complex lambda, PetscInt columns) const;
+  void factorise(Coupled& part, Complex lambda, PetscInt columns) const;
   /// Gathers a state of which every rank has its own rows.
   [[nodiscard]] std::vector<Complex> whole(const std::vector<Complex>& local) const;
   problem::System& system_;
   std::unique_ptr<problem::PartInverse> inverse_;  // exact, or null
   core::Vector x_, rest_, state_scale_, row_scale_;
-  core::Matrix jx_, jd_;
-  std::vector<std::unique_ptr<Part>> parts_;
+  mutable core::Matrix jx_, jd_;  // where A_i are wanted as matrices
+  problem::Entries entries_;
+  std::vector<std::unique_ptr<Coupled>> parts_;
   std::vector<Ports> ports_;
   core::IndexSet hub_rows_;
   PetscInt hub_ = 0;
