@@ -127,7 +127,8 @@ std::string least_damped(const io::StudySummary& s) {
   for (std::size_t k = 0; k < std::min(most, last.size()); ++k)
     grid.add({fmt::format("{}", k + 1), number(last[k].imag / (2 * std::numbers::pi)), number(last[k].log_decrement),
               last[k].whirl.empty() ? "-" : last[k].whirl, last[k].stability == "stable" ? "" : last[k].stability});
-  return grid.text();
+  if (last.size() <= most) return grid.text();
+  return grid.text() + fmt::format("    {} more, better damped, stand in summary.json\n", last.size() - most);
 }
 
 std::string of_modes(const io::StudySummary& s, const Values& v) {

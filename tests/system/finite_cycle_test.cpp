@@ -75,3 +75,35 @@ TEST(FiniteFilmCycle, NewtonPicardEqualsDenseShootingInContact) {
   const Eigen::Index states = a.x.rows() - 4;
   EXPECT_GT((a.x - b.x).bottomRows(states).cwiseAbs().maxCoeff(), 0.03 * rough.supports[0].geometry.clearance);
 }
+
+// A film that is solved as a whole stands on one rank with the rotor: the others hold no states, and go along.
+TEST(FiniteFilmCycle, RanksWithoutStatesGoAlong) {
+  constexpr int steps = 2;
+  system::Train train = test::finite_rotor(12, 4);
+  film::CompliantShort film;
+  film.compliance = 0.1;
+  film.reference_speed = test::finite_speed_scale;
+  film.cells = {12, 4};
+  train.supports[0].film = film;
+  system::RotorSystem s(MPI_COMM_WORLD, train, speed), alone(PETSC_COMM_SELF, train, speed);
+  int least = s.local_size();
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (core::size_of(MPI_COMM_WORLD) > 1) {
+    ASSERT_EQ(least, 0);
+  }
+  const solve::Cycle start = test::finite_rotor_at_rest(alone, speed);
+  solve::NewtonPicardOptions options;
+  options.parameter_scale = speed_scale;
+  solve::NewtonPicardProblem picard(s, options, solve::sdirk(2), steps, solve::uniform_mesh(1));
+  solve::CycleOptions dense_options;
+  dense_options.parameter_scale = speed_scale;
+  solve::ShootingProblem dense(PETSC_COMM_SELF, alone, dense_options, solve::sdirk(2), steps, solve::uniform_mesh(1));
+  const auto linearised = [&](auto& problem) {
+    const core::Vector u = problem.scatter(start), row = core::duplicate(u.get());
+    solve::parameter_row(problem, row.get());
+    problem.linearise(u.get(), row.get());
+    return problem.multipliers().front();
+  };
+  const auto mu = linearised(picard), expected = linearised(dense);
+  EXPECT_LE(std::min(std::abs(mu - expected), std::abs(mu - std::conj(expected))), 1e-8);
+}

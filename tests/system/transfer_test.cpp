@@ -215,6 +215,27 @@ TEST(MachineModes, OfALargeMachineAreThoseOfItsWholeMatrix) {
     EXPECT_LT(std::abs(parts[k].lambda - whole[k].lambda), 1e-9 * std::abs(whole[k].lambda)) << whole[k].lambda;
 }
 
+// Those that do not count are passed by, by either way; where none is left the search says that it gave up.
+TEST(MachineModes, AreSoughtUntilEnoughCount) {
+  system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {48, 14}, 0.1), 2.4 * scale);
+  const core::Vector x = test::equilibrium(s);
+  spectral::EigenOptions o;
+  o.count = 12;
+  double least = 0;  // [rad/s], above that of all those that one search finds
+  for (const auto& m : solve::machine_modes(s, x.get(), o).modes) least = std::max(least, m.lambda.imag());
+  solve::Wanted wanted;
+  wanted.counts = [&](const spectral::Mode& m) { return m.lambda.imag() > 1.01 * least; };
+  const auto more = solve::machine_modes(s, x.get(), o, wanted);
+  EXPECT_FALSE(more.gave_up);
+  EXPECT_TRUE(std::any_of(more.modes.begin(), more.modes.end(), wanted.counts));
+  wanted.counts = [](const spectral::Mode&) { return false; };
+  for (const char* way : {"whole", "transfer"}) {
+    core::check(PetscOptionsSetValue(nullptr, "-modes_by", way));
+    EXPECT_TRUE(solve::machine_modes(s, x.get(), o, wanted).gave_up) << way;
+  }
+  core::check(PetscOptionsClearValue(nullptr, "-modes_by"));
+}
+
 TEST(MachineModes, AreFoundTheWayThatIsAskedFor) {
   system::RotorSystem s(MPI_COMM_WORLD, rigid(Kind::compliant_finite, {20, 6}, 0.1), 2.4 * scale);
   const core::Vector x = test::equilibrium(s);

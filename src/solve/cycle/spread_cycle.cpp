@@ -181,7 +181,7 @@ void SpreadCycle::linearise(Vec u, Vec row) {
   }
   sum(ends_added_);
 
-  const bool stale = solves_ > stale_after || image_.rows() != local_;
+  const bool stale = solves_ > stale_after || !image_known_;
   if (stale)
     (void)find_subspace();
   else

@@ -47,6 +47,7 @@ void SpreadCycle::find_image() {
   const int most = rough_ ? 0 : 2;
   double last = 0;
   rough_image_ = rough_;
+  image_known_ = true;
   for (int k = 0;; ++k) {
     image_ = monodromy_times(basis_, basis_added_);
     MatrixXd sizes(2, 1);
@@ -97,7 +98,7 @@ std::vector<std::complex<double>> SpreadCycle::settled_multipliers() {
   constexpr int most = 2;
   constexpr double below_radius = 1e-6, slow = 1e-2;
   const Index p = basis_.cols();
-  if (image_.rows() != local_ || p == 0 || p + probes > system_.size()) return {};
+  if (!image_known_ || p == 0 || p + probes > system_.size()) return {};
   PetscInt begin = 0;
   check(VecGetOwnershipRange(work_.get(), &begin, nullptr));
   MatrixXd x(local_, p + probes), y = x, added(borders_, p + probes), new_added;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "solve/newton/port_elimination.hpp"
@@ -28,7 +29,17 @@ bool by_transfer(const problem::System& system) {
   return system.fields().size() > 1 && (way == "transfer" || (way == "automatic" && system.size() > whole_up_to));
 }
 
-constexpr int most_regions = 6;
+constexpr int most_searches = 6;
+
+bool vibrates(const spectral::Mode& m) {
+  return m.lambda.imag() > 1e-7 * std::abs(m.lambda);
+}
+
+bool enough(const std::vector<spectral::Mode>& modes, const Wanted& wanted) {
+  return std::count_if(modes.begin(), modes.end(), [&](const spectral::Mode& m) {
+           return vibrates(m) && (!wanted.counts || wanted.counts(m));
+         }) >= wanted.at_least;
+}
 
 // The parts of a machine are eliminated, as everywhere else: a factorisation of the whole pencil would see rows as long
 // as a film.
@@ -57,34 +68,45 @@ private:
   PortElimination ports_;
 };
 
-std::vector<spectral::Mode> whole_modes(problem::System& system, Vec x, spectral::EigenOptions options) {
-  if (system.size() <= options.dense_below || !PortElimination::serves(system.fields()))
-    return spectral::modes(system, x, options);
-  ByPorts inverse(system, x, options.target);
-  options.inverse = &inverse;
-  return spectral::modes(system, x, options);
+// Those nearest to the target; twice as many again until enough of them count.
+MachineModes whole_modes(problem::System& system, Vec x, spectral::EigenOptions options, const Wanted& wanted) {
+  const bool all = system.size() <= options.dense_below;
+  std::optional<ByPorts> inverse;
+  if (!all && PortElimination::serves(system.fields())) options.inverse = &inverse.emplace(system, x, options.target);
+  MachineModes out;
+  for (int k = 0;; ++k) {
+    out.modes = spectral::modes(system, x, options);
+    if (all || !wanted.counts || enough(out.modes, wanted)) return out;
+    double farthest = 0;
+    for (const spectral::Mode& m : out.modes) farthest = std::max(farthest, std::abs(m.lambda - options.target));
+    if (wanted.frequency > 0 && farthest > wanted.frequency) return out;
+    out.gave_up = k + 1 == most_searches || 2 * options.count > system.size();
+    if (out.gave_up) return out;
+    options.count *= 2;
+  }
 }
 
 }  // namespace
 
 MachineModes machine_modes(problem::System& system, Vec x, const spectral::EigenOptions& options,
-                           const Region& wanted) {
+                           const Wanted& wanted) {
   // A region is nearly as wide at the axis as it is high.
   const bool given = wanted.frequency > 0;
   TransferOptions region;
   region.frequency = given ? wanted.frequency / 0.94 : 2 * std::abs(system.speed());
-  if (!by_transfer(system) || region.frequency == 0) return {whole_modes(system, x, options), 0, {}, false};
+  if (!by_transfer(system) || region.frequency == 0) return whole_modes(system, x, options, wanted);
   region.shapes = options.shapes;
   TransferModes found;
-  for (int k = 0; k < most_regions; ++k) {
+  bool short_of = false;
+  for (int k = 0;; ++k) {
     region.decay = region.frequency / 2;
     found = transfer_modes(system, x, region);
-    const auto vibrates = [](const spectral::Mode& m) { return m.lambda.imag() > 1e-7 * std::abs(m.lambda); };
-    if (given || 2 * std::count_if(found.modes.begin(), found.modes.end(), vibrates) >= wanted.at_least) break;
+    short_of = !given && !enough(found.modes, wanted);
+    if (!short_of || k + 1 == most_searches) break;
     region.frequency *= 1.5;
   }
   return {std::move(found.modes), found.missed, std::move(found.doubt), true,
-          region.frequency,       region.decay, found.counted};
+          region.frequency,       region.decay, found.counted,          short_of};
 }
 
 }  // namespace whirl::solve

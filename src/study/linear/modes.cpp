@@ -38,7 +38,8 @@ struct Station {
   std::vector<ShaftMode> modes;
 };
 
-constexpr std::size_t beyond = 8;    // modes above those asked for, from which some come down on the way
+// Modes above those asked for: some come down between two speeds, and a coarse mesh may have one in another place.
+constexpr int beyond_over_speeds = 8, beyond_over_meshes = 2;
 constexpr int most_refinements = 4;  // of the way between two speeds asked for
 
 std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes) {
@@ -148,6 +149,9 @@ StudyResult Modes::run(Context& context) {
   const std::string unit = options.unit();
   const double limit = options.max_frequency.value_or(std::numeric_limits<double>::infinity());
   const auto count = static_cast<std::size_t>(options.count);
+  const bool one_speed = speeds.size() == 1 && std::all_of(shape_speeds.begin(), shape_speeds.end(),
+                                                           [&](double s) { return s == speeds[0]; });
+  const int sought = options.count + (one_speed ? beyond_over_meshes : beyond_over_speeds);
   const Layout layout = plan(context, Sharing::speeds);
   system::RotorSystem system(layout.space, system::train_of(context.machine), speeds.front());
   Walker walker(system);
@@ -158,13 +162,14 @@ StudyResult Modes::run(Context& context) {
   int rounds = 0;
   Pieces pieces(results, context.resume);
   MissedModes missed;
+  std::optional<double> too_few;          // a speed
   std::map<double, ModeSearch> searches;  // by speed
   const auto modes_at = [&](const std::vector<double>& list) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
       ModeSearch here;
-      auto modes = pack(shaft_modes(system, walker.at(list[i]), options.count + static_cast<int>(beyond), limit, here));
-      modes.insert(modes.end(), {here.frequency, here.decay, here.counted, here.missed});
+      auto modes = pack(shaft_modes(system, walker.at(list[i]), sought, limit, here));
+      modes.insert(modes.end(), {here.frequency, here.decay, here.counted, here.missed, here.gave_up});
       ready += static_cast<std::size_t>(layout.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
@@ -178,8 +183,9 @@ StudyResult Modes::run(Context& context) {
       const std::vector<double>& p = packed[i];
       out.push_back(unpack(p));
       const auto end = p.size();
-      searches[list[i]] = {p[end - 4], p[end - 3], p[end - 2], p[end - 1]};
-      missed.add(static_cast<int>(p.back()));
+      searches[list[i]] = {p[end - 5], p[end - 4], p[end - 3], p[end - 2], p[end - 1]};
+      missed.add(static_cast<int>(p[end - 2]));
+      if (p[end - 1] > 0 && out.back().size() < count) too_few = list[i];
     }
     return out;
   };
@@ -210,7 +216,7 @@ StudyResult Modes::run(Context& context) {
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     ModeSearch of_other_mesh;
-    return points_of(shaft_modes(on, x, options.count + static_cast<int>(beyond), limit, of_other_mesh));
+    return points_of(shaft_modes(on, x, sought, limit, of_other_mesh));
   });
   ModeReduction reduction(system, walker, sampled);
   const std::vector<double> mass = rotor::node_masses(system.train().rotor);
@@ -263,7 +269,7 @@ StudyResult Modes::run(Context& context) {
     for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
       const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
       ModeSearch search;
-      const auto there = shaft_modes(system, walker.at(s), options.count + static_cast<int>(beyond), limit, search);
+      const auto there = shaft_modes(system, walker.at(s), sought, limit, search);
       missed_on_the_way.push_back(static_cast<int>(search.missed));
       const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
       const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
@@ -363,6 +369,11 @@ StudyResult Modes::run(Context& context) {
   shapes.put("log_decrement", at_decrement, "1", "of the shapes");
   shapes.put("whirl", at_sense, "sense of whirl by the kinetic energy of the shaft's nodes");
   missed.warn(summary);
+  if (too_few)
+    summary.warnings.push_back(fmt::format(
+        "at {:.6g} {} the search gave up before it had {} modes in which the machine takes part: 'max_frequency' "
+        "sets how far it looks",
+        deck::from_si(*too_few, unit), unit, options.count));
   summary.points = static_cast<long>(speeds.size());
   return results.finish("completed", true);
 }

@@ -27,22 +27,27 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   options.count = 2 * count + 40;
   options.rounding = true;
   std::vector<ShaftMode> out;
-  const solve::MachineModes found =
-      solve::machine_modes(system, equilibrium, options, {std::isfinite(max_frequency) ? max_frequency : 0, 2 * count});
-  search = {found.frequency, found.decay, static_cast<double>(found.counted),
-            static_cast<double>(found.doubt.empty() ? found.missed : -1)};
   std::vector<double> scale;
   {
     core::Vector states = core::duplicate(equilibrium), rows = core::duplicate(equilibrium);
     system.scales(states.get(), rows.get());
     scale = core::gather(states.get());
   }
+  const auto part_taken = [&](const spectral::Mode& mode) {
+    return participation(mode.shape, scale, 2 * system.coordinates());
+  };
+  const solve::MachineModes found =
+      solve::machine_modes(system, equilibrium, options,
+                           {std::isfinite(max_frequency) ? max_frequency : 0, count,
+                            [&](const spectral::Mode& mode) { return part_taken(mode) >= least_participation; }});
+  search = {found.frequency, found.decay, static_cast<double>(found.counted),
+            static_cast<double>(found.doubt.empty() ? found.missed : -1), found.gave_up ? 1.0 : 0.0};
   for (const auto& mode : found.modes) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
     if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
     if (static_cast<int>(out.size()) == count) break;
-    const double part_taken = participation(mode.shape, scale, 2 * system.coordinates());
-    if (part_taken < least_participation) continue;
+    const double taken = part_taken(mode);
+    if (taken < least_participation) continue;
     std::vector<double> part[2];
     for (int k = 0; k < 2; ++k) {
       std::vector<double> state(mode.shape.size());
@@ -50,7 +55,7 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
       part[k] = system.shaft(state.data(), 0, false);
     }
     ShaftMode m;
-    m.participation = part_taken;
+    m.participation = taken;
     m.undamped = mode.neutral();
     m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
     Complex largest = 0;

@@ -30,6 +30,7 @@ struct ModeSearch {
   double frequency = 0, decay = 0;  ///< its region [rad/s, 1/s]; zero: no such search
   double counted = 0;               ///< eigenvalues there, both of each pair
   double missed = 0;                ///< as solve::Stability::missed
+  double gave_up = 0;               ///< 1: fewer modes than asked for, and it did not look on
 };
 
 /// The `count` vibrating modes of lowest frequency up to `max_frequency` [rad/s] in which the machine takes part, the

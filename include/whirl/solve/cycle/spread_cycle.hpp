@@ -150,8 +150,8 @@ private:
   Eigen::MatrixXd corner_, ends_, ends_added_;   // E [local x nb], and what it adds to the rows
   Eigen::MatrixXd basis_, image_, basis_added_;  // V, M V, and what these motions add to the rows
   Eigen::MatrixXd q_ends_, image_q_ends_;
-  bool rough_image_ = false;
-  double contraction_ = 0;  // of the error of V by one iteration, as last seen
+  bool image_known_ = false, rough_image_ = false;  // the same on all ranks: sizes are not, some have no states
+  double contraction_ = 0;                          // of the error of V by one iteration, as last seen
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;
   mutable long products_ = 0;
   int solves_ = 0;  // since the linearisation: many mean that the subspace is stale

@@ -1,6 +1,7 @@
 #pragma once
 // The eigenvalues of a machine, by whichever way suits its films.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,14 @@ struct MachineModes {
   // Of a search by transfer functions: the region [rad/s, 1/s] and how many eigenvalues it holds, both of each pair.
   double frequency = 0, decay = 0;
   int counted = 0;
+  bool gave_up = false;  ///< there are fewer than Wanted::at_least, and a longer search might find more
 };
 
-/// What transfer functions look for.
-struct Region {
+/// What a search is for.
+struct Wanted {
   double frequency = 0;  ///< [rad/s] up to which vibration matters; zero: as the speed and `at_least` ask
-  int at_least = 2;      ///< eigenvalues that vibrate, both of each pair, without a frequency
+  int at_least = 1;      ///< pairs of eigenvalues that vibrate and count, without a frequency
+  std::function<bool(const spectral::Mode&)> counts;  ///< absent: all do, and one search on the whole pencil will do
 };
 
 /// Modes at the equilibrium x. PETSc option -modes_by chooses:
@@ -34,8 +37,9 @@ struct Region {
 /// `whole` eliminates the parts of a large machine on their ports (`-modes_st_pc_type lu` factorises it as one).
 /// A system without parts or at rest has no other way than `whole`. Regions reach half as far to the
 /// left as they are high. Without a frequency the first one reaches to twice the speed, and it grows by half, at most
-/// five times, until it holds enough. Collective; throws core::NotConverged, core::InputError on another word.
+/// five times, until it holds enough; a search on the whole pencil asks for twice as many, as often, where the caller
+/// says which ones count. Collective; throws core::NotConverged, core::InputError on another word.
 [[nodiscard]] MachineModes machine_modes(problem::System& system, Vec x, const spectral::EigenOptions& options,
-                                         const Region& wanted = {});
+                                         const Wanted& wanted = {});
 
 }  // namespace whirl::solve
