@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "bench/timing.hpp"
+#include "support/half_rotor.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
@@ -35,23 +36,11 @@ double seconds(int runs, const std::function<void()>& work) {
 
 // Half a rigid rotor in a compliant short bearing: as many states as cells and four.
 system::Train rigid(int cells) {
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  system::Support s;
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
-  s.lubricant = {0.001, 1000};
   film::CompliantShort film;
   film.compliance = 0.1;
   film.reference_speed = 160;
   film.cells = {cells, 4};
-  s.film = film;
-  t.supports = {s};
-  t.unbalance = {{1, 0.2 * clearance * t.rotor.mass, 0}};
-  return t;
+  return test::half_rotor(film, 0.2 * clearance);
 }
 
 // A uniform shaft between two bearings: eight states a node.

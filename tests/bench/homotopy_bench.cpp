@@ -25,6 +25,7 @@
 #include <utility>
 
 #include "bench/timing.hpp"
+#include "support/half_rotor.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -48,25 +49,13 @@ constexpr int steps = 100;
 
 // Half the rotor on one bearing, with the unbalance a* = 1.
 system::Train train() {
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  system::Support s;
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
   film::CompliantShort film;
   film.compliance = 0.1;
   film.reference_speed = reference_speed;
   film.cells = {50, 4};
   film.quadrature = film::Compliant::Quadrature::simpson;
   film.differences = film::Compliant::Differences::upwind;
-  s.film = film;
-  s.lubricant = {0.001, 1000};
-  t.supports = {s};
-  t.unbalance = {{1, t.rotor.mass * clearance, 0}};
-  return t;
+  return test::half_rotor(film, clearance);
 }
 
 // Structure of the machine without unbalance, with the force a* Omega^2 u(angle) added to its load.

@@ -141,3 +141,26 @@ TEST(FrequencyResponse, OfAnOscillatorInFirstOrderForm) {
     }
   }
 }
+
+// No pivot stands on the diagonal: elimination without row exchanges has no answer, and MUMPS takes its place.
+TEST(FrequencyResponse, OfEquationsThatStandInAnotherOrder) {
+  test::SmallSystem s(MPI_COMM_WORLD, 2, 1, 1, []<class T>(double, Column<T> x, Column<T> xdot, T) {
+    Column<T> f(2);
+    f << xdot(1) + 3.0 * x(1), 2.0 * xdot(0) + x(0);
+    return f;
+  });
+  solve::FrequencyResponse response(s);
+  const core::Vector x = s.vector(Eigen::Vector2d::Zero());
+  PetscInt begin = 0, end = 0;
+  core::check(VecGetOwnershipRange(x.get(), &begin, &end));
+  for (const double w : {0.5, 2.0}) {
+    const test::Complex exact[] = {1.0 / test::Complex(1, 2 * w), 1.0 / test::Complex(3, w)};
+    std::vector<double> right, z;
+    for (PetscInt i = begin; i < end; ++i) right.insert(right.end(), {1, 0});
+    response.solve(x.get(), w, right, z);
+    for (PetscInt i = begin; i < end; ++i) {
+      const auto k = static_cast<std::size_t>(2 * (i - begin));
+      EXPECT_NEAR(std::abs(test::Complex(z[k], z[k + 1]) - exact[i]), 0, 1e-12);
+    }
+  }
+}

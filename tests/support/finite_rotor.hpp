@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <numbers>
 
+#include "support/half_rotor.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/cycle.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
@@ -18,23 +19,12 @@ inline constexpr double finite_speed_scale = 160;
 
 /// F0* = 1, L/D = 1, B = 0.1, a* = 0.2, film mesh of `around` x `along` cells.
 inline system::Train finite_rotor(int around, int along) {
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  t.unbalance = {{1, 0.5 * 5e-6, 0}};
-  system::Support s;
-  s.name = "half";
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
   film::CompliantFinite film;
   film.compliance = 0.1;
   film.reference_speed = finite_speed_scale;
   film.cells = {around, along};
-  s.film = film;
-  s.lubricant = {0.001, 1000};
-  t.supports = {s};
+  system::Train t = half_rotor(film, 5e-6);
+  t.supports[0].name = "half";
   return t;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "support/finite_rotor.hpp"
+#include "support/solved_cycle.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/solve/shooting/shooting_problem.hpp"
@@ -50,25 +51,13 @@ solve::Cycle at_rest(system::RotorSystem& s) {
           speed};
 }
 
-struct Answer {
-  solve::Cycle cycle;
-  std::vector<std::complex<double>> multipliers;
-  int iterations = 0;
-};
+using Answer = test::SolvedCycle;
 
 template <class Problem>
 Answer solved(Problem& problem, const solve::Cycle& rest) {
-  solve::Cycle guess = rest;
-  guess.mesh = problem.mesh();
-  guess.x = rest.x.replicate(1, guess.intervals() * problem.scheme().degree);
-  core::Vector u = problem.scatter(guess), row = core::duplicate(u.get());
-  solve::parameter_row(problem, row.get());
   solve::NewtonOptions newton;
   newton.max_iterations = 30;
-  const auto r = solve::newton(problem, u.get(), row.get(), speed / scale, newton);
-  EXPECT_TRUE(r.converged) << r.reason << " " << r.residual;
-  problem.linearise(u.get(), row.get());
-  return {problem.gather(u.get()), problem.multipliers(), r.iterations};
+  return test::solved(problem, rest, speed / scale, newton);
 }
 
 }  // namespace

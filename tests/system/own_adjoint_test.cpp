@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/half_rotor.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -20,24 +21,12 @@ constexpr double clearance = 25e-6, omega_0 = 160;
 
 // Half a rotor on one compliant short bearing, F0* = 1, a* = 0.2 (van de Vrande 2001, sec. 5.3).
 system::Train train(int cells, double liner_damping) {
-  system::Support s;
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
-  s.lubricant = {0.001, 1000};
   film::CompliantShort film;
   film.compliance = 0.1;
   film.reference_speed = omega_0;
   film.cells = {cells, 4};
   film.liner_damping = liner_damping;
-  s.film = film;
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  t.unbalance = {{1, 0.2 * clearance * t.rotor.mass, 0}};
-  t.supports = {s};
-  return t;
+  return test::half_rotor(film, 0.2 * clearance);
 }
 
 struct Cycles {

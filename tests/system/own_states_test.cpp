@@ -140,8 +140,7 @@ TEST(OwnStates, CondensedIntervalsAreTheDenseMatrix) {
           EXPECT_LE(apart(rates, jxdot_plain * xdot), 1e-12);
           at.push_back(&kept[k]);
         }
-        const auto part = std::make_shared<solve::LinearPart>(scheme, length, point.blocks().l1, point.blocks().l0,
-                                                              point.blocks().b, point.blocks().c);
+        const auto part = std::make_shared<solve::LinearPart>(scheme, length, point.blocks());
         const auto own = solve::make_own_interval(part, structure->own(), point, at),
                    dense = solve::make_dense_interval(scheme, length, jx, jxdot);
         const MatrixXd y = MatrixXd::Random(m * n, 3), x = MatrixXd::Random(n, 3), rows = MatrixXd::Random(2, m * n);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/film_of.hpp"
+#include "support/half_rotor.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/system/brusselator.hpp"
@@ -36,26 +37,15 @@ core::Vector filled(const problem::System& s, F f) {
 }
 
 system::Train rotor_in(film::testing::Kind kind, double liner_damping = 0) {
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  system::Support s;
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, 25e-6, 0, 0, 0};
-  s.film = film::testing::film_of(kind);
-  if (film::facts(s.film).gives_way) {
-    auto& film = film::as<film::Compliant>(s.film);
+  film::Options all = film::testing::film_of(kind);
+  if (film::facts(all).gives_way) {
+    auto& film = film::as<film::Compliant>(all);
     film.cells = {16, 4};
     film.compliance = 0.1;
     film.liner_damping = liner_damping;
     film.reference_speed = 160;
   }
-  s.lubricant = {0.001, 1000};
-  t.supports = {s};
-  t.unbalance = {{1, 2e-6, 0.3}};
-  return t;
+  return test::half_rotor(all, 4e-6, 0.3);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "support/cycle_rows.hpp"
 #include "support/finite_rotor.hpp"
+#include "support/solved_cycle.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/spread_collocation.hpp"
 #include "whirl/solve/newton/newton.hpp"
@@ -62,26 +63,16 @@ solve::Cycle at_rest(system::RotorSystem& s, const Case& c) {
           c.speed};
 }
 
-struct Answer {
-  solve::Cycle cycle;
-  std::vector<std::complex<double>> multipliers;
-  int iterations = 0;
-};
+using Answer = test::SolvedCycle;
 
 template <class Problem>
 Answer solved(Problem& problem, const Case& c, const solve::Cycle& rest, const problem::System& system) {
-  solve::Cycle guess = rest;
-  guess.mesh = problem.mesh();
-  guess.x = rest.x.replicate(1, guess.intervals() * problem.scheme().degree);
-  core::Vector u = problem.scatter(test::rows_of(guess, system)), row = core::duplicate(u.get());
-  solve::parameter_row(problem, row.get());
   solve::NewtonOptions newton;
   newton.max_iterations = 40;
   newton.tolerance = 1e-11;
-  const auto r = solve::newton(problem, u.get(), row.get(), c.speed / scale, newton);
-  EXPECT_TRUE(r.converged) << r.reason << " " << r.residual;
-  problem.linearise(u.get(), row.get());
-  return {test::whole_of(problem.gather(u.get()), system), problem.multipliers(), r.iterations};
+  Answer out = test::solved(problem, test::rows_of(rest, system), c.speed / scale, newton);
+  out.cycle = test::whole_of(std::move(out.cycle), system);
+  return out;
 }
 
 double least_film(const solve::Cycle& cycle, const system::RotorSystem& s) {

@@ -8,6 +8,7 @@
 
 #include "support/at_rest.hpp"
 #include "support/film_of.hpp"
+#include "support/half_rotor.hpp"
 #include "support/train_system.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
@@ -26,23 +27,14 @@ constexpr double clearance = 25e-6, scale = 160;
 
 // Half a rotor on one bearing, L/D = 1.
 system::Train rigid(Kind kind, std::array<int, 2> cells, double compliance) {
-  system::Train t;
-  t.gravity = 0;
-  t.rotor.type = rotor::Options::Type::rigid;
-  t.rotor.mass = 0.5;
-  t.rotor.load = 0.32;
-  system::Support s;
-  s.name = "B1";
-  s.node = 1;
-  s.geometry = {film::Geometry::Bore::cylindrical, 0.005, 0.01, clearance, 0, 0, 0};
   film::testing::Elastic film;
   film.kind = kind;
   film.compliance = compliance;
   film.reference_speed = scale;
   film.cells = cells;
-  s.film = film;
-  s.lubricant = {0.001, 1000};
-  t.supports = {s};
+  system::Train t = test::half_rotor(film, 0);
+  t.supports[0].name = "B1";
+  t.unbalance.clear();
   return t;
 }
 

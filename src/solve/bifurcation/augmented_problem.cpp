@@ -116,8 +116,7 @@ void AugmentedProblem::evaluate(Vec whole) {
   }
   branch_.linearise(u_.get(), row_.get());
   g_ = condition_.values(u_.get(), inner_);
-  at_ = core::duplicate(whole);
-  check(VecCopy(whole, at_.get()));
+  at_ = copy(whole);
 }
 
 void AugmentedProblem::residual(Vec whole, Vec r) {
@@ -133,7 +132,6 @@ void AugmentedProblem::linearise(Vec whole, Vec row) {
   condition_.derivatives(u_.get(), inner_, g_inner_, gradients_);
   const Index k = inner_size_ + 1;
   g_q_ = VectorXd::Zero(k);
-  core::Vector rhs = core::duplicate(u_.get());
   for (core::Vector* v : {&by_q_, &tangent_, &response_}) {
     *v = core::duplicate(u_.get());
     check(VecSet(v->get(), 0.0));
@@ -159,23 +157,17 @@ void AugmentedProblem::linearise(Vec whole, Vec row) {
   }
   (void)solve_linear(branch_, unit_.get(), tangent_.get(), "tangent_");
   if (second_) {
-    check(VecCopy(by_q_.get(), rhs.get()));
+    const core::Vector rhs = copy(by_q_.get());
     check(VecScale(rhs.get(), -1));
     (void)solve_linear(branch_, rhs.get(), response_.get(), "tangent_");
   }
-  added_ = core::duplicate(row);
-  check(VecCopy(row, added_.get()));
+  added_ = copy(row);
   // Rows g and the added one on tangent, z and q.
   small_.resize(k + 1, k + 1);
   core::Vector part = core::duplicate(u_.get());
   VectorXd added_inner;
   double added_q = 0;
   split(row, part.get(), added_inner, added_q);
-  const auto dot = [](Vec a, Vec b) {
-    double value = 0;
-    check(VecDot(a, b, &value));
-    return value;
-  };
   for (Index i = 0; i < k; ++i) {
     Vec gradient = gradients_[static_cast<std::size_t>(i)].get();
     small_(i, 0) = dot(gradient, tangent_.get());
@@ -195,15 +187,9 @@ void AugmentedProblem::multiply(Vec v, Vec y) {
   branch_.multiply(u.get(), r.get());
   check(VecAXPY(r.get(), q, by_q_.get()));
   VectorXd g = g_inner_ * inner + g_q_ * q;
-  for (Index i = 0; i <= inner_size_; ++i) {
-    double value = 0;
-    check(VecDot(gradients_[static_cast<std::size_t>(i)].get(), u.get(), &value));
-    g(i) += value;
-  }
+  for (Index i = 0; i <= inner_size_; ++i) g(i) += dot(gradients_[static_cast<std::size_t>(i)].get(), u.get());
   set_last_entry(comm(), r.get(), g(0));
-  double added = 0;
-  check(VecDot(added_.get(), v, &added));
-  join(r.get(), g.tail(inner_size_), added, y);
+  join(r.get(), g.tail(inner_size_), dot(added_.get(), v), y);
 }
 
 void AugmentedProblem::solve(Vec rhs, Vec x) {
@@ -216,16 +202,10 @@ void AugmentedProblem::solve(Vec rhs, Vec x) {
   small << last_entry(comm(), r.get()), inner, last;
   set_last_entry(comm(), r.get(), 0);
   branch_.solve(r.get(), u.get());
-  for (Index i = 0; i < k; ++i) {
-    double value = 0;
-    check(VecDot(gradients_[static_cast<std::size_t>(i)].get(), u.get(), &value));
-    small(i) -= value;
-  }
+  for (Index i = 0; i < k; ++i) small(i) -= dot(gradients_[static_cast<std::size_t>(i)].get(), u.get());
   core::Vector whole = make_unknown();
   join(u.get(), VectorXd::Zero(inner_size_), 0, whole.get());
-  double value = 0;
-  check(VecDot(added_.get(), whole.get(), &value));
-  small(k) -= value;
+  small(k) -= dot(added_.get(), whole.get());
   small = small_.partialPivLu().solve(small).eval();
   check(VecAXPY(u.get(), small(0), tangent_.get()));
   check(VecAXPY(u.get(), small(k), response_.get()));
@@ -277,9 +257,8 @@ std::optional<Refined> locate(ExtendedProblem& branch, Condition& condition, Vec
   out.parameter = last_entry(branch.comm(), out.u.get());
   out.error = std::abs(problem.first_parameter(step.get()));
   // Of a fold: g is the parameter's share in the tangent K^-1 e, along which it changes like that.
-  double change = 0;
-  check(VecDot(problem.gradients().front().get(), problem.tangent(), &change));
-  out.quadratic = change / solve::inner(branch, problem.tangent(), problem.tangent());
+  out.quadratic = dot(problem.gradients().front().get(), problem.tangent()) /
+                  solve::inner(branch, problem.tangent(), problem.tangent());
   return out;
 } catch (const core::DomainError&) {
   return std::nullopt;

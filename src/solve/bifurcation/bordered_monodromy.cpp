@@ -1,15 +1,12 @@
 #include "solve/bifurcation/bordered_monodromy.hpp"
 
-#include <petscksp.h>
-
 #include <Eigen/LU>
 #include <cmath>
 #include <functional>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/gate.hpp"
-#include "whirl/core/petsc.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -46,29 +43,14 @@ using Product = std::function<VectorXd(const VectorXd&)>;
 // A square system that is known by what it and its preconditioner do to a vector.
 struct Operator {
   Product multiply, precondition;
-  core::Gate gate{PETSC_COMM_SELF};
 };
 
-PetscErrorCode run(Operator& o, const Product& work, Vec x, Vec y) {
-  return o.gate.run([&] {
+core::Action action_of(const Product& work) {
+  return [&work](Vec x, Vec y) {
     const core::ReadArray in(x);
     const core::WriteArray out(y);
     Map<VectorXd>(out.data(), out.size()) = work(Map<const VectorXd>(in.data(), in.size()));
-  });
-}
-
-PetscErrorCode multiply(Mat m, Vec x, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  auto& o = *static_cast<Operator*>(raw);
-  return run(o, o.multiply, x, y);
-}
-
-PetscErrorCode precondition(PC pc, Vec x, Vec y) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  auto& o = *static_cast<Operator*>(raw);
-  return run(o, o.precondition, x, y);
+  };
 }
 
 Operator operator_of(const Matrix& s, const Product& times_m) {
@@ -103,35 +85,20 @@ Operator operator_of(const Matrix& s, const Product& times_m) {
 }
 
 // The answers for the columns of `rhs` on this rank alone.
-void gmres(Operator& o, const MatrixXd& rhs, MatrixXd& out) {
+void gmres(const Operator& o, const MatrixXd& rhs, MatrixXd& out) {
   const auto size = static_cast<PetscInt>(rhs.rows());
-  core::Matrix shell;
-  core::LinearSolver solver;
-  check(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &o, shell.put()));
-  check(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-  check(KSPCreate(PETSC_COMM_SELF, solver.put()));
-  check(KSPSetOptionsPrefix(solver.get(), "bordered_"));
-  check(KSPSetOperators(solver.get(), shell.get(), shell.get()));
-  check(KSPSetType(solver.get(), KSPGMRES));
-  check(KSPSetPCSide(solver.get(), PC_RIGHT));
-  check(KSPGMRESSetRestart(solver.get(), 100));
-  check(KSPSetTolerances(solver.get(), 1e-12, 1e-300, PETSC_DEFAULT, 100));
-  PC pc = nullptr;
-  check(KSPGetPC(solver.get(), &pc));
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, &o));
-  check(PCShellSetApply(pc, precondition));
-  check(KSPSetFromOptions(solver.get()));
+  core::Gate gate(PETSC_COMM_SELF);
+  const core::Matrix shell = core::make_shell(PETSC_COMM_SELF, size, gate, action_of(o.multiply));
+  const core::LinearSolver solver =
+      core::make_krylov(shell.get(), gate, {"bordered_", KSPGMRES, 1e-12, 100, 100}, action_of(o.precondition));
   const core::Vector b = core::make_vector(PETSC_COMM_SELF, size, size), x = core::duplicate(b.get());
   for (Index j = 0; j < rhs.cols(); ++j) {
     {
       const core::WriteArray a(b.get());
       Map<VectorXd>(a.data(), size) = rhs.col(j);
     }
-    o.gate.rethrow(KSPSolve(solver.get(), b.get(), x.get()));
-    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-    check(KSPGetConvergedReason(solver.get(), &reason));
-    if (reason < 0) {
+    gate.rethrow(KSPSolve(solver.get(), b.get(), x.get()));
+    if (core::reason_of(solver.get()) < 0) {
       // Next to a singular system the last digits are rounding; normal forms need not have them.
       PetscReal left = 0;
       check(KSPGetResidualNorm(solver.get(), &left));
@@ -150,12 +117,12 @@ MatrixXd iterate(const Matrix& s, const MatrixXd& rhs) {
   core::lead(
       s.problem.comm(), 0,
       [&](const std::function<void()>& together) {
-        Operator o = operator_of(s, [&](const VectorXd& x) {
+        const auto times_m = [&](const VectorXd& x) {
           moved = x;
           together();
           return moved;
-        });
-        gmres(o, rhs, out);
+        };
+        gmres(operator_of(s, times_m), rhs, out);
       },
       [&] {
         core::share(s.problem.comm(), moved.data(), static_cast<std::size_t>(moved.size()));

@@ -32,7 +32,7 @@ void FoldCondition::derivatives(Vec u, const Eigen::VectorXd&, Eigen::MatrixXd& 
   gradients.push_back(core::duplicate(u));
   adjoint_.curvature(u, z_.get(), w.get(), gradients.front().get());
   check(VecScale(gradients.front().get(), -1));
-  check(VecDot(gradients.front().get(), z_.get(), &quadratic_));
+  quadratic_ = dot(gradients.front().get(), z_.get());
 }
 
 std::vector<CodimensionTest> FoldCondition::tests(Vec, const Eigen::VectorXd&, Vec) {

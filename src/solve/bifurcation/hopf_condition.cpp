@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "solve/newton/shifted_system.hpp"
 #include "whirl/solve/bifurcation/condition.hpp"
 
@@ -18,35 +16,24 @@ public:
         shifted_(system),
         x_(core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE)),
         omega_(omega),
-        b_(shifted_.size()),
-        c_(shifted_.size()) {
-    for (std::size_t i = 0; i < b_.size(); ++i) {
-      const auto t = static_cast<double>(i);
-      b_[i] = {std::sin(1 + t), std::cos(2 + 0.7 * t)};
-      c_[i] = {std::cos(3 + 1.3 * t), std::sin(2 + 1.7 * t)};
-    }
-    normalise(b_);
-    normalise(c_);
-  }
+        borders_(generic_vectors(shifted_.size())) {}
   VectorXd start() const override { return VectorXd::Constant(1, omega_); }
   VectorXd values(Vec u, const VectorXd& inner) override {
     problem_.to_state(u, x_.get());
     shifted_.linearise(x_.get());
-    shifted_.factorise(inner(0), b_, c_);
-    const ComplexVector none(shifted_.size());
+    shifted_.factorise(inner(0), borders_.p, borders_.q);
+    const ComplexVector none = ComplexVector::Zero(shifted_.size());
     Complex g = 1, other = 1;
-    shifted_.solve(none, v_, g);
-    shifted_.solve_adjoint(none, w_, other);
+    shifted_.solve(none, null_.q, g);
+    shifted_.solve_adjoint(none, null_.p, other);
     return VectorXd{{g.real(), g.imag()}};
   }
   // dg = -w^* (dA/dx [dx] + i domega dF/d(dx/dt)) v; the motion v exp(i omega t) moves (x, dx/dt) by (v, i omega v).
   void derivatives(Vec u, const VectorXd& inner, MatrixXd& d_inner, std::vector<core::Vector>& gradients) override {
-    Complex by_omega = 0;
-    const ComplexVector rates = shifted_.rates_times(v_);
-    for (std::size_t k = 0; k < rates.size(); ++k) by_omega -= std::conj(w_[k]) * Complex(0, 1) * rates[k];
+    const ComplexVector &v = null_.q, &w = null_.p, rate_v = Complex(0, inner(0)) * v;
+    const Complex by_omega = -Complex(0, 1) * w.dot(shifted_.rates_times(v));
     d_inner.resize(2, 1);
     d_inner << by_omega.real(), by_omega.imag();
-    const auto part = [](bool real, Complex z) { return real ? z.real() : z.imag(); };
     core::Vector direction = core::duplicate(u), rate = core::duplicate(x_.get()), weight = core::duplicate(u),
                  seen = core::duplicate(u);
     gradients.clear();
@@ -55,10 +42,10 @@ public:
       check(VecSet(gradients.back().get(), 0.0));
     }
     for (const bool v_real : {true, false}) {
-      fill(direction.get(), v_, [&](Complex z) { return part(v_real, z); });
-      fill(rate.get(), v_, [&](Complex z) { return part(v_real, Complex(0, inner(0)) * z); });
+      fill(direction.get(), v_real ? VectorXd(v.real()) : VectorXd(v.imag()));
+      fill(rate.get(), v_real ? VectorXd(rate_v.real()) : VectorXd(rate_v.imag()));
       for (const bool w_real : {true, false}) {
-        fill(weight.get(), w_, [&](Complex z) { return part(w_real, std::conj(z)); });
+        fill(weight.get(), w_real ? VectorXd(w.real()) : VectorXd(-w.imag()));
         problem_.curvature(u, direction.get(), rate.get(), weight.get(), seen.get());
         // -(w_r + i w_i)(v_r + i v_i) with w conjugated already
         const bool imaginary = v_real != w_real;
@@ -68,37 +55,27 @@ public:
     }
   }
   void update() override {
-    b_ = w_;
-    c_ = v_;
-    normalise(b_);
-    normalise(c_);
+    borders_ = null_;
+    for (ComplexVector* v : {&borders_.q, &borders_.p}) v->normalize();
   }
   std::vector<CodimensionTest> tests(Vec, const VectorXd& inner, Vec along) override {
     return {{"bogdanov_takens", inner(0)}, {"fold_hopf", last_entry(problem_.comm(), along)}};
   }
 
 private:
-  static void normalise(ComplexVector& z) {
-    double sum = 0;
-    for (const Complex& e : z) sum += std::norm(e);
-    for (Complex& e : z) e /= std::sqrt(sum);
-  }
-  template <class F>
-  void fill(Vec to, const ComplexVector& from, F f) const {
+  // Behind the states of an unknown stands the parameter.
+  void fill(Vec to, const VectorXd& states) const {
     PetscInt begin = 0;
     check(VecGetOwnershipRange(x_.get(), &begin, nullptr));
     const core::WriteArray a(to);
-    for (PetscInt i = 0; i < a.size(); ++i) {
-      const auto k = static_cast<std::size_t>(begin + i);
-      a[i] = k < from.size() ? f(from[k]) : 0.0;  // behind the states stands the parameter
-    }
+    for (PetscInt i = 0; i < a.size(); ++i) a[i] = begin + i < states.size() ? states(begin + i) : 0.0;
   }
 
   EquilibriumProblem& problem_;
   ShiftedSystem shifted_;
   core::Vector x_;
   double omega_;
-  ComplexVector b_, c_, v_, w_;
+  CriticalVectors borders_, null_;  // c and b; v and w
 };
 
 }  // namespace

@@ -16,16 +16,15 @@ using Complex = std::complex<double>;
 // A motion (x, dx/dt), scaled and whole on every rank; real or complex.
 template <class T>
 struct Motion {
-  std::vector<T> value, rate;
+  Eigen::VectorX<T> value, rate;
 };
-using RealVector = std::vector<double>;
+using RealVector = Eigen::VectorXd;
 
 const double third_order_length = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
 
-RealVector part(const ComplexVector& z, bool imaginary) {
-  RealVector out(z.size());
-  for (std::size_t k = 0; k < z.size(); ++k) out[k] = imaginary ? z[k].imag() : z[k].real();
-  return out;
+Motion<double> part(const Motion<Complex>& m, bool imaginary) {
+  if (imaginary) return {m.value.imag(), m.rate.imag()};
+  return {m.value.real(), m.rate.real()};
 }
 
 // Derivatives of F in (x, dx/dt) together, at a resting state. Lengths of differences are those of x: rates follow, by
@@ -59,14 +58,9 @@ public:
   }
   // B of complex motions.
   ComplexVector second(const Motion<Complex>& a, const Motion<Complex>& b) {
-    const auto real = [](const Motion<Complex>& m, bool imaginary) {
-      return Real{part(m.value, imaginary), part(m.rate, imaginary)};
-    };
-    const RealVector rr = second(real(a, false), real(b, false)), ii = second(real(a, true), real(b, true)),
-                     ri = second(real(a, false), real(b, true)), ir = second(real(a, true), real(b, false));
-    ComplexVector out(rr.size());
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = {rr[k] - ii[k], ri[k] + ir[k]};
-    return out;
+    const Real ar = part(a, false), ai = part(a, true), br = part(b, false), bi = part(b, true);
+    const RealVector rr = second(ar, br), ii = second(ai, bi), ri = second(ar, bi), ir = second(ai, br);
+    return rr - ii + Complex(0, 1) * (ri + ir);
   }
 
 private:
@@ -76,10 +70,10 @@ private:
     check(VecGetOwnershipRange(x_, &begin, nullptr));
     const core::ReadArray f(from), s(state_scale_.get());
     const core::WriteArray t(to);
-    for (PetscInt i = 0; i < t.size(); ++i) t[i] = f[i] + factor * s[i] * v[static_cast<std::size_t>(begin + i)];
+    for (PetscInt i = 0; i < t.size(); ++i) t[i] = f[i] + factor * s[i] * v(begin + i);
   }
   RealVector combine(const std::vector<std::pair<double, double>>& steps, const Real& a, const Real& b) {
-    RealVector sum(a.value.size(), 0.0);
+    RealVector sum = RealVector::Zero(a.value.size());
     for (const auto& [h, weight] : steps) {
       put(x_, h, a.value, at_.get());
       put(rest_.get(), h, a.rate, rate_.get());
@@ -88,8 +82,8 @@ private:
         put(rest_.get(), 1, rates ? b.rate : b.value, direction_.get());
         check(MatMult(jacobian_.get(), direction_.get(), y_.get()));
         check(VecPointwiseDivide(y_.get(), y_.get(), residual_scale_.get()));
-        const RealVector whole = core::gather(y_.get());
-        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += weight * whole[k];
+        const std::vector<double> whole = core::gather(y_.get());
+        sum += weight * Eigen::Map<const RealVector>(whole.data(), sum.size());
       }
     }
     return sum;
@@ -110,23 +104,13 @@ private:
 double hopf_coefficient(problem::System& system, Vec x, double omega, double step) {
   ShiftedSystem shifted(system);
   shifted.linearise(x);
-  const std::size_t n = shifted.size();
   const auto [q, p] = critical_vectors(shifted, omega);
   const Complex i(0, 1);
-  const auto with_rate = [&](const ComplexVector& v, Complex exponent) {
-    Motion<Complex> m{v, v};
-    for (Complex& e : m.rate) e *= exponent;
-    return m;
-  };
-  ComplexVector conjugate = q;
-  for (Complex& e : conjugate) e = std::conj(e);
-  const Motion<Complex> forward = with_rate(q, i * omega), backward = with_rate(conjugate, -i * omega);
-  double size = 0;
-  for (const Complex& e : q) size = std::max(size, std::abs(e));
-  Derivatives f(system, x, step, size);
-  ComplexVector qq = f.second(forward, forward), qc = f.second(forward, backward), h20, h11;
-  for (ComplexVector* v : {&qq, &qc})
-    for (Complex& e : *v) e = -e;
+  const auto with_rate = [](const ComplexVector& v, Complex exponent) { return Motion<Complex>{v, exponent * v}; };
+  const Motion<Complex> forward = with_rate(q, i * omega), backward = with_rate(q.conjugate(), -i * omega);
+  Derivatives f(system, x, step, q.cwiseAbs().maxCoeff());
+  const ComplexVector qq = -f.second(forward, forward), qc = -f.second(forward, backward);
+  ComplexVector h20, h11;
   Complex unused = 0;
   shifted.factorise(2 * omega);
   shifted.solve(qq, h20, unused);
@@ -134,17 +118,9 @@ double hopf_coefficient(problem::System& system, Vec x, double omega, double ste
   shifted.solve(qc, h11, unused);
   const ComplexVector mean = f.second(forward, with_rate(h11, 0)),
                       twice = f.second(backward, with_rate(h20, 2.0 * i * omega));
-  const Motion<double> r{part(forward.value, false), part(forward.rate, false)},
-      s{part(forward.value, true), part(forward.rate, true)};
-  const RealVector rrr = f.third(r, r), ssr = f.third(s, r), rrs = f.third(r, s), sss = f.third(s, s);
-  const ComplexVector rates = shifted.rates_times(q);
-  Complex above = 0, below = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const Complex cubic(rrr[k] + ssr[k], rrs[k] + sss[k]);
-    above -= std::conj(p[k]) * (cubic + 2.0 * mean[k] + twice[k]);
-    below += 2.0 * std::conj(p[k]) * rates[k];
-  }
-  return (above / below).real();
+  const Motion<double> r = part(forward, false), s = part(forward, true);
+  const ComplexVector cubic = f.third(r, r) + f.third(s, r) + i * (f.third(r, s) + f.third(s, s));
+  return (-p.dot(cubic + 2.0 * mean + twice) / (2.0 * p.dot(shifted.rates_times(q)))).real();
 }
 
 }  // namespace whirl::solve

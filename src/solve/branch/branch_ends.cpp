@@ -34,7 +34,7 @@ bool Follower::turns_back(const State& here) {
   if (memory_.before.u && rounded(memory_.before.point.slope * here.point.slope) < 0) return true;
   kind_ = Continuation::arclength;
   bool turned = false;
-  State from{copy(here.u.get()), copy(here.tangent.get()), here.point};
+  State from = copy(here);
   double ds = options_.max_step;
   for (int k = 0; k < 60 && !turned && ds >= options_.min_step &&
                   std::abs(from.point.parameter - here.point.parameter) <= options_.max_step;

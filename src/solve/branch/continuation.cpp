@@ -20,10 +20,8 @@ double rounded(double x) {
   return std::round(x / unit) * unit;
 }
 
-core::Vector copy(Vec v) {
-  core::Vector c = core::duplicate(v);
-  check(VecCopy(v, c.get()));
-  return c;
+State copy(const State& s) {
+  return {copy(s.u.get()), copy(s.tangent.get()), s.point};
 }
 
 double arclength(const ExtendedProblem& problem, const State& a, Vec b) {
@@ -68,9 +66,7 @@ bool Follower::advance(const State& from, double ds, State& to, NewtonResult& re
     parameter_row(problem_, row.get());
   else
     weighted_row(problem_, from.tangent.get(), row.get());
-  double offset = 0;
-  check(VecDot(row.get(), to.u.get(), &offset));
-  result = correct(to.u.get(), row.get(), offset);
+  result = correct(to.u.get(), row.get(), dot(row.get(), to.u.get()));
   if (!result.converged) return false;
   to.point = from.point;
   to.point.step = ds;
@@ -95,9 +91,7 @@ bool Follower::settle(State& here, NewtonResult& result) {
   core::Vector along = copy(here.tangent.get()), row = core::duplicate(here.u.get());
   check(VecScale(along.get(), 1 / std::sqrt(inner(problem_, along.get(), along.get()))));
   weighted_row(problem_, along.get(), row.get());
-  double offset = 0;
-  check(VecDot(row.get(), here.u.get(), &offset));
-  result = correct(here.u.get(), row.get(), offset);
+  result = correct(here.u.get(), row.get(), dot(row.get(), here.u.get()));
   if (!result.converged) return false;
   const auto facts = [](const State& s) { return std::pair(s.point.stability.unstable(), s.point.slope > 0); };
   const auto old = facts(here);
@@ -108,10 +102,7 @@ bool Follower::settle(State& here, NewtonResult& result) {
     State other;
     NewtonResult tried;
     if (advance(here, -ds, other, tried) && facts(other) == old) {
-      State end;
-      end.u = copy(here.u.get());
-      end.tangent = copy(here.tangent.get());
-      end.point = here.point;
+      State end = copy(here);
       end.point.step = arclength(problem_, other, here.u.get());
       events(nullptr, nullptr, other, end);
       return true;

@@ -82,18 +82,14 @@ void DeflatedProblem::linearise(Vec u, Vec row) {
 void DeflatedProblem::multiply(Vec v, Vec y) {
   problem_.multiply(v, y);
   scale(y, m_);
-  double along = 0;
-  check(VecDot(gradient_.get(), v, &along));
-  check(VecAXPY(y, along, residual_.get()));
+  check(VecAXPY(y, dot(gradient_.get(), v), residual_.get()));
 }
 
 void DeflatedProblem::solve(Vec rhs, Vec x) {
   core::Vector scaled = copy(rhs);
   scale(scaled.get(), 1 / m_);
   problem_.solve(scaled.get(), x);
-  double along = 0, bend = 0;
-  check(VecDot(gradient_.get(), x, &along));
-  check(VecDot(gradient_.get(), z_.get(), &bend));
+  const double along = dot(gradient_.get(), x), bend = dot(gradient_.get(), z_.get());
   if (1 + bend == 0) {
     core::NotConverged singular("the deflated equations are singular");
     singular.mark_agreed();

@@ -61,9 +61,7 @@ Extremum extremum(double h1, double f1, double f0, double h2, double f2) {
 bool Follower::split(const State& a, const State& b, State& middle, State& rest) {
   NewtonResult result;
   if (!advance(a, rounded(b.point.step / 2), middle, result)) return false;
-  rest.u = copy(b.u.get());
-  rest.tangent = copy(b.tangent.get());
-  rest.point = b.point;
+  rest = copy(b);
   rest.point.step = distance(middle, b.u.get());
   return true;
 }
@@ -96,9 +94,7 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
   found.sensitivity = dp != 0 ? (f1 - f0) / dp : 0;
   found.bracket = std::abs(dp);
   found.parameter = b.point.parameter;
-  at.u = copy(b.u.get());
-  at.tangent = copy(b.tangent.get());
-  at.point = b.point;
+  at = copy(b);
   double last = b.point.parameter, last_f = f1, p0 = a.point.parameter;
   int side = 0;
   for (int k = 0; k < 30; ++k) {
@@ -368,10 +364,7 @@ bool Follower::kinks(const BranchPoint& first, const State& a, const State& b, c
 
 // Crossings between two points and one between them.
 void Follower::around(const State& a, State& middle, const State& b) {
-  State rest;
-  rest.u = copy(b.u.get());
-  rest.tangent = copy(b.tangent.get());
-  rest.point = b.point;
+  State rest = copy(b);
   rest.point.step = distance(middle, b.u.get());
   middle.point.step = distance(a, middle.u.get());
   crossings(a, middle, 0);

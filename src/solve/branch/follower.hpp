@@ -13,7 +13,7 @@ using State = BranchState;
 
 /// Ten significant digits: the last ones may differ between rank counts and must not decide anything.
 [[nodiscard]] double rounded(double x);
-[[nodiscard]] core::Vector copy(Vec v);
+[[nodiscard]] State copy(const State& s);
 /// Arclength from a to b as the pseudo-arclength condition counts it: along the tangent at a.
 [[nodiscard]] double arclength(const ExtendedProblem& problem, const State& a, Vec b);
 

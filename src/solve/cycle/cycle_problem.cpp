@@ -165,12 +165,7 @@ void CycleProblem::residual(Vec u, Vec r) {
       interval_residual(i, own, Map<const VectorXd>(start, n_), period, ra.data() + i * m * n_);
     }
   });
-  if (structure_) {
-    kept_u_ = Map<const VectorXd>(ua.data(), ua.size());
-    kept_before_ = before;
-    kept_border_ = border;
-    kept_valid_ = true;
-  }
+  keep(ua, before, border);
   if (options_.autonomous) {
     double phase = 0;
     if (count_ > 0) phase = (Map<const MatrixXd>(ua.data(), n_, count_ * m).array() * phase_row_.array()).sum();
@@ -260,8 +255,7 @@ std::unique_ptr<Interval> CycleProblem::linearise_interval(Index i, const double
     return make_sparse_interval(part, std::move(tangents));
   }
   auto& part = parts_[rounded];
-  const DenseBlocks& blocks = point_.blocks();
-  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, blocks.l1, blocks.l0, blocks.b, blocks.c);
+  if (!part) part = std::make_shared<LinearPart>(scheme_, h * period, point_.blocks());
   if (way_ == Way::own_states) return make_own_interval(part, structure_->own(), point_, points);
   return make_low_rank_interval(part, std::move(tangents));
 }
@@ -298,12 +292,7 @@ void CycleProblem::linearise(Vec u, Vec row) {
     for (const PointState& at : kept_) run_.thin->tangents.push_back(&at.films.d_inputs);
   });
   // The same solution is often linearised again with another row.
-  if (structure_ && !known) {
-    kept_u_ = Map<const VectorXd>(ua.data(), ua.size());
-    kept_before_ = before;
-    kept_border_ = border;
-    kept_valid_ = true;
-  }
+  if (!known) keep(ua, before, border);
 
   run_.rows.resize(count);
   for (Index i = 0; i < count_; ++i) {
@@ -327,6 +316,13 @@ Mat CycleProblem::matrix() {
 
 std::vector<problem::Field> CycleProblem::fields() const {
   return {{"orbit", 0, static_cast<PetscInt>(count_ * scheme_.degree * n_)}};
+}
+
+void CycleProblem::keep(const core::ReadArray& u, const VectorXd& before, const VectorXd& border) {
+  kept_u_ = Map<const VectorXd>(u.data(), u.size());
+  kept_before_ = before;
+  kept_border_ = border;
+  kept_valid_ = structure_ != nullptr;
 }
 
 bool CycleProblem::same_as_kept(const core::ReadArray& u, const VectorXd& before, const VectorXd& border) const {
@@ -378,8 +374,7 @@ MatrixXd CycleProblem::critical_motion(double mu) {
 MatrixXd CycleProblem::propagate(const VectorXd& v) const {
   const Index m = scheme_.degree, total = static_cast<Index>(mesh_.size()) - 1;
   MatrixXd whole = MatrixXd::Zero(n_, total * m);
-  VectorXd added = VectorXd::Zero(borders_);
-  (void)run_.drive(nullptr, composition_->entering(v), nullptr, whole.col(first_ * m).data(), added);
+  whole.middleCols(first_ * m, count_ * m) = forward(v).nodes;
   MPI_Allreduce(MPI_IN_PLACE, whole.data(), static_cast<int>(whole.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return whole;
 }

@@ -45,9 +45,7 @@ Index single(const MatrixXd& a, Index row) {
 
 }  // namespace
 
-LinearPart::LinearPart(const Scheme& sc, double len, const MatrixXd& l1_, const MatrixXd& l0_, const MatrixXd& b_,
-                       const MatrixXd& c_)
-    : scheme(sc), l1(l1_), l0(l0_), b(b_), c(c_), length(len), n(l1_.rows()), r(b_.cols()), w(c_.rows()) {
+LinearPart::LinearPart(const Scheme& sc, double len, DenseBlocks blocks) : ThinPart(sc, len, std::move(blocks)) {
   find_rates();
   factorise();
   const Index m = scheme.degree;
@@ -152,28 +150,6 @@ void LinearPart::solve_transposed(MatrixXd& x) const {
   u -= along(value_integral_.transpose(), coupling_.transpose() * x_k);
   points(row_, Eigen::all) = x_k;
   points(rate_row_, Eigen::all) = u;
-}
-
-MatrixXd LinearPart::inputs(const MatrixXd& x) const {
-  const Index m = scheme.degree;
-  std::vector<MatrixXd> cx(static_cast<std::size_t>(m));
-  for (Index l = 0; l < m; ++l) cx[static_cast<std::size_t>(l)].noalias() = c * x.middleRows(l * n, n);
-  MatrixXd out = MatrixXd::Zero(m * w, x.cols());
-  for (Index j = 0; j < m; ++j)
-    for (Index l = 1; l <= m; ++l)
-      if (scheme.value(j, l) != 0) out.middleRows(j * w, w) += scheme.value(j, l) * cx[static_cast<std::size_t>(l - 1)];
-  return out;
-}
-
-MatrixXd LinearPart::inputs_transposed(const MatrixXd& s) const {
-  const Index m = scheme.degree;
-  MatrixXd out = MatrixXd::Zero(m * n, s.cols());
-  for (Index j = 0; j < m; ++j) {
-    const MatrixXd cs = c.transpose() * s.middleRows(j * w, w);
-    for (Index l = 1; l <= m; ++l)
-      if (scheme.value(j, l) != 0) out.middleRows((l - 1) * n, n) += scheme.value(j, l) * cs;
-  }
-  return out;
 }
 
 }  // namespace whirl::solve

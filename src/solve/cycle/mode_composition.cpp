@@ -4,7 +4,6 @@
 
 namespace whirl::solve {
 
-using core::check;
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
@@ -36,23 +35,17 @@ void ModeComposition::set_up() {
   const auto size = static_cast<PetscInt>(points_ * run_->thin->blocks->b.cols() + run_->borders);
   right_ = core::make_vector(PETSC_COMM_SELF, size, size);
   answer_ = core::duplicate(right_.get());
-  shell_ = core::Matrix();
-  check(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, this, shell_.put()));
-  check(MatShellSetOperation(shell_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-  check(MatShellSetOperation(shell_.get(), MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(multiply_transposed)));
-  solver_ = core::LinearSolver();
-  check(KSPCreate(PETSC_COMM_SELF, solver_.put()));
-  check(KSPSetOptionsPrefix(solver_.get(), "forces_"));
-  check(KSPSetOperators(solver_.get(), shell_.get(), shell_.get()));
-  check(KSPSetType(solver_.get(), KSPGMRES));
-  PC pc = nullptr;
-  check(KSPGetPC(solver_.get(), &pc));
-  check(PCSetType(pc, PCNONE));
+  const auto product = [this](bool transposed) {
+    return [this, transposed](Vec v, Vec y) {
+      const core::ReadArray in(v);
+      const core::WriteArray out(y);
+      small_product(in.data(), out.data(), transposed);
+    };
+  };
+  shell_ = core::make_shell(PETSC_COMM_SELF, size, gate_, product(false), product(true));
   constexpr int most = 200;  // a dense matrix costs as much as some hundred products
-  check(KSPGMRESSetRestart(solver_.get(), most));
   // Its error is made good by the iteration around this composition.
-  check(KSPSetTolerances(solver_.get(), 1e-10, 1e-300, PETSC_DEFAULT, most));
-  check(KSPSetFromOptions(solver_.get()));
+  solver_ = core::make_krylov(shell_.get(), gate_, {"forces_", KSPGMRES, 1e-10, most, most}, {});
   mesh_ = mesh;
 }
 

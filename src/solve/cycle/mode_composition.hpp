@@ -5,10 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "solve/cycle/pencil.hpp"
 #include "solve/cycle/time_modes.hpp"
-#include "whirl/core/gate.hpp"
-#include "whirl/core/petsc.hpp"
+#include "solve/newton/pencil.hpp"
+#include "whirl/core/shell.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 
 namespace whirl::solve {
@@ -70,8 +69,6 @@ private:
   // The small system: `forces` [P x r] and `border` hold the right-hand sides and take the answers.
   void small_solve(Eigen::MatrixXd& forces, Eigen::VectorXd& border, bool transposed);
   void small_product(const double* x, double* y, bool transposed) const;
-  static PetscErrorCode multiply(Mat m, Vec v, Vec y);
-  static PetscErrorCode multiply_transposed(Mat m, Vec v, Vec y);
 
   const Run* run_ = nullptr;
   int rank_ = 0, size_ = 1;
@@ -88,6 +85,7 @@ private:
   bool with_rows_ = false;
   std::unique_ptr<Composition> sweeps_;
   bool swept_ = false;
+  core::Gate gate_{PETSC_COMM_SELF};
   core::Matrix shell_;
   core::Vector right_, answer_;
   core::LinearSolver solver_;

@@ -120,24 +120,6 @@ void ModeComposition::small_product(const double* x, double* y, bool transposed)
   }
 }
 
-PetscErrorCode ModeComposition::multiply(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  const core::ReadArray in(v);
-  const core::WriteArray out(y);
-  static_cast<const ModeComposition*>(raw)->small_product(in.data(), out.data(), false);
-  return 0;
-}
-
-PetscErrorCode ModeComposition::multiply_transposed(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  const core::ReadArray in(v);
-  const core::WriteArray out(y);
-  static_cast<const ModeComposition*>(raw)->small_product(in.data(), out.data(), true);
-  return 0;
-}
-
 void ModeComposition::small_solve(MatrixXd& forces, VectorXd& border, bool transposed) {
   const Index size = forces.size(), nb = border.size();
   VectorXd answer(size + nb);
@@ -150,9 +132,7 @@ void ModeComposition::small_solve(MatrixXd& forces, VectorXd& border, bool trans
   if (rank_ == 0) {
     check(transposed ? KSPSolveTranspose(solver_.get(), right_.get(), answer_.get())
                      : KSPSolve(solver_.get(), right_.get(), answer_.get()));
-    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-    check(KSPGetConvergedReason(solver_.get(), &reason));
-    if (reason > 0) {
+    if (core::reason_of(solver_.get()) > 0) {
       const core::ReadArray a(answer_.get());
       answer = Map<const VectorXd>(a.data(), size + nb);
     } else {

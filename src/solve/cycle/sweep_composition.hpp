@@ -6,8 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "whirl/core/gate.hpp"
-#include "whirl/core/petsc.hpp"
+#include "whirl/core/shell.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 
 namespace whirl::solve {
@@ -53,11 +52,10 @@ private:
   void turn_back(const double* rhs, Eigen::VectorXd& lambda, Eigen::VectorXd sigma, double* z,
                  Eigen::VectorXd& seen) const;
   void prepare();
-  [[nodiscard]] static SweepComposition& of(void* raw) { return *static_cast<SweepComposition*>(raw); }
-  static PetscErrorCode multiply(Mat m, Vec v, Vec y);
-  static PetscErrorCode multiply_transposed(Mat m, Vec v, Vec y);
-  static PetscErrorCode apply(PC pc, Vec v, Vec y);
-  static PetscErrorCode apply_transposed(PC pc, Vec v, Vec y);
+  // The small system, and what its preconditioner makes of a vector.
+  void multiply(Vec v, Vec y) const;
+  void multiply_transposed(Vec v, Vec y) const;
+  void precondition(Vec v, Vec y, bool transposed) const;
 
   const Run* run_ = nullptr;
   int rank_ = 0, size_ = 1;
@@ -70,10 +68,10 @@ private:
   double radius_ = first_radius;              // multipliers above it are found
   std::optional<std::vector<double>> taken_;  // a warm start that waits for the next run: radius, then V
   bool found_ = false;                        // the last search for multipliers left its basis
+  core::Gate gate_{MPI_COMM_SELF};
   core::Matrix shell_;
   core::Vector right_, answer_;
   core::LinearSolver solver_;
-  core::Gate gate_{MPI_COMM_SELF};
 };
 
 }  // namespace whirl::solve

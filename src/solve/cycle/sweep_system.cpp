@@ -1,124 +1,82 @@
-// The small system of sweeps and its preconditioner, forward and transposed, as PETSc sees them.
+// The small system of sweeps and its preconditioner, forward and transposed.
 
 #include "solve/cycle/sweep_composition.hpp"
 
 namespace whirl::solve {
 
-using core::check;
 using Eigen::Index;
 using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-PetscErrorCode SweepComposition::multiply(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  SweepComposition& c = of(raw);
-  return c.gate_.run([&] {
-    const Index n = c.run_->n, nb = c.run_->borders;
-    MatrixXd state = MatrixXd::Zero(n, 1), added;
-    VectorXd x;
-    {
-      const core::ReadArray a(v);
-      if (c.last()) state = (x = Map<const VectorXd>(a.data(), n + nb)).head(n);
+void SweepComposition::multiply(Vec v, Vec y) const {
+  const Index n = run_->n, nb = run_->borders;
+  MatrixXd state = MatrixXd::Zero(n, 1), added;
+  VectorXd x;
+  {
+    const core::ReadArray a(v);
+    if (last()) state = (x = Map<const VectorXd>(a.data(), n + nb)).head(n);
+  }
+  turn(state, added, false);
+  const core::WriteArray out(y);
+  if (!last()) return;
+  Map<VectorXd> answer(out.data(), n + nb);
+  answer.head(n) = x.head(n) - state - ends_ * x.tail(nb);
+  answer.tail(nb) = added + ends_added_ * x.tail(nb);
+}
+
+void SweepComposition::multiply_transposed(Vec v, Vec y) const {
+  const Index n = run_->n, nb = run_->borders;
+  VectorXd x, lambda = VectorXd::Zero(n), sigma = VectorXd::Zero(nb), seen;
+  {
+    const core::ReadArray a(v);
+    if (last()) {
+      x = Map<const VectorXd>(a.data(), n + nb);
+      lambda = x.head(n);
+      sigma = x.tail(nb);
     }
-    c.turn(state, added, false);
-    const core::WriteArray out(y);
-    if (!c.last()) return;
-    Map<VectorXd> answer(out.data(), n + nb);
-    answer.head(n) = x.head(n) - state - c.ends_ * x.tail(nb);
-    answer.tail(nb) = added + c.ends_added_ * x.tail(nb);
-  });
+  }
+  turn_back(nullptr, lambda, sigma, nullptr, seen);
+  const core::WriteArray out(y);
+  if (!last()) return;
+  Map<VectorXd> answer(out.data(), n + nb);
+  answer.head(n) = x.head(n) - lambda;
+  answer.tail(nb) = seen + run_->corner.transpose() * sigma;
 }
 
-PetscErrorCode SweepComposition::multiply_transposed(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  SweepComposition& c = of(raw);
-  return c.gate_.run([&] {
-    const Index n = c.run_->n, nb = c.run_->borders;
-    VectorXd x, lambda = VectorXd::Zero(n), sigma = VectorXd::Zero(nb), seen;
-    {
-      const core::ReadArray a(v);
-      if (c.last()) {
-        x = Map<const VectorXd>(a.data(), n + nb);
-        lambda = x.head(n);
-        sigma = x.tail(nb);
-      }
-    }
-    c.turn_back(nullptr, lambda, sigma, nullptr, seen);
-    const core::WriteArray out(y);
-    if (!c.last()) return;
-    Map<VectorXd> answer(out.data(), n + nb);
-    answer.head(n) = x.head(n) - lambda;
-    answer.tail(nb) = seen + c.run_->corner.transpose() * sigma;
-  });
-}
-
-PetscErrorCode SweepComposition::apply(PC pc, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  const SweepComposition& c = of(raw);
-  return of(raw).gate_.run([&] {
-    const core::ReadArray in(v);
-    const core::WriteArray out(y);
-    if (!c.last()) return;
-    const Index n = c.run_->n, nb = c.run_->borders, p = c.basis_.cols();
-    const Map<const VectorXd> x(in.data(), n + nb);
-    Map<VectorXd> answer(out.data(), n + nb);
-    VectorXd z(p + nb);
-    z << c.basis_.transpose() * x.head(n), x.tail(nb);
-    z = c.small_.solve(z).eval();
-    answer.head(n) = x.head(n) + c.image_ * z.head(p) + c.ends_ * z.tail(nb);
-    answer.tail(nb) = z.tail(nb);
-  });
-}
-
-// lambda = v + V z with z = (M V)^T lambda - (K V)^T sigma, which with sigma solves the small matrix transposed.
-PetscErrorCode SweepComposition::apply_transposed(PC pc, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  const SweepComposition& c = of(raw);
-  return of(raw).gate_.run([&] {
-    const core::ReadArray in(v);
-    const core::WriteArray out(y);
-    if (!c.last()) return;
-    const Index n = c.run_->n, nb = c.run_->borders, p = c.basis_.cols();
-    const Map<const VectorXd> x(in.data(), n + nb);
-    Map<VectorXd> answer(out.data(), n + nb);
-    VectorXd z(p + nb);
-    z << c.image_.transpose() * x.head(n), x.tail(nb) + c.ends_.transpose() * x.head(n);
-    z = c.small_.transpose().solve(z).eval();
-    answer.head(n) = x.head(n) + c.basis_ * z.head(p);
-    answer.tail(nb) = z.tail(nb);
-  });
+// Transposed: lambda = v + V z with z = (M V)^T lambda - (K V)^T sigma, which with sigma solves the small matrix
+// transposed.
+void SweepComposition::precondition(Vec v, Vec y, bool transposed) const {
+  const core::ReadArray in(v);
+  const core::WriteArray out(y);
+  if (!last()) return;
+  const Index n = run_->n, nb = run_->borders, p = basis_.cols();
+  const Map<const VectorXd> x(in.data(), n + nb);
+  Map<VectorXd> answer(out.data(), n + nb);
+  const MatrixXd &from = transposed ? image_ : basis_, &to = transposed ? basis_ : image_;
+  VectorXd z(p + nb);
+  z << from.transpose() * x.head(n), x.tail(nb);
+  if (transposed) z.tail(nb) += ends_.transpose() * x.head(n);
+  z = transposed ? VectorXd(small_.transpose().solve(z)) : VectorXd(small_.solve(z));
+  answer.head(n) = x.head(n) + to * z.head(p);
+  if (!transposed) answer.head(n) += ends_ * z.tail(nb);
+  answer.tail(nb) = z.tail(nb);
 }
 
 void SweepComposition::set_up(const Run& run) {
   rank_ = core::rank_of(run.comm);
   size_ = core::size_of(run.comm);
-  const auto size = static_cast<PetscInt>(run.n + run.borders), mine = last() ? size : 0;
-  right_ = core::make_vector(run.comm, mine, size);
-  answer_ = core::duplicate(right_.get());
-  check(MatCreateShell(run.comm, mine, mine, size, size, this, shell_.put()));
-  check(MatShellSetOperation(shell_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-  check(MatShellSetOperation(shell_.get(), MATOP_MULT_TRANSPOSE, reinterpret_cast<void (*)()>(multiply_transposed)));
-  check(KSPCreate(run.comm, solver_.put()));
-  check(KSPSetOptionsPrefix(solver_.get(), "turn_"));
-  check(KSPSetOperators(solver_.get(), shell_.get(), shell_.get()));
-  check(KSPSetType(solver_.get(), KSPGMRES));
-  check(KSPSetPCSide(solver_.get(), PC_RIGHT));
-  check(KSPGMRESSetRestart(solver_.get(), 100));
-  // Its error is made good by the iteration around this composition.
-  check(KSPSetTolerances(solver_.get(), 1e-10, 1e-300, PETSC_DEFAULT, 300));
-  PC pc = nullptr;
-  check(KSPGetPC(solver_.get(), &pc));
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, this));
-  check(PCShellSetApply(pc, apply));
-  check(PCShellSetApplyTranspose(pc, apply_transposed));
-  check(KSPSetFromOptions(solver_.get()));
   gate_ = core::Gate(run.comm);
+  const PetscInt mine = last() ? static_cast<PetscInt>(run.n + run.borders) : 0;
+  right_ = core::make_vector(run.comm, mine, PETSC_DETERMINE);
+  answer_ = core::duplicate(right_.get());
+  shell_ = core::make_shell(
+      run.comm, mine, gate_, [this](Vec v, Vec y) { multiply(v, y); },
+      [this](Vec v, Vec y) { multiply_transposed(v, y); });
+  // Its error is made good by the iteration around this composition.
+  solver_ = core::make_krylov(
+      shell_.get(), gate_, {"turn_", KSPGMRES, 1e-10, 300, 100}, [this](Vec v, Vec y) { precondition(v, y, false); },
+      [this](Vec v, Vec y) { precondition(v, y, true); });
   basis_.resize(local(), 0);
 }
 

@@ -42,9 +42,7 @@ void EquilibriumProblem::curvature(Vec u, Vec v, Vec rate, Vec w, Vec out) {
     system_.jacobian(0, x_.get(), xdot.get(), 1, 0, jacobian_.get());
     system_.parameter_derivative(0, x_.get(), xdot.get(), f_.get());
     check(MatMultTranspose(jacobian_.get(), weight.get(), seen.get()));
-    double value = 0;
-    check(VecDot(f_.get(), weight.get(), &value));
-    by_parameter += sign / (2 * h) * value * parameter_scale_;
+    by_parameter += sign / (2 * h) * dot(f_.get(), weight.get()) * parameter_scale_;
     const core::ReadArray a(seen.get()), s(state_scale_.get());
     const core::WriteArray b(out);
     for (PetscInt i = 0; i < a.size(); ++i) b[i] += sign / (2 * h) * a[i] * s[i];

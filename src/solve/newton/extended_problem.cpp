@@ -4,6 +4,18 @@ namespace whirl::solve {
 
 using core::check;
 
+core::Vector copy(Vec v) {
+  core::Vector out = core::duplicate(v);
+  check(VecCopy(v, out.get()));
+  return out;
+}
+
+double dot(Vec a, Vec b) {
+  double value = 0;
+  check(VecDot(a, b, &value));
+  return value;
+}
+
 double last_entry(MPI_Comm comm, Vec u) {
   double value = 0;
   const int last = core::size_of(comm) - 1;
@@ -23,9 +35,7 @@ void set_last_entry(MPI_Comm comm, Vec u, double value) {
 double inner(const ExtendedProblem& problem, Vec a, Vec b) {
   core::Vector work = core::duplicate(a);
   check(VecPointwiseMult(work.get(), problem.weights(), a));
-  double value = 0;
-  check(VecDot(work.get(), b, &value));
-  return value;
+  return dot(work.get(), b);
 }
 
 void weighted_row(const ExtendedProblem& problem, Vec direction, Vec row) {

@@ -1,6 +1,5 @@
 #include "whirl/solve/newton/newton.hpp"
 
-#include <petscksp.h>
 #include <petscsnes.h>
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 
 #include "solve/newton/settle_step.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/gate.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 namespace {
@@ -30,9 +29,7 @@ struct SolveContext {
 
 void bordered_residual(SolveContext& c, Vec u, Vec r) {
   c.problem.residual(u, r);
-  double value = 0;
-  check(VecDot(c.row, u, &value));
-  set_last_entry(c.problem.comm(), r, value - c.offset);
+  set_last_entry(c.problem.comm(), r, dot(c.row, u) - c.offset);
 }
 
 PetscErrorCode form_residual(SNES snes, Vec u, Vec r, void* raw) {
@@ -70,34 +67,8 @@ PetscErrorCode settle_before_search(SNESLineSearch search, Vec u, Vec step, Pets
   });
 }
 
-PetscErrorCode multiply_by_jacobian(Mat m, Vec v, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  auto& c = *static_cast<SolveContext*>(raw);
-  return c.gate.run([&] { c.problem.multiply(v, y); });
-}
-
-PetscErrorCode solve_with_jacobian(PC pc, Vec rhs, Vec x) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  auto& c = *static_cast<SolveContext*>(raw);
-  return c.gate.run([&] { c.problem.solve(rhs, x); });
-}
-
-core::Matrix make_shell(SolveContext& c, Vec like) {
-  PetscInt local = 0, global = 0;
-  check(VecGetLocalSize(like, &local));
-  check(VecGetSize(like, &global));
-  core::Matrix m;
-  check(MatCreateShell(c.problem.comm(), local, local, global, global, &c, m.put()));
-  check(MatShellSetOperation(m.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply_by_jacobian)));
-  return m;
-}
-
 void use_own_solve(PC pc, SolveContext& c) {
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, &c));
-  check(PCShellSetApply(pc, solve_with_jacobian));
+  core::set_shell(pc, c.gate, [&c](Vec rhs, Vec x) { c.problem.solve(rhs, x); });
 }
 
 // The structured solve is exact but for rounding, so one iteration is the rule; a second one shows lost digits.
@@ -206,7 +177,7 @@ struct Newton::Objects {
       : context{problem, nullptr, 0, core::Gate(problem.comm()), nullptr, {}, {}} {
     check(VecGetLocalSize(like, &local));
     check(VecGetSize(like, &global));
-    shell = make_shell(context, like);
+    shell = core::make_shell(problem.comm(), local, context.gate, [&problem](Vec v, Vec y) { problem.multiply(v, y); });
   }
   void make_nonlinear(const NewtonOptions& options, Vec like);
   void make_linear(const std::string& prefix, Vec like);
@@ -358,8 +329,7 @@ int Newton::solve_linear(Vec rhs, Vec x) {
   if (!o.ksp) o.make_linear(options_.linear_prefix, x);
   o.context.gate = core::Gate(problem_.comm());
   o.context.gate.rethrow(KSPSolve(o.ksp.get(), rhs, x));
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(o.ksp.get(), &reason));
+  const KSPConvergedReason reason = core::reason_of(o.ksp.get());
   if (reason == KSP_DIVERGED_NANORINF || reason == KSP_DIVERGED_PC_FAILED)
     throw core::NotConverged("the linearised equations are singular");
   PetscInt iterations = 0;

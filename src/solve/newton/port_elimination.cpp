@@ -6,6 +6,7 @@
 #include "whirl/core/agree.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 
@@ -22,16 +23,12 @@ namespace {
 
 // Fails like a factorisation whose answer is of no use.
 void require_answer(KSP ksp) {
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(ksp, &reason));
-  if (reason < 0) fail();
+  if (core::reason_of(ksp) < 0) fail();
 }
 
 // The same on all ranks of `comm`, which see the same reason.
 void require_answer(MPI_Comm comm, KSP ksp) {
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(ksp, &reason));
-  if (reason < 0) core::agree(comm, fail);
+  if (core::reason_of(ksp) < 0) core::agree(comm, fail);
 }
 
 // MUMPS tells of a singular matrix by a reason, KLU by an error.
@@ -55,17 +52,6 @@ PortElimination::PortElimination(std::vector<problem::Field> fields, std::unique
   core::require(serves(fields_), "parts that elimination keeps apart");
 }
 
-PetscErrorCode PortElimination::shell_apply(PC pc, Vec r, Vec y) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  auto& self = *static_cast<PortElimination*>(raw);
-  return self.gate_->run([&] {
-    const core::ReadArray ra(r);
-    const core::WriteArray ya(y);
-    self.inverse_->apply(ra.data(), ya.data());
-  });
-}
-
 void PortElimination::make_solvers() {
   const MPI_Comm comm = layout_->comm();
   gate_ = std::make_unique<core::Gate>(comm);
@@ -78,11 +64,12 @@ void PortElimination::make_solvers() {
   check(KSPSetOptionsPrefix(ksp, "parts_"));
   core::make_direct(ksp);
   check(KSPGetPC(ksp, &pc));
-  if (inverse_) {
-    check(PCSetType(pc, PCSHELL));
-    check(PCShellSetContext(pc, this));
-    check(PCShellSetApply(pc, shell_apply));
-  }
+  if (inverse_)
+    core::set_shell(pc, *gate_, [this](Vec r, Vec y) {
+      const core::ReadArray ra(r);
+      const core::WriteArray ya(y);
+      inverse_->apply(ra.data(), ya.data());
+    });
   check(KSPSetFromOptions(ksp));
   PetscBool lu = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCLU, &lu));

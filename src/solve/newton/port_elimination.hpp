@@ -64,7 +64,6 @@ private:
   void solve_hub(bool transposed);
   /// hub_rhs_ -= shares_, summed over the ranks, in these rows.
   void take_from_hub(const std::vector<PetscInt>& rows);
-  static PetscErrorCode shell_apply(PC pc, Vec r, Vec y);
 
   std::vector<problem::Field> fields_;
   std::unique_ptr<problem::PartInverse> inverse_;

@@ -2,27 +2,15 @@
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 
 using core::check;
 
-PortKrylov::PortKrylov(const PortLayout& layout, const std::string& prefix)
-    : comm_(layout.comm()), gate_(layout.comm()) {
-  check(MatCreateShell(comm_, layout.local(), layout.local(), PETSC_DETERMINE, PETSC_DETERMINE, this, shell_.put()));
-  check(MatShellSetOperation(shell_.get(), MATOP_MULT, reinterpret_cast<void (*)()>(shell_multiply)));
-  check(KSPCreate(comm_, ksp_.put()));
-  check(KSPSetOptionsPrefix(ksp_.get(), prefix.c_str()));
-  check(KSPSetOperators(ksp_.get(), shell_.get(), shell_.get()));
-  check(KSPSetType(ksp_.get(), KSPFGMRES));
-  check(KSPSetPCSide(ksp_.get(), PC_RIGHT));
-  PC pc = nullptr;
-  check(KSPGetPC(ksp_.get(), &pc));
-  check(PCSetType(pc, PCSHELL));
-  check(PCShellSetContext(pc, this));
-  check(PCShellSetApply(pc, shell_precondition));
-  check(KSPSetTolerances(ksp_.get(), PETSC_DEFAULT, 1e-300, PETSC_DEFAULT, 100));
-  check(KSPSetFromOptions(ksp_.get()));
+PortKrylov::PortKrylov(const PortLayout& layout, const char* prefix) : comm_(layout.comm()), gate_(layout.comm()) {
+  shell_ = core::make_shell(comm_, layout.local(), gate_, [this](Vec x, Vec y) { multiply(*matrix_, x, y); });
+  ksp_ = core::make_krylov(shell_.get(), gate_, {prefix, KSPFGMRES}, [this](Vec r, Vec y) { similar_->solve(r, y); });
 }
 
 void PortKrylov::multiply(const PortMatrix& a, Vec x, Vec y) {
@@ -44,26 +32,10 @@ int PortKrylov::solve(const PortMatrix& a, PortElimination& similar, Vec rhs, Ve
   } catch (const core::NotConverged&) {
     fail();
   }
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(ksp_.get(), &reason));
-  if (reason < 0) fail();
+  if (core::reason_of(ksp_.get()) < 0) fail();
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(ksp_.get(), &iterations));
   return static_cast<int>(iterations);
-}
-
-PetscErrorCode PortKrylov::shell_multiply(Mat m, Vec x, Vec y) {
-  void* raw = nullptr;
-  PetscCall(MatShellGetContext(m, &raw));
-  auto& self = *static_cast<PortKrylov*>(raw);
-  return self.gate_.run([&] { multiply(*self.matrix_, x, y); });
-}
-
-PetscErrorCode PortKrylov::shell_precondition(PC pc, Vec r, Vec y) {
-  void* raw = nullptr;
-  PetscCall(PCShellGetContext(pc, &raw));
-  auto& self = *static_cast<PortKrylov*>(raw);
-  return self.gate_.run([&] { self.similar_->solve(r, y); });
 }
 
 }  // namespace whirl::solve

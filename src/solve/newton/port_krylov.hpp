@@ -1,8 +1,6 @@
 #pragma once
 // A Krylov method for matrices in blocks, preconditioned by elimination of their parts.
 
-#include <string>
-
 #include "solve/newton/port_elimination.hpp"
 
 namespace whirl::solve {
@@ -11,7 +9,7 @@ namespace whirl::solve {
 class PortKrylov {
 public:
   /// Reads PETSc options with `prefix`.
-  PortKrylov(const PortLayout& layout, const std::string& prefix);
+  PortKrylov(const PortLayout& layout, const char* prefix);
   PortKrylov(const PortKrylov&) = delete;
   PortKrylov& operator=(const PortKrylov&) = delete;
   ~PortKrylov() = default;
@@ -23,12 +21,10 @@ public:
 
 private:
   void fail() const;
-  static PetscErrorCode shell_multiply(Mat m, Vec x, Vec y);
-  static PetscErrorCode shell_precondition(PC pc, Vec r, Vec y);
   MPI_Comm comm_;
+  core::Gate gate_;
   core::Matrix shell_;
   core::LinearSolver ksp_;
-  core::Gate gate_;
   const PortMatrix* matrix_ = nullptr;  // of the present solve
   PortElimination* similar_ = nullptr;
 };

@@ -24,8 +24,7 @@ bool settle_step(ExtendedProblem& problem, const std::function<void(Vec u, Vec r
     }
     if (core::norm(there.get()) <= (1 - sufficient * part) * norm) return take(end.get());
     if (longest) continue;
-    longest = core::duplicate(u);
-    check(VecCopy(end.get(), longest.get()));
+    longest = copy(end.get());
   }
   // None helps: the search may find something on the way to the longest of them.
   return longest && take(longest.get());

@@ -1,7 +1,5 @@
 #include "solve/newton/shifted_system.hpp"
 
-#include <petscksp.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +7,7 @@
 #include "solve/newton/real_form.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
 
@@ -41,8 +40,8 @@ void ShiftedSystem::make_matrix() {
 }
 
 void ShiftedSystem::factorise(double omega, const ComplexVector& b, const ComplexVector& c) {
-  if (!matrix_ || bordered_ != !b.empty()) {
-    bordered_ = !b.empty();
+  if (!matrix_ || bordered_ != (b.size() > 0)) {
+    bordered_ = b.size() > 0;
     make_matrix();
     ports_.reset();
     solver_.reset();
@@ -50,11 +49,11 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
   const bool last = core::rank_of(system_.comm()) == core::size_of(system_.comm()) - 1;
   const PetscInt n = system_.size();
   put_pencil(jx_.get(), jd_.get(), Complex(0, omega), matrix_.get(), [&](PetscInt i, RealRow& row) {
-    if (bordered_) row.add(n, b[static_cast<std::size_t>(i)]);
+    if (bordered_) row.add(n, b(i));
   });
   if (last && bordered_) {
     RealRow row;
-    for (PetscInt i = 0; i < n; ++i) row.add(i, std::conj(c[static_cast<std::size_t>(i)]));
+    for (PetscInt i = 0; i < n; ++i) row.add(i, std::conj(c(i)));
     row.add(n, 0);
     row.put(matrix_.get(), n);
   }
@@ -85,9 +84,7 @@ void ShiftedSystem::solve(bool adjoint, Vec rhs, Vec z) {
     return;
   }
   check(adjoint ? KSPSolveTranspose(solver_.get(), rhs, z) : KSPSolve(solver_.get(), rhs, z));
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(solver_.get(), &reason));
-  if (reason < 0) throw core::NotConverged("the matrix at this frequency is singular");
+  if (core::reason_of(solver_.get()) < 0) throw core::NotConverged("the matrix at this frequency is singular");
 }
 
 void ShiftedSystem::solve(Vec rhs, Vec z) {
@@ -100,21 +97,16 @@ void ShiftedSystem::solve_adjoint(Vec rhs, Vec z) {
 
 void ShiftedSystem::solve(bool adjoint, const ComplexVector& rhs, ComplexVector& x, Complex& corner) {
   core::Vector b = make_vector(), z = core::duplicate(b.get());
-  PetscInt begin = 0, end = 0;
-  check(VecGetOwnershipRange(b.get(), &begin, &end));
-  const std::size_t n = size();
-  const auto entry = [&](PetscInt row) {
-    return static_cast<std::size_t>(row) < n ? rhs[static_cast<std::size_t>(row)] : corner;
-  };
-  {
-    const core::WriteArray a(b.get());
-    for (PetscInt i = begin; i < end; ++i) a[i - begin] = i % 2 == 0 ? entry(i / 2).real() : entry(i / 2).imag();
-  }
+  const Eigen::Index n = size(), all = n + (bordered_ ? 1 : 0);
+  std::vector<double> whole(static_cast<std::size_t>(2 * all));
+  const auto complex = [&] { return Eigen::Map<ComplexVector>(reinterpret_cast<Complex*>(whole.data()), all); };
+  complex().head(n) = rhs;
+  if (bordered_) complex()(n) = corner;
+  core::fill(b.get(), whole);
   solve(adjoint, b.get(), z.get());
-  const std::vector<double> whole = core::gather(z.get());
-  x.resize(n);
-  for (std::size_t k = 0; k < n; ++k) x[k] = {whole[2 * k], whole[2 * k + 1]};
-  if (bordered_) corner = {whole[2 * n], whole[2 * n + 1]};
+  whole = core::gather(z.get());
+  x = complex().head(n);
+  if (bordered_) corner = complex()(n);
 }
 
 void ShiftedSystem::solve(const ComplexVector& rhs, ComplexVector& x, Complex& corner) {
@@ -125,50 +117,42 @@ void ShiftedSystem::solve_adjoint(const ComplexVector& rhs, ComplexVector& x, Co
   solve(true, rhs, x, corner);
 }
 
+CriticalVectors generic_vectors(Eigen::Index n) {
+  CriticalVectors out{ComplexVector(n), ComplexVector(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto t = static_cast<double>(k);
+    out.p(k) = {std::sin(1 + t), std::cos(2 + 0.7 * t)};
+    out.q(k) = {std::cos(3 + 1.3 * t), std::sin(2 + 1.7 * t)};
+  }
+  for (ComplexVector* v : {&out.q, &out.p}) v->normalize();
+  return out;
+}
+
 // The first borders are generic, the second ones the null vectors themselves.
 CriticalVectors critical_vectors(ShiftedSystem& shifted, double omega) {
-  const std::size_t n = shifted.size();
-  ComplexVector b(n), c(n), none(n);
-  CriticalVectors out;
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto t = static_cast<double>(k);
-    b[k] = {std::sin(1 + t), std::cos(2 + 0.7 * t)};
-    c[k] = {std::cos(3 + 1.3 * t), std::sin(2 + 1.7 * t)};
-  }
+  const Eigen::Index n = shifted.size();
+  const ComplexVector none = ComplexVector::Zero(n);
+  CriticalVectors out = generic_vectors(n);
   for (int pass = 0; pass < 2; ++pass) {
-    shifted.factorise(omega, b, c);
+    for (ComplexVector* v : {&out.q, &out.p}) *v *= std::sqrt(static_cast<double>(n)) / v->norm();
+    shifted.factorise(omega, out.p, out.q);
     Complex corner = 1, other = 1;
     shifted.solve(none, out.q, corner);
     shifted.solve_adjoint(none, out.p, other);
-    for (ComplexVector* v : {&out.q, &out.p}) {
-      double sum = 0;
-      for (const Complex& e : *v) sum += std::norm(e);
-      for (Complex& e : *v) e *= std::sqrt(static_cast<double>(n) / sum);
-    }
-    b = out.p;
-    c = out.q;
   }
+  for (ComplexVector* v : {&out.q, &out.p}) *v *= std::sqrt(static_cast<double>(n)) / v->norm();
   return out;
 }
 
 ComplexVector ShiftedSystem::rates_times(const ComplexVector& v) const {
-  ComplexVector out(size());
   core::Vector in = core::duplicate(rest_.get()), y = core::duplicate(rest_.get());
-  PetscInt begin = 0, end = 0;
-  check(VecGetOwnershipRange(in.get(), &begin, &end));
-  for (int part = 0; part < 2; ++part) {
-    {
-      const core::WriteArray a(in.get());
-      for (PetscInt i = begin; i < end; ++i) {
-        const Complex z = v[static_cast<std::size_t>(i)];
-        a[i - begin] = part == 0 ? z.real() : z.imag();
-      }
-    }
+  const auto times = [&](const Eigen::VectorXd& part) -> Eigen::VectorXd {
+    core::fill(in.get(), {part.begin(), part.end()});
     check(MatMult(jd_.get(), in.get(), y.get()));
     const std::vector<double> whole = core::gather(y.get());
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] += part == 0 ? Complex(whole[k], 0) : Complex(0, whole[k]);
-  }
-  return out;
+    return Eigen::Map<const Eigen::VectorXd>(whole.data(), part.size());
+  };
+  return times(v.real()) + Complex(0, 1) * times(v.imag());
 }
 
 }  // namespace whirl::solve

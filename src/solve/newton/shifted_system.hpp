@@ -1,9 +1,9 @@
 #pragma once
 // dF/dx + i omega dF/d(dx/dt), bordered, as a real matrix of twice the size.
 
+#include <Eigen/Core>
 #include <complex>
 #include <memory>
-#include <vector>
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/problem/system.hpp"
@@ -12,7 +12,7 @@ namespace whirl::solve {
 
 class PortElimination;
 
-using ComplexVector = std::vector<std::complex<double>>;
+using ComplexVector = Eigen::VectorXcd;
 
 /// [A b; c^* 0] with A = dF/dx + i omega dF/d(dx/dt), scaled, at a resting state, as a real matrix with real and
 /// imaginary parts interleaved,
@@ -43,9 +43,12 @@ public:
   /// side and of the answer where there is a border.
   void solve(const ComplexVector& rhs, ComplexVector& x, std::complex<double>& corner);
   void solve_adjoint(const ComplexVector& rhs, ComplexVector& x, std::complex<double>& corner);
+  /// dF/dx and dF/d(dx/dt), scaled.
+  [[nodiscard]] Mat by_state() const { return jx_.get(); }
+  [[nodiscard]] Mat by_rate() const { return jd_.get(); }
   /// dF/d(dx/dt) v, scaled [n].
   [[nodiscard]] ComplexVector rates_times(const ComplexVector& v) const;
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(system_.size()); }
+  [[nodiscard]] Eigen::Index size() const { return system_.size(); }
   [[nodiscard]] Vec state_scale() const { return state_scale_.get(); }
   [[nodiscard]] Vec residual_scale() const { return residual_scale_.get(); }
 
@@ -66,6 +69,8 @@ private:
 struct CriticalVectors {
   ComplexVector q, p;
 };
+/// Generic vectors [n] that serve as borders c and b where the null vectors q and p are not known, of length one.
+[[nodiscard]] CriticalVectors generic_vectors(Eigen::Index n);
 /// Leaves `shifted` factorised anew. Collective.
 [[nodiscard]] CriticalVectors critical_vectors(ShiftedSystem& shifted, double omega);
 

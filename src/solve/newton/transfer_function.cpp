@@ -1,7 +1,5 @@
 #include "whirl/solve/newton/transfer_function.hpp"
 
-#include <petscksp.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +7,7 @@
 #include "solve/newton/transfer_part.hpp"
 #include "whirl/core/direct_solver.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/shell.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::solve {
@@ -50,9 +49,8 @@ void with_columns(Mat m, F&& use) {
 void TransferFunction::Coupled::solve(const MatrixXcd& columns, MatrixXcd& out) {
   with_columns(right.get(), [&](PetscInt k, auto to) { to = columns.col(k); });
   check(KSPMatSolve(solver.get(), right.get(), answers.get()));
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  check(KSPGetConvergedReason(solver.get(), &reason));
-  if (reason < 0) throw core::NotConverged("the equations of a film are singular at this frequency");
+  if (core::reason_of(solver.get()) < 0)
+    throw core::NotConverged("the equations of a film are singular at this frequency");
   out.resize(columns.rows(), columns.cols());
   with_columns(answers.get(), [&](PetscInt k, auto from) { out.col(k) = from; });
 }

@@ -71,7 +71,7 @@ StageProduct SparseRungeKutta::product_at(double angle, Vec x, Vec k, double own
   }
   core::Matrix jx;
   point_.jacobian(angle, x, k, 1, 0, jx);
-  return {std::move(jx), std::move(solver)};
+  return {std::move(jx), std::move(solver), x};
 }
 
 std::shared_ptr<const StageSolver> SparseRungeKutta::solver_at(double angle, Vec x, Vec k, double own) {

@@ -113,45 +113,30 @@ StageProduct::StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver) : 
   direct_.finalize();
 }
 
-StageProduct::StageProduct(std::shared_ptr<const StageSolver> solver, std::shared_ptr<const PortMatrix> rates,
-                           double own, Vec like)
-    : solver_(std::move(solver)), rates_(std::move(rates)), own_(own) {
-  check(PetscObjectReference(reinterpret_cast<PetscObject>(like)));
-  *like_.put() = like;
-}
-
-// own dF/dx w = A w - dF/d(dx/dt) w.
-MatrixXd StageProduct::slope_by_blocks(const MatrixXd& w, const VectorXd* load) const {
-  MatrixXd out(w.rows(), w.cols());
-  core::Vector v = core::duplicate(like_.get()), rhs = core::duplicate(like_.get()), k = core::duplicate(like_.get());
-  for (Index c = 0; c < w.cols(); ++c) {
-    put(w.col(c), v.get());
-    PortKrylov::multiply(*rates_, v.get(), rhs.get());
-    PortKrylov::multiply(*solver_->blocks(), v.get(), k.get());
-    check(VecAXPY(rhs.get(), -1, k.get()));
-    if (load) {
-      put(*load, v.get());
-      check(VecAXPY(rhs.get(), -own_, v.get()));
-    }
-    solver_->solve(rhs.get(), k.get(), product_tolerance);
-    out.col(c) = get(k.get()) / own_;
-  }
-  return out;
+core::Vector StageProduct::reference(Vec v) {
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(v)));
+  return core::Vector(v);
 }
 
 MatrixXd StageProduct::slope(const MatrixXd& w, const VectorXd* load) const {
-  if (rates_) return slope_by_blocks(w, load);
-  if (!jx_) {
+  if (!jx_ && !rates_) {
     MatrixXd k = direct_ * w;
     for (Index i = 0; load && i < k.rows(); ++i) k(solver_->column()(i), 0) -= solver_->inverse()(i) * (*load)(i);
     return k;
   }
   MatrixXd out(w.rows(), w.cols());
-  core::Vector x, f;
-  check(MatCreateVecs(jx_.get(), x.put(), f.put()));
+  const core::Vector x = core::duplicate(like_.get()), f = core::duplicate(like_.get());
   for (Index c = 0; c < w.cols(); ++c) {
     put(w.col(c), x.get());
-    check(MatMult(jx_.get(), x.get(), f.get()));
+    if (jx_) {
+      check(MatMult(jx_.get(), x.get(), f.get()));
+    } else {
+      // own dF/dx w = A w - dF/d(dx/dt) w
+      VectorXd moved(w.rows()), rates(w.rows());
+      solver_->blocks()->multiply(w.col(c).data(), moved.data());
+      rates_->multiply(w.col(c).data(), rates.data());
+      put((moved - rates) / own_, f.get());
+    }
     if (load) {
       put(*load, x.get());
       check(VecAXPY(f.get(), 1, x.get()));

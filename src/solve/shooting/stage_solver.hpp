@@ -47,25 +47,24 @@ private:
 /// k = -(dF/d(dx/dt) + H a(j,j) dF/dx)^-1 (dF/dx w + g), of one stage, for this rank's rows. Collective.
 class StageProduct {
 public:
-  /// Of dF/dx, which is kept.
-  StageProduct(core::Matrix jx, std::shared_ptr<const StageSolver> solver)
-      : solver_(std::move(solver)), jx_(std::move(jx)) {}
+  /// Of dF/dx, which is kept; `like` has the layout of the states and is referred to.
+  StageProduct(core::Matrix jx, std::shared_ptr<const StageSolver> solver, Vec like)
+      : solver_(std::move(solver)), jx_(std::move(jx)), like_(reference(like)) {}
   /// Of dF/dx on one rank and a solver that inverts entry by entry: only their product is kept.
   StageProduct(Mat jx, std::shared_ptr<const StageSolver> solver);
-  /// Of the blocks A = dF/d(dx/dt) + own dF/dx of `solver`, own = H a(j,j) > 0, and those of dF/d(dx/dt); `like` gives
-  /// the layout of the states.
-  StageProduct(std::shared_ptr<const StageSolver> solver, std::shared_ptr<const PortMatrix> rates, double own,
-               Vec like);
+  /// Of the blocks A = dF/d(dx/dt) + own dF/dx of `solver`, own = H a(j,j) > 0, and those of dF/d(dx/dt).
+  StageProduct(std::shared_ptr<const StageSolver> solver, std::shared_ptr<const PortMatrix> rates, double own, Vec like)
+      : solver_(std::move(solver)), rates_(std::move(rates)), own_(own), like_(reference(like)) {}
   /// All columns of w [local x k] at once; `load` g may be null, else w has one column.
   [[nodiscard]] Eigen::MatrixXd slope(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
 
 private:
-  [[nodiscard]] Eigen::MatrixXd slope_by_blocks(const Eigen::MatrixXd& w, const Eigen::VectorXd* load) const;
+  [[nodiscard]] static core::Vector reference(Vec v);
   std::shared_ptr<const StageSolver> solver_;
   std::shared_ptr<const PortMatrix> rates_;
   double own_ = 0;
-  core::Vector like_;  // of the blocks
   core::Matrix jx_;
+  core::Vector like_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> direct_;  // the product, if there is neither
 };
 

@@ -21,7 +21,7 @@ namespace whirl::study {
 /// The motion of a Hopf point, scaled states [n], of such a length that the place that moves most describes an ellipse
 /// whose larger half-axis is one clearance (of a plant without clearances: the largest scaled state moves by one).
 struct CriticalMotion {
-  std::vector<std::complex<double>> q;
+  Eigen::VectorXcd q;
   double largest = 1;  ///< its largest scaled state
   std::string place;   ///< which one moves most, empty without clearances
 };

@@ -1,6 +1,7 @@
 #pragma once
 // Small cycles born at a Hopf point, by harmonic balance.
 
+#include <Eigen/Core>
 #include <array>
 #include <complex>
 #include <memory>
@@ -15,7 +16,7 @@ namespace whirl::solve {
 class ShiftedSystem;
 
 /// Critical vector of a Hopf point in scaled states [n]: (dF/dx + i omega dF/d(dx/dt)) q = 0, of any length.
-[[nodiscard]] std::vector<std::complex<double>> critical_vector(problem::System& system, Vec x, double omega);
+[[nodiscard]] Eigen::VectorXcd critical_vector(problem::System& system, Vec x, double omega);
 
 /// A cycle x(t) = a_0 + Re sum_{k=1..H} a_k exp(i k omega t) of F(0, x, dx/dt; p) = 0:
 ///
@@ -35,7 +36,7 @@ class HarmonicCycle : public ExtendedProblem {
 public:
   /// At the Hopf point x (SI) with `omega` [rad/s] at the system's parameter; q [n] scaled, the motion that an
   /// amplitude of one stands for. `system` outlives this.
-  HarmonicCycle(problem::System& system, Vec x, double omega, std::vector<std::complex<double>> q, int harmonics,
+  HarmonicCycle(problem::System& system, Vec x, double omega, Eigen::VectorXcd q, int harmonics,
                 double parameter_scale);
   ~HarmonicCycle() override;
 
@@ -61,32 +62,32 @@ private:
   struct Sample {
     core::Matrix by_state, by_rate;
   };
-  void motion_at(const double* u, std::size_t sample, Vec x, Vec rate) const;
-  void project(std::size_t sample, Vec f, double* r) const;
+  [[nodiscard]] double phase(const Eigen::VectorXd& u) const;
+  void motion_at(const Eigen::VectorXd& u, Eigen::Index sample, Vec x, Vec rate) const;
+  void project(Eigen::Index sample, Vec f, Eigen::Ref<Eigen::VectorXd> r) const;
   void set_parameter(double scaled);
-  void balance(const double* rhs, double* x, std::complex<double>& beyond);
-  [[nodiscard]] std::size_t n() const { return q_.size(); }
-  [[nodiscard]] std::size_t unknowns() const { return (2 * static_cast<std::size_t>(harmonics_) + 1) * n() + 2; }
-  [[nodiscard]] std::size_t samples() const { return 4 * static_cast<std::size_t>(harmonics_) + 4; }
+  [[nodiscard]] Eigen::VectorXd balance(const Eigen::VectorXd& rhs, std::complex<double>& beyond);
+  [[nodiscard]] Eigen::Index n() const { return q_.size(); }
+  [[nodiscard]] Eigen::Index unknowns() const { return (2 * harmonics_ + 1) * n() + 2; }
+  [[nodiscard]] Eigen::Index samples() const { return 4 * harmonics_ + 4; }
 
   problem::System& system_;
   double omega_;
-  std::vector<std::complex<double>> q_;
+  Eigen::VectorXcd q_;
   int harmonics_;
-  double parameter_scale_, square_ = 0;
-  std::vector<double> state_scale_, residual_scale_;
+  double parameter_scale_, square_;
+  Eigen::VectorXd state_scale_, residual_scale_;
   core::Vector weights_, x_, rate_, f_;
   std::vector<std::unique_ptr<ShiftedSystem>> blocks_;
   std::vector<Sample> tangents_;
-  std::vector<std::vector<double>> columns_;  // dR/d(omega, parameter)
-  std::vector<double> row_;
+  Eigen::MatrixXd columns_;  // dR/d(omega, parameter)
+  Eigen::VectorXd row_;
   double omega_now_ = 0;  // [rad/s]
   // Changes of all unknowns that answer a change of omega, and of the parameter, and what they leave beyond A_1.
-  std::array<std::vector<double>, 2> answers_;
+  Eigen::MatrixXd answers_;
   std::array<std::complex<double>, 2> beyond_;
-  std::vector<double> last_;
+  Eigen::VectorXd last_, birth_;
   double last_amplitude_ = 0;
-  std::vector<double> birth_;
 };
 
 }  // namespace whirl::solve

@@ -161,6 +161,7 @@ private:
   /// d/d(period, parameter) of the equations at one point [n x borders], from dF/dp and (dF/d(dx/dt)) x'.
   [[nodiscard]] Eigen::MatrixXd border_columns(const Eigen::VectorXd& d_parameter, const Eigen::VectorXd& rate,
                                                double period) const;
+  void keep(const core::ReadArray& u, const Eigen::VectorXd& before, const Eigen::VectorXd& border);
   [[nodiscard]] bool same_as_kept(const core::ReadArray& u, const Eigen::VectorXd& before,
                                   const Eigen::VectorXd& border) const;
 

@@ -6,8 +6,47 @@
 #include <vector>
 
 #include "whirl/solve/cycle/scheme.hpp"
+#include "whirl/solve/cycle/thin_blocks.hpp"
 
 namespace whirl::solve {
+
+/// What all intervals of one length have in common where F = L1 xdot + L0 x - B f(C x): the blocks, dense or sparse, n
+/// states, r forces, w inputs.
+template <class Matrix>
+struct ThinPart : LinearBlocks<Matrix> {
+  /// Keeps a reference to the scheme and copies of the blocks.
+  ThinPart(const Scheme& sc, double len, LinearBlocks<Matrix> all)
+      : LinearBlocks<Matrix>(std::move(all)),
+        scheme(sc),
+        length(len),
+        n(this->l1.rows()),
+        r(this->b.cols()),
+        w(this->c.rows()) {}
+
+  const Scheme& scheme;
+  double length;
+  Eigen::Index n, r, w;
+
+  /// With V = value x C: V x [mw x k] for x [mn x k], and V^T s [mn x k].
+  [[nodiscard]] Eigen::MatrixXd inputs(const Eigen::MatrixXd& x) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(scheme.degree * w, x.cols());
+    for (Eigen::Index l = 0; l < scheme.degree; ++l) {
+      const Eigen::MatrixXd cx = this->c * x.middleRows(l * n, n);
+      for (Eigen::Index j = 0; j < scheme.degree; ++j)
+        if (scheme.value(j, l + 1) != 0) out.middleRows(j * w, w) += scheme.value(j, l + 1) * cx;
+    }
+    return out;
+  }
+  [[nodiscard]] Eigen::MatrixXd inputs_transposed(const Eigen::MatrixXd& s) const {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(scheme.degree * n, s.cols());
+    for (Eigen::Index j = 0; j < scheme.degree; ++j) {
+      const Eigen::MatrixXd cs = this->c.transpose() * s.middleRows(j * w, w);
+      for (Eigen::Index l = 0; l < scheme.degree; ++l)
+        if (scheme.value(j, l + 1) != 0) out.middleRows(l * n, n) += scheme.value(j, l + 1) * cs;
+    }
+    return out;
+  }
+};
 
 /// The part of all intervals of one length that does not change along the cycle, for F = L1 xdot + L0 x - B f(C x):
 /// factorised once per length.
@@ -18,16 +57,10 @@ namespace whirl::solve {
 /// so that an interval costs one LU of size m r (r forces) and 2 m r n^2 operations instead of those of a dense LU of
 /// size mn. Of W0 itself only m (n - k) unknowns are factorised: k states whose rate is another state (q' = v) are
 /// eliminated exactly.
-class LinearPart {
+class LinearPart : public ThinPart<Eigen::MatrixXd> {
 public:
-  /// Keeps a reference to the scheme and copies of the matrices L1, L0 [n x n], B [n x r], C [w x n].
-  LinearPart(const Scheme& scheme, double length, const Eigen::MatrixXd& l1, const Eigen::MatrixXd& l0,
-             const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
+  LinearPart(const Scheme& scheme, double length, DenseBlocks blocks);
 
-  const Scheme& scheme;
-  const Eigen::MatrixXd l1, l0, b, c;
-  double length;
-  Eigen::Index n, r, w;
   Eigen::MatrixXd w00, y, vy;   ///< W00 [mn x n], Y [mn x mr], V Y [mw x mr]
   Eigen::MatrixXd free;         ///< -W0^-1 W00 [mn x n]
   Eigen::MatrixXd inputs_free;  ///< V0 - V W0^-1 W00 [mw x n]
@@ -35,9 +68,8 @@ public:
   /// x := W0^-1 x and x := W0^-T x, column by column [mn x k].
   void solve(Eigen::MatrixXd& x) const;
   void solve_transposed(Eigen::MatrixXd& x) const;
-  /// V x [mw x k] for x [mn x k], and V^T s [mn x k].
-  [[nodiscard]] Eigen::MatrixXd inputs(const Eigen::MatrixXd& x) const;
-  [[nodiscard]] Eigen::MatrixXd inputs_transposed(const Eigen::MatrixXd& s) const;
+  /// Everything is at hand.
+  void prepare() const {}
   /// k, the number of eliminated states.
   [[nodiscard]] Eigen::Index eliminated() const { return static_cast<Eigen::Index>(rate_row_.size()); }
 

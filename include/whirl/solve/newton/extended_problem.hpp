@@ -71,6 +71,9 @@ public:
   virtual bool adapt(core::Vector& /*u*/, core::Vector& /*tangent*/) { return false; }
 };
 
+/// A vector with the layout and the entries of v, and the product a . b. Collective.
+[[nodiscard]] core::Vector copy(Vec v);
+[[nodiscard]] double dot(Vec a, Vec b);
 /// Value of the last entry of u (the scaled parameter) on all ranks / sets it.
 [[nodiscard]] double last_entry(MPI_Comm comm, Vec u);
 void set_last_entry(MPI_Comm comm, Vec u, double value);

@@ -1,4 +1,4 @@
-#include "solve/cycle/pencil.hpp"
+#include "solve/newton/pencil.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
