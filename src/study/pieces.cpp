@@ -38,7 +38,7 @@ void write_journal(io::Group& group, const solve::Journal& journal) {
       }
       sizes.push_back(as_rows);
       group.put(name_of_rows(++by_rows),
-                io::Dataset{{v.values.size()}, v.values, "1", "of an answer", io::Share{v.begin, v.total}});
+                io::Dataset{{v.values.size()}, v.values, "1", "of an answer", io::RowRange{v.begin, v.total}});
     }
     texts.insert(texts.end(), {e.kind, e.answer.text});
   }
@@ -70,7 +70,7 @@ std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
       }
       const io::Dataset& data = group.dataset(name_of_rows(++by_rows));
       const auto& rows = std::get<std::vector<double>>(data.values);
-      const io::Share share = data.share.value_or(io::Share{0, rows.size()});
+      const io::RowRange share = data.share.value_or(io::RowRange{0, rows.size()});
       e.answer.vectors.push_back({!data.share, share.begin, share.total, rows});
     }
     entries.push_back(std::move(e));
