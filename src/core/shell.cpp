@@ -1,6 +1,7 @@
 #include "whirl/core/shell.hpp"
 
 #include <memory>
+#include <utility>
 
 namespace whirl::core {
 namespace {

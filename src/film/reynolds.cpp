@@ -222,9 +222,8 @@ Facts facts_of(const Reynolds& o, const Geometry& geometry) {
   else if (o.cavitation != Reynolds::Cavitation::none)
     f.smoothness = {1, "the tangents have kinks where the edge of the positive pressure passes a node"};
   f.own_states = dynamic(o);
-  if (f.own_states)
-    f.states = (geometry.type == Geometry::Bore::lemon_bore ? 2 : 1) * o.cells[0] *
-               (o.tilt || !o.holes.empty() ? o.cells[1] : o.cells[1] / 2);
+  f.pads = geometry.type == Geometry::Bore::lemon_bore ? 2 : 1;
+  if (f.own_states) f.states = f.pads * o.cells[0] * (o.tilt || !o.holes.empty() ? o.cells[1] : o.cells[1] / 2);
   if (o.holes.empty() || geometry.radius <= 0.0) return f;
   if (const auto hole = misplaced_hole(o, geometry))
     f.misplaced = {"holes." + std::to_string(hole->hole + 1), hole->reason};

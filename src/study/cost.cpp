@@ -43,15 +43,16 @@ double memory_of_equilibria(const system::Machine& machine) {
 
 namespace {
 
-// What an interval holds of the films' own states: two matrices and the factors of a band with blocks of stages x
-// stages, as many columns beside it as a ring has separators, and the tangents at its points. The width of the band is
-// that of a node which sees the columns of the mesh beside its own.
+// Doubles that an interval holds of the films' own states. A node sees the `line` of nodes on either side of its own:
+// the band has 2 line + 1 entries a row. For each state: at every point two matrices and what they are made of
+// (3 stages bands), the factors with blocks of stages x stages, as many columns of these as a line has nodes where a
+// ring is closed, and the thin tangents at the points (50 a point).
 double numbers_of_films(const system::Machine& machine, double stages, std::int64_t& width) {
   double all = 0;
   for (const system::Bearing& b : machine.bearings) {
     const film::Facts f = film::facts(b.film, b.geometry.value_or(film::Geometry{}));
     if (f.states == 0) continue;
-    const double line = std::max(1.0, std::round(f.states / std::max(1.0, static_cast<double>(f.cells[0]))));
+    const double line = std::max(1.0, std::round(f.states / std::max(1.0, static_cast<double>(f.pads * f.cells[0]))));
     width = std::max(width, 2 * static_cast<std::int64_t>(line) + 1);
     all += f.states * ((2 * line + 1) * (3 * stages + stages * stages) + stages * stages * (4 + line) + 50 * stages);
   }

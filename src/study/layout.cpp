@@ -39,9 +39,11 @@ void describe(deck::Description<LayoutOptions>& d) {
   d.add("film_states", &LayoutOptions::film_states, deck::positive,
         "states of all films together from which all ranks share one machine")
       .only(&LayoutOptions::machine, {automatic});
-  d.add("cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
-        "what the intervals of a cycle by collocation at Radau points take on whole machines, in all, up to which each "
-        "rank has a whole machine and the ranks share intervals, however many states films have that fill and empty")
+  d.add(
+       "cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
+       "memory, as estimated for the deck's intervals, that a cycle by collocation at Radau points may take on whole "
+       "machines, whose intervals the ranks share; films that fill and empty, of film_states and more, are spread over "
+       "the ranks only above it. Films on liners are spread from film_states on")
       .only(&LayoutOptions::machine, {automatic});
   d.add(
       "refined_states", &LayoutOptions::refined_states, deck::positive,

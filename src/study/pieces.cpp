@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "study/cycle/cycle_record.hpp"
+#include "whirl/core/error.hpp"
 
 namespace whirl::study {
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double least_seconds = 0.5;  // between two files
 
+constexpr int journal_format = 2;
 constexpr std::int64_t as_rows = -1;  // the size of a vector that is a dataset of its own
 
 std::string name_of_rows(std::size_t k) {
@@ -42,6 +44,7 @@ void write_journal(io::Group& group, const solve::Journal& journal) {
     }
     texts.insert(texts.end(), {e.kind, e.answer.text});
   }
+  group.set("format", journal_format);
   group.put("numbers", std::move(numbers), "1", "questions and answers, and their vectors unless these stand apart");
   group.put("sizes", std::move(sizes),
             "of each entry: of question and answer, state, number of vectors and their sizes; -1: stands apart");
@@ -49,6 +52,8 @@ void write_journal(io::Group& group, const solve::Journal& journal) {
 }
 
 std::vector<solve::Journal::Entry> read_journal(const io::Group& group) {
+  if (!group.has_attribute("format") || group.integer("format") != journal_format)
+    throw core::InputError("the checkpoint is that of another version of the program: begin again with --force");
   std::vector<solve::Journal::Entry> entries;
   const auto& sizes = group.integers("sizes");
   const auto& texts = group.strings("texts");

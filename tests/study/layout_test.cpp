@@ -53,8 +53,8 @@ TEST(CycleLayout, MemoryOfFilmsGrowsWithTheirBand) {
     return study::memory_of_cycles(contents(cells).machine, intervals, points, true);
   };
   const double once = memory("[120, 24]"), twice = memory("[240, 48]");
-  EXPECT_GT(once, 0.65e9);
-  EXPECT_LT(once, 2.6e9);
+  EXPECT_GT(once, 0.9e9);
+  EXPECT_LT(once, 1.8e9);
   EXPECT_GT(twice, 5 * once);
   EXPECT_LT(twice, 9 * once);
 }

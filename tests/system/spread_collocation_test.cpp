@@ -183,10 +183,10 @@ TEST(SpreadCollocation, SettlesWhereFrontsMoveWithinAnInterval) {
     orbit.x(0, k) += 5e-6 * std::cos(angle);
     orbit.x(2, k) += 5e-6 * std::sin(angle);
   }
-  core::Vector u = spread.scatter(orbit), v = dense.scatter(orbit);
+  core::Vector u = spread.scatter(test::rows_of(orbit, s)), v = dense.scatter(orbit);
   ASSERT_TRUE(spread.settle(u.get()));
   ASSERT_TRUE(dense.settle(v.get()));
-  const Eigen::MatrixXd found = spread.gather(u.get()).x, expected = dense.gather(v.get()).x;
+  const Eigen::MatrixXd found = test::whole_of(spread.gather(u.get()), s).x, expected = dense.gather(v.get()).x;
   EXPECT_GT((expected - orbit.x).cwiseAbs().maxCoeff(), 1e-7);
   EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-8 * 25e-6);
 }

@@ -18,15 +18,16 @@ using Action = std::function<void(Vec x, Vec y)>;
 /// Makes `pc` the function `apply`, and `transposed` with the transpose; `gate` likewise.
 void set_shell(PC pc, Gate& gate, Action apply, Action transposed = {});
 
-/// A Krylov method for `matrix`, preconditioned from the right by a function, or by none where `apply` is empty. PETSc
-/// options with `prefix` come on top. Solves end at the relative residual `tolerance` or after `most` iterations; GMRES
-/// starts anew after `restart`.
+/// Solves end at the relative residual `tolerance` or after `most` iterations; GMRES starts anew after `restart`. PETSc
+/// options with `prefix` come on top.
 struct KrylovOptions {
   const char* prefix;
   KSPType type = KSPGMRES;
   double tolerance = 1e-5;
   PetscInt most = 100, restart = 30;
 };
+/// A Krylov method for `matrix`, preconditioned from the right by a function, or by none where `apply` is empty; `gate`
+/// outlives it.
 [[nodiscard]] LinearSolver make_krylov(Mat matrix, Gate& gate, const KrylovOptions& options, Action apply,
                                        Action transposed = {});
 

@@ -48,6 +48,7 @@ struct Facts {
   bool own_states = false;      // the film has states of its own
   bool force_by_rates = false;  // the force depends on the rates of the own states
   int states = 0;               // about how many own states
+  int pads = 1;                 // that have a mesh each
   std::array<int, 2> cells{};   // of its mesh, around and along the bearing or each pad; 0: no mesh in this direction
   int mesh_order = 2;           // at which the error of the mesh falls
   Smoothness smoothness{};

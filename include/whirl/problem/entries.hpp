@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "whirl/core/error.hpp"
+
 namespace whirl::problem {
 
 /// Entries of a matrix in an order that is the same in every pass, rows and columns numbered as states. Those of one
@@ -26,7 +28,11 @@ public:
     if (!placed_) places_.push_back({row, column});
   }
   [[nodiscard]] std::span<const Place> places() const { return places_; }
-  [[nodiscard]] std::span<const double> values() const { return values_; }
+  /// Of a pass that has ended; core::Bug if it listed more or less than the first one.
+  [[nodiscard]] std::span<const double> values() const {
+    core::require(values_.size() == places_.size(), "entries are listed in the same order in every pass");
+    return values_;
+  }
 
 private:
   bool placed_ = false;

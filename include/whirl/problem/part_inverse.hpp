@@ -27,7 +27,7 @@ public:
   /// y = A_pp^-1 r: this rank's rows of all parts, one after the other in the order of System::fields(). Not finite if
   /// A_pp is singular.
   virtual void apply(const double* r, double* y) = 0;
-  /// The same of columns that stand one behind the other [rows x columns].
+  /// The same of r and y [rows x columns], `rows` being this rank's rows of all parts.
   virtual void apply_columns(const double* r, double* y, std::ptrdiff_t rows, int columns) {
     for (int c = 0; c < columns; ++c) apply(r + c * rows, y + c * rows);
   }
@@ -39,7 +39,7 @@ public:
   virtual void set_at(Vec /*x*/, Vec /*rest*/, std::complex<double> /*lambda*/) {
     core::require(false, "inverses of parts that are exact");
   }
-  /// Of columns one behind the other.
+  /// y = A_pp^-1 r at the lambda of set_at(): r and y [rows x columns], rows as of apply_columns().
   virtual void apply_at(const std::complex<double>* /*r*/, std::complex<double>* /*y*/, std::ptrdiff_t /*rows*/,
                         int /*columns*/) {
     core::require(false, "inverses of parts that are exact");

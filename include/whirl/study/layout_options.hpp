@@ -13,7 +13,7 @@ struct LayoutOptions {
   Machine machine = Machine::automatic;
   int shaft_freedoms = 20000;  ///< of the shaft before its reduction; other systems: half their states
   int film_states = 3000;      ///< of all films together
-  double cycle_memory = 4e9;   ///< of the intervals of a cycle on whole machines by collocation at Radau points [byte]
+  double cycle_memory = 4e9;   ///< of a cycle's intervals, up to which films that fill and empty are whole [byte]
   int refined_states = 4000;   ///< of all films together, up to which bars are computed on finer meshes too
 };
 [[nodiscard]] std::span<const deck::Name<LayoutOptions::Machine>> names(LayoutOptions::Machine);

@@ -1,6 +1,6 @@
 #include "whirl/solve/bifurcation/nearest_eigenvalues.hpp"
 
-#include "solve/newton/pencil.hpp"
+#include "solve/cycle/pencil.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "solve/cycle/pencil.hpp"
 #include "solve/cycle/time_modes.hpp"
-#include "solve/newton/pencil.hpp"
 #include "whirl/core/shell.hpp"
 #include "whirl/solve/cycle/composition.hpp"
 

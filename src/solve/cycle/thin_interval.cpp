@@ -1,8 +1,8 @@
 #include <Eigen/LU>
 #include <optional>
 
+#include "solve/cycle/pencil.hpp"
 #include "solve/cycle/time_modes.hpp"
-#include "solve/newton/pencil.hpp"
 #include "whirl/solve/cycle/interval.hpp"
 
 namespace whirl::solve {

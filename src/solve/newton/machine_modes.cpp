@@ -80,9 +80,10 @@ MachineModes whole_modes(problem::System& system, Vec x, spectral::EigenOptions 
     double farthest = 0;
     for (const spectral::Mode& m : out.modes) farthest = std::max(farthest, std::abs(m.lambda - options.target));
     if (wanted.frequency > 0 && farthest > wanted.frequency) return out;
-    out.gave_up = k + 1 == most_searches || 2 * options.count > system.size();
+    if (options.count >= system.size()) return out;
+    out.gave_up = k + 1 == most_searches;
     if (out.gave_up) return out;
-    options.count *= 2;
+    options.count = std::min<int>(2 * options.count, system.size());
   }
 }
 

@@ -43,9 +43,6 @@ public:
   /// side and of the answer where there is a border.
   void solve(const ComplexVector& rhs, ComplexVector& x, std::complex<double>& corner);
   void solve_adjoint(const ComplexVector& rhs, ComplexVector& x, std::complex<double>& corner);
-  /// dF/dx and dF/d(dx/dt), scaled.
-  [[nodiscard]] Mat by_state() const { return jx_.get(); }
-  [[nodiscard]] Mat by_rate() const { return jd_.get(); }
   /// dF/d(dx/dt) v, scaled [n].
   [[nodiscard]] ComplexVector rates_times(const ComplexVector& v) const;
   [[nodiscard]] Eigen::Index size() const { return system_.size(); }

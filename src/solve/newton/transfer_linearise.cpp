@@ -127,12 +127,12 @@ bool TransferFunction::take_entries() {
   check(VecGetOwnershipRange(rest_.get(), &begin, nullptr));
   const Listed listed{*this, begin};
   const auto hub = static_cast<std::size_t>(hub_);
-  std::vector<char> used(2 * hub * parts_.size(), 0);
+  std::vector<unsigned char> used(2 * hub * parts_.size(), 0);
   listed([&](std::size_t part, Index at, Index row, Index column, std::size_t) {
     if (at < 0) return;
     used[(2 * part + (row < 0 ? 0 : 1)) * hub + static_cast<std::size_t>(row < 0 ? column : row)] = 1;
   });
-  MPI_Allreduce(MPI_IN_PLACE, used.data(), static_cast<int>(used.size()), MPI_CHAR, MPI_MAX, comm());
+  MPI_Allreduce(MPI_IN_PLACE, used.data(), static_cast<int>(used.size()), MPI_UNSIGNED_CHAR, MPI_MAX, comm());
   std::vector<Index> place(used.size(), -1);  // among the ports of its part
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (k % hub == 0) (k / hub % 2 == 0 ? ports_[k / hub / 2].seen : ports_[k / hub / 2].forces).clear();

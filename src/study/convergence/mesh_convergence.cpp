@@ -79,10 +79,12 @@ StudyResult MeshConvergence::run(Context& context) {
     throw core::NotConverged(
         fmt::format("the results of '{}' hold no bifurcations to start from: compute it again", options.of));
   const EquilibriumBranch* const rest = equilibria_called(context, options.of);
-  // Cycles are read where they are wanted: on the machine of the deck.
-  const std::unique_ptr<Level> deck =
-      rest ? nullptr : std::make_unique<Level>(context, options_of(context, options.of), 0);
-  const std::vector<Located> all = rest ? read_located(of.group("located")) : deck->follower->read(of.group("located"));
+  const auto located = [&] {
+    if (rest) return read_located(of.group("located"));
+    // Cycles are read on the machine of the deck.
+    return Level(context, options_of(context, options.of), 0).follower->read(of.group("located"));
+  };
+  const std::vector<Located> all = located();
   std::vector<int> chosen = options.bifurcations;
   if (chosen.empty()) {
     chosen.resize(all.size());

@@ -1,7 +1,6 @@
 #pragma once
 // Linear response to harmonic forcing.
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -9,28 +8,28 @@
 
 namespace whirl::solve {
 
-class Pencil;
+class EliminatedResponse;
 class ShiftedSystem;
 
 /// Solves (dF/dx + i omega dF/d(dx/dt)) z = b for the complex amplitude z of x = Re(z exp(i omega t)).
 ///
-/// On one rank by a Pencil of one frequency, analysed anew only where the nonzeros change, and refinement for what it
-/// loses without row exchanges. On several ranks, and where that does not come to rounding, by a ShiftedSystem.
+/// On one rank the kinematic equations q' = v are eliminated exactly and the rest is factorised as a complex sparse
+/// matrix, analysed once. On several ranks it is a ShiftedSystem.
 class FrequencyResponse {
 public:
   explicit FrequencyResponse(problem::System& system);
   ~FrequencyResponse();
   /// `right` and `amplitude` [2 x local size]: real and imaginary part of each local entry in turn, SI. Linearised at
-  /// the equilibrium x. Collective; throws core::NotConverged if the matrix is singular.
+  /// the equilibrium x. Collective.
   void solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
 
 private:
-  [[nodiscard]] bool solve_by_pencil(double omega, const double* right, double* amplitude);
-  struct Copy;
-  std::unique_ptr<ShiftedSystem> shifted_;
-  // On one rank, of dF/dx and dF/d(dx/dt).
-  std::unique_ptr<Pencil> pencil_;
-  std::unique_ptr<std::array<Copy, 2>> copies_;
+  void solve_shifted(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
+  problem::System& system_;
+  core::Vector rest_, state_scale_, residual_scale_;
+  core::Matrix jx_, jd_;
+  std::unique_ptr<EliminatedResponse> eliminated_;  // on one rank
+  std::unique_ptr<ShiftedSystem> shifted_;          // on several
 };
 
 }  // namespace whirl::solve

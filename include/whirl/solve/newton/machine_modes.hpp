@@ -18,13 +18,13 @@ struct MachineModes {
   // Of a search by transfer functions: the region [rad/s, 1/s] and how many eigenvalues it holds, both of each pair.
   double frequency = 0, decay = 0;
   int counted = 0;
-  bool gave_up = false;  ///< there are fewer than Wanted::at_least, and a longer search might find more
+  bool gave_up = false;  ///< fewer than Wanted::at_least were found, and a longer search might find more
 };
 
 /// What a search is for.
 struct Wanted {
   double frequency = 0;  ///< [rad/s] up to which vibration matters; zero: as the speed and `at_least` ask
-  int at_least = 1;      ///< pairs of eigenvalues that vibrate and count, without a frequency
+  int at_least = 1;      ///< pairs that vibrate and count, after which a search without a region may end
   std::function<bool(const spectral::Mode&)> counts;  ///< absent: all do, and one search on the whole pencil will do
 };
 

@@ -1,4 +1,4 @@
-#include "solve/newton/pencil.hpp"
+#include "solve/cycle/pencil.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
