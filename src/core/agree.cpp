@@ -1,5 +1,7 @@
 #include "whirl/core/agree.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
@@ -122,7 +124,10 @@ void lead(MPI_Comm comm, int leader, const std::function<void(const std::functio
 }
 
 void share(MPI_Comm comm, double* values, std::size_t count) {
-  MPI_Bcast(values, static_cast<int>(count), MPI_DOUBLE, 0, comm);
+  // MPI counts in int.
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  for (std::size_t done = 0; done < count; done += most)
+    MPI_Bcast(values + done, static_cast<int>(std::min(count - done, most)), MPI_DOUBLE, 0, comm);
 }
 
 bool is_agreed(const std::exception_ptr& e) {

@@ -97,7 +97,7 @@ void BandedPad::integrate(Need need, Response& response) {
   for (int f = 0; f < 4; ++f) response.force[static_cast<std::size_t>(f)] += force[f];
 }
 
-void BandedPad::adjoint(const Motion& motion, Response& response) {
+void BandedPad::adjoint(const JournalMotion& motion, Response& response) {
   for (std::size_t k = 0; k < load_.size(); ++k) {
     if (cavitated_[k]) load_[k] = Quad::zero();
   }
@@ -179,7 +179,7 @@ void BandedPad::adjoint(const Motion& motion, Response& response) {
   }
 }
 
-void BandedPad::add(const Motion& motion, Need need, Response& response) {
+void BandedPad::add(const JournalMotion& motion, Need need, Response& response) {
   if (solved_ != motion) {
     solved_.reset();
     coefficients(motion);
@@ -201,7 +201,7 @@ void BandedPad::start_from(const PadSolver& other) {
   full_ = pad->full_;
 }
 
-std::vector<double> BandedPad::pressure(const Motion& motion) {
+std::vector<double> BandedPad::pressure(const JournalMotion& motion) {
   solved_.reset();
   coefficients(motion);
   solve();
@@ -218,7 +218,7 @@ std::vector<double> BandedPad::pressure(const Motion& motion) {
   return values;
 }
 
-std::vector<double> BandedPad::fill(const Motion& motion) {
+std::vector<double> BandedPad::fill(const JournalMotion& motion) {
   if (cavitation_ != Reynolds::Cavitation::mass_conserving) return {};
   Response ignored;
   add(motion, Need::force, ignored);

@@ -18,11 +18,11 @@ namespace whirl::film {
 class BandedPad final : public PadSolver, private PadEquations {
 public:
   BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
-  void add(const Motion& motion, Need need, Response& response) override;
+  void add(const JournalMotion& motion, Need need, Response& response) override;
   void start_from(const PadSolver& other) override;
-  std::vector<double> pressure(const Motion& motion) override;
-  std::vector<double> fill(const Motion& motion) override;
-  std::optional<Flows> flows(const Motion& motion) override;
+  std::vector<double> pressure(const JournalMotion& motion) override;
+  std::vector<double> fill(const JournalMotion& motion) override;
+  std::optional<Flows> flows(const JournalMotion& motion) override;
   /// Factorisations so far.
   [[nodiscard]] long factorisations() const { return factorisations_; }
 
@@ -30,7 +30,7 @@ private:
   void assemble();
   void solve();
   void integrate(Need need, Response& response);
-  void adjoint(const Motion& motion, Response& response);
+  void adjoint(const JournalMotion& motion, Response& response);
   void solve_ruptured();
   void factor_ruptured();
   void enter_ruptured();
@@ -79,7 +79,7 @@ private:
   int mark_ = 0;        // rows from here on change while the rupture moves (Band::factor)
   bool stale_ = false;  // the rupture has moved since band_ was factorised
   // What x_ and band_ belong to: solvers ask for the force first, then for the tangents at the same place.
-  std::optional<Motion> solved_;
+  std::optional<JournalMotion> solved_;
 };
 
 }  // namespace whirl::film

@@ -46,7 +46,7 @@ Share CompliantFilm::share(int begin, int end) const {
   return out;
 }
 
-void CompliantFilm::set(const Motion& motion, std::span<const double> states, std::span<const double> rates) {
+void CompliantFilm::set(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates) {
   const double per_clearance = 1.0 / g_.clearance, x = motion.position[0] * per_clearance,
                y = motion.position[1] * per_clearance;
   double* h = around(h_);
@@ -240,7 +240,7 @@ void CompliantFilm::by_journal(StateResponse& response) const {
   }
 }
 
-void CompliantFilm::evaluate(const Motion& motion, const Share& share, std::span<const double> states,
+void CompliantFilm::evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
                              std::span<const double> rates, Need need, StateResponse& response) {
   set(motion, states, rates);
   resize(share, need, response);

@@ -93,22 +93,22 @@ public:
   }
   /// The thickness over a liner whose deflection stays.
   [[nodiscard]] PortColumns carried_rates() const final;
-  [[nodiscard]] double least_thickness(const Motion& /*motion*/, std::span<const double> states) final {
+  [[nodiscard]] double least_thickness(const JournalMotion& /*motion*/, std::span<const double> states) final {
     return *std::min_element(states.begin(), states.end());
   }
 
 protected:
   /// Thickness over an undeflected liner at node k around the bearing, in clearances.
-  [[nodiscard]] double rigid(const Motion& m, int k) const {
+  [[nodiscard]] double rigid(const JournalMotion& m, int k) const {
     return 1.0 - (m.position[0] * ring_.cosine(k) + m.position[1] * ring_.sine(k)) / g_.clearance;
   }
   /// For reports, which know no rates: those at which g(motion, s, s') = 0, which is linear in them, if the force
   /// depends on them.
-  [[nodiscard]] std::vector<double> settled_rates(const Motion& motion, std::span<const double> states);
+  [[nodiscard]] std::vector<double> settled_rates(const JournalMotion& motion, std::span<const double> states);
   /// Sizes for the rows of a share; derivatives only if they are wanted.
   void resize(const Share& share, Need need, StateResponse& response) const;
   /// Of an empty film on a mesh of `along` nodes along it: theta, z, pressure and thickness.
-  [[nodiscard]] std::array<Field, 4> empty_fields(std::size_t along) const;
+  [[nodiscard]] std::array<NodalField, 4> empty_fields(std::size_t along) const;
 
   Geometry g_;
   double viscosity_;

@@ -64,16 +64,16 @@ public:
   // It is not cut: its loops run once around.
   [[nodiscard]] int cut(int near) const override { return 2 * near < states_ ? 0 : states_; }
   [[nodiscard]] Share share(int begin, int end) const override;
-  void unloaded(const Motion& motion, std::span<double> states) const override {
+  void unloaded(const JournalMotion& motion, std::span<double> states) const override {
     for (int k = 0; k < n_; ++k)
       if (!fixed(k)) states[index(k)] = rigid(motion, k) * g_.clearance;
   }
-  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
-                Need need, StateResponse& response) override;
-  void resample(const Motion& motion, const Film& other, std::span<const double> from,
+  void evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
+                std::span<const double> rates, Need need, StateResponse& response) override;
+  void resample(const JournalMotion& motion, const Film& other, std::span<const double> from,
                 std::span<double> to) const override;
-  Summary summary(const Motion& motion, std::span<const double> states) override;
-  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
+  FilmReport summary(const JournalMotion& motion, std::span<const double> states) override;
+  std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> states) override;
 
 private:
   // Neighbouring nodes that are neighbouring states.
@@ -89,7 +89,7 @@ private:
   [[nodiscard]] bool fixed(int k) const { return state_[at(k)] < 0; }
   [[nodiscard]] std::size_t index(int k) const { return at(state_[at(k)]); }
   void place(const std::vector<bool>& fixed);
-  void set(const Motion& motion, std::span<const double> states, std::span<const double> rates);
+  void set(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates);
   void slopes();
   void integrate(Need need, StateResponse& response);
   void faces();

@@ -84,7 +84,7 @@ CompliantModel::CompliantModel(const Geometry& geometry, const Compliant& option
       neighbours_(options.differences),
       ring_(options.cells[0], options.quadrature) {}
 
-std::vector<double> CompliantModel::settled_rates(const Motion& motion, std::span<const double> states) {
+std::vector<double> CompliantModel::settled_rates(const JournalMotion& motion, std::span<const double> states) {
   const auto n = static_cast<Eigen::Index>(states.size());
   std::vector<double> rates(states.size(), 0.0);
   if (constant_rates()) return rates;
@@ -106,7 +106,7 @@ PortColumns CompliantModel::carried_rates() const {
   std::vector<double> centred(states());
   unloaded({}, centred);
   for (std::size_t port = 0; port < ports().size(); ++port) {
-    Motion moved;
+    JournalMotion moved;
     moved.position[port] = g_.clearance;
     std::vector<double>& column = out.emplace_back(states());
     unloaded(moved, column);
@@ -131,13 +131,14 @@ void CompliantModel::resize(const Share& share, Need need, StateResponse& respon
   for (std::vector<double>& column : response.d_velocity) column.assign(n, 0.0);
 }
 
-std::array<Field, 4> CompliantModel::empty_fields(std::size_t along) const {
+std::array<NodalField, 4> CompliantModel::empty_fields(std::size_t along) const {
   const std::size_t around = static_cast<std::size_t>(ring_.nodes()) + 1;
-  Field theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
+  NodalField theta{0, "theta", "rad", {around}, {}}, z{0, "z", "m", {along}, {}};
   for (int k = 0; k <= ring_.nodes(); ++k) theta.values.push_back(ring_.angle(k));
   for (std::size_t j = 0; j < along; ++j)
     z.values.push_back(g_.length * (static_cast<double>(j) / static_cast<double>(along - 1) - 0.5));
-  return {theta, z, Field{0, "pressure", "Pa", {around, along}, {}}, Field{0, "thickness", "m", {around, along}, {}}};
+  return {theta, z, NodalField{0, "pressure", "Pa", {around, along}, {}},
+          NodalField{0, "thickness", "m", {around, along}, {}}};
 }
 
 RingQuadrature::RingQuadrature(int n, Compliant::Quadrature rule)

@@ -12,7 +12,8 @@ namespace whirl::film {
 using core::at;
 using Array = Eigen::Map<const Eigen::ArrayXd>;
 
-void FiniteFilm::set(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates) {
+void FiniteFilm::set(const JournalMotion& motion, Lines part, std::span<const double> states,
+                     std::span<const double> rates) {
   const int rows = part.count() + 2 * reach(), first = part.begin - reach();
   core::require(states.size() == at(rows * inner()), "lines of a film with their neighbours");
   const std::size_t n = at(inner());
@@ -49,7 +50,7 @@ void FiniteFilm::set(const Motion& motion, Lines part, std::span<const double> s
 }
 
 // For reports.
-void FiniteFilm::set_settled(const Motion& motion, std::span<const double> states) {
+void FiniteFilm::set_settled(const JournalMotion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
   const std::vector<double> rates = settled_rates(motion, states);
   set(motion, all, seen_of(whole(), states), seen_of(whole(), rates));
@@ -160,7 +161,7 @@ void FiniteFilm::add_edges(int line, const LinerLaw::Edge& edge, Need need, Resp
   }
 }
 
-void FiniteFilm::rows(Lines part, const Motion& motion, std::span<const double> rates, Need need,
+void FiniteFilm::rows(Lines part, const JournalMotion& motion, std::span<const double> rates, Need need,
                       StateResponse& response) {
   around_.set(by_step_, node(1, 0), h_, carried_.p, need);
   along_.set(by_length_, 1, h_, carried_.p, need);
@@ -179,7 +180,7 @@ void FiniteFilm::rows(Lines part, const Motion& motion, std::span<const double> 
 }
 
 // A line in a groove.
-void FiniteFilm::hold(int i, int rows, int line, const Motion& motion, const double* rates, Need need,
+void FiniteFilm::hold(int i, int rows, int line, const JournalMotion& motion, const double* rates, Need need,
                       StateResponse& response) const {
   const std::size_t begin = at(i * inner()), n = at(inner());
   const double moved = away(motion, line), r = rigid(motion, line), *h = &h_[node(i + reach(), 1)];
@@ -302,7 +303,7 @@ std::unique_ptr<StatePreconditioner> FiniteFilm::preconditioner(MPI_Comm comm, c
   return std::make_unique<RingPreconditioner>(comm, ring_.nodes(), inner(), here);
 }
 
-void FiniteFilm::evaluate(const Motion& motion, const Share& share, std::span<const double> states,
+void FiniteFilm::evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
                           std::span<const double> rates, Need need, StateResponse& response) {
   const Lines part{share.begin / inner(), share.end / inner()};
   set(motion, part, states, rates);

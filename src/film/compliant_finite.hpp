@@ -72,16 +72,16 @@ public:
   [[nodiscard]] int cut(int near) const override { return (near + inner() / 2) / inner() * inner(); }
   [[nodiscard]] Share share(int begin, int end) const override;
   [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override;
-  void unloaded(const Motion& motion, std::span<double> states) const override {
+  void unloaded(const JournalMotion& motion, std::span<double> states) const override {
     for (int i = 0; i < ring_.nodes(); ++i)
       std::fill_n(states.begin() + i * inner(), inner(), rigid(motion, i) * g_.clearance);
   }
-  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
-                Need need, StateResponse& response) override;
-  void resample(const Motion& motion, const Film& other, std::span<const double> from,
+  void evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
+                std::span<const double> rates, Need need, StateResponse& response) override;
+  void resample(const JournalMotion& motion, const Film& other, std::span<const double> from,
                 std::span<double> to) const override;
-  Summary summary(const Motion& motion, std::span<const double> states) override;
-  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
+  FilmReport summary(const JournalMotion& motion, std::span<const double> states) override;
+  std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> states) override;
 
 private:
   [[nodiscard]] int inner() const { return cells_ - 1; }
@@ -89,19 +89,19 @@ private:
   [[nodiscard]] bool fixed(int line) const { return fixed_[ring_.index(line)]; }
   [[nodiscard]] std::array<double, 2> normal(int line) const { return {ring_.cosine(line), ring_.sine(line)}; }
   // Velocity of the journal away from a line.
-  [[nodiscard]] double away(const Motion& m, int line) const {
+  [[nodiscard]] double away(const JournalMotion& m, int line) const {
     return m.velocity[0] * ring_.cosine(line) + m.velocity[1] * ring_.sine(line);
   }
   // Node j (0 and `cells_` on the edges) of the line at `row` of the work space.
   [[nodiscard]] std::size_t node(int row, int j) const { return core::at(row * (cells_ + 1) + j); }
-  void set(const Motion& motion, Lines part, std::span<const double> states, std::span<const double> rates);
-  void set_settled(const Motion& motion, std::span<const double> states);
+  void set(const JournalMotion& motion, Lines part, std::span<const double> states, std::span<const double> rates);
+  void set_settled(const JournalMotion& motion, std::span<const double> states);
   void slopes(Lines part);
   void integrate(Lines part, Need need, StateResponse& response);
   void add_edges(int line, const LinerLaw::Edge& edge, Need need, Response& out) const;
-  void rows(Lines part, const Motion& motion, std::span<const double> rates, Need need, StateResponse& response);
+  void rows(Lines part, const JournalMotion& motion, std::span<const double> rates, Need need, StateResponse& response);
   // Row i of the lines at hand; of all together there are `rows`.
-  void hold(int i, int rows, int line, const Motion& motion, const double* rates, Need need,
+  void hold(int i, int rows, int line, const JournalMotion& motion, const double* rates, Need need,
             StateResponse& response) const;
   void residual(int i, double speed, const double* rates, double* g) const;
   void by_states(int i, int rows, double speed, StateResponse& response) const;

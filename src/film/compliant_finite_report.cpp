@@ -10,7 +10,7 @@ namespace whirl::film {
 using core::at;
 
 // Deflections, periodic around and zero at the edges, are interpolated linearly in both directions.
-void FiniteFilm::resample(const Motion& motion, const Film& other, std::span<const double> from,
+void FiniteFilm::resample(const JournalMotion& motion, const Film& other, std::span<const double> from,
                           std::span<double> to) const {
   const auto* mesh = dynamic_cast<const FiniteFilm*>(&other);
   core::require(mesh != nullptr && from.size() == mesh->states(), "states of another film of finite length");
@@ -37,10 +37,10 @@ void FiniteFilm::resample(const Motion& motion, const Film& other, std::span<con
 
 // Side flow (H^3/12 mu) dp/dz through both edges with one-sided slopes of second order; friction mu U/H on the whole
 // circumference and half the pressure flow, -U/(2 R) int p dH/dtheta.
-Summary FiniteFilm::summary(const Motion& motion, std::span<const double> states) {
+FilmReport FiniteFilm::summary(const JournalMotion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
   set_settled(motion, states);
-  Summary s;
+  FilmReport s;
   s.min_thickness = g_.clearance * *std::min_element(h_.begin(), h_.end());
   const double U = motion.speed * g_.radius, area = ring_.step() * g_.radius * g_.length / cells_;
   const std::size_t stride = node(1, 0);
@@ -61,7 +61,7 @@ Summary FiniteFilm::summary(const Motion& motion, std::span<const double> states
   return s;
 }
 
-std::vector<Field> FiniteFilm::fields(const Motion& motion, std::span<const double> states) {
+std::vector<NodalField> FiniteFilm::fields(const JournalMotion& motion, std::span<const double> states) {
   const Lines all{0, ring_.nodes()};
   set_settled(motion, states);
   auto [theta, z, pressure, h] = empty_fields(at(cells_ + 1));

@@ -7,7 +7,7 @@
 namespace whirl::film {
 
 // Deflections, which are periodic and zero in grooves, are interpolated linearly.
-void CompliantFilm::resample(const Motion& motion, const Film& other, std::span<const double> from,
+void CompliantFilm::resample(const JournalMotion& motion, const Film& other, std::span<const double> from,
                              std::span<double> to) const {
   const auto* mesh = dynamic_cast<const CompliantFilm*>(&other);
   core::require(mesh != nullptr && from.size() == mesh->states(), "states of another short or long film");
@@ -25,9 +25,9 @@ void CompliantFilm::resample(const Motion& motion, const Film& other, std::span<
 
 // Side flow of a short film from its parabola, (H^3/12 mu) 6 p/L out of each side; friction mu U/H on the whole
 // circumference and half the pressure flow, -U/(2 R) int p dH/dtheta.
-Summary CompliantFilm::summary(const Motion& motion, std::span<const double> states) {
+FilmReport CompliantFilm::summary(const JournalMotion& motion, std::span<const double> states) {
   set(motion, states, settled_rates(motion, states));
-  Summary s;
+  FilmReport s;
   s.min_thickness = g_.clearance * least_;
   const double U = motion.speed * g_.radius, *P = around(carried_.p), *H = around(h_);
   for (int k = 0; k < n_; ++k) {
@@ -40,7 +40,7 @@ Summary CompliantFilm::summary(const Motion& motion, std::span<const double> sta
   return s;
 }
 
-std::vector<Field> CompliantFilm::fields(const Motion& motion, std::span<const double> states) {
+std::vector<NodalField> CompliantFilm::fields(const JournalMotion& motion, std::span<const double> states) {
   set(motion, states, settled_rates(motion, states));
   auto [theta, z, pressure, h] = empty_fields(long_ ? 2 : 17);
   for (int k = 0; k <= n_; ++k)

@@ -20,7 +20,7 @@ std::vector<double> Condensed::carried(const std::array<double, 4>& by) const {
   return out;
 }
 
-bool Condensed::attempt(const Motion& motion, std::vector<double> states) {
+bool Condensed::attempt(const JournalMotion& motion, std::vector<double> states) {
   there_ = false;
   try {
     steady_.solve(motion, carried(motion.velocity), Steady::Until::same_force, states);
@@ -37,7 +37,7 @@ bool Condensed::attempt(const Motion& motion, std::vector<double> states) {
 }
 
 // From the last states, with what the film remembers carried along.
-bool Condensed::follow(const Motion& motion) {
+bool Condensed::follow(const JournalMotion& motion) {
   std::array<double, 4> moved{};
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = motion.position[i] - found_->position[i];
   std::vector<double> states = carried(moved);
@@ -45,7 +45,7 @@ bool Condensed::follow(const Motion& motion) {
   return attempt(motion, std::move(states));
 }
 
-bool Condensed::start_anew(const Motion& motion) {
+bool Condensed::start_anew(const JournalMotion& motion) {
   std::vector<double> states(film_->states());
   film_->unloaded(motion, states);
   return attempt(motion, std::move(states));
@@ -53,20 +53,20 @@ bool Condensed::start_anew(const Motion& motion) {
 
 // A journal that has gone deep into a liner is reached from the centre of the bearing by steps; the same steps from the
 // same centre, so that the way there does not show.
-void Condensed::solve(const Motion& motion) {
+void Condensed::solve(const JournalMotion& motion) {
   if (there_ && *found_ == motion) return;
   if ((found_ && follow(motion)) || start_anew(motion)) return;
   const std::exception_ptr reason = reason_;
-  const std::optional<Motion> before = found_;
+  const std::optional<JournalMotion> before = found_;
   const std::vector<double> states = states_;
-  Motion centred;
+  JournalMotion centred;
   centred.speed = motion.speed;
   if (!carried_rates_.empty() && start_anew(centred)) {
     constexpr double shortest = 1.0 / 64;
     double reached = 0.0;
     for (double step = 0.5; reached < 1.0 && step >= shortest;) {
       const double next = std::min(1.0, reached + step);
-      Motion way = motion;
+      JournalMotion way = motion;
       for (std::size_t i = 0; i < 4; ++i) {
         way.position[i] *= next;
         way.velocity[i] *= next;
@@ -89,7 +89,7 @@ void Condensed::solve(const Motion& motion) {
   }
 }
 
-void Condensed::evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                          std::span<const double> /*rates*/, Need need, StateResponse& all) {
   solve(motion);
   const StateResponse& at = steady_.here();
@@ -122,19 +122,19 @@ void Condensed::evaluate(const Motion& motion, const Share& /*share*/, std::span
   }
 }
 
-Summary Condensed::summary(const Motion& motion, std::span<const double> /*states*/) {
+FilmReport Condensed::summary(const JournalMotion& motion, std::span<const double> /*states*/) {
   solve(motion);
   there_ = false;  // the film is asked on its own from here on
   return film_->summary(motion, states_);
 }
 
-std::vector<Field> Condensed::fields(const Motion& motion, std::span<const double> /*states*/) {
+std::vector<NodalField> Condensed::fields(const JournalMotion& motion, std::span<const double> /*states*/) {
   solve(motion);
   there_ = false;
   return film_->fields(motion, states_);
 }
 
-double Condensed::least_thickness(const Motion& motion, std::span<const double> /*states*/) {
+double Condensed::least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) {
   solve(motion);
   return film_->least_thickness(motion, states_);
 }

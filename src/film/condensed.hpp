@@ -23,27 +23,27 @@ public:
   explicit Condensed(std::unique_ptr<Film> film);
   [[nodiscard]] std::span<const Port> ports() const override { return film_->ports(); }
   using Film::evaluate;
-  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
-                Need need, StateResponse& response) override;
-  Summary summary(const Motion& motion, std::span<const double> states) override;
-  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
-  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> states) override;
+  void evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
+                std::span<const double> rates, Need need, StateResponse& response) override;
+  FilmReport summary(const JournalMotion& motion, std::span<const double> states) override;
+  std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> states) override;
+  [[nodiscard]] double least_thickness(const JournalMotion& motion, std::span<const double> states) override;
   void start_from(const Film& other) override;
   /// Factorisations so far.
   [[nodiscard]] long factorisations() const { return steady_.factorisations(); }
 
 private:
-  void solve(const Motion& motion);
-  [[nodiscard]] bool follow(const Motion& motion);
-  [[nodiscard]] bool start_anew(const Motion& motion);
-  [[nodiscard]] bool attempt(const Motion& motion, std::vector<double> states);
+  void solve(const JournalMotion& motion);
+  [[nodiscard]] bool follow(const JournalMotion& motion);
+  [[nodiscard]] bool start_anew(const JournalMotion& motion);
+  [[nodiscard]] bool attempt(const JournalMotion& motion, std::vector<double> states);
   [[nodiscard]] std::vector<double> carried(const std::array<double, 4>& by) const;
 
   std::unique_ptr<Film> film_;
   PortColumns carried_rates_;
   Steady steady_;
   // The last motion whose states were found, and whether steady_ still stands there.
-  std::optional<Motion> found_;
+  std::optional<JournalMotion> found_;
   std::vector<double> states_;
   bool there_ = false;
   std::exception_ptr reason_;  // why the last attempt failed

@@ -34,7 +34,7 @@ public:
     return std::span(all_ports).first(options_.tilt ? 4 : 2);
   }
   [[nodiscard]] bool whole_steps() const override { return true; }
-  void unloaded(const Motion& /*motion*/, std::span<double> states) const override {
+  void unloaded(const JournalMotion& /*motion*/, std::span<double> states) const override {
     std::fill(states.begin(), states.end(), 0.0);
   }
 
@@ -52,8 +52,8 @@ public:
     return std::make_unique<StripInverse>(comm, share, line, strips, latest_);
   }
 
-  void evaluate(const Motion& motion, const Share& share, std::span<const double> states, std::span<const double> rates,
-                Need need, StateResponse& response) override {
+  void evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
+                std::span<const double> rates, Need need, StateResponse& response) override {
     if (at_hand_.share.begin != share.begin || at_hand_.share.end != share.end)
       at_hand_ = lay_out(share.begin, share.end);
     core::require(states.size() == share.seen.size() && rates.size() == states.size(), "what a share of a film sees");
@@ -74,7 +74,7 @@ public:
       solvers_[n]->evaluate(motion, at_hand_.pads[n], states, rates, need, response);
   }
 
-  void resample(const Motion& motion, const Film& other, std::span<const double> from,
+  void resample(const JournalMotion& motion, const Film& other, std::span<const double> from,
                 std::span<double> to) const override {
     const auto* mesh = dynamic_cast<const ContentFilm*>(&other);
     core::require(mesh != nullptr && from.size() == mesh->states_ && mesh->pads_.size() == pads_.size(),
@@ -84,15 +84,15 @@ public:
                             to.subspan(first_[n], solvers_[n]->states()));
   }
 
-  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) override {
+  [[nodiscard]] double least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) override {
     std::array<double, 4> position = motion.position;
     if (!options_.tilt) position[2] = position[3] = 0.0;
     return minimum_thickness(geometry_, position);
   }
-  Summary summary(const Motion& motion, std::span<const double> states) override {
+  FilmReport summary(const JournalMotion& motion, std::span<const double> states) override {
     return summarise(pads_, options_, lubricant_, motion, reports(motion, states));
   }
-  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override {
+  std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> states) override {
     return fields_of(pads_, options_, motion, 0.0, reports(motion, states));
   }
 
@@ -133,7 +133,7 @@ private:
   [[nodiscard]] std::span<const double> of(std::size_t pad, std::span<const double> all) const {
     return all.subspan(first_[pad], solvers_[pad]->states());
   }
-  std::vector<PadReport> reports(const Motion& motion, std::span<const double> states) {
+  std::vector<PadReport> reports(const JournalMotion& motion, std::span<const double> states) {
     std::vector<PadReport> out;
     for (std::size_t n = 0; n < pads_.size(); ++n) out.push_back(solvers_[n]->report(motion, of(n, states)));
     return out;

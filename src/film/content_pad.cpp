@@ -70,7 +70,7 @@ void ContentPad::read(int i, int j, const double* value) {
   }
 }
 
-void ContentPad::read(const Motion& motion, std::span<const double> q) {
+void ContentPad::read(const JournalMotion& motion, std::span<const double> q) {
   coefficients(motion);
   for (int i = 0; i <= grid_.n_theta; ++i)
     for (int j = 0; j < rows_; ++j) {
@@ -212,7 +212,7 @@ void ContentPad::integrate(int i, int k, Need need, StateResponse& response) con
 }
 
 // A column and its neighbours, in a wall or not, are read before the rows of the column are taken.
-void ContentPad::evaluate(const Motion& motion, const PadShare& share, std::span<const double> q,
+void ContentPad::evaluate(const JournalMotion& motion, const PadShare& share, std::span<const double> q,
                           std::span<const double> rates, Need need, StateResponse& response) {
   if (share.begin == share.end) return;
   conductances(motion);
@@ -252,7 +252,7 @@ void ContentPad::evaluate(const Motion& motion, const PadShare& share, std::span
     }
 }
 
-PadReport ContentPad::report(const Motion& motion, std::span<const double> q) {
+PadReport ContentPad::report(const JournalMotion& motion, std::span<const double> q) {
   read(motion, q);
   PadReport out;
   for (int i = 0; i <= grid_.n_theta; ++i)
@@ -268,7 +268,8 @@ PadReport ContentPad::report(const Motion& motion, std::span<const double> q) {
   return out;
 }
 
-void ContentPad::resample(const Motion& motion, ContentPad& other, std::span<const double> from, std::span<double> to) {
+void ContentPad::resample(const JournalMotion& motion, ContentPad& other, std::span<const double> from,
+                          std::span<double> to) {
   read(motion, to);  // for the thickness
   const PadReport there = other.report(motion, from);
   const auto place = [](double x, int cells) {

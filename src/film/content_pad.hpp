@@ -43,12 +43,12 @@ public:
   void add_places(int place, PadShare& share, Places& to) const;
   /// Adds force and derivatives of the force to `response.journal`, lowers its min_thickness, and fills the rows of
   /// this pad with their derivatives; q and rates are those seen.
-  void evaluate(const Motion& motion, const PadShare& share, std::span<const double> q, std::span<const double> rates,
-                Need need, StateResponse& response);
-  [[nodiscard]] PadReport report(const Motion& motion, std::span<const double> q);
+  void evaluate(const JournalMotion& motion, const PadShare& share, std::span<const double> q,
+                std::span<const double> rates, Need need, StateResponse& response);
+  [[nodiscard]] PadReport report(const JournalMotion& motion, std::span<const double> q);
   /// States `to` of this pad at which p and theta are those that `other`, the same pad on another mesh, has in `from`,
   /// interpolated linearly.
-  void resample(const Motion& motion, ContentPad& other, std::span<const double> from, std::span<double> to);
+  void resample(const JournalMotion& motion, ContentPad& other, std::span<const double> from, std::span<double> to);
 
 private:
   // At a node: mean thickness of its cell, which falls with the position of the journal along (cosine, sine); pressure
@@ -66,7 +66,7 @@ private:
     const Node* upstream = nullptr;  // null along the shaft
     double cosine = 0.0, sine = 0.0, z = 0.0;
   };
-  void read(const Motion& motion, std::span<const double> q);
+  void read(const JournalMotion& motion, std::span<const double> q);
   // Node of column i; its content, where it is a state.
   void read(int i, int j, const double* value);
   [[nodiscard]] std::array<Side, 4> sides(int i, int j) const;

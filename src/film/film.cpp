@@ -6,27 +6,10 @@
 
 #include "film/steady.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/film_matrix.hpp"
 
 namespace whirl::film {
-namespace {
-
 using Complex = std::complex<double>;
-
-template <class Scalar>
-using Sparse = Eigen::SparseMatrix<Scalar>;
-
-// dg/ds + sigma dg/ds'.
-template <class Scalar>
-Sparse<Scalar> matrix(const Share& all, const StateResponse& r, Scalar sigma) {
-  std::vector<Eigen::Triplet<Scalar>> entries;
-  for_entries(all, all.d_states, r.d_states, [&](int i, int j, double v) { entries.emplace_back(i, j, Scalar(v)); });
-  for_entries(all, all.d_rates, r.d_rates, [&](int i, int j, double v) { entries.emplace_back(i, j, sigma * v); });
-  Sparse<Scalar> m(all.rows(), all.rows());
-  m.setFromTriplets(entries.begin(), entries.end());
-  return m;
-}
-
-}  // namespace
 
 void StatePreconditioner::apply_transposed(std::span<const double> /*r*/, std::span<double> /*x*/) {
   core::require(false, "a preconditioner that is exact");
@@ -50,29 +33,29 @@ const Share& Film::whole() const {
   return *whole_;
 }
 
-void Film::evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates, Need need,
-                    StateResponse& response) {
+void Film::evaluate(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates,
+                    Need need, StateResponse& response) {
   core::require(states.size() == this->states() && rates.size() == states.size(), "states of a film");
   const Share& all = whole();
   if (all.seen.size() == states.size()) return evaluate(motion, all, states, rates, need, response);
   evaluate(motion, all, seen_of(all, states), seen_of(all, rates), need, response);
 }
 
-void Film::evaluate(const Motion& motion, Need need, Response& response) {
+void Film::evaluate(const JournalMotion& motion, Need need, Response& response) {
   core::require(states() == 0, "a film without states");
   StateResponse all;
   evaluate(motion, whole(), {}, {}, need, all);
   response = all.journal;
 }
 
-void relax(Film& film, const Motion& motion, std::vector<double>& states) {
+void relax(Film& film, const JournalMotion& motion, std::vector<double>& states) {
   if (film.states() == 0) return;
   const std::vector<double> rest(states.size(), 0.0);
   Steady(film).solve(motion, rest, Steady::Until::small_step, states);
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.
-Coefficients coefficients(Film& film, const Motion& motion, std::span<const double> states, double omega) {
+Coefficients coefficients(Film& film, const JournalMotion& motion, std::span<const double> states, double omega) {
   if (!(omega > 0.0)) throw core::InputError("film: the frequency of stiffness and damping must be positive");
   const std::vector<double> rest(states.size(), 0.0);
   StateResponse r;
@@ -86,8 +69,9 @@ Coefficients coefficients(Film& film, const Motion& motion, std::span<const doub
     }
     return out;
   }
-  Sparse<Complex> m = matrix(film.whole(), r, iw);
-  Eigen::SparseLU<Sparse<Complex>> lu(m);
+  const Share& all = film.whole();
+  FilmMatrix<Complex> matrix(all, all.d_states, &all.d_rates);
+  const Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(matrix.filled(r.d_states, r.d_rates, 1.0, iw));
   if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
   const auto n = static_cast<Eigen::Index>(states.size());
   const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };

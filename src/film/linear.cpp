@@ -11,7 +11,7 @@ class LinearFilm final : public Film {
 public:
   explicit LinearFilm(const Linear& options) : stiffness_(options.stiffness), damping_(options.damping) {}
 
-  void evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+  void evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                 std::span<const double> /*rates*/, Need need, StateResponse& all) override {
     Response& response = all.without_states();
     response.min_thickness = std::numeric_limits<double>::infinity();
@@ -24,11 +24,11 @@ public:
       }
     }
   }
-  Summary summary(const Motion&, std::span<const double>) override {
+  FilmReport summary(const JournalMotion&, std::span<const double>) override {
     return {.min_thickness = std::numeric_limits<double>::infinity()};
   }
-  std::vector<Field> fields(const Motion&, std::span<const double>) override { return {}; }
-  [[nodiscard]] double least_thickness(const Motion&, std::span<const double>) override {
+  std::vector<NodalField> fields(const JournalMotion&, std::span<const double>) override { return {}; }
+  [[nodiscard]] double least_thickness(const JournalMotion&, std::span<const double>) override {
     return std::numeric_limits<double>::infinity();
   }
 

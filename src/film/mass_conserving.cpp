@@ -171,7 +171,7 @@ void BandedPad::integrate_conserving(Need need, Response& response) {
 }
 
 // Film that is ruptured within a cell or cut off counts as it is written in the equations.
-std::optional<Flows> BandedPad::flows(const Motion& motion) {
+std::optional<Flows> BandedPad::flows(const JournalMotion& motion) {
   if (cavitation_ == Reynolds::Cavitation::half_sommerfeld) return {};
   Response ignored;
   solved_.reset();

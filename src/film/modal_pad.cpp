@@ -21,12 +21,12 @@ namespace {
 class ModalPad final : public PadSolver {
 public:
   ModalPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
-  void add(const Motion& motion, Need need, Response& response) override;
-  std::vector<double> pressure(const Motion& motion) override;
+  void add(const JournalMotion& motion, Need need, Response& response) override;
+  std::vector<double> pressure(const JournalMotion& motion) override;
 
 private:
   enum class Strip : unsigned char { full, empty, mixed };
-  void thickness(const Motion& motion);
+  void thickness(const JournalMotion& motion);
   void factor_and_solve();
   void synthesise();
   void truncate(bool gradient);
@@ -37,7 +37,7 @@ private:
   void analyse(const std::vector<Pack>& rows, Pack* modes) const;
   void integrate_mixed(std::size_t strip, bool gradient);
   void integrate_edge(Edge& edge, bool gradient);
-  void adjoint(const Motion& motion, Response& response);
+  void adjoint(const JournalMotion& motion, Response& response);
   double node(std::size_t i, std::size_t j) const { return scalars(p_)[i * stride_ + j]; }
 
   Pad pad_;
@@ -115,7 +115,7 @@ ModalPad::ModalPad(const Pad& pad, const Reynolds& options, const Lubricant& lub
   edges_[1] = {n_faces - 1, n_faces - 1, n_faces - 2, std::vector<Pack>(n_packs_, Pack::zero())};
 }
 
-void ModalPad::thickness(const Motion& motion) {
+void ModalPad::thickness(const JournalMotion& motion) {
   const int n = grid_.n_theta;
   X_ = motion.position[0] - pad_.centre_x;
   Y_ = motion.position[1] - pad_.centre_y;
@@ -256,7 +256,7 @@ void ModalPad::integrate_edge(Edge& edge, bool gradient) {
   strip_[edge.strip] = Strip::mixed;
 }
 
-void ModalPad::add(const Motion& motion, Need need, Response& response) {
+void ModalPad::add(const JournalMotion& motion, Need need, Response& response) {
   thickness(motion);
   factor_and_solve();
   truncate(need == Need::tangents);
@@ -285,7 +285,7 @@ void ModalPad::add(const Motion& motion, Need need, Response& response) {
   if (need == Need::tangents) adjoint(motion, response);
 }
 
-void ModalPad::adjoint(const Motion& motion, Response& response) {
+void ModalPad::adjoint(const JournalMotion& motion, Response& response) {
   const int n = grid_.n_theta;
   const auto nodes = static_cast<std::size_t>(n + 1);
   struct Sums {
@@ -350,7 +350,7 @@ void ModalPad::adjoint(const Motion& motion, Response& response) {
   }
 }
 
-std::vector<double> ModalPad::pressure(const Motion& motion) {
+std::vector<double> ModalPad::pressure(const JournalMotion& motion) {
   thickness(motion);
   factor_and_solve();
   synthesise();

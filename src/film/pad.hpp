@@ -65,15 +65,15 @@ public:
   PadSolver& operator=(const PadSolver&) = delete;
   virtual ~PadSolver() = default;
   /// Adds force and derivatives of this pad to `response` and lowers its min_thickness.
-  virtual void add(const Motion& motion, Need need, Response& response) = 0;
+  virtual void add(const JournalMotion& motion, Need need, Response& response) = 0;
   /// As Film::start_from().
   virtual void start_from(const PadSolver& /*other*/) {}
   /// Truncated nodal pressure [n_theta + 1][n_z + 1], Pa.
-  virtual std::vector<double> pressure(const Motion& motion) = 0;
+  virtual std::vector<double> pressure(const JournalMotion& motion) = 0;
   /// Part of the gap that is full of oil at the nodes [n_theta + 1][n_z + 1]; empty of a film that does not know it.
-  virtual std::vector<double> fill(const Motion& /*motion*/) { return {}; }
+  virtual std::vector<double> fill(const JournalMotion& /*motion*/) { return {}; }
   /// Flows of the discrete equations; empty if the pressure is cut off after the solution.
-  virtual std::optional<Flows> flows(const Motion& /*motion*/) { return {}; }
+  virtual std::optional<Flows> flows(const JournalMotion& /*motion*/) { return {}; }
 };
 
 /// Aligned pad without complementarity: sine modes along z, tridiagonal systems along theta.

@@ -32,12 +32,12 @@ PadEquations::PadEquations(const Pad& pad, const Reynolds& options, const Lubric
   groove_pressure_ = pressures_in_grooves(grid_.n_theta, options.grooves);
 }
 
-void PadEquations::coefficients(const Motion& motion) {
+void PadEquations::coefficients(const JournalMotion& motion) {
   conductances(motion);
   for (int i = first_; i < grid_.n_theta; ++i) source(motion, i);
 }
 
-void PadEquations::conductances(const Motion& motion) {
+void PadEquations::conductances(const JournalMotion& motion) {
   const int n = grid_.n_theta;
   speed_ = motion.speed;
   ahead_ = speed_ < 0.0 ? -1 : 1;
@@ -78,7 +78,7 @@ void PadEquations::conductances(const Motion& motion) {
 }
 
 // Exact cell means of (Omega/2) dh/dtheta + dh/dt.
-void PadEquations::source(const Motion& motion, int column) {
+void PadEquations::source(const JournalMotion& motion, int column) {
   const double txd = tilt_ ? motion.velocity[2] : 0.0, tyd = tilt_ ? motion.velocity[3] : 0.0, speed = motion.speed;
   const auto k = static_cast<std::size_t>(column);
   for (int j = 0; j < rows_; ++j) {

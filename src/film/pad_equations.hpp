@@ -26,10 +26,10 @@ struct PadEquations {
 
   PadEquations(const Pad& pad, const Reynolds& options, const Lubricant& lubricant);
   /// Coefficients and source at `motion`; throws core::DomainError unless the thickness is positive.
-  void coefficients(const Motion& motion);
+  void coefficients(const JournalMotion& motion);
   /// The coefficients alone, and then the source of one column of unknowns: for those who need only some of them.
-  void conductances(const Motion& motion);
-  void source(const Motion& motion, int column);
+  void conductances(const JournalMotion& motion);
+  void source(const JournalMotion& motion, int column);
   /// Flows of the equations with `pressure(i, j)` at nodes and `deficit(i, j)` = |Omega| (1 - fill) [rad/s], which the
   /// flow around the pad lacks downstream of a node. Volume flows through the faces next to the edges of the pad, in
   /// m^3/s, and out of holes; with the squeezed volume of the cells between them they sum to zero to rounding.

@@ -9,7 +9,7 @@
 namespace whirl::film {
 namespace {
 
-double thickness(const Pad& pad, const Reynolds& options, const Motion& motion, double theta, double z) {
+double thickness(const Pad& pad, const Reynolds& options, const JournalMotion& motion, double theta, double z) {
   const double tx = options.tilt ? motion.position[2] : 0.0, ty = options.tilt ? motion.position[3] : 0.0;
   return pad.clearance - (motion.position[0] + z * tx - pad.centre_x) * std::cos(theta) -
          (motion.position[1] + z * ty - pad.centre_y) * std::sin(theta);
@@ -23,9 +23,9 @@ double thickness(const Pad& pad, const Reynolds& options, const Motion& motion, 
 // A film that conserves its mass counts the flows of its own equations.
 // What enters is Couette flow U h/2 less the pressure's own around the pad, at its first edge in the direction of
 // rotation.
-Summary summarise(const std::vector<Pad>& pads, const Reynolds& options, const Lubricant& lubricant,
-                  const Motion& motion, const std::vector<PadReport>& reports) {
-  Summary result;
+FilmReport summarise(const std::vector<Pad>& pads, const Reynolds& options, const Lubricant& lubricant,
+                     const JournalMotion& motion, const std::vector<PadReport>& reports) {
+  FilmReport result;
   Flows total;
   bool known = true;
   result.inlet_flow = 0.0;
@@ -107,24 +107,24 @@ Summary summarise(const std::vector<Pad>& pads, const Reynolds& options, const L
   return result;
 }
 
-std::vector<Field> fields_of(const std::vector<Pad>& pads, const Reynolds& options, const Motion& motion, double turn,
-                             std::vector<PadReport> reports) {
-  std::vector<Field> all;
+std::vector<NodalField> fields_of(const std::vector<Pad>& pads, const Reynolds& options, const JournalMotion& motion,
+                                  double turn, std::vector<PadReport> reports) {
+  std::vector<NodalField> all;
   for (std::size_t n = 0; n < pads.size(); ++n) {
     const Pad& pad = pads[n];
     const Grid grid(pad, options.cells);
     const auto rows = static_cast<std::size_t>(grid.n_theta + 1), columns = static_cast<std::size_t>(grid.n_z + 1);
     const int index = static_cast<int>(n);
-    Field theta{index, "theta", "rad", {rows}, {}}, z{index, "z", "m", {columns}, {}};
-    Field pressure{index, "pressure", "Pa", {rows, columns}, std::move(reports[n].pressure)};
-    Field h{index, "thickness", "m", {rows, columns}, {}};
+    NodalField theta{index, "theta", "rad", {rows}, {}}, z{index, "z", "m", {columns}, {}};
+    NodalField pressure{index, "pressure", "Pa", {rows, columns}, std::move(reports[n].pressure)};
+    NodalField h{index, "thickness", "m", {rows, columns}, {}};
     for (int i = 0; i <= grid.n_theta; ++i) theta.values.push_back(pad.start + i * grid.dtheta);
     for (int j = 0; j <= grid.n_z; ++j) z.values.push_back(j * grid.dz - 0.5 * pad.length);
     for (double t : theta.values) {
       for (double at : z.values) h.values.push_back(thickness(pad, options, motion, t, at));
     }
     for (double& t : theta.values) t += turn;
-    for (Field* f : {&theta, &z, &pressure, &h}) all.push_back(std::move(*f));
+    for (NodalField* f : {&theta, &z, &pressure, &h}) all.push_back(std::move(*f));
     if (std::vector<double>& fill = reports[n].fill; !fill.empty())
       all.push_back({index, "fill", "1", {rows, columns}, std::move(fill)});
   }

@@ -16,11 +16,12 @@ struct PadReport {
 };
 
 /// Report quantities of all pads at `motion`, as these see it.
-[[nodiscard]] Summary summarise(const std::vector<Pad>& pads, const Reynolds& options, const Lubricant& lubricant,
-                                const Motion& motion, const std::vector<PadReport>& reports);
+[[nodiscard]] FilmReport summarise(const std::vector<Pad>& pads, const Reynolds& options, const Lubricant& lubricant,
+                                   const JournalMotion& motion, const std::vector<PadReport>& reports);
 
 /// Fields of all pads; `turn` [rad] is that of their frame against the bearing.
-[[nodiscard]] std::vector<Field> fields_of(const std::vector<Pad>& pads, const Reynolds& options, const Motion& motion,
-                                           double turn, std::vector<PadReport> reports);
+[[nodiscard]] std::vector<NodalField> fields_of(const std::vector<Pad>& pads, const Reynolds& options,
+                                                const JournalMotion& motion, double turn,
+                                                std::vector<PadReport> reports);
 
 }  // namespace whirl::film

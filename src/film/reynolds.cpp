@@ -84,7 +84,7 @@ public:
   [[nodiscard]] std::span<const Port> ports() const override {
     return std::span(all_ports).first(options_.tilt ? 4 : 2);
   }
-  void evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+  void evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                 std::span<const double> /*rates*/, Need need, StateResponse& all) override {
     Response& response = all.without_states();
     response.min_thickness = std::numeric_limits<double>::infinity();
@@ -102,15 +102,15 @@ public:
       solvers_[k]->start_from(*film->solvers_[k]);
   }
 
-  Summary summary(const Motion& motion, std::span<const double> /*states*/) override {
+  FilmReport summary(const JournalMotion& motion, std::span<const double> /*states*/) override {
     return summarise(pads_, options_, lubricant_, seen(motion), reports(motion));
   }
-  std::vector<Field> fields(const Motion& motion, std::span<const double> /*states*/) override {
+  std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> /*states*/) override {
     const double turn = turns() ? TurningFrame(motion, pads_.front().clearance).angle() : 0.0;
     return fields_of(pads_, options_, seen(motion), turn, reports(motion));
   }
 
-  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) override {
+  [[nodiscard]] double least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) override {
     std::array<double, 4> position = motion.position;
     if (!options_.tilt) position[2] = position[3] = 0.0;
     return minimum_thickness(geometry_, position);
@@ -119,11 +119,11 @@ public:
 private:
   [[nodiscard]] bool turns() const { return options_.inlet.type == Inlet::Type::maximum_gap; }
   // The motion seen by the pads.
-  [[nodiscard]] Motion seen(const Motion& motion) const {
+  [[nodiscard]] JournalMotion seen(const JournalMotion& motion) const {
     return turns() ? TurningFrame(motion, pads_.front().clearance).motion() : motion;
   }
-  std::vector<PadReport> reports(const Motion& given) {
-    const Motion motion = seen(given);
+  std::vector<PadReport> reports(const JournalMotion& given) {
+    const JournalMotion motion = seen(given);
     std::vector<PadReport> out;
     for (auto& solver : solvers_)
       out.push_back({solver->pressure(motion), solver->fill(motion), solver->flows(motion)});

@@ -25,7 +25,7 @@ public:
   }
 
   using Film::evaluate;
-  void evaluate(const Motion& motion, const Share& /*share*/, std::span<const double> /*states*/,
+  void evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                 std::span<const double> /*rates*/, Need need, StateResponse& all) override {
     Response& response = all.without_states();
     const auto [e, v] = state(motion);
@@ -42,9 +42,9 @@ public:
     }
   }
 
-  Summary summary(const Motion& motion, std::span<const double> states) override;
-  std::vector<Field> fields(const Motion& motion, std::span<const double> states) override;
-  [[nodiscard]] double least_thickness(const Motion& motion, std::span<const double> /*states*/) override {
+  FilmReport summary(const JournalMotion& motion, std::span<const double> states) override;
+  std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> states) override;
+  [[nodiscard]] double least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) override {
     return g_.clearance - std::hypot(motion.position[0], motion.position[1]);
   }
 
@@ -52,7 +52,7 @@ private:
   struct State {
     Pair eccentricity, squeeze;
   };
-  [[nodiscard]] State state(const Motion& m) const {
+  [[nodiscard]] State state(const JournalMotion& m) const {
     const Pair e = {m.position[0] / g_.clearance, m.position[1] / g_.clearance};
     return {e,
             {m.velocity[0] / g_.clearance + 0.5 * m.speed * e[1], m.velocity[1] / g_.clearance - 0.5 * m.speed * e[0]}};
@@ -70,11 +70,11 @@ private:
 // F_y
 // - e_y F_x)/(2 R)), r^2 = 1 - eps^2. Side flow of the short film: 2 R c L |v_s| (Ocvirk and DuBois 1953: R c L Omega
 // eps).
-Summary RigidFilm::summary(const Motion& motion, std::span<const double> /*states*/) {
+FilmReport RigidFilm::summary(const JournalMotion& motion, std::span<const double> /*states*/) {
   Response response;
   evaluate(motion, Need::force, response);
   const auto [e, v] = state(motion);
-  Summary s;
+  FilmReport s;
   s.min_thickness = response.min_thickness;
   const double U = motion.speed * g_.radius, r = std::sqrt(1.0 - e[0] * e[0] - e[1] * e[1]);
   s.power_loss =
@@ -104,14 +104,14 @@ Summary RigidFilm::summary(const Motion& motion, std::span<const double> /*state
   return s;
 }
 
-std::vector<Field> RigidFilm::fields(const Motion& motion, std::span<const double> /*states*/) {
+std::vector<NodalField> RigidFilm::fields(const JournalMotion& motion, std::span<const double> /*states*/) {
   if (!has_pressure()) return {};
   const auto [e, v] = state(motion);
   const bool is_short = kind_ == ClosedForm::short_bearing;
   constexpr std::size_t kAround = 181;
   const std::size_t along = is_short ? 17 : 2;
-  Field theta{0, "theta", "rad", {kAround}, {}}, z{0, "z", "m", {along}, {}};
-  Field pressure{0, "pressure", "Pa", {kAround, along}, {}}, h{0, "thickness", "m", {kAround, along}, {}};
+  NodalField theta{0, "theta", "rad", {kAround}, {}}, z{0, "z", "m", {along}, {}};
+  NodalField pressure{0, "pressure", "Pa", {kAround, along}, {}}, h{0, "thickness", "m", {kAround, along}, {}};
   for (std::size_t j = 0; j < along; ++j)
     z.values.push_back(g_.length * (static_cast<double>(j) / static_cast<double>(along - 1) - 0.5));
   for (std::size_t i = 0; i < kAround; ++i) {

@@ -18,34 +18,33 @@ Map view(const std::vector<double>& v) {
 
 }  // namespace
 
-Steady::Steady(Film& film) : film_(film) {
+Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_states) {
   const auto n = static_cast<Eigen::Index>(film.states());
   scale_.resize(n);
-  for (const StateField& f : film.state_fields()) scale_.segment(f.begin, f.end - f.begin).setConstant(f.scale);
-  std::vector<Eigen::Triplet<double>> entries;
-  for_entries(film.whole(), film.whole().d_states, {}, [&](int i, int j, double v) { entries.emplace_back(i, j, v); });
-  matrix_.resize(n, n);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-  for (const auto& e : entries) {
-    const int *begin = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[e.col()],
-              *end = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[e.col() + 1];
-    place_.push_back(static_cast<std::size_t>(std::lower_bound(begin, end, e.row()) - matrix_.innerIndexPtr()));
-  }
-  lu_.analyzePattern(matrix_);
+  row_weight_.resize(n);
+  const std::vector<StateField> fields = film.state_fields();
+  for (const StateField& f : fields)
+    f.each([&](int k) {
+      scale_(k) = f.scale;
+      row_weight_(k) = fields.front().row_scale() / f.row_scale();
+    });
+  lu_.analyzePattern(matrix_.pattern());
 }
 
 // Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the
 // set.
 void Steady::factor() {
   if (factored_ == here_.d_states) return;
-  double* const values = matrix_.valuePtr();
-  std::fill_n(values, matrix_.nonZeros(), 0.0);
-  for (std::size_t k = 0; k < place_.size(); ++k) values[place_[k]] += here_.d_states[k];
   factored_.clear();
-  lu_.factorize(matrix_);
+  lu_.factorize(matrix_.filled(here_.d_states));
   if (lu_.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
   factored_ = here_.d_states;
   ++factorisations_;
+}
+
+// Rows of several units in those of the first.
+double Steady::distance(const StateResponse& at) const {
+  return view(at.residual).cwiseProduct(row_weight_).norm();
 }
 
 // What a change of the states does to the forces, without what cancels.
@@ -58,7 +57,8 @@ std::array<double, 4> Steady::effect(const Eigen::VectorXd& step) const {
 
 // Converged by the step and not by the residual, whose rounding error grows with the square of the mesh. The last step
 // is taken, so that of a smooth film what is left is its square.
-void Steady::solve(const Motion& motion, std::span<const double> rates, Until until, std::vector<double>& states) {
+void Steady::solve(const JournalMotion& motion, std::span<const double> rates, Until until,
+                   std::vector<double>& states) {
   constexpr int most_steps = 60;
   constexpr double enough = 1e-10, not_felt = 1e-13;
   const auto n = static_cast<Eigen::Index>(states.size());
@@ -86,9 +86,7 @@ void Steady::solve(const Motion& motion, std::span<const double> rates, Until un
       } catch (const core::DomainError&) {
         continue;
       }
-      if (!last && !film_.whole_steps() &&
-          view(there_.residual).norm() > (1.0 - 1e-4 * damping) * view(here_.residual).norm())
-        continue;
+      if (!last && !film_.whole_steps() && distance(there_) > (1.0 - 1e-4 * damping) * distance(here_)) continue;
       std::swap(now, trial_);
       std::swap(here_, there_);
       break;

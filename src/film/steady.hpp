@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "whirl/film/film.hpp"
+#include "whirl/film/film_matrix.hpp"
 
 namespace whirl::film {
 
@@ -16,7 +17,7 @@ public:
   enum class Until { small_step, same_force };
   /// Finds the states from those given, which it leaves as they were if it throws core::NotConverged or
   /// core::DomainError.
-  void solve(const Motion& motion, std::span<const double> rates, Until until, std::vector<double>& states);
+  void solve(const JournalMotion& motion, std::span<const double> rates, Until until, std::vector<double>& states);
   /// What the film answered at the states found, with tangents; may be taken from.
   [[nodiscard]] StateResponse& here() { return here_; }
   /// x = (dg/ds)^-T b at the states found.
@@ -26,14 +27,14 @@ public:
 
 private:
   void factor();
+  [[nodiscard]] double distance(const StateResponse& at) const;
   [[nodiscard]] std::array<double, 4> effect(const Eigen::VectorXd& step) const;
 
   Film& film_;
-  Eigen::VectorXd scale_;
+  Eigen::VectorXd scale_, row_weight_;
   StateResponse here_, there_;
   std::vector<double> trial_;
-  Eigen::SparseMatrix<double> matrix_;
-  std::vector<std::size_t> place_;  // of each entry among the values of the matrix
+  FilmMatrix<double> matrix_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
   std::vector<double> factored_;  // dg/ds that lu_ belongs to
   long factorisations_ = 0;

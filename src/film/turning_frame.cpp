@@ -27,7 +27,7 @@ void turn(std::array<Four, 4>& m, double cosine, double sine) {
 
 }  // namespace
 
-TurningFrame::TurningFrame(const Motion& motion, double length)
+TurningFrame::TurningFrame(const JournalMotion& motion, double length)
     : eccentricity_(std::hypot(motion.position[0], motion.position[1])), centred_(eccentricity_ <= 1e-9 * length) {
   cosine_ = centred_ ? 0.0 : -motion.position[0] / eccentricity_;
   sine_ = centred_ ? 1.0 : -motion.position[1] / eccentricity_;

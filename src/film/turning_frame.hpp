@@ -18,16 +18,16 @@ namespace whirl::film {
 class TurningFrame {
 public:
   /// `length` [m]: a billionth of it counts as the centre.
-  TurningFrame(const Motion& motion, double length);
+  TurningFrame(const JournalMotion& motion, double length);
   /// The motion seen from the frame.
-  [[nodiscard]] const Motion& motion() const { return motion_; }
+  [[nodiscard]] const JournalMotion& motion() const { return motion_; }
   /// phi [rad]
   [[nodiscard]] double angle() const;
   /// Turns the response of the film seen from the frame into the axes of the bearing, with the turn's own derivative.
   void turn_back(Need need, Response& response) const;
 
 private:
-  Motion motion_;
+  JournalMotion motion_;
   double cosine_, sine_, eccentricity_;
   bool centred_;
 };

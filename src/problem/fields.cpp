@@ -4,19 +4,19 @@
 
 namespace whirl::problem {
 
-// A part has no quantity twice: one that comes again begins the next part, whatever that is called.
 std::vector<Field> parts_of(const std::vector<Field>& fields) {
   std::vector<Field> parts;
-  std::vector<std::string> quantities;
   for (const Field& f : fields) {
-    const bool again = std::find(quantities.begin(), quantities.end(), f.quantity) != quantities.end();
-    if (parts.empty() || parts.back().name != f.name || again) {
+    if (parts.empty() || parts.back().part != f.part) {
       parts.push_back(f);
-      quantities.clear();
+      parts.back().end = f.last();
+      parts.back().stride = 0;
+      parts.back().repeats = 1;
     } else {
-      parts.back() = {f.name, parts.back().begin, f.end};
+      const Field& p = parts.back();
+      parts.back() = {
+          .name = f.name, .begin = std::min(p.begin, f.begin), .end = std::max(p.end, f.last()), .part = f.part};
     }
-    quantities.push_back(f.quantity);
   }
   return parts;
 }

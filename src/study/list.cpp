@@ -1,4 +1,5 @@
 #include "whirl/study/bearing/bearing_map.hpp"
+#include "whirl/study/bearing/thd.hpp"
 #include "whirl/study/convergence/mesh_convergence.hpp"
 #include "whirl/study/cycle/cycle_branch.hpp"
 #include "whirl/study/equilibrium/alignment.hpp"
@@ -27,6 +28,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
   static const std::vector<deck::Kind<Study>> all{
       kind<Static>("where the journals sit in their films at one speed, loads, coefficients, film fields"),
       kind<BearingMap>("one bearing: impedance, locus, stiffness and damping over eccentricity, Routh's threshold"),
+      kind<Thd>("one film with heat: pressure, temperature in film and solids, power and heat over the speed"),
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),

@@ -38,12 +38,12 @@ void add_entries(Mat m, PetscInt rate, Entries& out) {
 
 }  // namespace
 
-RotorSystem::Blocks::Blocks(RotorSystem& system) : system_(system) {
+RotorSystem::MachineBlocks::MachineBlocks(RotorSystem& system) : system_(system) {
   rebuild();
   find_own_states();
 }
 
-void RotorSystem::Blocks::rebuild() {
+void RotorSystem::MachineBlocks::rebuild() {
   const RotorSystem& system = system_;
   const RotorPart::Matrices& m = system.hub_->matrices();
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
@@ -78,7 +78,7 @@ void RotorSystem::Blocks::rebuild() {
   l0_speed_ = -1;
 }
 
-void RotorSystem::Blocks::find_own_states() {
+void RotorSystem::MachineBlocks::find_own_states() {
   for (std::size_t i = 0; i < system_.bearings_.size(); ++i) {
     const FilmPart& part = *system_.bearings_[i].part;
     if (part.count() == 0) continue;
@@ -92,7 +92,7 @@ void RotorSystem::Blocks::find_own_states() {
   }
 }
 
-const problem::SparseBlock& RotorSystem::Blocks::l0() {
+const problem::SparseBlock& RotorSystem::MachineBlocks::l0() {
   if (l0_speed_ != system_.speed_) {
     l0_speed_ = system_.speed_;
     l0_ = l0_at_rest_ + l0_speed_ * gyroscopic_;
@@ -100,7 +100,7 @@ const problem::SparseBlock& RotorSystem::Blocks::l0() {
   return l0_;
 }
 
-void RotorSystem::Blocks::load(double angle, Eigen::VectorXd& load) {
+void RotorSystem::MachineBlocks::load(double angle, Eigen::VectorXd& load) {
   const RotorPart& hub = *system_.hub_;
   const auto [c, s] = RotorPart::unbalance_factors(system_.moment(angle, nullptr, nullptr));
   load.setZero(size());
@@ -137,8 +137,8 @@ void take(const film::StateResponse& response, const problem::OwnStates& at, Eig
 
 }  // namespace
 
-void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own, const double* rates, bool tangents,
-                                problem::Films& films) {
+void RotorSystem::MachineBlocks::films(const Eigen::VectorXd& inputs, const double* own, const double* rates,
+                                       bool tangents, problem::Films& films) {
   const int bearings = system_.n_bearings();
   const Eigen::Index r = b_.cols();
   films.forces.resize(r);
@@ -155,7 +155,7 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
     const auto [first, ports] = ports_[k];
     const double* at = inputs.data() + 2 * first;
     const auto n = static_cast<std::size_t>(ports);
-    const film::Motion motion = system_.motion(k, {at, n}, {at + ports, n});
+    const film::JournalMotion motion = system_.motion(k, {at, n}, {at + ports, n});
     FilmPart& part = *system_.bearings_[k].part;
     system_.at_bearing(k, [&] { part.evaluate(motion, own, rates, need); });
     const film::StateResponse& here = part.response();
@@ -178,8 +178,9 @@ void RotorSystem::Blocks::films(const Eigen::VectorXd& inputs, const double* own
   }
 }
 
-void RotorSystem::Blocks::parameter_derivative(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot,
-                                               const problem::Films& films, Eigen::VectorXd& out) {
+void RotorSystem::MachineBlocks::parameter_derivative(double angle, const Eigen::VectorXd& x,
+                                                      const Eigen::VectorXd& xdot, const problem::Films& films,
+                                                      Eigen::VectorXd& out) {
   const Eigen::Index n = size(), k = system_.n_own_;
   if (!system_.parameter_is_speed()) {
     out.resize(n + k);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "whirl/core/count.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::system {
@@ -26,10 +27,11 @@ class BrusselatorSystem final : public Plant {
 public:
   BrusselatorSystem(MPI_Comm comm, Along<Brusselator> along)
       : comm_(comm), along_(std::move(along)), parameter_(along_.value), o_(along_.at(parameter_)) {
-    const PetscInt points = o_.cells - 1, rank = core::rank_of(comm), size = core::size_of(comm);
+    const PetscInt points = o_.cells - 1;
+    const int rank = core::rank_of(comm), size = core::size_of(comm);
     n_ = 2 * points;
-    begin_ = points * rank / size;
-    local_ = 2 * (points * (rank + 1) / size - begin_);
+    begin_ = core::begin_of_share(points, rank, size);
+    local_ = 2 * (core::begin_of_share(points, rank + 1, size) - begin_);
     layout_ = core::make_vector(comm, local_, n_);
     check(VecScatterCreateToAll(layout_.get(), scatter_.put(), whole_.put()));
   }
@@ -87,7 +89,7 @@ public:
     check(VecSet(residual, 1));
   }
 
-  [[nodiscard]] Places places() const override {
+  [[nodiscard]] ShownPlaces places() const override {
     return {{"middle"}, {0.0}, "1", "1/s", "concentrations u (as x) and v (as y) in the middle of the tube"};
   }
   [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override {

@@ -7,6 +7,7 @@
 #include "settling.hpp"
 #include "slope.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/count.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/alignment.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -21,6 +22,9 @@ using core::check;
 void RotorSystem::build() {
   bearings_.resize(train_.supports.size());
   core::agree(comm_, [&] {
+    std::int64_t states = 0;  // refused before the memory for them is taken
+    for (const Support& s : train_.supports) states += film::facts(s.film, s.geometry).states;
+    (void)core::count_of(states, "own states of films");
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       bearings_[i].part = std::make_unique<FilmPart>(train_.supports[i], n_own_);
       n_own_ = bearings_[i].part->end();
@@ -121,7 +125,7 @@ std::vector<std::array<double, 2>> RotorSystem::axes_of(const Train& train) cons
 void RotorSystem::share_out_own_states() {
   const int rank = core::rank_of(comm_), size = core::size_of(comm_);
   const auto cut = [&](int r) -> PetscInt {
-    const PetscInt wanted = n_own_ * r / size;
+    const PetscInt wanted = core::begin_of_share(n_own_, r, size);
     for (const Bearing& b : bearings_)
       if (wanted < b.part->end()) return b.part->cut(wanted);
     return n_own_;

@@ -1,7 +1,8 @@
-// The preconditioners of a machine's films, in the scales of its states and rows.
+// The inverses of a machine's films, in the scales of its states and rows.
 
 #include <Eigen/Core>
 
+#include "direct_inverse.hpp"
 #include "film_comms.hpp"
 #include "whirl/system/rotor_system.hpp"
 
@@ -14,8 +15,8 @@ using ConstMap = Eigen::Map<const Eigen::ArrayXd>;
 class RotorSystem::FilmInverse final : public problem::PartInverse {
 public:
   explicit FilmInverse(RotorSystem& system);
-  /// Whether all films with states have a preconditioner. Collective.
-  [[nodiscard]] bool complete() const;
+  /// Whether a film offers one; else there are none. The same on all ranks.
+  [[nodiscard]] bool offered() const { return offered_; }
   void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
   [[nodiscard]] bool exact() const override { return exact_; }
   void apply(const double* r, double* y) override { apply_columns(r, y, 0, 1); }
@@ -42,7 +43,7 @@ private:
   RotorSystem& system_;
   std::shared_ptr<const FilmComms> comms_;  // outlives the inverses
   std::vector<Film> films_;                 // with rows on this rank
-  bool exact_ = true;
+  bool offered_ = false, exact_ = true;
 };
 
 const RotorSystem::FilmComms& RotorSystem::film_comms() {
@@ -54,7 +55,7 @@ std::unique_ptr<problem::PartInverse> RotorSystem::make_part_inverse() {
   if (n_own_ == 0) return nullptr;
   (void)film_comms();
   auto inverse = std::make_unique<FilmInverse>(*this);
-  return inverse->complete() ? std::move(inverse) : nullptr;
+  return inverse->offered() ? std::move(inverse) : nullptr;
 }
 
 RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.film_comms_) {
@@ -65,20 +66,19 @@ RotorSystem::FilmInverse::FilmInverse(RotorSystem& s) : system_(s), comms_(s.fil
     film.bearing = b;
     film.row = part->row() - machine;
     film.inverse = part->film().preconditioner(comms_->of(b), part->share());
-    exact_ = exact_ && film.inverse && film.inverse->exact();
+    offered_ = offered_ || film.inverse;
     film.state.resize(part->rows());
     film.residual.resize(part->rows());
     film.rhs.resize(static_cast<std::size_t>(part->rows()));
   }
+  MPI_Allreduce(MPI_IN_PLACE, &offered_, 1, MPI_CXX_BOOL, MPI_LOR, s.comm_);
+  if (!offered_) return;
+  for (Film& film : films_) {
+    if (!film.inverse)
+      film.inverse = make_direct_inverse(comms_->of(film.bearing), s.bearings_[film.bearing].part->share());
+    exact_ = exact_ && film.inverse->exact();
+  }
   MPI_Allreduce(MPI_IN_PLACE, &exact_, 1, MPI_CXX_BOOL, MPI_LAND, s.comm_);
-}
-
-bool RotorSystem::FilmInverse::complete() const {
-  bool all = true;
-  for (const Film& film : films_)
-    if (!film.inverse) all = false;
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_CXX_BOOL, MPI_LAND, system_.comm_);
-  return all;
 }
 
 const film::StateResponse& RotorSystem::FilmInverse::look(Film& film) const {

@@ -11,9 +11,10 @@ namespace whirl::system {
 using core::check;
 
 FilmPart::FilmPart(const Support& support, PetscInt first)
-    : film_(film::make_film(support.geometry, support.film, support.lubricant)),
-      first_(first),
-      count_(static_cast<PetscInt>(film_->states())) {}
+    : FilmPart(film::make_film(support.geometry, support.film, support.lubricant), first) {}
+
+FilmPart::FilmPart(std::unique_ptr<film::Film> film, PetscInt first)
+    : film_(std::move(film)), first_(first), count_(static_cast<PetscInt>(film_->states())) {}
 
 std::unique_ptr<FilmPart> FilmPart::with(const Support& support) const {
   auto out = std::make_unique<FilmPart>(support, first_);
@@ -49,7 +50,7 @@ void FilmPart::hold(PetscInt begin, PetscInt end, PetscInt row, std::size_t gath
   asked_.reset();
 }
 
-void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
+void FilmPart::evaluate(const film::JournalMotion& motion, std::span<const double> own, std::span<const double> rates,
                         film::Need need) {
   const std::size_t n = share_.seen.size();
   const std::span<const double> s = own.subspan(gathered_, n), moving = rates.subspan(gathered_, n);
@@ -68,39 +69,58 @@ void FilmPart::evaluate(const film::Motion& motion, std::span<const double> own,
   asked_ = std::move(now);
 }
 
-void FilmPart::evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need) {
+void FilmPart::evaluate(const film::JournalMotion& motion, const double* own, const double* rates, film::Need need) {
   const auto n = static_cast<std::size_t>(count_);
   asked_.reset();
   film_->evaluate(motion, {own + first_, n}, {rates + first_, n}, need, response_);
 }
 
-std::vector<double> FilmPart::unloaded(const film::Motion& motion) const {
+std::vector<double> FilmPart::unloaded(const film::JournalMotion& motion) const {
   std::vector<double> states(static_cast<std::size_t>(count_));
   film_->unloaded(motion, states);
   return states;
 }
 
-std::vector<double> FilmPart::relaxed(const film::Motion& motion) const {
+std::vector<double> FilmPart::relaxed(const film::JournalMotion& motion) const {
   std::vector<double> states = unloaded(motion);
   film::relax(*film_, motion, states);
   return states;
 }
 
+problem::Field FilmPart::field(const film::StateField& f) const {
+  problem::Field out{.quantity = f.name, .unit = f.unit, .scale = f.scale};
+  const auto row = [&](int state) { return row_ + std::clamp(state, share_.begin, share_.end) - share_.begin; };
+  if (f.repeats == 1) {
+    out.begin = row(f.begin);
+    out.end = row(f.end);
+    return out;
+  }
+  const auto runs_before = [&](int state) {
+    return std::clamp((state - f.begin + f.stride - 1) / f.stride, 0, f.repeats);
+  };
+  const int first = runs_before(share_.begin), last = runs_before(share_.end);
+  out.stride = f.stride;
+  out.repeats = last - first;
+  out.begin = row(f.begin + first * f.stride);
+  out.end = out.begin + (last > first ? f.end - f.begin : 0);
+  return out;
+}
+
 std::vector<problem::Field> FilmPart::fields(const std::string& name) const {
   std::vector<problem::Field> out;
   for (const film::StateField& f : film_->state_fields()) {
-    const int begin = std::clamp(f.begin, share_.begin, share_.end), end = std::clamp(f.end, share_.begin, share_.end);
-    out.push_back({name, row_ + begin - share_.begin, row_ + end - share_.begin, f.name, f.unit, f.scale});
+    out.push_back(field(f));
+    out.back().name = name;
   }
   return out;
 }
 
 void FilmPart::scales(double* states, double* rows) const {
-  for (const problem::Field& f : fields({}))
-    for (PetscInt i = f.begin - row_; i < f.end - row_; ++i) {
-      states[i] = f.scale;
-      rows[i] = f.scale * typical_frequency;
-    }
+  for (const film::StateField& f : film_->state_fields())
+    field(f).each([&](PetscInt i) {
+      states[i - row_] = f.scale;
+      rows[i - row_] = f.row_scale();
+    });
 }
 
 void FilmPart::residual(const Moment& /*at*/, double* f) const {

@@ -23,6 +23,7 @@ class FilmPart final : public Part {
 public:
   /// Makes the film of a bearing; throws core::InputError on values outside their range.
   FilmPart(const Support& support, PetscInt first);
+  FilmPart(std::unique_ptr<film::Film> film, PetscInt first);
   /// The film of the same bearing with other numbers on the same mesh, held as this one is; what it searches starts
   /// from where this one ended. Throws as the constructor does.
   [[nodiscard]] std::unique_ptr<FilmPart> with(const Support& support) const;
@@ -46,10 +47,10 @@ public:
 
   /// This rank's share; `own` and `rates`: what all films of this rank see. A film with states that is where it was
   /// keeps its answer: residual, derivatives, inverse and d/dp of one linearisation are one evaluation.
-  void evaluate(const film::Motion& motion, std::span<const double> own, std::span<const double> rates,
+  void evaluate(const film::JournalMotion& motion, std::span<const double> own, std::span<const double> rates,
                 film::Need need);
   /// The whole film; `own` and `rates`: those of all films, null if there are none.
-  void evaluate(const film::Motion& motion, const double* own, const double* rates, film::Need need);
+  void evaluate(const film::JournalMotion& motion, const double* own, const double* rates, film::Need need);
   /// What it answered last: of the journal, what this rank adds.
   [[nodiscard]] const film::StateResponse& response() const { return response_; }
   /// All of that of the journal, once the ranks have taken their sum; on a single rank it is the same.
@@ -76,11 +77,14 @@ public:
   /// It finds its states by whole steps of Newton's method while the machine stays where it is.
   [[nodiscard]] bool settles() const { return film_->whole_steps(); }
   /// The states at which it rests with the journal where it is.
-  [[nodiscard]] std::vector<double> relaxed(const film::Motion& motion) const;
+  [[nodiscard]] std::vector<double> relaxed(const film::JournalMotion& motion) const;
   /// Those of a film that carries nothing.
-  [[nodiscard]] std::vector<double> unloaded(const film::Motion& motion) const;
+  [[nodiscard]] std::vector<double> unloaded(const film::JournalMotion& motion) const;
 
 private:
+  /// Its states of one kind on this rank.
+  [[nodiscard]] problem::Field field(const film::StateField& f) const;
+
   std::unique_ptr<film::Film> film_;
   PetscInt first_, count_, begin_ = 0, row_ = 0;  // begin_: of its states in a machine held as a whole
   std::size_t gathered_ = 0;
@@ -90,7 +94,7 @@ private:
   film::StateResponse response_;
   std::optional<film::Response> sum_;
   struct Asked {  // what response_ answers
-    film::Motion motion;
+    film::JournalMotion motion;
     std::vector<double> own, rates;
     film::Need need;
   };

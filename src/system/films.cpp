@@ -41,7 +41,7 @@ std::vector<JournalState> RotorSystem::journals_of(std::span<const double> input
         place[port] += side * *next++;
         rate[port] += side * *next++;
       }
-    const film::Motion seen = motion(i, {place.data(), ports.size()}, {rate.data(), ports.size()});
+    const film::JournalMotion seen = motion(i, {place.data(), ports.size()}, {rate.data(), ports.size()});
     for (std::size_t d = 0; d < 2; ++d) {
       out[i].position[d] = seen.position[d];
       out[i].velocity[d] = seen.velocity[d];
@@ -52,9 +52,9 @@ std::vector<JournalState> RotorSystem::journals_of(std::span<const double> input
   return out;
 }
 
-film::Motion RotorSystem::motion(std::size_t bearing, std::span<const double> place,
-                                 std::span<const double> rate) const {
-  film::Motion motion;
+film::JournalMotion RotorSystem::motion(std::size_t bearing, std::span<const double> place,
+                                        std::span<const double> rate) const {
+  film::JournalMotion motion;
   for (std::size_t k = 0; k < place.size(); ++k) {
     motion.position[k] = place[k];
     motion.velocity[k] = rate[k];
@@ -81,8 +81,8 @@ std::vector<PlaceState> RotorSystem::shown_at(Vec x) {
   return {all.begin(), all.end()};
 }
 
-film::Motion RotorSystem::motion(const JournalState& journal) const {
-  film::Motion motion;
+film::JournalMotion RotorSystem::motion(const JournalState& journal) const {
+  film::JournalMotion motion;
   for (std::size_t d = 0; d < 2; ++d) {
     motion.position[d] = journal.position[d];
     motion.velocity[d] = journal.velocity[d];
@@ -91,12 +91,6 @@ film::Motion RotorSystem::motion(const JournalState& journal) const {
   }
   motion.speed = speed_;
   return motion;
-}
-
-std::vector<film::Response> RotorSystem::film_responses(const std::vector<JournalState>& journals, film::Need need) {
-  core::require(n_own_ == 0, "films with own states need the whole state");
-  evaluate_films({journals, {}, {}}, need);
-  return responses();
 }
 
 std::vector<film::Response> RotorSystem::film_responses(const double* x, film::Need need) {
@@ -206,17 +200,17 @@ bool RotorSystem::constant_rates() const {
   return std::all_of(bearings_.begin(), bearings_.end(), [](const Bearing& b) { return b.part->constant_rates(); });
 }
 
-std::vector<film::Summary> RotorSystem::film_summaries(const double* x) {
+std::vector<film::FilmReport> RotorSystem::film_summaries(const double* x) {
   const auto rank = static_cast<std::size_t>(core::rank_of(comm_)),
              size = static_cast<std::size_t>(core::size_of(comm_));
   const std::vector<JournalState> at = journals(x);
-  std::vector<film::Summary> out(bearings_.size());
+  std::vector<film::FilmReport> out(bearings_.size());
   core::agree(comm_, [&] {
     for (std::size_t i = rank; i < out.size(); i += size)
       out[i] = bearings_[i].part->film().summary(motion(at[i]), bearings_[i].part->of(x));
   });
   for (std::size_t i = 0; i < out.size() && size > 1; ++i) {
-    film::Summary& s = out[i];
+    film::FilmReport& s = out[i];
     const int from = static_cast<int>(i % size);
     int holes = static_cast<int>(s.hole_flows.size());
     MPI_Bcast(&holes, 1, MPI_INT, from, comm_);
@@ -229,7 +223,7 @@ std::vector<film::Summary> RotorSystem::film_summaries(const double* x) {
   return out;
 }
 
-std::vector<film::Field> RotorSystem::film_fields(int b, const double* x) {
+std::vector<film::NodalField> RotorSystem::film_fields(int b, const double* x) {
   const auto i = static_cast<std::size_t>(b);
   return bearings_[i].part->film().fields(motion(journals(x)[i]), bearings_[i].part->of(x));
 }
@@ -243,7 +237,7 @@ void RotorSystem::relax_films(Vec x) {
     for (std::size_t i = 0; i < bearings_.size(); ++i) {
       const FilmPart& part = *bearings_[i].part;
       if (part.rows() == 0) continue;
-      film::Motion at = motion(journals[i]);
+      film::JournalMotion at = motion(journals[i]);
       at.velocity = {};
       at_bearing(i, [&] {
         const std::vector<double> states = part.settles() ? part.unloaded(at) : part.relaxed(at);

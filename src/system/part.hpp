@@ -20,9 +20,6 @@ struct Moment {
   Vec x, xdot;
 };
 
-/// Rad/s, of a typical whirl: what rates are measured in, per typical magnitude.
-inline constexpr double typical_frequency = 300;
-
 /// Rows of one part of a machine: the hub (rotor and pedestals) or a film. Parts are joined at ports, and nothing else
 /// couples them: the hub moves the ports, the other parts see these motions and return forces there. Every part is
 /// asked on all ranks, and each answers with its rows there.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "whirl/core/error.hpp"
+#include "whirl/film/film.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::system {
@@ -224,7 +225,7 @@ void RotorPart::scales(double* s, double* r) const {
   clearance = films > 0 ? clearance / films : 1e-4;
   const double mass = rotor::total_mass(train_.rotor),
                force = std::max(mass * std::abs(train_.gravity) + std::abs(train_.rotor.load),
-                                mass * clearance * typical_frequency * typical_frequency) /
+                                mass * clearance * film::typical_frequency * film::typical_frequency) /
                        std::max<double>(1.0, static_cast<double>(train_.supports.size()));
   for (PetscInt i = 0; i < end_ - begin_; ++i) {
     const PetscInt g = begin_ + i;
@@ -239,8 +240,8 @@ void RotorPart::scales(double* s, double* r) const {
       }
     }
     s[2 * i] = length;
-    s[2 * i + 1] = length * typical_frequency;
-    r[2 * i + 1] = length * typical_frequency;
+    s[2 * i + 1] = length * film::typical_frequency;
+    r[2 * i + 1] = length * film::typical_frequency;
     r[2 * i] = load;
   }
 }

@@ -117,18 +117,21 @@ void RotorSystem::scales(Vec state_scale, Vec residual_scale) {
 std::vector<problem::Field> RotorSystem::fields() const {
   std::vector<problem::Field> out = hub_->fields("machine");
   for (std::size_t i = 0; i < bearings_.size(); ++i)
-    for (problem::Field& f : bearings_[i].part->fields(train_.supports[i].name)) out.push_back(std::move(f));
+    for (problem::Field& f : bearings_[i].part->fields(train_.supports[i].name)) {
+      f.part = static_cast<int>(i) + 1;
+      out.push_back(std::move(f));
+    }
   return out;
 }
 
 problem::Structure* RotorSystem::structure() {
   if (core::size_of(comm_) != 1) return nullptr;
-  if (!blocks_) blocks_ = std::make_unique<Blocks>(*this);
+  if (!blocks_) blocks_ = std::make_unique<MachineBlocks>(*this);
   return blocks_.get();
 }
 
-Places RotorSystem::places() const {
-  Places p{{}, {}, "m", "m/s", "journal relative to the bearing centre"};
+ShownPlaces RotorSystem::places() const {
+  ShownPlaces p{{}, {}, "m", "m/s", "journal relative to the bearing centre"};
   for (const Support& s : train_.supports) {
     p.names.push_back(s.name);
     p.clearances.push_back(s.geometry.clearance);

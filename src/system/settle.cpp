@@ -56,8 +56,9 @@ void RotorSystem::settle(Vec x, bool still) {
       film.inverse->set(own.d_states, own.d_rates, 1, 0);
       film.inverse->apply(own.residual, film.step);
       for (const problem::Field& f : part.fields({}))
-        for (PetscInt j = f.begin; j < f.end; ++j)
+        f.each([&](PetscInt j) {
           moved[film.bearing] += std::pow(film.step[static_cast<std::size_t>(j - part.row())] / f.scale, 2);
+        });
     }
     MPI_Allreduce(MPI_IN_PLACE, moved.data(), static_cast<int>(moved.size()), MPI_DOUBLE, MPI_SUM, comm_);
     if (!std::all_of(moved.begin(), moved.end(), [](double d) { return std::isfinite(d); }))

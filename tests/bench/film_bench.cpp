@@ -27,8 +27,8 @@ Geometry one_pad() {
 }
 
 // Half of the pad is cavitated: a rupture line crosses the cells.
-Motion loaded(bool tilted) {
-  Motion m;
+JournalMotion loaded(bool tilted) {
+  JournalMotion m;
   m.position = {0.9 * 0.0004, -0.4 * 0.0004, tilted ? 1e-4 : 0.0, tilted ? -1e-4 : 0.0};
   m.velocity = {0.05 * 0.0004 * 377.0, -0.08 * 0.0004 * 377.0, 0.0, 0.0};
   m.speed = 377.0;
@@ -112,7 +112,7 @@ double factorisation_time() {
 void evaluate(benchmark::State& state, Reynolds options, Need need) {
   options.cells = {kAround, kAlong};
   auto film = make_film(one_pad(), options, {0.0067, 850.0});
-  Motion m = loaded(options.tilt);
+  JournalMotion m = loaded(options.tilt);
   StateResponse r;
   long count = 0;
   const double start = m.position[0];
@@ -132,7 +132,7 @@ void evaluate_states(benchmark::State& state, testing::Elastic options, Need nee
   options.compliance = 0.1;
   options.reference_speed = 160.0;
   auto film = make_film(bore, options, {0.001, 1000.0});
-  Motion m;
+  JournalMotion m;
   m.position = {0.3 * bore.clearance, -0.5 * bore.clearance, 0.0, 0.0};
   m.velocity = {0.05 * bore.clearance * 320.0, -0.08 * bore.clearance * 320.0, 0.0, 0.0};
   m.speed = 320.0;

@@ -36,7 +36,7 @@ system::Train linear_train() {
   newton.max_iterations = 40;
   core::require(solve::find_equilibrium(s, x.get(), newton).converged, "equilibrium");
   const auto whole = s.gather(x.get());
-  const auto films = s.film_responses(s.journals(whole.data()), film::Need::tangents);
+  const auto films = s.film_responses(whole.data(), film::Need::tangents);
   for (std::size_t b = 0; b < films.size(); ++b) {
     film::Linear o;
     for (std::size_t i = 0; i < 2; ++i)

@@ -41,9 +41,10 @@ inline Options film_of(ClosedForm kind) {
 }
 
 /// Position in clearances, velocity in clearances times speed, tilt in clearances per length.
-inline Motion motion(const Geometry& g, std::array<double, 4> position, std::array<double, 4> velocity, double speed) {
+inline JournalMotion motion(const Geometry& g, std::array<double, 4> position, std::array<double, 4> velocity,
+                            double speed) {
   const double tilt = g.clearance / g.length;
-  Motion m{position, velocity, speed};
+  JournalMotion m{position, velocity, speed};
   for (std::size_t i = 0; i < 4; ++i) {
     const double scale = i < 2 ? g.clearance : tilt;
     m.position[i] *= scale;
@@ -57,7 +58,7 @@ inline double scale_of(const Film& film) {
   return film.state_fields().front().scale;
 }
 
-inline Response evaluate(Film& film, const Motion& m, Need need = Need::tangents) {
+inline Response evaluate(Film& film, const JournalMotion& m, Need need = Need::tangents) {
   Response r;
   film.evaluate(m, need, r);
   return r;

@@ -25,7 +25,7 @@ Reynolds closed(C cavitation, std::array<int, 2> cells) {
   return o;
 }
 
-Motion at(const Geometry& g) {
+JournalMotion at(const Geometry& g) {
   return motion(g, {0.3, -0.5, 0.0, 0.0}, {0.05, -0.03, 0.0, 0.0}, 377.0);
 }
 

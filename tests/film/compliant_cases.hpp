@@ -26,18 +26,18 @@ inline Elastic compliant(Kind kind, double compliance, int cells, bool as_source
   return o;
 }
 
-inline Motion still(double x, double y) {
+inline JournalMotion still(double x, double y) {
   return motion(cylinder(), {x, y, 0.0, 0.0}, {}, kSpeed);
 }
 
-inline std::vector<double> relaxed(Film& film, const Motion& m) {
+inline std::vector<double> relaxed(Film& film, const JournalMotion& m) {
   std::vector<double> s(film.states());
   film.unloaded(m, s);
   relax(film, m, s);
   return s;
 }
 
-inline Response static_response(const Options& o, const Motion& m) {
+inline Response static_response(const Options& o, const JournalMotion& m) {
   auto film = make_film(cylinder(), o, oil());
   const auto s = relaxed(*film, m);
   StateResponse r;
@@ -86,11 +86,11 @@ inline std::vector<CompliantCase> compliant_films() {
   return all;
 }
 
-inline const Motion kMoving = motion(cylinder(), {0.2, -0.4, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, kSpeed);
+inline const JournalMotion kMoving = motion(cylinder(), {0.2, -0.4, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, kSpeed);
 
 /// A state off equilibrium, smooth and with rates; thin enough for asperities, which are left out of what gives it.
 struct CompliantPoint {
-  Motion motion;
+  JournalMotion motion;
   std::vector<double> states, rates;
 };
 

@@ -85,7 +85,7 @@ TEST(CompliantFinite, ShortAndLongLimits) {
     Elastic o = compliant(compliant_finite, compliance, cells[0], false);
     o.cells = cells;
     auto film = make_film(g, o, oil());
-    const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
+    const JournalMotion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
     StateResponse r;
     const auto s = relaxed(*film, m);
     film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);

@@ -48,7 +48,7 @@ TEST_P(CompliantFilms, ResamplingKeepsTheFilm) {
   Elastic twice = GetParam().options;
   for (int& cells : twice.cells) cells *= 2;
   auto fine = make_film(cylinder(), twice, oil());
-  const Motion m = still(0.2, -0.4);
+  const JournalMotion m = still(0.2, -0.4);
   const auto coarse = relaxed(*film, m);
   std::vector<double> between(fine->states()), back(film->states());
   fine->resample(m, *film, coarse, between);
@@ -65,7 +65,7 @@ TEST(CompliantLimits, StiffLinerIsTheRigidFilm) {
   for (const auto& [soft, hard] : {std::pair{compliant_short, short_bearing}, std::pair{compliant_long, long_inlet}}) {
     const Options rigid = film_of(hard);
     auto model = make_film(cylinder(), rigid, oil());
-    const Motion m = still(0.3, -0.3);
+    const JournalMotion m = still(0.3, -0.3);
     const Response exact = evaluate(*model, m);
     std::array<double, 2> error{};
     for (std::size_t k = 0; k < 2; ++k) {
@@ -83,7 +83,7 @@ TEST(CompliantLimits, CoefficientsOfAStiffLinerAndSlopeOfStaticForces) {
   using enum Kind;
   const Short rigid;
   auto model = make_film(cylinder(), rigid, oil());
-  const Motion m = still(0.3, -0.3);
+  const JournalMotion m = still(0.3, -0.3);
   const Response exact = evaluate(*model, m);
   auto film = make_film(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());
   const Coefficients c = coefficients(*film, m, relaxed(*film, m), kSpeed);
@@ -167,11 +167,11 @@ TEST(CompliantLimits, ALinerIsItsCompliance) {
 TEST(CompliantLimits, ReportsAgreeWithTheRigidFilm) {
   using enum Kind;
   const Short rigid;
-  const Motion m = still(0.3, -0.3);
-  const Summary exact = make_film(cylinder(), rigid, oil())->summary(m, {});
+  const JournalMotion m = still(0.3, -0.3);
+  const FilmReport exact = make_film(cylinder(), rigid, oil())->summary(m, {});
   auto film = make_film(cylinder(), compliant(compliant_short, 1e-4, 800, false), oil());
   const auto s = relaxed(*film, m);
-  const Summary r = film->summary(m, s);
+  const FilmReport r = film->summary(m, s);
   EXPECT_NEAR(r.power_loss, exact.power_loss, 2e-3 * exact.power_loss);
   EXPECT_NEAR(r.side_flow, exact.side_flow, 2e-3 * exact.side_flow);
   EXPECT_NEAR(r.max_pressure, exact.max_pressure, 2e-3 * exact.max_pressure);

@@ -21,7 +21,7 @@ struct Case {
   std::string name;
   Geometry geometry;
   Options options;
-  Motion motion;
+  JournalMotion motion;
   bool kinked;
   [[nodiscard]] std::unique_ptr<Film> film() const { return make_film(geometry, options, oil()); }
 };
@@ -42,8 +42,8 @@ double load_of(const Response& r) {
   return std::hypot(r.force[0], r.force[1]);
 }
 
-Motion moved(const Case& c, int direction, double e) {
-  Motion m = c.motion;
+JournalMotion moved(const Case& c, int direction, double e) {
+  JournalMotion m = c.motion;
   const double step = step_of(c.geometry, direction, e);
   if (direction == 8)
     m.speed += step;
@@ -90,7 +90,7 @@ TEST_P(CondensedFilm, TaylorRemainderIsSecondOrder) {
 // At rest it is the film with states: force, stiffness, the derivative in the speed, reports.
 TEST_P(CondensedFilm, IsTheFilmWithStatesAtRest) {
   const Case& c = GetParam();
-  Motion still = c.motion;
+  JournalMotion still = c.motion;
   still.velocity = {};
   const auto dynamic = c.film();
   std::vector<double> s(dynamic->states());
@@ -128,7 +128,7 @@ TEST_P(CondensedFilm, TheStartDoesNotShow) {
     for (const double k : row) stiffness = std::max(stiffness, std::abs(k));
   for (const std::array<double, 2> from : {std::array{-0.3, 0.2}, {0.0, 0.0}, {0.21, -0.39}, {0.1, -0.7}}) {
     Condensed film(c.film());
-    Motion before = c.motion;
+    JournalMotion before = c.motion;
     before.position[0] = from[0] * c.geometry.clearance;
     before.position[1] = from[1] * c.geometry.clearance;
     before.velocity = {};
@@ -152,7 +152,7 @@ TEST(Condensed, ContentsThatDoNotChangeAreTheCondensedFilm) {
   for (const ContentCase& c : content_films()) {
     Condensed film(make_film(c.geometry, c.options, oil()));
     const auto own = make_film(c.geometry, without_states(c.options), oil());
-    const Motion m = motion(c.geometry, c.position, c.velocity, kSpeed);
+    const JournalMotion m = motion(c.geometry, c.position, c.velocity, kSpeed);
     const Response a = evaluate(film, m), b = evaluate(*own, m);
     const std::size_t components = c.options.tilt ? 4 : 2;
     const auto near = [&](const auto& x, const auto& y, const char* what) {
@@ -191,7 +191,7 @@ TEST(Condensed, AMovingJournalCostsFewFactorisations) {
 // Over a liner that hardly gives way the film is the rigid one, in damping too: the squeeze of the journal is that of
 // the gap.
 TEST(Condensed, AStiffLinerIsARigidBore) {
-  const Motion m = motion(cylinder(), {0.2, -0.4, 0.0, 0.0}, {0.03, -0.05, 0.0, 0.0}, kSpeed);
+  const JournalMotion m = motion(cylinder(), {0.2, -0.4, 0.0, 0.0}, {0.03, -0.05, 0.0, 0.0}, kSpeed);
   const auto rigid_film = make_film(cylinder(), Short{}, oil());
   const Response rigid = evaluate(*rigid_film, m);
   const auto difference = [&](double compliance) {
@@ -225,7 +225,7 @@ TEST(Condensed, AJournalBeyondTheClearance) {
   o.reference_speed = 300.0;
   o.cells = {60, 4};
   o.differences = Compliant::Differences::third_order;  // central ones waver so deep
-  const Motion deep = motion(cylinder(), {0.0, -1.2, 0.0, 0.0}, {}, kSpeed);
+  const JournalMotion deep = motion(cylinder(), {0.0, -1.2, 0.0, 0.0}, {}, kSpeed);
   const auto direct = make_film(cylinder(), o, oil()), walked = make_film(cylinder(), o, oil());
   for (const double e : {0.5, 0.8, 0.95, 1.0}) evaluate(*walked, motion(cylinder(), {0.0, -e, 0.0, 0.0}, {}, kSpeed));
   const Response a = evaluate(*direct, deep), b = evaluate(*walked, deep);
@@ -239,9 +239,9 @@ TEST(Condensed, AJournalBeyondTheClearance) {
 TEST(Condensed, RecoversFromContact) {
   const ContentCase c = content_films().front();
   Condensed film(make_film(c.geometry, c.options, oil()));
-  const Motion m = motion(c.geometry, c.position, {}, kSpeed);
+  const JournalMotion m = motion(c.geometry, c.position, {}, kSpeed);
   const Response before = evaluate(film, m);
-  Motion touching = m;
+  JournalMotion touching = m;
   touching.position[1] = -3.0 * c.geometry.clearance;
   Response r;
   EXPECT_THROW(film.evaluate(touching, Need::force, r), core::DomainError);

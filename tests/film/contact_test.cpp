@@ -73,7 +73,7 @@ TEST(Contact, JournalAtRestIsCarriedByAsperities) {
       o.kind = kind;
       o.quadrature = quadrature;
       auto film = make_film(g, o, oil());
-      const Motion m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 0.0);
+      const JournalMotion m = motion(g, {e, 0.0, 0.0, 0.0}, {}, 0.0);
       const std::size_t line = kind == Kind::compliant_finite ? static_cast<std::size_t>(o.cells[1] - 1) : 1;
       std::vector<double> s(film->states());
       for (std::size_t k = 0; k < s.size(); ++k) {
@@ -119,7 +119,7 @@ TEST(Contact, FiniteFilmTendsToTheShortOne) {
     o.cells[1] = 24;
     if (contact) o.contact = Contact{0.25 * g.clearance, 2e9 * length_to_diameter * length_to_diameter};
     auto film = make_film(g, o, oil());
-    const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
+    const JournalMotion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
     StateResponse r;
     const auto s = relaxed(*film, m);
     film->evaluate(m, s, std::vector<double>(s.size(), 0.0), Need::force, r);

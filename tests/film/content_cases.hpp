@@ -57,7 +57,7 @@ inline std::vector<ContentCase> content_films() {
 }
 
 /// The states at which nothing changes while the journal moves as `m` says.
-inline std::vector<double> settled(Film& film, const Motion& m) {
+inline std::vector<double> settled(Film& film, const JournalMotion& m) {
   std::vector<double> q(film.states());
   film.unloaded(m, q);
   relax(film, m, q);

@@ -58,10 +58,10 @@ struct Measured {
 };
 
 // Of the mid-plane of a film so long that it does not feel its sides; t = theta + `turn`.
-Measured measure(const LongFilm& exact, const Geometry& g, const Reynolds& o, const Motion& m, double turn) {
+Measured measure(const LongFilm& exact, const Geometry& g, const Reynolds& o, const JournalMotion& m, double turn) {
   const auto fields = make_film(g, o, oil())->fields(m, {});
   const auto values = [&](const std::string& name) -> const std::vector<double>& {
-    return std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; })->values;
+    return std::find_if(fields.begin(), fields.end(), [&](const NodalField& f) { return f.name == name; })->values;
   };
   const std::vector<double>&p = values("pressure"), &fill = values("fill"), &theta = values("theta");
   const double scale = 6.0 * oil().viscosity * m.speed * std::pow(g.radius / g.clearance, 2),
@@ -111,7 +111,7 @@ TEST(LongSlider, ConvergentDivergentRupturesWhereTheBalanceSays) {
   expect_convergence(
       exact,
       [&](int n) {
-        const Motion m = motion(g, {0.0, -exact.e, 0.0, 0.0}, {}, 377.0);
+        const JournalMotion m = motion(g, {0.0, -exact.e, 0.0, 0.0}, {}, 377.0);
         return measure(exact, g, without_states(dynamic({2 * n / 3, 16})), m, -0.5 * M_PI);
       },
       0.9);
@@ -128,7 +128,7 @@ TEST(LongSlider, GrooveUnderPressureFillsTheGapAheadOfIt) {
   expect_convergence(
       exact,
       [&](int n) {
-        const Motion m = motion(g, {0.0, -exact.e, 0.0, 0.0}, {}, 377.0);
+        const JournalMotion m = motion(g, {0.0, -exact.e, 0.0, 0.0}, {}, 377.0);
         Reynolds o = without_states(dynamic({n, 16}));
         o.grooves = {
             {90.0 * kDegree, 0.0, exact.feed * 6.0 * oil().viscosity * m.speed * std::pow(g.radius / g.clearance, 2)}};
@@ -141,7 +141,7 @@ TEST(LongSlider, GrooveUnderPressureFillsTheGapAheadOfIt) {
 TEST(LongSlider, FullFilmHasThePressureWithoutCavitation) {
   Geometry g = arc();
   g.arc = 40.0 * kDegree;
-  const Motion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
+  const JournalMotion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
   const Reynolds o = dynamic({40, 10});
   Reynolds none = without_states(o);
   none.cavitation = Reynolds::Cavitation::none;
@@ -216,7 +216,7 @@ Squeezed squeeze(const Plates& s, int cells, int steps, double bulk_modulus, con
   auto film = make_film(g, o, {s.mu, 0.0});
   EXPECT_EQ(film->states(), static_cast<std::size_t>(cells - 1));
   const auto at = [&](double t) {
-    Motion m;
+    JournalMotion m;
     m.position[1] = s.h0 - s.h(t);
     m.velocity[1] = -s.rate(t);
     return m;
@@ -251,11 +251,11 @@ Squeezed squeeze(const Plates& s, int cells, int steps, double bulk_modulus, con
     for (int step = 0; step < steps; ++step, t += d) {
       begin = q;
       const std::vector<double> one = stage(t + gamma * d, d, begin);
-      const Summary s1 = film->summary(at(t + gamma * d), one);
+      const FilmReport s1 = film->summary(at(t + gamma * d), one);
       std::vector<double> mixed = begin;
       for (std::size_t i = 0; i < n; ++i) mixed[i] += (1.0 - gamma) * d * k[i];
       q = stage(t + d, d, mixed);
-      const Summary s2 = film->summary(at(t + d), q);
+      const FilmReport s2 = film->summary(at(t + d), q);
       inflow += d * ((1.0 - gamma) * s1.imbalance + gamma * s2.imbalance);
     }
     film->evaluate(at(to), q, k, Need::force, r);

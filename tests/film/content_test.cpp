@@ -22,7 +22,7 @@ TEST_P(Content, IsTheCondensedFilmWhereItsContentStays) {
   auto film = make_film(c.geometry, c.options, oil());
   auto condensed = make_film(c.geometry, without_states(c.options), oil());
   for (const double speed : {377.0, -250.0}) {
-    const Motion m = motion(c.geometry, c.position, c.velocity, speed);
+    const JournalMotion m = motion(c.geometry, c.position, c.velocity, speed);
     std::vector<double> q = settled(*film, m);
     StateResponse r;
     film->evaluate(m, q, std::vector<double>(q.size(), 0.0), Need::tangents, r);
@@ -56,7 +56,7 @@ TEST_P(Content, IsTheCondensedFilmWhereItsContentStays) {
 TEST_P(Content, WhatEntersIsStored) {
   const ContentCase& c = GetParam();
   auto film = make_film(c.geometry, c.options, oil());
-  const Motion m = motion(c.geometry, c.position, c.velocity, 377.0);
+  const JournalMotion m = motion(c.geometry, c.position, c.velocity, 377.0);
   std::mt19937 engine(11);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::vector<double> q(film->states());
@@ -67,13 +67,13 @@ TEST_P(Content, WhatEntersIsStored) {
   const std::vector<double> cells = cell_areas(c.geometry, c.options);
   ASSERT_EQ(cells.size(), q.size());
   for (std::size_t k = 0; k < q.size(); ++k) stored -= cells[k] * r.residual[k];  // q' where g = 0
-  const Summary s = film->summary(m, q);
+  const FilmReport s = film->summary(m, q);
   EXPECT_NEAR(s.imbalance, stored, 1e-12 * (std::abs(s.inlet_flow) + std::abs(s.side_flow)));
   EXPECT_GT(std::abs(s.imbalance), 1e-3 * std::abs(s.inlet_flow));
   // Nothing is stored in equilibrium.
-  const Motion still = motion(c.geometry, c.position, {}, 377.0);
+  const JournalMotion still = motion(c.geometry, c.position, {}, 377.0);
   q = settled(*film, still);
-  const Summary at_rest = film->summary(still, q);
+  const FilmReport at_rest = film->summary(still, q);
   EXPECT_LT(std::abs(at_rest.imbalance), 1e-10 * at_rest.inlet_flow);
 }
 
@@ -87,7 +87,7 @@ TEST_P(Content, ThicknessMustBePositive) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(film->evaluate(motion(c.geometry, {nan, 0.0, 0.0, 0.0}, {}, 377.0), q, q, Need::force, r),
                core::DomainError);
-  const Motion m = motion(c.geometry, c.position, {}, 377.0);
+  const JournalMotion m = motion(c.geometry, c.position, {}, 377.0);
   EXPECT_EQ(film->least_thickness(m, q),
             evaluate(*make_film(c.geometry, without_states(c.options), oil()), m).min_thickness);
 }
@@ -97,7 +97,7 @@ TEST_P(Content, ThicknessMustBePositive) {
 TEST_P(Content, RestIsRegular) {
   const ContentCase& c = GetParam();
   auto film = make_film(c.geometry, c.options, oil());
-  const Motion rest = motion(c.geometry, c.position, {}, 0.0);
+  const JournalMotion rest = motion(c.geometry, c.position, {}, 0.0);
   const std::vector<double> q = settled(*film, rest);
   double feed = 0.0;
   for (const Groove& g : c.options.grooves) feed = std::max(feed, g.pressure);
@@ -119,7 +119,7 @@ TEST_P(Content, ResamplesToOtherMeshes) {
   Reynolds finer = c.options;
   finer.cells = {2 * c.options.cells[0], 2 * c.options.cells[1]};
   auto film = make_film(c.geometry, c.options, oil()), fine = make_film(c.geometry, finer, oil());
-  const Motion m = motion(c.geometry, c.position, {}, 377.0);
+  const JournalMotion m = motion(c.geometry, c.position, {}, 377.0);
   const std::vector<double> q = settled(*film, m), exact = settled(*fine, m);
   std::vector<double> same(q.size()), to(fine->states());
   film->resample(m, *film, q, same);
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Films, Content, ::testing::ValuesIn(content_films()),
 TEST(ContentFilm, CompressibilityIsOfTheMotionOnly) {
   Reynolds stiff = dynamic({40, 10}), soft = stiff;
   soft.bulk_modulus = 1e7;
-  const Motion m = motion(lemon(), {0.3, -0.5, 0.0, 0.0}, {}, 377.0);
+  const JournalMotion m = motion(lemon(), {0.3, -0.5, 0.0, 0.0}, {}, 377.0);
   auto a = make_film(lemon(), stiff, oil()), b = make_film(lemon(), soft, oil());
   StateResponse ra, rb;
   const auto qa = settled(*a, m), qb = settled(*b, m);

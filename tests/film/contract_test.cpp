@@ -131,7 +131,7 @@ TEST_P(Contract, TaylorRemainderIsSecondOrder) {
   const bool kinked = reynolds != nullptr && (reynolds->cavitation == Reynolds::Cavitation::reynolds ||
                                               reynolds->cavitation == Reynolds::Cavitation::mass_conserving);
   auto model = make_film(c.geometry, c.options, oil());
-  const Motion base = motion(c.geometry, c.position, c.velocity, 377.0);
+  const JournalMotion base = motion(c.geometry, c.position, c.velocity, 377.0);
   const Response at = evaluate(*model, base);
   const std::size_t components = facts(c.options).tilts ? 4 : 2;
   const auto scale = [&](std::size_t j) {
@@ -145,7 +145,7 @@ TEST_P(Contract, TaylorRemainderIsSecondOrder) {
     const double first = kinked ? 4e-5 : reynolds == nullptr || reynolds->grooves.empty() ? 4e-3 : 4e-4;
     for (std::size_t k = 0; k < 2; ++k) {
       const double e = k == 0 ? first : 0.5 * first;
-      Motion moved = base;
+      JournalMotion moved = base;
       double step = e * 377.0;
       if (variable < 4)
         moved.position[j] += step = e * scale(j);
@@ -175,8 +175,8 @@ TEST_P(Contract, ForceDoesNotDependOnNeedOrHistory) {
   const Case& c = GetParam();
   auto model = make_film(c.geometry, c.options, oil());
   auto fresh = make_film(c.geometry, c.options, oil());
-  const Motion here = motion(c.geometry, c.position, c.velocity, 377.0);
-  const Motion elsewhere = motion(c.geometry, {-0.3, 0.2, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}, 200.0);
+  const JournalMotion here = motion(c.geometry, c.position, c.velocity, 377.0);
+  const JournalMotion elsewhere = motion(c.geometry, {-0.3, 0.2, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}, 200.0);
   evaluate(*model, elsewhere);
   const Response a = evaluate(*model, here, Need::force), b = evaluate(*fresh, here, Need::tangents);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-10 * std::abs(b.force[1])) << i;
@@ -188,7 +188,7 @@ TEST_P(Contract, ThicknessMustBePositive) {
   auto model = make_film(c.geometry, c.options, oil());
   if (facts(c.options).coefficients) GTEST_SKIP();
   Response r;
-  const Motion beyond = motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0);
+  const JournalMotion beyond = motion(c.geometry, {0.0, -1.01, 0.0, 0.0}, {}, 377.0);
   if (!facts(c.options).gives_way) {
     EXPECT_THROW(model->evaluate(beyond, Need::force, r), core::DomainError);
     EXPECT_LT(model->least_thickness(beyond, {}), 0.0);
@@ -213,13 +213,13 @@ TEST_P(Contract, RestWithoutMotionGivesNoForce) {
 // Whoever takes any film finds no rows where there are no states, whatever the response held before.
 TEST_P(Contract, AFilmWithoutStatesAnswersWithoutRows) {
   const Case& c = GetParam();
-  const Motion m = motion(c.geometry, c.position, c.velocity, 377.0);
+  const JournalMotion m = motion(c.geometry, c.position, c.velocity, 377.0);
   CompliantShort other;
   other.compliance = 0.1;
   other.reference_speed = 300.0;
   const auto with = make_film(cylinder(), other, oil());
   std::vector<double> states(with->states());
-  const Motion gentle = motion(cylinder(), {0.2, -0.3, 0.0, 0.0}, {}, 377.0);
+  const JournalMotion gentle = motion(cylinder(), {0.2, -0.3, 0.0, 0.0}, {}, 377.0);
   with->unloaded(gentle, states);
   StateResponse r;
   with->evaluate(gentle, states, std::vector<double>(states.size()), Need::tangents, r);

@@ -158,14 +158,14 @@ TEST(Published, RaimondiBoyd) {
     const Lubricant oil{0.02, 0.0};
     const double speed = 100.0, N = speed / (2.0 * kPi);
     auto model = make_film(g, options(C::reynolds, T::laminar, {240, 40}), oil);
-    const Motion m = motion(g, {0.0, -row.e, 0.0, 0.0}, {}, speed);
+    const JournalMotion m = motion(g, {0.0, -row.e, 0.0, 0.0}, {}, speed);
     const Response r = evaluate(*model, m, Need::force);
     const double load = std::hypot(r.force[0], r.force[1]), ratio = g.radius / g.clearance;
     const double S = oil.viscosity * N * g.length * 2.0 * g.radius * ratio * ratio / load;
     const double attitude = std::atan2(r.force[0], r.force[1]);
     EXPECT_NEAR(S, row.S, 3e-3 * row.S);
     EXPECT_NEAR(attitude / kDegree, row.attitude, 0.15);
-    const Summary s = model->summary(m, {});
+    const FilmReport s = model->summary(m, {});
     EXPECT_NEAR(s.side_flow / (g.radius * g.clearance * N * g.length), row.side, 0.02 * row.side);
     EXPECT_NEAR(load / (g.length * 2.0 * g.radius) / s.max_pressure, row.peak, 0.01 * row.peak);
     EXPECT_NEAR(s.min_thickness, g.clearance * (1.0 - row.e), 1e-3 * g.clearance);

@@ -29,7 +29,7 @@ TEST(Groove, FiniteFilmTendsToTheLongOne) {
     Elastic lines = compliant(compliant_finite, 1e-2, 48, false), whole = compliant(compliant_long, 1e-2, 48, false);
     lines.cells[1] = along;
     lines.grooves = {kTop};
-    const Motion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
+    const JournalMotion m = motion(g, {0.3, -0.3, 0.0, 0.0}, {}, kSpeed);
     std::array<std::array<double, 4>, 2> f{};
     for (const auto& [k, o] : {std::pair{0U, lines}, {1U, whole}}) {
       auto film = make_film(g, o, oil());
@@ -81,7 +81,7 @@ TEST(Groove, LinesOfAFiniteFilmFollowTheJournal) {
   Elastic o = compliant(compliant_finite, 0.1, 36, false);
   o.grooves = {{90.0 * kDegree, 20.0 * kDegree}};
   auto film = make_film(cylinder(), o, oil());
-  const Motion m = motion(cylinder(), {0.3, -0.3, 0.0, 0.0}, {0.2, 0.1, 0.0, 0.0}, kSpeed);
+  const JournalMotion m = motion(cylinder(), {0.3, -0.3, 0.0, 0.0}, {0.2, 0.1, 0.0, 0.0}, kSpeed);
   const auto s = relaxed(*film, still(0.3, -0.3));
   std::vector<double> rates(s.size(), 0.0);
   StateResponse r;

@@ -49,8 +49,8 @@ TEST(Hole, FeedsAWideGapAsTheLogarithmSays) {
     Reynolds o = conserving({n, n});
     o.holes = {{270.0 * kDegree, 0.0, 2.0 * exact.r, exact.p}};
     auto film = make_film(g, o, oil());
-    const Motion rest;
-    const Summary s = film->summary(rest, {});
+    const JournalMotion rest;
+    const FilmReport s = film->summary(rest, {});
     ASSERT_EQ(s.hole_flows.size(), 1U);
     EXPECT_LT(std::abs(s.imbalance), 1e-12 * s.hole_flows[0]);
     flow[level] = std::abs(s.hole_flows[0] / exact.flow() - 1.0);
@@ -78,10 +78,10 @@ TEST(Hole, FlowsBalance) {
     auto film = make_film(g, o, oil());
     for (int sample = 0; sample < 10; ++sample) {
       const double tilt = o.tilt ? 0.3 : 0.0;
-      const Motion m =
+      const JournalMotion m =
           motion(g, {0.5 * uniform(engine), 0.5 * uniform(engine), tilt * uniform(engine), tilt * uniform(engine)},
                  {0.3 * uniform(engine), 0.3 * uniform(engine), 0.0, 0.0}, sample % 3 == 0 ? -377.0 : 377.0);
-      const Summary s = film->summary(m, {});
+      const FilmReport s = film->summary(m, {});
       ASSERT_EQ(s.hole_flows.size(), o.holes.size());
       double size = std::abs(s.side_flow);
       for (const double flow : s.hole_flows) size += std::abs(flow);
@@ -102,9 +102,10 @@ TEST(Hole, AloneFeedsTheWholeLength) {
     o.holes = {{-90.0 * kDegree, 0.0, 0.02, 1e5}};
     auto film = make_film(cylinder(), o, oil());
     for (int sample = 0; sample < 250; ++sample) {
-      const Motion m = motion(cylinder(), {0.65 * uniform(engine), 0.65 * uniform(engine), 0.0, 0.0},
-                              {0.4 * uniform(engine), 0.4 * uniform(engine), 0.0, 0.0}, sample % 3 ? 377.0 : -377.0);
-      const Summary s = film->summary(m, {});
+      const JournalMotion m =
+          motion(cylinder(), {0.65 * uniform(engine), 0.65 * uniform(engine), 0.0, 0.0},
+                 {0.4 * uniform(engine), 0.4 * uniform(engine), 0.0, 0.0}, sample % 3 ? 377.0 : -377.0);
+      const FilmReport s = film->summary(m, {});
       EXPECT_LT(std::abs(s.imbalance), 1e-9 * s.side_flow) << sample;
       EXPECT_TRUE(std::isfinite(evaluate(*film, m).force[0])) << sample;
     }
@@ -116,8 +117,8 @@ TEST(Hole, WithoutPressureTheFilmRunsDry) {
   Reynolds o = conserving({48, 12});
   o.holes = {{-90.0 * kDegree, 0.0, 0.02, 0.0}};
   auto film = make_film(cylinder(), o, oil()), fresh = make_film(cylinder(), o, oil());
-  const Motion least = motion(cylinder(), {0.0, -0.5, 0.0, 0.0}, {}, 377.0),
-               widest = motion(cylinder(), {0.0, 0.5, 0.0, 0.0}, {}, 377.0);
+  const JournalMotion least = motion(cylinder(), {0.0, -0.5, 0.0, 0.0}, {}, 377.0),
+                      widest = motion(cylinder(), {0.0, 0.5, 0.0, 0.0}, {}, 377.0);
   EXPECT_THROW((void)evaluate(*film, least), core::DomainError);
   EXPECT_THROW((void)film->summary(least, {}), core::DomainError);
   const Response a = evaluate(*film, widest), b = evaluate(*fresh, widest);
@@ -166,7 +167,7 @@ TEST(Hole, WithStatesAndWithout) {
                core::InputError);
   o.grooves = {{-60.0 * kDegree, 0.0, 0.0}};
   o.holes = {{95.0 * kDegree, 0.01, 0.018, 3e5}};
-  const Motion m = motion(cylinder(), {0.3, -0.5, 0.0, 0.0}, {0.05, 0.1, 0.0, 0.0}, 377.0);
+  const JournalMotion m = motion(cylinder(), {0.3, -0.5, 0.0, 0.0}, {0.05, 0.1, 0.0, 0.0}, 377.0);
   auto film = make_film(cylinder(), o, oil());
   const std::vector<double> q = settled(*film, m), rest(q.size(), 0.0);
   StateResponse a;
@@ -204,11 +205,11 @@ TEST(Hole, HoldsItsPressureInEveryFilm) {
     o.cavitation = cavitation;
     o.holes = {{-70.0 * kDegree, 0.0, 0.02, cavitation == mass_conserving ? 1e5 : 0.0}};
     auto film = make_film(cylinder(), o, oil());
-    const Motion m = motion(cylinder(), {0.0, -0.6, 0.0, 0.0}, {}, 377.0);
+    const JournalMotion m = motion(cylinder(), {0.0, -0.6, 0.0, 0.0}, {}, 377.0);
     const auto fields = film->fields(m, {});
     int held = 0;
     double highest = 0.0;
-    for (const Field& f : fields) {
+    for (const NodalField& f : fields) {
       if (f.name != "pressure") continue;
       for (int i = 0; i < 48; ++i)
         for (int j = 0; j <= 12; ++j) {

@@ -225,7 +225,7 @@ TEST(Rigid, ReportQuantities) {
   for (const K kind : {K::short_bearing, K::long_bearing, K::long_inlet}) {
     const Options o = film_of(kind);
     auto model = make_film(g, o, oil());
-    const Motion m = motion(g, {0.3, -0.4, 0, 0}, {0.1, -0.2, 0, 0}, speed);
+    const JournalMotion m = motion(g, {0.3, -0.4, 0, 0}, {0.1, -0.2, 0, 0}, speed);
     const Response r = evaluate(*model, m, Need::force);
     const auto fields = model->fields(m, {});
     ASSERT_EQ(fields.size(), 4U);
@@ -240,13 +240,13 @@ TEST(Rigid, ReportQuantities) {
         peak = std::max(peak, p);
       }
     expect_near({fx, fy}, {r.force[0], r.force[1]}, 1e-3);
-    const Summary s = model->summary(m, {});
+    const FilmReport s = model->summary(m, {});
     EXPECT_NEAR(s.max_pressure, peak, 1e-3 * peak);
     EXPECT_GE(s.max_pressure, peak);
     EXPECT_NEAR(s.min_thickness, 0.5 * g.clearance, 1e-12);
-    const Motion still = motion(g, {0.3, -0.4, 0, 0}, {}, speed);
+    const JournalMotion still = motion(g, {0.3, -0.4, 0, 0}, {}, speed);
     const Response at = evaluate(*model, still, Need::force);
-    const Summary t = model->summary(still, {});
+    const FilmReport t = model->summary(still, {});
     const double flow = kind == K::short_bearing ? eps * speed * g.radius * g.clearance * g.length : 0;
     EXPECT_NEAR(t.side_flow, flow, 1e-12 * (flow + 1e-12));
     const double U = speed * g.radius, arm = 0.3 * g.clearance * at.force[1] + 0.4 * g.clearance * at.force[0];

@@ -34,9 +34,9 @@ std::array<double, 6> columns(double e, Inlet inlet, std::array<int, 2> cells) {
   const Lubricant oil{0.02, 0.0};
   const double speed = 100.0, N = speed / (2.0 * kPi), ratio = g.radius / g.clearance;
   auto film = make_film(g, starting(inlet, C::reynolds, cells), oil);
-  const Motion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, speed);
+  const JournalMotion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, speed);
   const Response r = evaluate(*film, m, Need::force);
-  const Summary s = film->summary(m, {});
+  const FilmReport s = film->summary(m, {});
   const double load = std::hypot(r.force[0], r.force[1]), flow = g.radius * g.clearance * N * g.length;
   return {oil.viscosity * N * g.length * 2.0 * g.radius * ratio * ratio / load,
           std::atan2(r.force[0], r.force[1]) / kDegree,
@@ -95,7 +95,7 @@ TEST(Inlet, LineAtTheMaximumGapHasTheSameForce) {
   for (const C cavitation : {C::half_sommerfeld, C::reynolds, C::none})
     for (const bool tilt : {false, true}) {
       const double at = 37.0 * kDegree;
-      const Motion m =
+      const JournalMotion m =
           motion(plain(0.7), {-0.6 * std::cos(at), -0.6 * std::sin(at), 0.1, 0.05}, {0.1, 0.2, 0.05, 0.1}, 200.0);
       const Response a = evaluate(*make_film(plain(0.7), starting(kWidest, cavitation, {40, 10}, tilt), oil()), m),
                      b = evaluate(*make_film(plain(0.7), starting(line(at), cavitation, {40, 10}, tilt), oil()), m);
@@ -131,7 +131,7 @@ TEST(Inlet, MaximumGapTurnsWithTheFrame) {
       for (std::size_t i = 0; i < 4; ++i)
         EXPECT_NEAR(turned[i], straight[i], 1e-10 * std::abs(straight[i < 2 ? 1 : 3]));
     }
-    const Motion rest = motion(plain(1.0), {0.3, -0.5, 0.0, 0.0}, {}, 300.0);
+    const JournalMotion rest = motion(plain(1.0), {0.3, -0.5, 0.0, 0.0}, {}, 300.0);
     const Response r = evaluate(*film, rest);
     for (std::size_t i = 0; i < 2; ++i) {
       const double around = -r.d_position[i][0] * rest.position[1] + r.d_position[i][1] * rest.position[0];

@@ -90,7 +90,7 @@ MeshFree mesh_free(double w) {
 }
 
 TEST(Liner, ForceStiffnessAndDampingOfAShortFilmAgainstOneWithoutMesh) {
-  const Motion m = still(ex, ey);
+  const JournalMotion m = still(ex, ey);
   for (const double ratio : {0.3, 1.0, 5.0}) {
     const double w = ratio * kSpeed;
     const MeshFree exact = mesh_free(w);
@@ -123,7 +123,7 @@ TEST(Liner, FastVibrationsSeeTheLinerAlone) {
     auto damped = make_film(cylinder(), o, oil());
     o.liner_damping = 0.0;
     auto plain = make_film(cylinder(), o, oil());
-    const Motion m = still(ex, ey);
+    const JournalMotion m = still(ex, ey);
     const auto s = relaxed(*damped, m);
     const Coefficients a = coefficients(*plain, m, s, 1e7 * kSpeed);
     StateResponse r;
@@ -146,13 +146,13 @@ TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
     auto damped = make_film(cylinder(), o, oil());
     o.liner_damping = 0.0;
     auto plain = make_film(cylinder(), o, oil());
-    const Motion m = still(ex, ey);
+    const JournalMotion m = still(ex, ey);
     const auto a = relaxed(*damped, m), b = relaxed(*plain, m);
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-9 * scale_of(*damped));
     EXPECT_NEAR(damped->summary(m, a).max_pressure, plain->summary(m, b).max_pressure,
                 1e-8 * plain->summary(m, b).max_pressure);
     // A journal that moves: the settled rates satisfy the equation and carry another pressure than the spring.
-    const Motion moving = motion(cylinder(), {ex, ey, 0.0, 0.0}, {0.1, -0.1, 0.0, 0.0}, kSpeed);
+    const JournalMotion moving = motion(cylinder(), {ex, ey, 0.0, 0.0}, {0.1, -0.1, 0.0, 0.0}, kSpeed);
     EXPECT_GT(std::abs(damped->summary(moving, a).max_pressure / plain->summary(moving, b).max_pressure - 1.0), 1e-3);
     EXPECT_FALSE(damped->constant_rates());
     EXPECT_TRUE(plain->constant_rates());
@@ -161,7 +161,7 @@ TEST(Liner, DampingDoesNotMoveAFilmAtRest) {
 
 TEST(Liner, RubberStiffensAndHasAnEnd) {
   using enum Kind;
-  const Motion m = still(0.3, -0.6);
+  const JournalMotion m = still(0.3, -0.6);
   for (const auto kind : {compliant_short, compliant_finite}) {
     double last = 1e300;
     for (const double thickness : {0.5, 1.0, 2.0, 1e6}) {  // clearances

@@ -24,8 +24,8 @@ Reynolds with(Reynolds o, Reynolds::Cavitation cavitation) {
   return o;
 }
 
-const Field& field(const std::vector<Field>& fields, const std::string& name) {
-  return *std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+const NodalField& field(const std::vector<NodalField>& fields, const std::string& name) {
+  return *std::find_if(fields.begin(), fields.end(), [&](const NodalField& f) { return f.name == name; });
 }
 
 // A long bearing that is fed with too little oil at the widest gap, h = c (1 + e cos t), fill f at t = 0. The oil fills
@@ -66,12 +66,12 @@ TEST(MassConserving, StarvedLongBearingFillsAndRupturesWhereTheBalanceSays) {
     Reynolds o = conserving({n, 16});
     o.inlet = {Inlet::Type::line, 0.0};
     o.edge_fill = exact.f;
-    const Motion m = motion(g, {-exact.e, 0.0, 0.0, 0.0}, {}, 377.0);
+    const JournalMotion m = motion(g, {-exact.e, 0.0, 0.0, 0.0}, {}, 377.0);
     const auto fields = make_film(g, o, oil())->fields(m, {});
-    const Field &p = field(fields, "pressure"), &fill = field(fields, "fill");
+    const NodalField &p = field(fields, "pressure"), &fill = field(fields, "fill");
     const double scale = 6.0 * oil().viscosity * m.speed * std::pow(g.radius / g.clearance, 2),
                  step = 2.0 * std::numbers::pi / n;
-    const auto middle = [&](const Field& q, int i) { return q.values[static_cast<std::size_t>(i * 17 + 8)]; };
+    const auto middle = [&](const NodalField& q, int i) { return q.values[static_cast<std::size_t>(i * 17 + 8)]; };
     for (int i = 0; i <= n; ++i) {
       area[level] += step * middle(p, i) / scale;
       const double t = i * step;
@@ -101,10 +101,10 @@ TEST(MassConserving, BalancesToRounding) {
     auto film = make_film(g, o, oil());
     for (int sample = 0; sample < 20; ++sample) {
       const double tilt = o.tilt ? 0.3 : 0.0;
-      const Motion m =
+      const JournalMotion m =
           motion(g, {0.5 * uniform(engine), 0.5 * uniform(engine), tilt * uniform(engine), tilt * uniform(engine)},
                  {0.3 * uniform(engine), 0.3 * uniform(engine), 0.0, 0.0}, sample % 3 == 0 ? -377.0 : 377.0);
-      const Summary s = film->summary(m, {});
+      const FilmReport s = film->summary(m, {});
       EXPECT_LT(std::abs(s.imbalance), 1e-12 * (std::abs(s.inlet_flow) + std::abs(s.side_flow)));
     }
   }
@@ -114,7 +114,7 @@ TEST(MassConserving, BalancesToRounding) {
 TEST(MassConserving, IsTheUncavitatedFilmWhereTheGapIsFull) {
   Geometry g = arc();
   g.arc = 40.0 * kDegree;
-  const Motion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
+  const JournalMotion m = motion(g, {0.6, -0.3, 0.0, 0.0}, {0.0, -0.2, 0.0, 0.0}, 377.0);
   const Response a = evaluate(*make_film(g, conserving({40, 10}), oil()), m),
                  b = evaluate(*make_film(g, with(conserving({40, 10}), Reynolds::Cavitation::none), oil()), m);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -135,11 +135,11 @@ TEST(MassConserving, FedAtTheWidestGapItIsNearReynolds) {
     Reynolds o = conserving({120, 24});
     o.inlet = {Inlet::Type::maximum_gap, 0.0};
     auto a = make_film(g, o, oil()), b = make_film(g, with(o, Reynolds::Cavitation::reynolds), oil());
-    const Motion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, 377.0);
+    const JournalMotion m = motion(g, {0.0, -e, 0.0, 0.0}, {}, 377.0);
     const Response ra = evaluate(*a, m), rb = evaluate(*b, m);
     const double load = std::hypot(ra.force[0], ra.force[1]), other = std::hypot(rb.force[0], rb.force[1]);
     EXPECT_NEAR(load, other, 0.01 * other) << e;
-    const Summary sa = a->summary(m, {}), sb = b->summary(m, {});
+    const FilmReport sa = a->summary(m, {}), sb = b->summary(m, {});
     EXPECT_LT(std::abs(sa.imbalance), 1e-12 * sa.inlet_flow);
     EXPECT_GT(std::abs(sb.imbalance), 0.02 * sb.side_flow) << e;
     RecordProperty("imbalance", std::to_string(sb.imbalance / sb.side_flow));
@@ -152,7 +152,7 @@ TEST(MassConserving, TurnsBothWays) {
   o.edge_fill = 0.8;
   auto film = make_film(lemon(), o, oil());
   const Response a = evaluate(*film, motion(lemon(), {0.4, -0.5, 0.0, 0.0}, {0.05, 0.1, 0.0, 0.0}, 300.0));
-  Motion mirrored = motion(lemon(), {-0.4, -0.5, 0.0, 0.0}, {-0.05, 0.1, 0.0, 0.0}, 300.0);
+  JournalMotion mirrored = motion(lemon(), {-0.4, -0.5, 0.0, 0.0}, {-0.05, 0.1, 0.0, 0.0}, 300.0);
   mirrored.speed = -300.0;
   const Response b = evaluate(*film, mirrored);
   const double size = std::abs(a.force[0]) + std::abs(a.force[1]);
@@ -167,8 +167,8 @@ TEST(MassConserving, TheAnswerDoesNotDependOnTheStart) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   auto film = make_film(lemon(), conserving({40, 10}), oil());
   for (int sample = 0; sample < 30; ++sample) {
-    const Motion m = motion(lemon(), {0.7 * uniform(engine), 0.7 * uniform(engine), 0.0, 0.0},
-                            {0.5 * uniform(engine), 0.5 * uniform(engine), 0.0, 0.0}, 377.0);
+    const JournalMotion m = motion(lemon(), {0.7 * uniform(engine), 0.7 * uniform(engine), 0.0, 0.0},
+                                   {0.5 * uniform(engine), 0.5 * uniform(engine), 0.0, 0.0}, 377.0);
     auto fresh = make_film(lemon(), conserving({40, 10}), oil());
     const Response a = evaluate(*film, m), b = evaluate(*fresh, m);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(a.force[i], b.force[i], 1e-10 * std::abs(b.force[1]) + 1e-9);

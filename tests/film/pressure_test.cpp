@@ -84,7 +84,7 @@ TEST(Solvers, SineModesAndBandAgreeToRounding) {
       Reynolds band = modal;
       band.tilt = true;
       for (const Geometry& g : {lemon(), arc()}) {
-        const Motion m = motion(g, {0.4, -0.5, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
+        const JournalMotion m = motion(g, {0.4, -0.5, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
         const Response a = evaluate(*make_film(g, modal, oil()), m), b = evaluate(*make_film(g, band, oil()), m);
         const auto near = [&](const auto& u, const auto& v) {
           double size = 0.0;
@@ -114,7 +114,7 @@ TEST(Solvers, HalfAndWholePadAgreeWithReynoldsCavitation) {
     half.cavitation = C::reynolds;
     Reynolds whole = half;
     whole.tilt = true;
-    const Motion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
+    const JournalMotion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
     const Response a = evaluate(*make_film(lemon(), half, oil()), m),
                    b = evaluate(*make_film(lemon(), whole, oil()), m);
     EXPECT_LT(largest(a, b, false), 1e-10 * std::abs(a.force[1]));
@@ -124,7 +124,7 @@ TEST(Solvers, HalfAndWholePadAgreeWithReynoldsCavitation) {
 
 // Complementarity makes damping symmetric; truncation after the solution does not.
 TEST(Solvers, OnlyComplementarityHasSymmetricDamping) {
-  const Motion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
+  const JournalMotion m = motion(lemon(), {0.9, -0.4, 0.0, 0.0}, {}, 377.0);
   Reynolds o;
   Response r = evaluate(*make_film(lemon(), o, oil()), m);
   EXPECT_GT(std::abs(r.d_velocity[0][1] - r.d_velocity[1][0]), 0.1 * std::abs(r.d_velocity[0][1]));
@@ -161,7 +161,7 @@ TEST(Signs, MirrorAndHalfTurn) {
   Geometry g = lemon();
   auto model = make_film(g, {}, oil());
   const Response a = evaluate(*model, motion(g, {0.5, -0.3, 0.0, 0.0}, {0.05, -0.02, 0.0, 0.0}, 377.0));
-  Motion mirrored = motion(g, {-0.5, -0.3, 0.0, 0.0}, {-0.05, -0.02, 0.0, 0.0}, 377.0);
+  JournalMotion mirrored = motion(g, {-0.5, -0.3, 0.0, 0.0}, {-0.05, -0.02, 0.0, 0.0}, 377.0);
   mirrored.speed = -377.0;
   const Response b = evaluate(*model, mirrored);
   const double tiny = 1e-11 * std::abs(a.force[1]);
@@ -182,7 +182,7 @@ TEST(Signs, OffsetMovesTheLowerLobeToTheRight) {
   Geometry g = lemon();
   g.offset = 0.5 * g.clearance;
   const auto fields = make_film(g, {}, oil())->fields(motion(g, {}, {}, 377.0), {});
-  for (const Field& f : fields) {
+  for (const NodalField& f : fields) {
     if (f.name != "thickness") continue;
     const std::size_t columns = f.shape[1];
     const double first = f.values.front(), last = f.values[(f.shape[0] - 1) * columns];
@@ -200,7 +200,7 @@ TEST(Fields, IntegrateToTheForce) {
     o.tilt = tilt;
     o.cells = {120, 32};
     auto model = make_film(lemon(), o, oil());
-    const Motion m = motion(lemon(), {0.9, -0.4, 0.0, tilt ? -0.2 : 0.0}, {}, 377.0);
+    const JournalMotion m = motion(lemon(), {0.9, -0.4, 0.0, tilt ? -0.2 : 0.0}, {}, 377.0);
     const Response r = evaluate(*model, m);
     std::array<double, 3> total{};
     const auto fields = model->fields(m, {});

@@ -42,8 +42,8 @@ Setup setup(const Json& p, std::array<int, 2> cells) {
 }
 
 // Position under a vertical load by Newton's method with the film's own tangents.
-Motion equilibrium(Film& model, const Setup& s, double load) {
-  Motion m = motion(s.geometry, {0.3, -0.4, 0.0, 0.0}, {}, s.speed);
+JournalMotion equilibrium(Film& model, const Setup& s, double load) {
+  JournalMotion m = motion(s.geometry, {0.3, -0.4, 0.0, 0.0}, {}, s.speed);
   for (int k = 0; k < 60; ++k) {
     const Response r = evaluate(model, m);
     const double fx = r.force[0], fy = r.force[1] - load;
@@ -71,12 +71,12 @@ std::vector<double> compute(const Json& record, std::array<int, 2> cells) {
   const Setup s = setup(p, cells);
   auto model = make_film(s.geometry, s.options, oil());
   if (quantity.starts_with("force")) {
-    const Motion m = motion(s.geometry, {p.at("x_cb"), p.at("y_cb"), 0.0, 0.0},
-                            {p.at("vx_cb_Om"), p.at("vy_cb_Om"), 0.0, 0.0}, s.speed);
+    const JournalMotion m = motion(s.geometry, {p.at("x_cb"), p.at("y_cb"), 0.0, 0.0},
+                                   {p.at("vx_cb_Om"), p.at("vy_cb_Om"), 0.0, 0.0}, s.speed);
     const Response r = evaluate(*model, m, Need::force);
     return {r.force[0], r.force[1]};
   }
-  const Motion m = equilibrium(*model, s, p.at("load_N"));
+  const JournalMotion m = equilibrium(*model, s, p.at("load_N"));
   const Response r = evaluate(*model, m);
   if (quantity.starts_with("equilibrium")) {
     return {m.position[0] / s.geometry.clearance, m.position[1] / s.geometry.clearance};

@@ -20,7 +20,7 @@ double rate(std::array<int, 2> cells, double dt, Compliant::Differences differen
   o.differences = differences;
   if (contact) o.contact = Contact{0.2 * g.clearance, 1e7};
   auto film = make_film(g, o, {0.001, 1000.0});
-  const Motion m = motion(g, {0.5, -0.55, 0.0, 0.0}, {}, 800.0);
+  const JournalMotion m = motion(g, {0.5, -0.55, 0.0, 0.0}, {}, 800.0);
   const std::size_t n = film->states();
   std::vector<double> s(n), zero(n, 0.0);
   film->unloaded(m, s);

@@ -24,7 +24,7 @@ struct Random {
   std::mt19937 engine{11};
   std::uniform_real_distribution<double> uniform{-1.0, 1.0};
   double one() { return uniform(engine); }
-  Motion motion(const Geometry& g, bool tilt) {
+  JournalMotion motion(const Geometry& g, bool tilt) {
     const double r = 0.75 * std::sqrt(std::abs(one())), f = std::numbers::pi * one(),
                  v = std::pow(10.0, 1.5 * one() - 1.5);
     const double slope = tilt ? 0.2 : 0.0, rate = tilt ? v : 0.0;
@@ -46,8 +46,8 @@ TEST(Rupture, TangentsSumUpToTheForceAcrossNodes) {
       auto film = make_film(g, ruptured({40, 10}, tilt, Turbulence::constantinescu), oil());
       double worst = 0.0;
       for (int sample = 0; sample < 6; ++sample) {
-        const Motion from = random.motion(g, tilt);
-        Motion to = from;
+        const JournalMotion from = random.motion(g, tilt);
+        JournalMotion to = from;
         for (std::size_t j = 0; j < (tilt ? 4U : 2U); ++j) {
           to.position[j] += 0.03 * random.one() * (j < 2 ? g.clearance : 0.3 * g.clearance / g.length);
           to.velocity[j] += 0.03 * random.one() * 377.0 * (j < 2 ? g.clearance : 0.3 * g.clearance / g.length);
@@ -60,7 +60,7 @@ TEST(Rupture, TangentsSumUpToTheForceAcrossNodes) {
           std::array<double, 4> total{};
           for (int s = 0; s < steps; ++s) {
             const double t = (s + 0.5) / steps;
-            Motion m = from;
+            JournalMotion m = from;
             for (std::size_t j = 0; j < 4; ++j) {
               m.position[j] += t * (to.position[j] - from.position[j]);
               m.velocity[j] += t * (to.velocity[j] - from.velocity[j]);
@@ -130,7 +130,7 @@ TEST(Rupture, TheAnswerDoesNotDependOnTheStart) {
       const Reynolds o = ruptured({36, 10}, tilt, Turbulence::constantinescu);
       auto film = make_film(g, o, oil());
       for (int sample = 0; sample < 25; ++sample) {
-        const Motion m = random.motion(g, tilt);
+        const JournalMotion m = random.motion(g, tilt);
         const Response a = evaluate(*film, m), b = evaluate(*make_film(g, o, oil()), m);
         for (std::size_t i = 0; i < 2; ++i) {
           EXPECT_NEAR(a.force[i], b.force[i], 1e-9 * size(b.force));
@@ -189,12 +189,12 @@ TEST(Rupture, CoefficientsDoNotScatterOverEccentricity) {
 // A film starts from the rupture that it left; where the search for it came to nothing that is no start.
 TEST(Rupture, AFailureLeavesNothingBehind) {
   for (const bool tilt : {false, true}) {
-    const Motion good = motion(lemon(), {0.6, -0.3, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
+    const JournalMotion good = motion(lemon(), {0.6, -0.3, 0.0, 0.0}, {0.05, -0.08, 0.0, 0.0}, 377.0);
     auto fresh = make_film(lemon(), ruptured({40, 8}, tilt), oil()),
          film = make_film(lemon(), ruptured({40, 8}, tilt), oil());
     const Response expected = evaluate(*fresh, good);
     (void)evaluate(*film, good);
-    Motion bad = good;
+    JournalMotion bad = good;
     bad.velocity[1] = std::numeric_limits<double>::quiet_NaN();
     Response response;
     EXPECT_THROW(film->evaluate(bad, Need::force, response), core::NotConverged);
@@ -233,7 +233,7 @@ TEST(Rupture, TangentsAfterTheForceAreThoseOfOneCall) {
         Reynolds o = ruptured({24, 8}, tilt);
         o.cavitation = cavitation;
         auto twice = make_film(g, o, oil()), once = make_film(g, o, oil());
-        Motion m = random.motion(g, tilt);
+        JournalMotion m = random.motion(g, tilt);
         for (const double change : {0.0, 1e-7, 0.3}) {
           m.speed *= 1.0 + change;
           const Response force = evaluate(*twice, m, Need::force), tangents = evaluate(*twice, m),

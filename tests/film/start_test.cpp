@@ -21,7 +21,7 @@ TEST_P(Start, SavesFactorisations) {
   options.cells = {60, 16};
   const Lubricant oil{0.02, 870};
   Geometry bore{Geometry::Bore::partial_arc, 0.0625, 0.05, 1e-4, 2.6, 0, 0};
-  Motion motion;
+  JournalMotion motion;
   motion.position = {3e-5, -5e-5, 0, 0};
   motion.velocity = {1e-3, -2e-3, 0, 0};
   motion.speed = 300;

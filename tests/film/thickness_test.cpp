@@ -38,7 +38,7 @@ TEST(Thickness, LeastIsThatOfTheFormula) {
   std::uniform_real_distribution<double> uniform(-0.7, 0.7);
   for (const Geometry& g : {lemon(), offset, arc(), cylinder()})
     for (int k = 0; k < 8; ++k) {
-      const Motion m =
+      const JournalMotion m =
           motion(g, {uniform(random), uniform(random), 0.3 * uniform(random), 0.3 * uniform(random)}, {}, 1.0);
       EXPECT_NEAR(minimum_thickness(g, m.position), sampled(g, m.position), 1e-9 * g.clearance);
       if (g.type == Geometry::Bore::partial_arc) continue;  // its thinnest place may be far from the journal

@@ -112,3 +112,66 @@ TEST(Xdmf, IsWellFormedAndNamesOnlyDatasetsThatExist) {
   EXPECT_NE(xml.find("Dimensions=\"3 2 3\""), std::string::npos);
   EXPECT_NE(xml.find("Dimensions=\"2 3 4 3\""), std::string::npos);
 }
+
+// A quarter of a ring, two rows, three columns, one layer.
+StructuredGrid quarter(Group& body) {
+  return cell_grid(body, "/bush", "bush", "corners", {2, 3, 1}, [](const Shape& at) {
+    const double theta = static_cast<double>(at[1]) * 0.5, r = 1 + static_cast<double>(at[2]);
+    return std::array<double, 3>{r * std::cos(theta), r * std::sin(theta), static_cast<double>(at[0]) * 0.25};
+  });
+}
+
+TEST(Xdmf, CellsHaveCornersOneMoreInEachExtent) {
+  const test::Temporary folder;
+  Group body;
+  body.put("temperature", {2, 3, 1}, {1, 2, 3, 4, 5, 6}, "K", "");
+  body.put("wall", {2, 3}, std::vector<double>(6, 0.0), "K", "not of the cells");
+  const StructuredGrid grid = quarter(body);
+  EXPECT_EQ(grid.nodes, (Shape{3, 4, 2}));
+  ASSERT_EQ(grid.fields.size(), 1u);
+  EXPECT_EQ(grid.fields[0].name, "temperature [K]");
+  const Dataset& corners = body.dataset("corners");
+  EXPECT_EQ(corners.shape, (Shape{3, 4, 2, 3}));
+  const auto& p = body.reals("corners");
+  const std::size_t last = 3 * ((2 * 4 + 3) * 2 + 1);
+  EXPECT_NEAR(p[last], 2 * std::cos(1.5), 1e-15);
+  EXPECT_NEAR(p[last + 2], 0.5, 1e-15);
+  write_xdmf(folder / "bush.xdmf", "results.h5", {grid});
+  const std::string xml = content(folder / "bush.xdmf");
+  expect_well_formed(xml);
+  EXPECT_NE(xml.find("3DSMesh\" Dimensions=\"3 4 2\""), std::string::npos);
+  EXPECT_NE(xml.find("Dimensions=\"3 4 2 3\""), std::string::npos);
+  EXPECT_NE(xml.find("Center=\"Cell\">\n     <DataItem Dimensions=\"2 3 1\""), std::string::npos);
+}
+
+// Each of three ranks writes the corners before its cells, the one with the last cells those behind them, too.
+TEST(Xdmf, CornersAreSharedLikeCells) {
+  Group whole;
+  whole.put("temperature", {2, 3, 1}, std::vector<double>(6, 1.0), "K", "");
+  (void)quarter(whole);
+  std::vector<double> joined;
+  for (const RowRange& rows : {RowRange{0, 2}, RowRange{1, 2}, RowRange{2, 2}}) {
+    const std::size_t n = rows.begin < 2 ? 1 : 0;
+    Group part;
+    part.put("temperature", {{n, 3, 1}, std::vector<double>(3 * n, 1.0), "K", "", rows});
+    EXPECT_EQ(quarter(part).nodes, (Shape{3, 4, 2}));
+    const Dataset& here = part.dataset("corners");
+    EXPECT_EQ(here.share, (RowRange{rows.begin, 3}));
+    EXPECT_EQ(here.shape.front(), std::vector<std::size_t>({1, 2, 0})[rows.begin]);
+    const auto& values = std::get<std::vector<double>>(here.values);
+    joined.insert(joined.end(), values.begin(), values.end());
+  }
+  EXPECT_EQ(joined, whole.reals("corners"));
+}
+
+// A section of a body of revolution: cells in a plane.
+TEST(Xdmf, ASectionHasTwoExtents) {
+  Group body;
+  body.put("temperature", {3, 2}, std::vector<double>(6, 1.0), "K", "");
+  const StructuredGrid grid = cell_grid(body, "/journal", "journal", "corners", {3, 2}, [](const Shape& at) {
+    return std::array<double, 3>{static_cast<double>(at[1]), 0, static_cast<double>(at[0])};
+  });
+  EXPECT_EQ(grid.nodes, (Shape{4, 3}));
+  EXPECT_EQ(body.dataset("corners").shape, (Shape{4, 3, 3}));
+  EXPECT_EQ(body.reals("corners").back(), 3);
+}

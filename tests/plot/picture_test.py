@@ -5,12 +5,14 @@ import sys
 import tempfile
 
 import h5py
+import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.collections import QuadMesh
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep  # noqa: E402
+from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep, thd  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -339,6 +341,35 @@ def loci(folder):
     assert axis.get_window_extent().fully_contains(box.x0, box.y0) and axis.get_window_extent().fully_contains(box.x1, box.y1)
 
 
+def sections(folder):
+    """Of a bore of 15 mm, clearance 20 um, eccentricity 0.5 towards 0 deg, whose film is drawn 100 times as thick."""
+    plt.close("all")  # of the pictures before
+    with results_with(folder, lambda root: None) as results:
+        figures = Figures()
+        for function in (thd.draw_maps, thd.draw_radial, thd.draw_axial):
+            figures.draw(thd, function, results["hot"])
+    meshes = [c for c in figures["thd-radial"].axes[0].collections if isinstance(c, QuadMesh)]
+    assert len(meshes) == 3
+    bush, film, journal = (m.get_coordinates() for m in meshes)
+    radius = lambda corners, centre=0: np.hypot(corners[..., 0] - centre, corners[..., 1])  # noqa: E731
+    assert np.allclose(radius(bush)[0], 17), "the bush begins at its wall and stands off by the clearance"
+    assert np.allclose(radius(film)[0], 17), "the film begins there"
+    gap = radius(film)[0] - radius(film)[-1]
+    assert np.isclose(gap.min(), 1) and np.isclose(gap.max(), 3)
+    assert np.allclose(radius(journal, 1)[-1], 15), "the journal lies 1 mm to the right"
+    assert np.abs(radius(film[-1], 1) - 15).max() < 0.05, "where the film ends"
+    for mesh in meshes:
+        assert mesh.get_clim() == meshes[0].get_clim(), "one scale of temperature"
+        assert np.allclose(mesh.get_coordinates()[:, 0], mesh.get_coordinates()[:, -1]), "closed"
+    meshes = [c.get_coordinates() for c in figures["thd-axial"].axes[0].collections if isinstance(c, QuadMesh)]
+    assert len(meshes) == 6, "film, bush and journal, above and below"
+    film, bush, journal = meshes[:3]
+    assert np.isclose(film[0, 0, 1], 16) and np.isclose(film[0, -1, 1], 15) and np.isclose(bush[0, 0, 1], 16) and np.isclose(journal[0, -1, 1], 15)
+    titles = [a.get_title("left") for a in figures["thd-maps"].axes if a.get_title("left")]
+    assert len(titles) == 4 and not any("journal" in t for t in titles), "a wall of one temperature around is no map"
+    assert titles[1] == "pressure: 0.1 to 0.4 MPa"
+
+
 def legends():
     """As many columns as fit: a long label takes only its own."""
     assert style.columns_of(["a", "b", "c"], 8, 6) == 3 and style.columns_of([], 8, 6) == 1
@@ -350,7 +381,7 @@ beams()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci):
+              coefficients, loci, sections):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")

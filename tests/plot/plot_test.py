@@ -25,6 +25,7 @@ EXPECTED = {
     "hard": ["impedance"],
     "soft": ["frequencies"],
     "period_two": ["motion"],
+    "hot": ["thd-maps", "thd-profiles", "thd-radial", "thd-axial", "thd-iterations", "thd-meshes", "thd-budget"],
     "clearances": ["trends", "balanced"],
 }
 TOGETHER = ["bifurcations", "map-locus", "map-stiffness", "map-damping", "map-stability", "map-pressure"]

@@ -42,6 +42,24 @@ def static(root):
             put(g.create_group(f"films/{name}/pad{k + 1}"), theta=theta, z=axial, pressure=p, thickness=h)
 
 
+def thd(root):
+    """A bore of 30 mm at eccentricity 0.5 with its bush and a hollow shaft, warm in the middle."""
+    g = study(root, "hot", "thd", parameter="speed", parameter_unit="rad/s")
+    theta, z, zeta = np.linspace(0, 2 * np.pi, 48, endpoint=False), np.linspace(-0.015, 0.015, 17), (np.arange(8) + 0.5) / 8
+    warm = 60 + 8 * np.cos(theta - 2)[None, :] * np.cos(100 * z)[:, None]
+    thickness = 2e-5 * (1 - 0.5 * np.cos(theta))[None, :] * np.ones((17, 1))
+    pressure = 1e5 + 3e5 * np.exp(np.cos(theta) - 1)[None, :] * (1 - (z / 0.015)**2)[:, None]
+    r_bush, r_journal = 0.015 + 0.01 * (np.arange(6) + 0.5) / 6, np.append(0.005 + 0.01 * (np.arange(6) + 0.5) / 6, 0.015)
+    z_journal = np.concatenate((np.linspace(-0.035, -0.016, 9), z, np.linspace(0.018, 0.065, 20)))
+    put(g.create_group("film"), theta=theta, z=z, radius=0.015, thickness=thickness, pressure=pressure, bush_wall=300 + warm, journal_wall=358 * np.ones((17, 48)),
+        temperature=300 + warm[..., None] + 10 * (zeta * (1 - zeta)), flow_around=1e-3 * np.ones((17, 48)), flow_along=1e-2 * z[:, None] * np.ones(48))
+    put(g.create_group("bush"), theta=theta, z=z, r=r_bush, temperature=300 + warm[..., None] * (1 - 10 * (r_bush - 0.015)))
+    put(g.create_group("journal"), z=z_journal, r=r_journal, temperature=300 + 58 * np.exp(-np.abs(z_journal / 0.03))[:, None] * (1 + 0 * r_journal))
+    put(g.create_group("iterations"), field=["pressure", "temperature", "solids"], residual=10.0 ** -np.arange(7)[:, None] * [1, 0.5, 0.1])
+    put(g.create_group("meshes"), cells=[1e4, 8e4, 6.4e5], minimum=[291, 293, 294], mean=[301.3, 301.25, 301.23], maximum=[306, 305.4, 305.2], residual=[1e-9, 0, 3e-10])
+    put(g.create_group("budget"), parameter=[0, 2000, 10000], power_loss=[0, 3, 69.7], heat_bush=[0, 1.5, 33.9], heat_journal=[0, 1.5, 35.7], residual=[0, 1e-9, 1e-9])
+
+
 def modes(root):
     g = study(root, "modes", "modes", speed_unit="rpm")
     speed = np.linspace(500, 7000, 40) * RPM
@@ -196,6 +214,7 @@ def make(directory):
         bearing_map(root, "hard", 0)
         bearing_map(root, "soft", 0.5)
         motion(root)
+        thd(root)
         sweep(root)
     studies = [
         {"name": "at service speed", "kind": "static", "status": "completed", "wall_seconds": 0.4,
@@ -208,6 +227,8 @@ def make(directory):
         {"name": "balanced", "kind": "equilibrium_branch", "status": "completed", "wall_seconds": 5.0, "values": {},
          "bifurcations": [{"type": "hopf", "parameter": "speed", "value": 5025.0, "unit": "rpm", "period_s": 0.0733,
                            "uncertainty": 12.0, "criticality": None}], "modes": [], "points": 70},
+        {"name": "hot", "kind": "thd", "status": "completed", "wall_seconds": 1.0, "values": {"temperature.mean": {"value": 360.0, "unit": "K"}},
+         "bifurcations": [], "modes": [], "points": 1},
         {"name": "clearances", "kind": "sweep", "status": "completed", "wall_seconds": 9.0, "values": {}, "bifurcations": [], "modes": [], "points": 2,
          "variants": [{"name": n, "changes": {}, "studies": []} for n in ("narrow", "wide")],
          "columns": [{"name": f"balanced.hopf.{k}", "unit": u, "values": v, "uncertainties": e}

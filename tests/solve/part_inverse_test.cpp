@@ -40,7 +40,9 @@ public:
     const core::Vector like = vector(Eigen::VectorXd::Zero(n));
     core::check(VecGetOwnershipRange(like.get(), &first, nullptr));
     const auto here = [&](PetscInt k) { return std::clamp<PetscInt>(k - first, 0, local_size()); };
-    return {{"machine", 0, here(hub)}, {"one", here(2), here(4)}, {"two", here(4), here(6)}};
+    return {{.name = "machine", .begin = 0, .end = here(hub)},
+            {.name = "one", .begin = here(2), .end = here(4), .part = 1},
+            {.name = "two", .begin = here(4), .end = here(6), .part = 2}};
   }
   [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override {
     return std::make_unique<Inverse>(*this);

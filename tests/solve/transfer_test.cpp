@@ -61,8 +61,10 @@ public:
     core::check(VecGetOwnershipRange(vector(VectorXd::Zero(n)).get(), &begin, nullptr));
     std::vector<problem::Field> out;
     const auto add = [&](const char* name, PetscInt from, PetscInt to) {
-      out.push_back({name, std::clamp<PetscInt>(from - begin, 0, local_size()),
-                     std::clamp<PetscInt>(to - begin, 0, local_size())});
+      out.push_back({.name = name,
+                     .begin = std::clamp<PetscInt>(from - begin, 0, local_size()),
+                     .end = std::clamp<PetscInt>(to - begin, 0, local_size()),
+                     .part = static_cast<int>(out.size())});
     };
     add("hub", 0, n_hub);
     add("one", n_hub, n_hub + n_first);

@@ -65,6 +65,13 @@ inline system::Train train_on_liners(std::array<int, 2> cells, double compliance
   return t;
 }
 
+/// Makes of a film on rigid pads one that holds its content.
+inline void hold_content(film::Options& options) {
+  auto& film = film::as<film::Reynolds>(options);
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  film.states = film::Reynolds::States::dynamic;
+}
+
 /// The generator pair of a balance grade [mm/s]: half of M_GEN e_u at nodes 120 and 140, in antiphase.
 inline void add_gen_pair(system::Train& t, double grade) {
   const double u = 0.5 * rotor::mass_between(t.rotor, 93, 160) * grade * 1e-3 / 377;

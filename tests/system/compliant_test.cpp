@@ -295,7 +295,7 @@ TEST(CompliantRotor, CoefficientsAtTheWhirlFrequencyGiveTheHopfPoint) {
     system::RotorSystem s(MPI_COMM_WORLD, t, 0.8 * guess * scale);
     const Hopf h = hopf(s, scale, 0.95 * guess, 1.05 * guess);
     const auto film = film::make_film(t.supports[0].geometry, t.supports[0].film, t.supports[0].lubricant);
-    film::Motion motion;
+    film::JournalMotion motion;
     motion.speed = s.speed();
     for (std::size_t d = 0; d < 2; ++d) motion.position[d] = s.journals(h.state.data())[0].position[d];
     const auto first = h.state.end() - static_cast<std::ptrdiff_t>(film->states());

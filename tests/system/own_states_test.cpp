@@ -5,9 +5,12 @@
 
 #include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "support/film_of.hpp"
 #include "support/petsc_options.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
 #include "whirl/solve/newton/newton.hpp"
@@ -341,4 +344,22 @@ TEST(OwnStates, RatesOfDampedLinersSolveTheEquations) {
   const double at_rest = f.lpNorm<Eigen::Infinity>();
   point.residual(0, x, point.rate(0, x), f);
   EXPECT_LE(f.lpNorm<Eigen::Infinity>(), 1e-9 * at_rest);
+}
+
+// 1100 films of 2 million states: refused before any of them is made.
+TEST(OwnStates, MoreThanPetscCountsAreRefused) {
+  system::Support one = support(Kind::compliant_short, false, 0.1, 20);
+  film::Reynolds film;
+  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
+  film.states = film::Reynolds::States::dynamic;
+  film.cells = {2000, 2000};
+  one.film = film;
+  const system::Train large = train(std::vector<system::Support>(1100, one));
+  try {
+    system::RotorSystem s(PETSC_COMM_WORLD, large, speed);
+    ADD_FAILURE() << "no error";
+  } catch (const core::InputError& e) {
+    EXPECT_TRUE(e.agreed());
+    EXPECT_NE(std::string(e.what()).find("own states of films: 2200000000"), std::string::npos) << e.what();
+  }
 }

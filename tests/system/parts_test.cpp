@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "support/overhung.hpp"
+#include "support/two_fields.hpp"
+#include "system/film_part.hpp"
 #include "system/rotor_part.hpp"
 #include "whirl/core/error.hpp"
 
@@ -113,6 +115,54 @@ TEST_P(Parts, FieldsCoverAllRows) {
   }
   for (const problem::Field& f : s.fields())
     for (PetscInt i = f.begin; f.scale > 0.0 && i < f.end; ++i) EXPECT_EQ(a[i], f.scale);
+}
+
+// Fields of a film differ in unit: rows of a field are measured in what it says, else in its states times 300/s. Also
+// where a cut runs through a field.
+TEST(FilmParts, MeasureEachFieldInItsOwnUnits) {
+  constexpr int n = 4;
+  for (const auto& [begin, end] : {std::pair{0, 8}, std::pair{0, 3}, std::pair{3, 8}, std::pair{5, 8}}) {
+    system::FilmPart part(std::make_unique<test::TwoFields>(n), 0);
+    part.hold(begin, end, 2, 0, false);
+    ASSERT_EQ(part.rows(), end - begin);
+    const auto fields = part.fields("film");
+    ASSERT_EQ(fields.size(), 2U);
+    EXPECT_EQ(fields[0].begin, 2);
+    EXPECT_EQ(fields[0].end, fields[1].begin);
+    EXPECT_EQ(fields[1].end, 2 + end - begin);
+    std::vector<double> states(static_cast<std::size_t>(end - begin)), rows = states;
+    part.scales(states.data(), rows.data());
+    for (int k = begin; k < end; ++k) {
+      const auto i = static_cast<std::size_t>(k - begin);
+      EXPECT_EQ(states[i], k < n ? 50 : 1e-5) << k;
+      EXPECT_EQ(rows[i], k < n ? 50 * 2e7 : 1e-5 * 300) << k;
+    }
+  }
+}
+
+// A film that is cut through all its fields numbers them slab by slab.
+TEST(FilmParts, HoldTheirPieceOfFieldsThatComeAgain) {
+  for (const auto& [begin, end] : {std::pair{0, 8}, std::pair{0, 2}, std::pair{2, 8}, std::pair{4, 4}}) {
+    system::FilmPart part(std::make_unique<test::TwoFields>(4, true), 0);
+    part.hold(begin, end, 3, 0, false);
+    const auto fields = part.fields("film");
+    ASSERT_EQ(fields.size(), 2U);
+    std::vector<int> seen(static_cast<std::size_t>(end - begin), -1);
+    for (int q = 0; q < 2; ++q)
+      fields[static_cast<std::size_t>(q)].each([&](PetscInt i) { seen.at(static_cast<std::size_t>(i - 3)) = q; });
+    std::vector<double> states(seen.size()), rows(seen.size());
+    part.scales(states.data(), rows.data());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      EXPECT_EQ(seen[i], static_cast<int>(i % 2)) << i;
+      EXPECT_EQ(states[i], i % 2 == 0 ? 50 : 1e-5) << i;
+      EXPECT_EQ(rows[i], i % 2 == 0 ? 50 * 2e7 : 1e-5 * 300) << i;
+    }
+    const auto whole = problem::parts_of(fields);
+    ASSERT_EQ(whole.size(), 1U);
+    EXPECT_EQ(whole[0].begin, 3);
+    EXPECT_EQ(whole[0].end, 3 + end - begin);
+    EXPECT_EQ(whole[0].quantity, "");
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, Parts, ::testing::Bool(),

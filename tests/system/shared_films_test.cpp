@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/counts_matrices.hpp"
 #include "support/petsc_options.hpp"
 #include "support/stage_equations.hpp"
 #include "support/train_system.hpp"
@@ -31,19 +32,12 @@ extern "C" int MPI_Comm_split(MPI_Comm comm, int colour, int key, MPI_Comm* made
 
 namespace {
 
-// Makes of a film on rigid pads one that holds its content.
-void hold_content(film::Options& options) {
-  auto& film = film::as<film::Reynolds>(options);
-  film.cavitation = film::Reynolds::Cavitation::mass_conserving;
-  film.states = film::Reynolds::States::dynamic;
-}
-
 // The reduced train in its own bearings, whose films hold their content.
 system::Train on_content() {
   system::Train t = test::train({24, 6}, true);
   for (system::Support& s : t.supports) {
     s.name = "B" + std::to_string(&s - t.supports.data() + 1);
-    hold_content(s.film);
+    test::hold_content(s.film);
   }
   return t;
 }
@@ -183,23 +177,9 @@ TEST_P(SharedFilmsOf, ListTheJacobian) {
   }
 }
 
-namespace {
-
-class CountsMatrices : public system::RotorSystem {
-public:
-  using RotorSystem::RotorSystem;
-  int made = 0;
-  [[nodiscard]] core::Matrix make_jacobian() override {
-    ++made;
-    return RotorSystem::make_jacobian();
-  }
-};
-
-}  // namespace
-
 // Films by their own inverses need no matrix that is assembled; whoever asks for one has it.
 TEST(SharedFilms, AreSolvedWithoutAMatrix) {
-  CountsMatrices s(MPI_COMM_WORLD, on_content(), 377);
+  test::CountsMatrices s(MPI_COMM_WORLD, on_content(), 377);
   core::Vector x = s.guess();
   solve::NewtonOptions newton;
   newton.max_iterations = 40;
@@ -277,7 +257,7 @@ TEST(SharedFilms, OnPadsCarryTheSameEquilibrium) {
   system::Support support;
   support.node = 1;
   support.geometry = {film::Geometry::Bore::lemon_bore, 0.02, 0.03, 5e-5, 160 * std::numbers::pi / 180, 0.5, 0};
-  hold_content(support.film);
+  test::hold_content(support.film);
   film::as<film::Reynolds>(support.film).cells = {40, 10};
   support.lubricant = {0.01, 850};
   train.supports = {support, support};
@@ -331,13 +311,18 @@ TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
   };
   const std::vector<double> by_fields = with(split);
   EXPECT_GT(tried, exact);  // blocks one after another are no solution
+  for (auto& [name, value] : split)
+    if (const std::size_t at = name.find("_pc_"); name.find("split_B") != std::string::npos)
+      name.insert(at, "_thickness");
+  split.emplace_back("-newton_split_quantities", "");
+  const std::vector<double> by_quantities = with(split);
   const std::vector<double> by_mumps = with(test::by_mumps());
   // Elimination without the films' own preconditioners, and where these do not serve.
   const test::WithOptions::List by_lu = {{"-parts_pc_type", "lu"}}, one = {{"-equilibrium_ksp_max_it", "1"}};
   const std::vector<double> parts_by_lu = with(by_lu), given_up = with(one);
   for (std::size_t b = 0; b < alone.size(); ++b) {
     EXPECT_LT(alone[b], 0) << b;
-    for (const auto* other : {&elimination, &by_fields, &by_mumps, &parts_by_lu, &given_up})
+    for (const auto* other : {&elimination, &by_fields, &by_quantities, &by_mumps, &parts_by_lu, &given_up})
       EXPECT_NEAR((*other)[b], alone[b], 1e-12) << b;
   }
 }
@@ -346,7 +331,7 @@ TEST(SharedFilms, CarryTheSameEquilibriumHoweverItIsSolved) {
 TEST(ContentFilms, TrainComesToRestInFewSteps) {
   for (const std::array<int, 2> cells : {std::array{30, 8}, {60, 16}}) {
     system::Train t = test::train(cells, true);
-    for (system::Support& s : t.supports) hold_content(s.film);
+    for (system::Support& s : t.supports) test::hold_content(s.film);
     system::RotorSystem s(MPI_COMM_WORLD, t, 377);
     core::Vector x = s.guess();
     solve::NewtonOptions newton;

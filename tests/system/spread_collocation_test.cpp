@@ -263,3 +263,18 @@ TEST(SpreadCollocation, ProductsAreDerivativesOfTheResidual) {
     EXPECT_LE(core::norm(back.get()), 1e-6 * core::norm(v.get())) << autonomous;
   }
 }
+
+// Time points times states outgrow what PETSc counts long before the states do.
+TEST(SpreadCollocation, TooManyUnknownsAreRefused) {
+  const Case c = content(80, 20);
+  system::RotorSystem s(PETSC_COMM_WORLD, c.train, c.speed);
+  std::vector<double> mesh(2'400'001);
+  for (std::size_t i = 0; i < mesh.size(); ++i) mesh[i] = static_cast<double>(i) / static_cast<double>(mesh.size() - 1);
+  try {
+    const solve::SpreadCollocation cycle(s, {}, mesh);
+    ADD_FAILURE() << "no error";
+  } catch (const core::InputError& e) {
+    EXPECT_TRUE(e.agreed());
+    EXPECT_NE(std::string(e.what()).find("2147483647"), std::string::npos) << e.what();
+  }
+}

@@ -1,4 +1,4 @@
-// The inverse of films that stand in strips of columns, wherever ranks cut them.
+// Exact inverses of films, wherever ranks cut them: that of films in strips of columns, and that of films without one.
 #include "film/strip_inverse.hpp"
 
 #include <gtest/gtest.h>
@@ -6,15 +6,20 @@
 #include <cmath>
 
 #include "film/content_cases.hpp"
+#include "system/direct_inverse.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::film::testing {
 namespace {
 
+struct Case : ContentCase {
+  bool direct;  // not by its own inverse
+};
+
 // A film on all ranks, part of it empty, with its inverse and its derivatives as one rank sees them.
 struct Shared {
-  explicit Shared(const ContentCase& c) : film(make_film(c.geometry, c.options, oil())) {
-    const Motion m = motion(c.geometry, c.position, {}, 377.0);
+  explicit Shared(const Case& c) : film(make_film(c.geometry, c.options, oil())) {
+    const JournalMotion m = motion(c.geometry, c.position, {}, 377.0);
     const auto n = static_cast<int>(film->states()), ranks = core::size_of(MPI_COMM_WORLD),
                rank = core::rank_of(MPI_COMM_WORLD);
     share = film->share(film->cut(n * rank / ranks), film->cut(n * (rank + 1) / ranks));
@@ -22,7 +27,8 @@ struct Shared {
     for (std::size_t k = 0; k < q.size(); k += 7) q[k] = -1e-6;  // holes in the full film
     film->evaluate(m, q, rest, Need::tangents, whole);
     film->evaluate(m, share, seen_of(share, q), seen_of(share, rest), Need::tangents, here);
-    inverse = film->preconditioner(MPI_COMM_WORLD, share);
+    inverse =
+        c.direct ? system::make_direct_inverse(MPI_COMM_WORLD, share) : film->preconditioner(MPI_COMM_WORLD, share);
   }
   std::unique_ptr<Film> film;
   Share share;
@@ -30,7 +36,7 @@ struct Shared {
   std::unique_ptr<StatePreconditioner> inverse;
 };
 
-class Strips : public ::testing::TestWithParam<ContentCase> {};
+class Strips : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Strips, AreSolvedExactly) {
   Shared s(GetParam());
@@ -82,9 +88,15 @@ TEST_P(Strips, AreSolvedAtComplexFrequencies) {
 }
 
 // All content films, and one of three columns: on three ranks cuts stand side by side and behind the last column.
-std::vector<ContentCase> strips() {
-  std::vector<ContentCase> out = content_films();
-  out.push_back({"three_columns", arc(), dynamic({4, 6}), {0.2, -0.6, 0.1, 0.1}, {}});
+std::vector<Case> strips() {
+  std::vector<ContentCase> films = content_films();
+  films.push_back({"three_columns", arc(), dynamic({4, 6}), {0.2, -0.6, 0.1, 0.1}, {}});
+  std::vector<Case> out;
+  for (const bool direct : {false, true})
+    for (const ContentCase& c : films) {
+      out.push_back({c, direct});
+      if (direct) out.back().name += "_direct";
+    }
   return out;
 }
 
@@ -93,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Films, Strips, ::testing::ValuesIn(strips()),
 
 // What settled a film has factorised what Newton's method asks for next.
 TEST(StripInverses, ShareTheirFactors) {
-  Shared s(content_films().front());
+  Shared s({content_films().front(), false});
   const auto second = s.film->preconditioner(MPI_COMM_WORLD, s.share);
   const auto made = [](const std::unique_ptr<StatePreconditioner>& i) {
     return dynamic_cast<const StripInverse&>(*i).factorisations();
@@ -115,12 +127,14 @@ TEST(StripInverses, ShareTheirFactors) {
 
 // A cavity at rest keeps what it holds: nothing says how much.
 TEST(StripInverses, OfSingularFilmsAreNotFinite) {
-  Shared s(content_films().front());
-  std::fill(s.here.d_states.begin(), s.here.d_states.end(), 0.0);
-  s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
-  std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0), x(r.size(), 0.0);
-  s.inverse->apply(r, x);
-  for (const double v : x) EXPECT_FALSE(std::isfinite(v));
+  for (const bool direct : {false, true}) {
+    Shared s({content_films().front(), direct});
+    std::fill(s.here.d_states.begin(), s.here.d_states.end(), 0.0);
+    s.inverse->set(s.here.d_states, s.here.d_rates, 1.0, 0.0);
+    std::vector<double> r(static_cast<std::size_t>(s.share.rows()), 1.0), x(r.size(), 0.0);
+    s.inverse->apply(r, x);
+    for (const double v : x) EXPECT_FALSE(std::isfinite(v)) << direct;
+  }
 }
 
 }  // namespace

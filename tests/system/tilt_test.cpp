@@ -215,12 +215,12 @@ TEST(Tilt, ForcesAndMomentsCarryTheShaft) {
   EXPECT_NEAR(moment, lever, 1e-6 * lever);
   for (std::size_t b = 0; b < films.size(); ++b) {
     const auto fields = s.film_fields(static_cast<int>(b), whole.data());
-    const auto field = [&](const char* name) -> const film::Field& {
-      for (const film::Field& f : fields)
+    const auto field = [&](const char* name) -> const film::NodalField& {
+      for (const film::NodalField& f : fields)
         if (f.name == name) return f;
       throw core::Bug("no such field");
     };
-    const film::Field &theta = field("theta"), &along = field("z"), &p = field("pressure");
+    const film::NodalField &theta = field("theta"), &along = field("z"), &p = field("pressure");
     const std::size_t m = along.values.size();
     const double area =
         t.supports[b].geometry.radius * (theta.values[1] - theta.values[0]) * (along.values[1] - along.values[0]);

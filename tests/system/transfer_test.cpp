@@ -9,8 +9,10 @@
 #include "support/at_rest.hpp"
 #include "support/film_of.hpp"
 #include "support/half_rotor.hpp"
+#include "support/petsc_options.hpp"
 #include "support/train_system.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 #include "whirl/solve/newton/transfer_function.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
@@ -58,6 +60,24 @@ system::Train content() {
   return t;
 }
 
+// Half the load on a film with an inverse of its own, the other half on one without.
+system::Train mix() {
+  system::Train t = content();
+  t.rotor.load *= 2;
+  t.rotor.mass *= 2;
+  t.supports.push_back(damped().supports[0]);
+  t.supports[1].name = "B2";
+  return t;
+}
+
+// A V-cycle beside an exact inverse.
+system::Train mix_with_finite() {
+  system::Train t = mix();
+  t.supports[1] = rigid(Kind::compliant_finite, {20, 6}, 0.1).supports[0];
+  t.supports[1].name = "B2";
+  return t;
+}
+
 // Of a film by itself, by elimination of its states on one rank.
 film::Coefficients coefficients_alone(const system::RotorSystem& s, int b, const std::vector<double>& x, double omega) {
   std::vector<std::unique_ptr<film::Film>> films;
@@ -67,7 +87,7 @@ film::Coefficients coefficients_alone(const system::RotorSystem& s, int b, const
     if (&at - s.train().supports.data() < b) begin += static_cast<std::ptrdiff_t>(films.back()->states());
   }
   const system::JournalState journal = s.journals(x.data())[static_cast<std::size_t>(b)];
-  film::Motion motion;
+  film::JournalMotion motion;
   for (std::size_t d = 0; d < 2; ++d) motion.position[d] = journal.position[d];
   motion.speed = s.speed();
   film::Film& film = *films[static_cast<std::size_t>(b)];
@@ -107,9 +127,9 @@ void expect_the_whole_pencils(system::RotorSystem& s, const solve::TransferOptio
 
 // From the motion of the journal to minus the force on it, with what a film does at constant states.
 TEST(TransferFunction, HoldsTheCoefficientsOfItsFilms) {
-  for (const auto& train :
-       {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), test::train_on_liners({12, 5}, 0.05)}) {
-    system::RotorSystem s(MPI_COMM_WORLD, train, train.supports.size() > 1 ? 377 : 2 * scale);
+  for (const auto& train : {rigid(Kind::compliant_finite, {20, 6}, 0.1), damped(), content(), mix(),
+                            test::train_on_liners({12, 5}, 0.05)}) {
+    system::RotorSystem s(MPI_COMM_WORLD, train, train.supports.size() > 2 ? 377 : 2 * scale);
     const core::Vector x = test::equilibrium(s);
     solve::TransferFunction transfer(s);
     transfer.linearise(x.get());
@@ -136,6 +156,93 @@ TEST(TransferFunction, HoldsTheCoefficientsOfItsFilms) {
         }
     }
   }
+}
+
+// Two journals on finite films, whose own inverses are V-cycles.
+system::Train two_finite() {
+  system::Train t = rigid(Kind::compliant_finite, {20, 6}, 0.1);
+  t.rotor.load *= 2;
+  t.rotor.mass *= 2;
+  t.supports.push_back(rigid(Kind::compliant_finite, {16, 8}, 0.05).supports[0]);
+  t.supports[1].name = "B2";
+  return t;
+}
+
+// At rest, at and beyond the speed of whirl, growing and decaying: by iterations as by factors, with slopes.
+TEST(TransferFunction, IteratesOnApproximateInversesOfLargeFilms) {
+  for (const auto& train : {two_finite(), mix_with_finite()}) {
+    system::RotorSystem s(MPI_COMM_WORLD, train, 2.4 * scale);
+    const core::Vector x = test::equilibrium(s);
+    solve::TransferFunction factors(s);
+    factors.linearise(x.get());
+    EXPECT_FALSE(factors.iterates());
+    const test::WithOptions large(test::WithOptions::List{{"-parts_kept_states", "0"}});
+    solve::TransferFunction iterations(s);
+    iterations.linearise(x.get());
+    std::vector<Complex> places = {{0, 0.47}, {-0.1, 3}};
+    if (core::size_of(MPI_COMM_WORLD) == 1) places.insert(places.end(), {{0, 0}, {0.05, 0.5}, {0, 30}});
+    for (const Complex at : places) {
+      const Complex lambda = at * s.speed();
+      const auto expected = factors.evaluate(lambda, true), found = iterations.evaluate(lambda, true);
+      ASSERT_TRUE(iterations.iterates()) << lambda;
+      ASSERT_EQ(found.size(), train.supports.size());
+      for (std::size_t b = 0; b < found.size(); ++b) {
+        EXPECT_LT((found[b].value - expected[b].value).norm(), 1e-10 * expected[b].value.norm()) << lambda << b;
+        EXPECT_LT((found[b].slope - expected[b].slope).norm(), 1e-10 * expected[b].slope.norm()) << lambda << b;
+      }
+    }
+  }
+}
+
+// Where iterations end too early, films are factorised if the machine is small enough; else all ranks say why.
+TEST(TransferFunction, FactorisesWhereIterationsFailOrSaysWhy) {
+  system::RotorSystem s(MPI_COMM_WORLD, two_finite(), 2.4 * scale);
+  const core::Vector x = test::equilibrium(s);
+  const Complex lambda{0, s.speed()};
+  solve::TransferFunction factors(s);
+  factors.linearise(x.get());
+  const auto expected = factors.evaluate(lambda, true);
+  const test::WithOptions early(test::WithOptions::List{{"-parts_kept_states", "0"}, {"-frequency_ksp_max_it", "2"}});
+  solve::TransferFunction either(s);
+  either.linearise(x.get());
+  const auto found = either.evaluate(lambda, true);
+  EXPECT_FALSE(either.iterates());
+  for (std::size_t b = 0; b < found.size(); ++b)
+    EXPECT_LT((found[b].slope - expected[b].slope).norm(), 1e-10 * expected[b].slope.norm());
+  const test::WithOptions small(test::WithOptions::List{{"-parts_whole_states", "100"}});
+  solve::TransferFunction refused(s);
+  refused.linearise(x.get());
+  try {
+    (void)refused.evaluate(lambda, false);
+    FAIL() << "two iterations were enough";
+  } catch (const core::NotConverged& error) {
+    EXPECT_NE(std::string(error.what()).find("2 iterations"), std::string::npos) << error.what();
+  }
+}
+
+// The same of equilibria.
+TEST(Equilibrium, OfALargeMachineIsNotFactorisedWhereIterationsFail) {
+  system::RotorSystem s(MPI_COMM_WORLD, two_finite(), 2.4 * scale);
+  const core::Vector x = test::equilibrium(s);
+  core::Vector guess = core::duplicate(x.get());
+  core::check(VecCopy(x.get(), guess.get()));
+  s.set_parameter(2.5 * scale);
+  const test::WithOptions early(test::WithOptions::List{{"-equilibrium_ksp_max_it", "1"}});
+  {
+    const test::WithOptions small(test::WithOptions::List{{"-parts_whole_states", "100"}});
+    const solve::NewtonResult refused = solve::find_equilibrium(s, guess.get(), {});
+    EXPECT_FALSE(refused.converged);
+    EXPECT_NE(refused.reason.find("-parts_whole_states"), std::string::npos) << refused.reason;
+    EXPECT_NE(refused.reason.find("relative residual"), std::string::npos) << refused.reason;
+  }
+  core::check(VecCopy(x.get(), guess.get()));
+  EXPECT_TRUE(solve::find_equilibrium(s, guess.get(), {}).converged);
+  // A tolerance that one iteration meets.
+  const test::WithOptions loose(
+      test::WithOptions::List{{"-equilibrium_ksp_rtol", "0.9"}, {"-parts_whole_states", "100"}});
+  core::check(VecCopy(x.get(), guess.get()));
+  const solve::NewtonResult rough = solve::find_equilibrium(s, guess.get(), {});
+  EXPECT_EQ(rough.reason.find("-parts_whole_states"), std::string::npos) << rough.reason;
 }
 
 // Regions in which films have few eigenvalues of their own, and many.
@@ -165,6 +272,10 @@ TEST(TransferModes, OfADampedLinerAreThoseOfTheWholePencil) {
 
 TEST(TransferModes, OfAFilmThatHoldsItsContentAreThoseOfTheWholePencil) {
   expect_in(content(), 2.0 * scale, {{2 * scale, scale, 1}, {3 * scale, 3.4 * scale, 4}});
+}
+
+TEST(TransferModes, OfAMixOfFilmsAreThoseOfTheWholePencil) {
+  expect_in(mix(), 2.0 * scale, {{2 * scale, scale, 1}});
 }
 
 TEST(TransferModes, OfTheTrainOnFiveLinersAreThoseOfTheWholePencil) {

@@ -2,6 +2,7 @@
 // Thin owners of PETSc objects: move-only, with the raw handle exposed. Nothing here imitates PETSc's own interface.
 
 #include <petscksp.h>
+#include <petscsf.h>
 #include <petscsnes.h>
 
 #include <string>
@@ -65,6 +66,7 @@ using LinearSolver = Handle<KSP, KSPDestroy>;
 using NonlinearSolver = Handle<SNES, SNESDestroy>;
 using Scatter = Handle<VecScatter, VecScatterDestroy>;
 using IndexSet = Handle<IS, ISDestroy>;
+using StarForest = Handle<PetscSF, PetscSFDestroy>;
 
 /// Read access to the local part of a vector for the life of the guard.
 class ReadArray {

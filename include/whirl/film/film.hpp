@@ -17,11 +17,27 @@
 
 namespace whirl::film {
 
-/// States [begin, end) of a film that are of one kind.
+/// Rad/s, of a typical whirl: what rates are measured in, per typical magnitude.
+inline constexpr double typical_frequency = 300;
+
+/// States [begin, end) of a film that are of one kind, and the rows of the same numbers. A film that is cut through
+/// several kinds numbers them slab by slab, so that each rank holds all that stands in its slabs: its kinds come again,
+/// `repeats` times in all, each time `stride` further on, and it is cut at multiples of the stride.
 struct StateField {
   std::string name, unit;
   double scale;  ///< typical magnitude
   int begin, end;
+  /// Typical magnitude of the residual of the rows, in their own unit; zero where these are rates of the states.
+  double residual_scale = 0;
+  int stride = 0, repeats = 1;
+  /// visit(state) for each of them.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (int r = 0; r < repeats; ++r)
+      for (int k = begin; k < end; ++k) visit(k + r * stride);
+  }
+  /// That, or what rates of the states are measured in.
+  [[nodiscard]] double row_scale() const { return residual_scale > 0 ? residual_scale : scale * typical_frequency; }
 };
 
 /// Inverse of A = alpha dg/ds + sigma dg/ds' of a whole film whose shares stand on the ranks of one communicator,
@@ -60,21 +76,21 @@ public:
   /// Fills `response` with the rows of a share and what it adds to the force on the journal; `states` and `rates` are
   /// those it sees. Derivatives are those of the discrete equations, empty or zero if only the force is needed. Throws
   /// core::DomainError outside the validity: film thickness not positive, or a film that runs dry.
-  virtual void evaluate(const Motion& motion, const Share& share, std::span<const double> states,
+  virtual void evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
                         std::span<const double> rates, Need need, StateResponse& response) = 0;
   /// The same of the whole film, from its states in their order.
-  void evaluate(const Motion& motion, std::span<const double> states, std::span<const double> rates, Need need,
+  void evaluate(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates, Need need,
                 StateResponse& response);
   /// The same of a film without states; core::Bug if it has some.
-  void evaluate(const Motion& motion, Need need, Response& response);
+  void evaluate(const JournalMotion& motion, Need need, Response& response);
   /// Report quantities; throws as evaluate() does.
-  virtual Summary summary(const Motion& motion, std::span<const double> states) = 0;
+  virtual FilmReport summary(const JournalMotion& motion, std::span<const double> states) = 0;
   /// Pressure and thickness at the grid nodes; empty where the film knows no pressure. Throws as evaluate() does.
-  virtual std::vector<Field> fields(const Motion& motion, std::span<const double> states) = 0;
+  virtual std::vector<NodalField> fields(const JournalMotion& motion, std::span<const double> states) = 0;
   /// Least thickness of the film [m] over its whole length, exactly where the bore is rigid: not positive where the
   /// surfaces touch. Infinite for a linear film. From some of the states alone it is that of these or of the whole
   /// film: the least over all shares is the film's. Throws as evaluate() does where the film has to be known.
-  [[nodiscard]] virtual double least_thickness(const Motion& motion, std::span<const double> states) = 0;
+  [[nodiscard]] virtual double least_thickness(const JournalMotion& motion, std::span<const double> states) = 0;
   /// Starts the search for its pressure from where `other` ended, a film of the same mesh with other numbers. Without
   /// effect on a film that searches nothing, or if the meshes differ.
   virtual void start_from(const Film& /*other*/) {}
@@ -98,9 +114,9 @@ public:
   /// deflection of a liner, what a gap holds beyond its volume. Empty if they are zero. They do not depend on anything.
   [[nodiscard]] virtual PortColumns carried_rates() const { return {}; }
   /// The states of a film that carries nothing, to start from. Throws as evaluate() does.
-  virtual void unloaded(const Motion& /*motion*/, std::span<double> /*states*/) const {}
+  virtual void unloaded(const JournalMotion& /*motion*/, std::span<double> /*states*/) const {}
   /// Own states on this mesh from those of `other`, the same film on another one.
-  virtual void resample(const Motion& /*motion*/, const Film& /*other*/, std::span<const double> /*from*/,
+  virtual void resample(const JournalMotion& /*motion*/, const Film& /*other*/, std::span<const double> /*from*/,
                         std::span<double> /*to*/) const {}
   /// What the film offers to solve its linearised equations with, if `share` is this rank's of a film whose shares
   /// stand on all ranks of `comm`; null if it offers nothing, on all ranks. Collective.
@@ -118,7 +134,7 @@ std::unique_ptr<Film> make_film(const Geometry& geometry, const Options& options
 
 /// Own states at which g(motion, s, 0) = 0, by Newton from `states`; those of a film without states are none. Throws
 /// core::NotConverged or core::DomainError.
-void relax(Film& film, const Motion& motion, std::vector<double>& states);
+void relax(Film& film, const JournalMotion& motion, std::vector<double>& states);
 
 /// The film without its states, itself if it has none: they take the values at which nothing that the film remembers
 /// changes, whatever the motion, g(motion, s, s') = 0 with s' = carried_rates() times the velocity, found by Newton's
@@ -135,6 +151,6 @@ void relax(Film& film, const Motion& motion, std::vector<double>& states);
 struct Coefficients {
   std::array<double, 4> stiffness{}, damping{};
 };
-Coefficients coefficients(Film& film, const Motion& motion, std::span<const double> states, double omega);
+Coefficients coefficients(Film& film, const JournalMotion& motion, std::span<const double> states, double omega);
 
 }  // namespace whirl::film

@@ -8,7 +8,8 @@
 //   make(Geometry, K, Lubricant)          the film; throws core::InputError on values outside their range
 //   refine(K&, factor)                    of a kind with a mesh: that many times as many cells around and along
 //
-// Nobody outside this room asks for the kind of a film, and no other line of the program names one.
+// Nobody outside this room asks for the kind of a film. One line of the program names one: the first guess of a static
+// position stands a train on springs (`Linear`).
 
 #include <variant>
 

@@ -9,18 +9,18 @@
 namespace whirl::film {
 
 /// Motion of the journal relative to the bearing centre; x right, y up, shaft turning x -> y.
-struct Motion {
+struct JournalMotion {
   std::array<double, 4> position{};  // x, y [m], tilt dx/dz, dy/dz [-] about the mid-plane of the bearing
   std::array<double, 4> velocity{};  // their rates [m/s, 1/s]
   double speed = 0.0;                // Omega [rad/s]
 
-  friend bool operator==(const Motion&, const Motion&) = default;
+  friend bool operator==(const JournalMotion&, const JournalMotion&) = default;
 };
 
 /// What the caller of evaluate() wants; `tangents` includes the force.
 enum class Need { force, tangents };
 
-/// Film force on the journal and the derivatives of the discrete force, work-conjugate to Motion::position.
+/// Film force on the journal and the derivatives of the discrete force, work-conjugate to JournalMotion::position.
 struct Response {
   std::array<double, 4> force{};                      // F_x, F_y [N], M_x, M_y [N m]
   std::array<std::array<double, 4>, 4> d_position{};  // [i][j] = d force_i / d position_j; stiffness K is its negative
@@ -29,8 +29,8 @@ struct Response {
   double min_thickness = 0.0;                         // m, least of all pads, exactly; infinite for a linear film
 };
 
-/// A motion of the journal that a film sees, and the force that does work with it: where they stand in Motion and in
-/// Response.
+/// A motion of the journal that a film sees, and the force that does work with it: where they stand in JournalMotion
+/// and in Response.
 enum class Port { x, y, tilt_x, tilt_y };
 /// In their order; a film that does not follow tilt sees the first two.
 inline constexpr std::array<Port, 4> all_ports = {Port::x, Port::y, Port::tilt_x, Port::tilt_y};
@@ -60,12 +60,12 @@ struct StateResponse {
 
 /// Quantities for reports, computed apart from evaluate() so that they cost nothing inside solvers.
 /// NaN where the film does not know: peak pressure and side flow of finite_approximate.
-struct Summary {
+struct FilmReport {
   double min_thickness = 0.0;  // m
   double max_pressure = 0.0;   // Pa
   double side_flow = 0.0;      // m^3/s, out of both sides of all pads
-  double power_loss =
-      0.0;  // W, friction torque on the journal times Omega; full film everywhere unless it knows its fill
+  // W, friction torque on the journal times Omega; full film everywhere unless it knows its fill
+  double power_loss = 0.0;
   double inlet_flow = std::numeric_limits<double>::quiet_NaN();   // m^3/s, around into all pads where their films start
   double outlet_flow = std::numeric_limits<double>::quiet_NaN();  // m^3/s, around out of all pads where they end
   // m^3/s, out of each supply hole into the film; empty if the film does not know it
@@ -76,7 +76,7 @@ struct Summary {
 };
 
 /// One array on the grid of one pad, row-major.
-struct Field {
+struct NodalField {
   int pad;                         // 0 = lower, 1 = upper
   std::string name;                // theta, z, pressure, thickness, fill
   std::string unit;                // rad, m, Pa, m, 1

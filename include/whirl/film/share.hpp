@@ -49,9 +49,6 @@ void for_entries(const Share& share, const Places& places, std::span<const doubl
       f(d.row + i, share.seen[static_cast<std::size_t>(d.column + i)], values.empty() ? 0.0 : values[k]);
 }
 
-/// y += A x, with x and y counted as the columns and rows of `places`.
-void multiply_add(const Places& places, std::span<const double> values, const double* x, std::span<double> y);
-
 /// The values of a share's `seen` states from those of all states of the film.
 [[nodiscard]] std::vector<double> seen_of(const Share& share, std::span<const double> states);
 

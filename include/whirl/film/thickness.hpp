@@ -14,7 +14,7 @@ namespace whirl::film {
 [[nodiscard]] double default_minimum_film(const Geometry& geometry);
 
 /// Least film thickness [m] over all pads of a rigid bore, exactly and free of any mesh, with the journal at `position`
-/// as in Motion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
+/// as in JournalMotion (set the slopes to zero for a film that ignores tilt). Zero or negative: journal and pad touch.
 [[nodiscard]] double minimum_thickness(const Geometry& geometry, const std::array<double, 4>& position);
 
 }  // namespace whirl::film

@@ -1,7 +1,9 @@
 #pragma once
 // XDMF beside an HDF5 file, so that ParaView opens its meshes.
 
+#include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,7 +11,8 @@
 
 namespace whirl::io {
 
-/// A structured mesh of n0 x n1 (x n2) nodes whose nodal fields are datasets of that shape.
+/// A structured mesh of n0 x n1 (x n2) nodes whose fields are datasets of that shape, or, where they belong to its
+/// cells, of one less in each extent.
 struct StructuredGrid {
   struct Field {
     std::string name;     ///< as ParaView shows it, with its unit
@@ -19,6 +22,7 @@ struct StructuredGrid {
   Shape nodes;              ///< two or three extents, slowest index first
   std::string coordinates;  ///< path of the dataset of shape `nodes` x 3: x, y, z of each node
   std::vector<Field> fields;
+  bool of_cells = false;
 };
 
 /// Writes `path` (atomic) that refers to `hdf5_name`, a file in the same folder. The grids appear as one block each.
@@ -40,5 +44,16 @@ struct FilmPlace {
 /// rows, the coordinates are as well.
 [[nodiscard]] std::vector<StructuredGrid> film_grids(Group& pad, const std::string& path, const std::string& name,
                                                      const FilmPlace& place);
+
+/// Prepares a body of cells for ParaView: adds to `body` the positions of their corners as the dataset `corners`, of
+/// shape `cells` + 1 x 3, and returns its grid. Finite volumes are shown as they are, a ring without a seam.
+///
+/// Every dataset of `body` of shape `cells` (two or three extents, rows first) becomes a field; `path` is the place of
+/// `body` in the file. `position` gives x, y, z [m] of the corner before cell (row, column, layer), the last one a step
+/// beyond the last cell. Where the fields are shared by rows, so are the corners: those of the last row are written by
+/// the rank that has the last cells, and position() is asked for no others.
+[[nodiscard]] StructuredGrid cell_grid(Group& body, const std::string& path, const std::string& name,
+                                       const std::string& corners, const Shape& cells,
+                                       const std::function<std::array<double, 3>(const Shape& corner)>& position);
 
 }  // namespace whirl::io

@@ -16,16 +16,28 @@ namespace whirl::problem {
 
 class Structure;
 
-/// States of one kind of one part (a body or a film) on this rank: local rows [begin, end) of x.
+/// States of one kind of one part (a body or a film) on this rank: local rows [begin, end) of x, and as many again
+/// `stride` further on, `repeats` times in all.
 struct Field {
-  std::string name;  ///< of the part; fields of one part follow each other
+  std::string name{};  ///< of the part
   PetscInt begin = 0, end = 0;
   std::string quantity{};  ///< what they are: "thickness"; empty if they differ,
   std::string unit{};      ///< and so is this, and
   double scale = 0.0;      ///< their typical magnitude is zero
+  int part = 0;            ///< number of the part, whose fields follow each other: 0 is the hub
+  PetscInt stride = 0, repeats = 1;
+
+  /// End of the last of its rows.
+  [[nodiscard]] PetscInt last() const { return repeats > 0 ? end + (repeats - 1) * stride : begin; }
+  /// visit(row) for each of its rows.
+  template <class Visit>
+  void each(const Visit& visit) const {
+    for (PetscInt r = 0; r < repeats; ++r)
+      for (PetscInt i = begin; i < end; ++i) visit(i + r * stride);
+  }
 };
 
-/// The same with the fields of each part as one.
+/// The same with the fields of each part as one, whose rows are [begin, end).
 [[nodiscard]] std::vector<Field> parts_of(const std::vector<Field>& fields);
 
 /// Everything that moves: F(angle, x, dx/dt; p) = 0 with its exact derivatives, on one communicator.

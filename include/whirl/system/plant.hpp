@@ -13,11 +13,11 @@ namespace whirl::system {
 
 /// Two outputs that are shown against each other, and their rates: a journal in its bearing, in x and y.
 struct PlaceState {
-  std::array<double, 2> position{}, velocity{};  ///< in Places::unit, and the same per second
+  std::array<double, 2> position{}, velocity{};  ///< in ShownPlaces::unit, and the same per second
 };
 
 /// The pairs of outputs that results show.
-struct Places {
+struct ShownPlaces {
   std::vector<std::string> names;
   std::vector<double> clearances;     ///< a length to measure them in, in `unit`; zero where there is none
   std::string unit;                   ///< of positions: "m"
@@ -37,11 +37,12 @@ struct Observed {
 class Plant : public problem::System {
 public:
   /// Not collective.
-  [[nodiscard]] virtual Places places() const = 0;
+  [[nodiscard]] virtual ShownPlaces places() const = 0;
   /// The outputs at a state held as a whole [size()]. Not collective.
   [[nodiscard]] virtual std::vector<PlaceState> shown(const double* x) const = 0;
-  /// Smallest film thickness of each place at a whole state, in Places::unit: in the mid-plane of its bearing, or over
-  /// the whole length where the film tilts; infinite where there is no film, empty if no place has one. Not collective.
+  /// Smallest film thickness of each place at a whole state, in ShownPlaces::unit: in the mid-plane of its bearing, or
+  /// over the whole length where the film tilts; infinite where there is no film, empty if no place has one. Not
+  /// collective.
   [[nodiscard]] virtual std::vector<double> film_thickness(const double* /*x*/) const { return {}; }
   /// shown() at a distributed state.
   [[nodiscard]] virtual std::vector<PlaceState> shown_at(Vec x) { return shown(gather(x).data()); }

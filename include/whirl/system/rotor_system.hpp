@@ -75,7 +75,7 @@ public:
   /// "machine" (rotor and pedestals), then the fields of every film with own states by the name of its bearing.
   [[nodiscard]] std::vector<problem::Field> fields() const override;
   [[nodiscard]] problem::Structure* structure() override;
-  /// Where every film with own states offers a preconditioner.
+  /// Where a film with own states offers a preconditioner; films that offer none are factorised.
   [[nodiscard]] std::unique_ptr<problem::PartInverse> make_part_inverse() override;
 
   /// Another train of the same shape (nodes, masters, pedestals, film meshes): parts whose numbers differ are made
@@ -92,7 +92,7 @@ public:
   /// The angular acceleration alpha [rad/s^2] of a shaft whose speed follows from outside; 0 at the start.
   void set_acceleration(double alpha) { acceleration_ = alpha; }
 
-  [[nodiscard]] Places places() const override;
+  [[nodiscard]] ShownPlaces places() const override;
   [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override;
   /// Of rigid bores from the place of the journal, over the whole length where the film sees its tilt; of films with
   /// thicknesses as states the least of these.
@@ -130,10 +130,8 @@ public:
   }
   /// Journal states from a state held as a whole [size()]. Not collective.
   [[nodiscard]] std::vector<JournalState> journals(const double* x) const;
-  /// Film responses at the states of the journals, each evaluated by its rank; the same answer on all ranks.
-  /// Collective.
-  [[nodiscard]] std::vector<film::Response> film_responses(const std::vector<JournalState>& journals, film::Need need);
-  /// The same at a whole state [size()] of a train whose films may have own states; these are held constant.
+  /// Film responses at a whole state [size()], each evaluated by its ranks; own states of films are held constant. The
+  /// same answer on all ranks. Collective.
   [[nodiscard]] std::vector<film::Response> film_responses(const double* x, film::Need need);
   /// False where a film has a damped liner.
   [[nodiscard]] bool constant_rates() const override;
@@ -141,9 +139,9 @@ public:
   [[nodiscard]] PetscInt own_states() const { return n_own_; }
   [[nodiscard]] PetscInt own_states(int b) const;
   /// Report quantities of all films at a whole state [size()]: each by one rank, the same answer on all. Collective.
-  [[nodiscard]] std::vector<film::Summary> film_summaries(const double* x);
+  [[nodiscard]] std::vector<film::FilmReport> film_summaries(const double* x);
   /// Fields of film b at a whole state [size()]. Not collective.
-  [[nodiscard]] std::vector<film::Field> film_fields(int b, const double* x);
+  [[nodiscard]] std::vector<film::NodalField> film_fields(int b, const double* x);
   /// Gives every film the own states at which it rests with the journals where x has them. Collective.
   void relax_films(Vec x);
   /// Films that are linear but for the set of their full nodes settle.
@@ -165,7 +163,7 @@ private:
     std::unique_ptr<FilmPart> part;
     [[nodiscard]] bool tilts() const { return journal[2] >= 0; }
   };
-  class Blocks;
+  class MachineBlocks;
   class FilmComms;
   class FilmInverse;
   struct Settling;
@@ -228,10 +226,10 @@ private:
   /// The films that are `wanted` of a whole state of another machine in `to`, one of this.
   template <class Wanted>
   void resample_films(const RotorSystem& other, const double* x, double* to, Wanted&& wanted) const;
-  [[nodiscard]] film::Motion motion(const JournalState& journal) const;
+  [[nodiscard]] film::JournalMotion motion(const JournalState& journal) const;
   /// What the film of a bearing sees of positions and velocities at its ports.
-  [[nodiscard]] film::Motion motion(std::size_t bearing, std::span<const double> place,
-                                    std::span<const double> rate) const;
+  [[nodiscard]] film::JournalMotion motion(std::size_t bearing, std::span<const double> place,
+                                           std::span<const double> rate) const;
   /// Films with own states are shared out over all ranks, and the rotor stands on the first one.
   [[nodiscard]] bool first_holds_rotor() const { return n_own_ > 0 && core::size_of(comm_) > 1; }
   /// What the films see of a distributed state on this rank: the journals' entries, then own states. Collective.
@@ -262,7 +260,7 @@ private:
   core::Scatter gather_inputs_;
   core::Vector inputs_;
   std::size_t journal_inputs_ = 0;  // before the own states among them: position and velocity of each end of each port
-  std::unique_ptr<Blocks> blocks_;
+  std::unique_ptr<MachineBlocks> blocks_;
   std::unique_ptr<Slope> slope_;                 // at this value of the parameter, made when first wanted
   std::unique_ptr<Settling> settling_;           // made when first wanted
   std::shared_ptr<const FilmComms> film_comms_;  // of all inverses of the films, made with the first

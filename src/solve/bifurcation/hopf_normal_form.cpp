@@ -15,14 +15,14 @@ using Complex = std::complex<double>;
 
 // A motion (x, dx/dt), scaled and whole on every rank; real or complex.
 template <class T>
-struct Motion {
+struct StateAndRate {
   Eigen::VectorX<T> value, rate;
 };
 using RealVector = Eigen::VectorXd;
 
 const double third_order_length = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
 
-Motion<double> part(const Motion<Complex>& m, bool imaginary) {
+StateAndRate<double> part(const StateAndRate<Complex>& m, bool imaginary) {
   if (imaginary) return {m.value.imag(), m.rate.imag()};
   return {m.value.real(), m.rate.real()};
 }
@@ -46,7 +46,7 @@ public:
     system.scales(state_scale_.get(), residual_scale_.get());
     jacobian_ = system.make_jacobian();
   }
-  using Real = Motion<double>;
+  using Real = StateAndRate<double>;
   // B(a, b) and C(a, a, b), scaled and whole.
   RealVector second(const Real& a, const Real& b) {
     const double h = second_;
@@ -57,7 +57,7 @@ public:
     return combine({{h, 1 / (h * h)}, {0, -2 / (h * h)}, {-h, 1 / (h * h)}}, a, b);
   }
   // B of complex motions.
-  ComplexVector second(const Motion<Complex>& a, const Motion<Complex>& b) {
+  ComplexVector second(const StateAndRate<Complex>& a, const StateAndRate<Complex>& b) {
     const Real ar = part(a, false), ai = part(a, true), br = part(b, false), bi = part(b, true);
     const RealVector rr = second(ar, br), ii = second(ai, bi), ri = second(ar, bi), ir = second(ai, br);
     return rr - ii + Complex(0, 1) * (ri + ir);
@@ -106,8 +106,10 @@ double hopf_coefficient(problem::System& system, Vec x, double omega, double ste
   shifted.linearise(x);
   const auto [q, p] = critical_vectors(shifted, omega);
   const Complex i(0, 1);
-  const auto with_rate = [](const ComplexVector& v, Complex exponent) { return Motion<Complex>{v, exponent * v}; };
-  const Motion<Complex> forward = with_rate(q, i * omega), backward = with_rate(q.conjugate(), -i * omega);
+  const auto with_rate = [](const ComplexVector& v, Complex exponent) {
+    return StateAndRate<Complex>{v, exponent * v};
+  };
+  const StateAndRate<Complex> forward = with_rate(q, i * omega), backward = with_rate(q.conjugate(), -i * omega);
   Derivatives f(system, x, step, q.cwiseAbs().maxCoeff());
   const ComplexVector qq = -f.second(forward, forward), qc = -f.second(forward, backward);
   ComplexVector h20, h11;
@@ -118,7 +120,7 @@ double hopf_coefficient(problem::System& system, Vec x, double omega, double ste
   shifted.solve(qc, h11, unused);
   const ComplexVector mean = f.second(forward, with_rate(h11, 0)),
                       twice = f.second(backward, with_rate(h20, 2.0 * i * omega));
-  const Motion<double> r = part(forward, false), s = part(forward, true);
+  const StateAndRate<double> r = part(forward, false), s = part(forward, true);
   const ComplexVector cubic = f.third(r, r) + f.third(s, r) + i * (f.third(r, s) + f.third(s, s));
   return (-p.dot(cubic + 2.0 * mean + twice) / (2.0 * p.dot(shifted.rates_times(q)))).real();
 }

@@ -13,8 +13,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 template <int M>
-void Blocks<M>::read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                     Index first) {
+void OwnBand<M>::read(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                      Index first) {
   const Index width = shape_.width();
   std::fill(by_state_.begin(), by_state_.end(), 0.0);
   std::fill(by_rate_.begin(), by_rate_.end(), 0.0);
@@ -59,7 +59,7 @@ void Blocks<M>::read(const std::vector<const PointState*>& points, std::size_t i
 
 // Crout's order: L carries the diagonal, U has a unit one.
 template <int M>
-void Blocks<M>::factorise_band() {
+void OwnBand<M>::factorise_band() {
   const Index n = shape_.interior(), below = shape_.below, above = shape_.above;
   std::vector<double> work(static_cast<std::size_t>(m() * m()));
   for (Index a = 0; a < n; ++a)
@@ -76,7 +76,7 @@ void Blocks<M>::factorise_band() {
 
 // Z, and with it what is left for the separators and the forces.
 template <int M>
-void Blocks<M>::find_border() {
+void OwnBand<M>::find_border() {
   const Index n = shape_.interior(), below = shape_.below, above = shape_.above, width = shape_.width();
   const auto active = static_cast<Index>(active_.size());
   border_ = m() * (active + shape_.separators);
@@ -131,8 +131,8 @@ void Blocks<M>::find_border() {
 }
 
 template <int M>
-void Blocks<M>::factorise_alone(const std::vector<const PointState*>& points, std::size_t index,
-                                const ScaledPoint& scales, Index first, double length) {
+void OwnBand<M>::factorise_alone(const std::vector<const PointState*>& points, std::size_t index,
+                                 const ScaledPoint& scales, Index first, double length) {
   length_ = length;
   slope_ = scheme_.slope.rightCols(m()) / length;
   read(points, index, scales, first);
@@ -140,14 +140,14 @@ void Blocks<M>::factorise_alone(const std::vector<const PointState*>& points, st
 }
 
 template <int M>
-void Blocks<M>::factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
-                          Index first, double length) {
+void OwnBand<M>::factorise(const std::vector<const PointState*>& points, std::size_t index, const ScaledPoint& scales,
+                           Index first, double length) {
   factorise_alone(points, index, scales, first, length);
   find_border();
 }
 
 template <int M>
-void Blocks<M>::eliminate(Index columns, double* y, MatrixXd& force) const {
+void OwnBand<M>::eliminate(Index columns, double* y, MatrixXd& force) const {
   const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m() * columns;
   std::vector<double> row(static_cast<std::size_t>(size)), square(static_cast<std::size_t>(m() * m()));
   for (Index a = 0; a < n; ++a) {
@@ -172,7 +172,7 @@ void Blocks<M>::eliminate(Index columns, double* y, MatrixXd& force) const {
 }
 
 template <int M>
-void Blocks<M>::substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const {
+void OwnBand<M>::substitute(Index columns, double* y, const MatrixXd& eta, const MatrixXd& separators) const {
   const Index n = shape_.interior(), size = m() * columns;
   MatrixXd border(border_, columns);
   border.topRows(eta.rows()) = -eta;
@@ -186,7 +186,7 @@ void Blocks<M>::substitute(Index columns, double* y, const MatrixXd& eta, const 
 }
 
 template <int M>
-void Blocks<M>::start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const {
+void OwnBand<M>::start(Index columns, const double* s, Index stride, double* y, MatrixXd& force) const {
   const Index size = m() * columns, width = shape_.width();
   force.setZero(m() * forces_, columns);
   const bool forces_at_start = rated() || scheme_.value.col(0).cwiseAbs().maxCoeff() > 0;
@@ -209,7 +209,7 @@ void Blocks<M>::start(Index columns, const double* s, Index stride, double* y, M
 }
 
 template <int M>
-void Blocks<M>::add_inputs(double factor, const double* eta, double* y) const {
+void OwnBand<M>::add_inputs(double factor, const double* eta, double* y) const {
   for (Index a = 0; a < shape_.count; ++a)
     for (std::size_t c = 0; c < active_.size(); ++c) {
       const double *g = input(a, active_[c]), *at = eta + static_cast<Index>(c) * m();
@@ -218,7 +218,7 @@ void Blocks<M>::add_inputs(double factor, const double* eta, double* y) const {
 }
 
 template <int M>
-void Blocks<M>::multiply(const double* start, const double* s, double* rows, VectorXd& force) const {
+void OwnBand<M>::multiply(const double* start, const double* s, double* rows, VectorXd& force) const {
   force.setZero(m() * forces_);
   std::vector<double> values(static_cast<std::size_t>(shape_.count * m())), slopes = values;
   for (Index a = 0; a < shape_.count; ++a)
@@ -247,7 +247,7 @@ void Blocks<M>::multiply(const double* start, const double* s, double* rows, Vec
 }
 
 template <int M>
-void Blocks<M>::substitute_transposed(const double* y, VectorXd& border) const {
+void OwnBand<M>::substitute_transposed(const double* y, VectorXd& border) const {
   const Index n = shape_.interior(), separators = m() * shape_.separators;
   border = VectorXd::Zero(border_);
   border.tail(separators) = Map<const VectorXd>(y + n * m(), separators);
@@ -257,7 +257,7 @@ void Blocks<M>::substitute_transposed(const double* y, VectorXd& border) const {
 
 // T_II^T = U^T L^T.
 template <int M>
-void Blocks<M>::eliminate_transposed(double* y, const double* force) const {
+void OwnBand<M>::eliminate_transposed(double* y, const double* force) const {
   const Index n = shape_.interior(), below = shape_.below, above = shape_.above, size = m();
   std::vector<double> square(static_cast<std::size_t>(size * size)), row(static_cast<std::size_t>(size));
   for (Index a = n; a < shape_.count; ++a)
@@ -289,7 +289,7 @@ void Blocks<M>::eliminate_transposed(double* y, const double* force) const {
 }
 
 template <int M>
-void Blocks<M>::inputs_transposed(const double* y, double* eta) const {
+void OwnBand<M>::inputs_transposed(const double* y, double* eta) const {
   for (std::size_t c = 0; c < active_.size(); ++c)
     for (Index j = 0; j < m(); ++j) {
       double sum = 0;
@@ -299,7 +299,7 @@ void Blocks<M>::inputs_transposed(const double* y, double* eta) const {
 }
 
 template <int M>
-void Blocks<M>::start_transposed(const double* y, const double* force, double* s) const {
+void OwnBand<M>::start_transposed(const double* y, const double* force, double* s) const {
   for (Index a = 0; a < shape_.count; ++a)
     for (Index j = 0; j < m(); ++j) {
       for (Index slot = 0; slot < shape_.width(); ++slot)
@@ -311,11 +311,11 @@ void Blocks<M>::start_transposed(const double* y, const double* force, double* s
 std::unique_ptr<OwnBlock> make_own_block(const Scheme& scheme, const problem::OwnStates& film) {
   switch (scheme.degree) {
     case 3:
-      return std::make_unique<Blocks<3>>(scheme, film);
+      return std::make_unique<OwnBand<3>>(scheme, film);
     case 4:
-      return std::make_unique<Blocks<4>>(scheme, film);
+      return std::make_unique<OwnBand<4>>(scheme, film);
     default:
-      return std::make_unique<Blocks<0>>(scheme, film);
+      return std::make_unique<OwnBand<0>>(scheme, film);
   }
 }
 

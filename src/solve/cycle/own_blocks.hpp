@@ -8,12 +8,12 @@
 namespace whirl::solve {
 
 template <int M>
-class Blocks final : public OwnBlock {
+class OwnBand final : public OwnBlock {
 public:
   using Index = Eigen::Index;
   using MatrixXd = Eigen::MatrixXd;
   using VectorXd = Eigen::VectorXd;
-  Blocks(const Scheme& scheme, const problem::OwnStates& film)
+  OwnBand(const Scheme& scheme, const problem::OwnStates& film)
       : OwnBlock(OwnShape(film)), scheme_(scheme), degree_(scheme.degree), forces_(film.forces), inputs_(film.inputs) {
     value_ = scheme.value.rightCols(degree_);
     const auto entries = static_cast<std::size_t>(shape_.count * shape_.width() * degree_);

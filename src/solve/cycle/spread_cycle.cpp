@@ -5,6 +5,7 @@
 
 #include "solve/newton/local_part.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/count.hpp"
 #include "whirl/core/index.hpp"
 
 namespace whirl::solve {
@@ -53,6 +54,10 @@ SpreadCycle::SpreadCycle(problem::System& system, const NewtonPicardOptions& opt
 
 void SpreadCycle::set_mesh(std::vector<double> mesh) {
   mesh_ = std::move(mesh);
+  core::agree(comm(), [&] {
+    (void)core::count_of(std::int64_t{intervals()} * scheme_.degree * system_.size() + borders_,
+                         "unknowns of a cycle (intervals x points x states)");
+  });
   weights_ = make_unknown();
   const Index m = scheme_.degree;
   const core::WriteArray w(weights_.get());

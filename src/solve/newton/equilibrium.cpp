@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "solve/newton/parts_options.hpp"
 #include "solve/newton/port_krylov.hpp"
 #include "solve/newton/thin.hpp"
 #include "whirl/core/agree.hpp"
@@ -248,19 +250,19 @@ void EquilibriumProblem::linearise_whole(Vec row) {
   factorised_ = exact_factorised_ = false;
 }
 
-// Elimination by the parts' own approximate inverses, with a Krylov method around that; whether it came far enough.
-bool EquilibriumProblem::solve_by_inverses(Vec rhs, Vec x) {
+// Elimination by the parts' own approximate inverses, with a Krylov method around that.
+std::string EquilibriumProblem::solve_by_inverses(Vec rhs, Vec x) {
   constexpr double tolerance = 1e-12;
   try {
     if (!factorised_) ports_->factorise(ports_->wants_matrix(*blocks_) ? matrix() : nullptr, *blocks_);
     factorised_ = true;
     if (!krylov_) krylov_ = std::make_unique<PortKrylov>(*blocks_->layout(), "equilibrium_");
     (void)krylov_->solve(*blocks_, *ports_, rhs, x, tolerance);
-    return true;
-  } catch (const core::DomainError&) {  // these are agreed on
-    return false;
-  } catch (const core::NotConverged&) {
-    return false;
+    return "";
+  } catch (const core::DomainError& error) {  // these are agreed on
+    return error.what();
+  } catch (const core::NotConverged& error) {
+    return error.what();
   }
 }
 
@@ -268,7 +270,14 @@ bool EquilibriumProblem::solve_by_inverses(Vec rhs, Vec x) {
 // on a matrix that is regular, they are not asked again.
 void EquilibriumProblem::solve_by_parts(bool transposed, Vec rhs, Vec x) {
   const bool by_inverses = ports_ && !transposed && !exact_factorised_;
-  if (by_inverses && solve_by_inverses(rhs, x)) return;
+  if (by_inverses) {
+    const std::string failure = solve_by_inverses(rhs, x);
+    if (failure.empty()) return;
+    if (system_.size() > whole_states()) {
+      check(VecSetInf(x));  // which ends Newton's method
+      core::agree(comm(), [&] { throw core::DomainError(failure + "; " + too_large(system_.size())); });
+    }
+  }
   if (!exact_) exact_ = std::make_unique<PortElimination>(system_.fields());
   if (!exact_factorised_) exact_->factorise(exact_->wants_matrix(*blocks_) ? matrix() : nullptr, *blocks_);
   exact_factorised_ = true;

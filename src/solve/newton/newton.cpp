@@ -82,11 +82,17 @@ void configure(KSP ksp, SolveContext& c, double relative, double absolute) {
   use_own_solve(pc, c);
 }
 
-// The parts of the unknowns as index sets by name, for PCFIELDSPLIT.
+// The parts of the unknowns as index sets by name, for PCFIELDSPLIT; by option each of their fields, NAME_QUANTITY.
 void set_fields(PC pc, ExtendedProblem& problem, Vec like) {
   PetscInt first = 0, last = 0;
   check(VecGetOwnershipRange(like, &first, &last));
-  const std::vector<problem::Field> parts = problem::parts_of(problem.fields());
+  PetscBool by_quantity = PETSC_FALSE;
+  check(PetscOptionsGetBool(nullptr, "newton_", "-split_quantities", &by_quantity, nullptr));
+  std::vector<problem::Field> parts = problem.fields();
+  if (by_quantity)
+    for (problem::Field& f : parts) f.name += f.quantity.empty() ? "" : "_" + f.quantity;
+  else
+    parts = problem::parts_of(parts);
   std::vector<bool> taken(static_cast<std::size_t>(last - first), false);
   const auto add = [&](const char* name, const std::vector<PetscInt>& rows) {
     core::IndexSet set;
@@ -97,10 +103,10 @@ void set_fields(PC pc, ExtendedProblem& problem, Vec like) {
   std::vector<PetscInt> rows;
   for (const problem::Field& f : parts) {
     rows.clear();
-    for (PetscInt i = f.begin; i < f.end; ++i) {
+    f.each([&](PetscInt i) {
       rows.push_back(first + i);
       taken[static_cast<std::size_t>(i)] = true;
-    }
+    });
     add(f.name.c_str(), rows);
   }
   rows.clear();
@@ -331,7 +337,9 @@ int Newton::solve_linear(Vec rhs, Vec x) {
   o.context.gate.rethrow(KSPSolve(o.ksp.get(), rhs, x));
   const KSPConvergedReason reason = core::reason_of(o.ksp.get());
   if (reason == KSP_DIVERGED_NANORINF || reason == KSP_DIVERGED_PC_FAILED)
-    throw core::NotConverged("the linearised equations are singular");
+    throw core::NotConverged(o.context.gate.domain_text().empty()
+                                 ? "the linearised equations are singular"
+                                 : "the linearised equations were not solved: " + o.context.gate.domain_text());
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(o.ksp.get(), &iterations));
   return static_cast<int>(iterations);

@@ -82,10 +82,19 @@ void PortElimination::make_solvers() {
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &once));
   by_inverse_ = shell && once;
 
-  hub_alone_ = inverse_ && (layout_->hub() == 0 || layout_->hub() == layout_->whole_hub());
+  const std::vector<PetscInt>& offsets = layout_->hub_offsets();
+  const auto rows_of = [&](int rank) {
+    return offsets[static_cast<std::size_t>(rank) + 1] - offsets[static_cast<std::size_t>(rank)];
+  };
+  leader_ = 0;
+  for (int rank = 1; rank < core::size_of(comm); ++rank)
+    if (rows_of(rank) > rows_of(leader_)) leader_ = rank;
+  hub_alone_ = inverse_ && 2 * rows_of(leader_) > layout_->whole_hub();
   MPI_Allreduce(MPI_IN_PLACE, &hub_alone_, 1, MPI_CXX_BOOL, MPI_LAND, comm);
+  lent_ = hub_alone_ ? layout_->whole_hub() - rows_of(leader_) : 0;
+  own_hub_.setZero(layout_->hub());
   const MPI_Comm hub_comm = hub_alone_ ? PETSC_COMM_SELF : comm;
-  hub_rhs_ = core::make_vector(hub_comm, layout_->hub(), PETSC_DETERMINE);
+  hub_rhs_ = core::make_vector(hub_comm, solved_hub(), PETSC_DETERMINE);
   hub_answer_ = core::duplicate(hub_rhs_.get());
   check(KSPCreate(hub_comm, hub_solver_.put()));
   check(KSPSetOptionsPrefix(hub_solver_.get(), "hub_"));
@@ -95,6 +104,18 @@ void PortElimination::make_solvers() {
     check(PCFactorSetMatSolverType(pc, MATSOLVERKLU));
   }
   check(KSPSetFromOptions(hub_solver_.get()));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(hub_solver_.get()), KSPPREONLY, &once));
+  hub_once_ = once && hub_alone_;
+}
+
+PetscInt PortElimination::solved_hub() const {
+  return !hub_alone_ ? layout_->hub() : leads() ? layout_->whole_hub() : 0;
+}
+
+PetscInt PortElimination::lent(PetscInt row) const {
+  const auto leader = static_cast<std::size_t>(leader_);
+  const PetscInt begin = layout_->hub_offsets()[leader], end = layout_->hub_offsets()[leader + 1];
+  return row < begin ? row : row - (end - begin);
 }
 
 void PortElimination::solve_columns(const PortMatrix& blocks) {
@@ -115,30 +136,47 @@ void PortElimination::solve_columns(const PortMatrix& blocks) {
 void PortElimination::form_hub(const PortMatrix& blocks) {
   const PortLayout& l = *layout_;
   const auto n_coupled = static_cast<Index>(l.coupled().numbers.size()),
-             n_ports = static_cast<Index>(l.ports().numbers.size());
+             n_ports = static_cast<Index>(l.ports().numbers.size()), n_hub = static_cast<Index>(l.whole_hub());
   from_parts_ = blocks.from_parts();
   MatrixXd product = MatrixXd::Zero(n_coupled, n_ports);
   l.add_products(*from_parts_, x_, product);
-  MPI_Allreduce(MPI_IN_PLACE, product.data(), static_cast<int>(product.size()), MPI_DOUBLE, MPI_SUM, l.comm());
+  // Rows that are lent travel behind the products.
+  VectorXd sums = VectorXd::Zero(product.size() + lent_ * n_hub);
+  sums.head(product.size()) = Eigen::Map<const VectorXd>(product.data(), product.size());
+  if (hub_alone_ && !leads())
+    blocks.for_hub([&](PetscInt row, PetscInt column, double value) {
+      sums(product.size() + lent(row) * n_hub + column) += value;
+    });
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, l.comm());
+  product = Eigen::Map<const MatrixXd>(sums.data(), n_coupled, n_ports);
 
-  const PetscInt first = l.first_of_hub();
+  const PetscInt first = first_solved(), rows = solved_hub();
+  const bool solves = !hub_alone_ || leads();
+  std::vector<PetscInt> lent_rows;
+  for (PetscInt k = 0, own = l.first_of_hub(); solves && lent_ > 0 && k < rows; ++k)
+    if (k < own || k >= own + l.hub()) lent_rows.push_back(k);
   if (!schur_) {
-    std::vector<PetscInt> count(static_cast<std::size_t>(l.hub()), 0);
-    blocks.for_hub([&](PetscInt row, PetscInt, double) { ++count[static_cast<std::size_t>(row - first)]; });
+    std::vector<PetscInt> count(static_cast<std::size_t>(rows), 0);
+    if (solves) blocks.for_hub([&](PetscInt row, PetscInt, double) { ++count[static_cast<std::size_t>(row - first)]; });
     for (const PetscInt row : l.coupled().numbers)
-      if (row >= first && row < first + l.hub())
+      if (row >= first && row < first + rows)
         count[static_cast<std::size_t>(row - first)] += static_cast<PetscInt>(n_ports);
+    for (const PetscInt row : lent_rows) count[static_cast<std::size_t>(row)] = l.whole_hub();
     for (PetscInt& c : count) c = std::min(c, l.whole_hub());
-    schur_ = core::make_matrix(hub_alone_ ? PETSC_COMM_SELF : l.comm(), l.hub(), std::move(count));
+    schur_ = core::make_matrix(hub_alone_ ? PETSC_COMM_SELF : l.comm(), rows, std::move(count));
   }
   check(MatZeroEntries(schur_.get()));
-  blocks.for_hub([&](PetscInt row, PetscInt column, double value) {
-    check(MatSetValue(schur_.get(), row, column, value, ADD_VALUES));
-  });
+  if (solves)
+    blocks.for_hub([&](PetscInt row, PetscInt column, double value) {
+      check(MatSetValue(schur_.get(), row, column, value, ADD_VALUES));
+    });
+  for (const PetscInt at : lent_rows)
+    for (PetscInt column = 0; column < l.whole_hub(); ++column)
+      check(MatSetValue(schur_.get(), at, column, sums(product.size() + lent(at) * n_hub + column), ADD_VALUES));
   std::vector<PetscScalar> row(static_cast<std::size_t>(n_ports));
   for (Index k = 0; k < n_coupled; ++k) {
     const PetscInt at = l.coupled().numbers[static_cast<std::size_t>(k)];
-    if (at < first || at >= first + l.hub()) continue;
+    if (at < first || at >= first + rows) continue;
     for (Index p = 0; p < n_ports; ++p) row[static_cast<std::size_t>(p)] = -product(k, p);
     check(MatSetValues(schur_.get(), 1, &at, static_cast<PetscInt>(n_ports), l.ports().numbers.data(), row.data(),
                        ADD_VALUES));
@@ -177,18 +215,23 @@ void PortElimination::factorise(Mat a, const PortMatrix& blocks) {
   check(KSPSetOperators(hub_solver_.get(), schur_.get(), schur_.get()));
   if (!hub_alone_) check(KSPSetUp(hub_solver_.get()));  // by all ranks; below, each sees what became of it
   core::agree(layout_->comm(), [&] {
-    if (!hub_alone_ || layout_->hub() > 0) require_factors(hub_solver_.get());
+    if (!hub_alone_ || solved_hub() > 0) require_factors(hub_solver_.get());
   });
 }
 
-// hub_answer_, and all of it on every rank. How many ranks failed travels behind the answer.
+// The answer of the hub, on every rank. How many ranks failed travels behind the answer.
 void PortElimination::solve_hub(bool transposed) {
   KSP ksp = hub_solver_.get();
   std::exception_ptr failed;
-  if (!hub_alone_ || layout_->hub() > 0) try {
-      check(transposed ? KSPSolveTranspose(ksp, hub_rhs_.get(), hub_answer_.get())
-                       : KSPSolve(ksp, hub_rhs_.get(), hub_answer_.get()));
-      require_answer(ksp);
+  if (!hub_alone_ || solved_hub() > 0) try {
+      if (hub_once_) {
+        PC pc = nullptr;
+        check(KSPGetPC(ksp, &pc));
+        check((transposed ? PCApplyTranspose : PCApply)(pc, hub_rhs_.get(), hub_answer_.get()));
+      } else {
+        check((transposed ? KSPSolveTranspose : KSPSolve)(ksp, hub_rhs_.get(), hub_answer_.get()));
+        require_answer(ksp);
+      }
     } catch (...) {
       failed = std::current_exception();
     }
@@ -196,19 +239,36 @@ void PortElimination::solve_hub(bool transposed) {
   failures = failed ? 1 : 0;
   {
     const core::ReadArray a(hub_answer_.get());
-    layout_->share(a.data(), all_hub_);
+    if (!hub_alone_)
+      layout_->share(a.data(), all_hub_);
+    else
+      std::copy_n(a.data(), a.size(), all_hub_.data());
   }
+  if (hub_alone_ && core::size_of(layout_->comm()) > 1)
+    MPI_Bcast(all_hub_.data(), static_cast<int>(all_hub_.size()), MPI_DOUBLE, leader_, layout_->comm());
   if (failures > 0)
     core::agree(layout_->comm(), [&] {
       if (failed) std::rethrow_exception(failed);
     });
 }
 
+void PortElimination::clear_shares(std::size_t rows) {
+  shares_.setZero(static_cast<Index>(rows) + lent_);
+}
+
+// Rows that are lent travel behind the shares.
 void PortElimination::take_from_hub(const std::vector<PetscInt>& rows) {
+  const PetscInt own = layout_->first_of_hub();
+  double* const lent_rows = shares_.data() + rows.size();
+  if (hub_alone_ && !leads())
+    for (PetscInt k = 0; k < layout_->hub(); ++k) lent_rows[lent(own + k)] = own_hub_(k);
   if (core::size_of(layout_->comm()) > 1)
     MPI_Allreduce(MPI_IN_PLACE, shares_.data(), static_cast<int>(shares_.size()), MPI_DOUBLE, MPI_SUM, layout_->comm());
   const core::WriteArray a(hub_rhs_.get());
-  const PetscInt first = layout_->first_of_hub();
+  const PetscInt first = first_solved();
+  if (a.size() > 0) std::copy_n(own_hub_.data(), own_hub_.size(), a.data() + (own - first));
+  for (PetscInt k = 0; lent_ > 0 && k < a.size(); ++k)
+    if (k < own || k >= own + layout_->hub()) a[k] = lent_rows[lent(k)];
   for (std::size_t k = 0; k < rows.size(); ++k)
     if (rows[k] >= first && rows[k] < first + a.size()) a[rows[k] - first] -= shares_(static_cast<Index>(k));
 }
@@ -229,14 +289,14 @@ void PortElimination::solve_parts(bool transposed) {
 
 void PortElimination::take(Vec whole) {
   const core::ReadArray from(whole);
-  const core::WriteArray parts(part_rhs_.get()), hub(hub_rhs_.get());
-  layout_->take(from.data(), parts.data(), hub.data());
+  const core::WriteArray parts(part_rhs_.get());
+  layout_->take(from.data(), parts.data(), own_hub_.data());
 }
 
 void PortElimination::give(Vec whole) const {
-  const core::ReadArray parts(part_answer_.get()), hub(hub_answer_.get());
+  const core::ReadArray parts(part_answer_.get());
   const core::WriteArray to(whole);
-  layout_->give(parts.data(), hub.data(), to.data());
+  layout_->give(parts.data(), all_hub_.data() + layout_->first_of_hub(), to.data());
 }
 
 void PortElimination::solve(Vec rhs, Vec x) {
@@ -245,7 +305,7 @@ void PortElimination::solve(Vec rhs, Vec x) {
   solve_parts(false);
   {
     const core::ReadArray y(part_answer_.get());
-    shares_.setZero(static_cast<Index>(l.coupled().numbers.size()));
+    clear_shares(l.coupled().numbers.size());
     l.add_products(l.coupled(), *from_parts_, y.data(), shares_.data());
   }
   take_from_hub(l.coupled().numbers);
@@ -260,7 +320,7 @@ void PortElimination::solve(Vec rhs, Vec x) {
 void PortElimination::solve_held(Vec rhs, Vec x) {
   take(rhs);
   solve_parts(false);
-  check(VecSet(hub_answer_.get(), 0));
+  all_hub_.setZero();
   give(x);
 }
 
@@ -270,7 +330,7 @@ void PortElimination::solve_transposed(Vec rhs, Vec x) {
   take(rhs);
   {
     const core::ReadArray a(part_rhs_.get());
-    shares_.setZero(static_cast<Index>(l.ports().numbers.size()));
+    clear_shares(l.ports().numbers.size());
     l.add_products(l.ports(), x_, a.data(), shares_.data());
   }
   take_from_hub(l.ports().numbers);

@@ -19,10 +19,11 @@ namespace whirl::solve {
 ///
 /// A_pp is solved by a KSP with prefix "parts_", what is left on the hub by one with prefix "hub_", both by MUMPS. The
 /// parts' own inverses take the place of A_pp^-1 (one application of a PCSHELL in "parts_"; options may put a Krylov
-/// method around it, or take another preconditioner); a hub on one rank then goes to KLU, because it is asked for
-/// often. With approximate inverses all of it is a preconditioner. A_pp has to be regular: films at given motions are.
-/// factorise() and the solves throw core::NotConverged, on all ranks, if a matrix is singular. All members are
-/// collective on the communicator of the matrix.
+/// method around it, or take another preconditioner); the hub then goes to KLU, because it is asked for often, on the
+/// rank that holds most of it: the others lend their rows, such as a border's. With approximate inverses all of it is a
+/// preconditioner. A_pp has to be regular: films at given motions are. factorise() and the solves throw
+/// core::NotConverged, on all ranks, if a matrix is singular. All members are collective on the communicator of the
+/// matrix.
 class PortElimination {
 public:
   static constexpr std::size_t most_parts = 63;  // a bit each, and one of the hub
@@ -44,6 +45,8 @@ public:
   void factorise_parts(Mat a, const PortMatrix& blocks);
   /// Whether the parts are solved with what an assembled matrix holds of them: not by their own inverses alone.
   [[nodiscard]] bool wants_matrix(const PortMatrix& blocks);
+  /// Whether one rank solves the hub, after the first factorise().
+  [[nodiscard]] bool hub_alone() const { return hub_alone_; }
   /// The blocks of the matrix of factorise(a).
   [[nodiscard]] const PortMatrix& blocks() const { return *blocks_; }
   /// The parts' own inverses, for the caller to set() before factorise(); null where there are none.
@@ -62,21 +65,32 @@ private:
   void give(Vec whole) const;
   void solve_parts(bool transposed);
   void solve_hub(bool transposed);
-  /// hub_rhs_ -= shares_, summed over the ranks, in these rows.
+  /// Makes room for what this rank takes from so many rows of the hub.
+  void clear_shares(std::size_t rows);
+  /// hub_rhs_ = own_hub_ of all ranks that it belongs to, less shares_, summed over the ranks, in these rows.
   void take_from_hub(const std::vector<PetscInt>& rows);
+  /// Where a row of the hub stands among those that are lent to the leader.
+  [[nodiscard]] PetscInt lent(PetscInt row) const;
+  [[nodiscard]] bool leads() const { return core::rank_of(layout_->comm()) == leader_; }
+  /// Rows of the hub that this rank solves for, and the first of them.
+  [[nodiscard]] PetscInt solved_hub() const;
+  [[nodiscard]] PetscInt first_solved() const { return hub_alone_ ? 0 : layout_->first_of_hub(); }
 
   std::vector<problem::Field> fields_;
   std::unique_ptr<problem::PartInverse> inverse_;
   std::shared_ptr<const PortLayout> layout_;
   std::unique_ptr<PortMatrix> blocks_;  // of factorise(a)
   bool by_inverse_ = false;             // parts by one application of the inverse, without a matrix
-  bool hub_alone_ = false;              // the hub is solved by the rank that holds all of it
+  bool hub_alone_ = false;              // the hub is solved by one rank, which holds most of it,
+  bool hub_once_ = false;               // by its factors alone: a KSP would look for its options in every solve
+  int leader_ = 0;                      // this rank
+  PetscInt lent_ = 0;                   // rows of the hub on other ranks
   core::Matrix parts_, schur_;          // A_pp, A_h - F X
   core::Vector part_rhs_, part_answer_, hub_rhs_, hub_answer_;
   core::LinearSolver part_solver_, hub_solver_;
   Eigen::MatrixXd x_;                                  // X [parts x colours]
   std::shared_ptr<const Eigen::MatrixXd> from_parts_;  // F^T of the blocks
-  Eigen::VectorXd shares_, all_hub_;                   // work space: of one rank; the hub's answer
+  Eigen::VectorXd shares_, own_hub_, all_hub_;         // work space: of one rank; its rows of the hub; the hub's answer
   std::unique_ptr<core::Gate> gate_;
 };
 

@@ -1,6 +1,9 @@
 #pragma once
 // A Krylov method for matrices in blocks, preconditioned by elimination of their parts.
 
+#include <optional>
+#include <string>
+
 #include "solve/newton/port_elimination.hpp"
 
 namespace whirl::solve {
@@ -13,15 +16,17 @@ public:
   PortKrylov(const PortKrylov&) = delete;
   PortKrylov& operator=(const PortKrylov&) = delete;
   ~PortKrylov() = default;
-  /// a x = rhs to the relative residual `tolerance`; returns the iterations that it took. Throws core::DomainError, on
-  /// all ranks, if it does not come that far or `similar` is singular.
+  /// a x = rhs to the relative residual `tolerance`, or to that of the option -ksp_rtol if it is given; returns the
+  /// iterations that it took. Throws core::DomainError, on all ranks, if it does not come that far or `similar` is
+  /// singular.
   int solve(const PortMatrix& a, PortElimination& similar, Vec rhs, Vec x, double tolerance);
   /// y = a x.
   static void multiply(const PortMatrix& a, Vec x, Vec y);
 
 private:
-  void fail() const;
+  void fail(const std::string& why) const;
   MPI_Comm comm_;
+  std::optional<double> asked_;  // tolerance that an option asks for
   core::Gate gate_;
   core::Matrix shell_;
   core::LinearSolver ksp_;

@@ -2,6 +2,8 @@
 
 #include "solve/newton/port_matrix.hpp"
 #include "solve/newton/stored.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/count.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::solve {
@@ -236,7 +238,7 @@ PortLayout::Owner PortLayout::owner_of(PetscInt column) const {
   const auto ends = all_part_ends_.begin() + static_cast<std::ptrdiff_t>(rank * part_ends_.size());
   const auto part =
       std::upper_bound(ends, ends + static_cast<std::ptrdiff_t>(part_ends_.size()), column - first) - ends;
-  return {first, part_offsets_[rank + 1] - first, static_cast<std::size_t>(part)};
+  return {static_cast<PetscMPIInt>(rank), first, part_offsets_[rank + 1] - first, static_cast<std::size_t>(part)};
 }
 
 void PortLayout::add_products(const Coloured& of, const MatrixXd& columns, const double* v, double* sums) const {
@@ -333,8 +335,15 @@ void PortLayout::place_parts(const Scan& scan) {
 }
 
 void PortLayout::place_couplings(const Scan& scan) {
-  std::vector<PetscInt> to;  // where entries of F belong among the columns F^T of all ranks
+  // Where entries of F belong: the rank, and the place among its columns F^T. A number among those of all ranks would
+  // overflow long before the states do.
+  std::vector<PetscSFNode> to;
   const PetscInt width = coupled_.colours;
+  core::agree(comm_, [&] {
+    for (const PetscInt columns : {width, static_cast<PetscInt>(ports_.colours)})
+      (void)core::count_of(static_cast<std::int64_t>(columns) * parts(),
+                           "ports times film states on one rank (more ranks hold fewer each)");
+  });
   const PetscInt hub_begin = first_of_hub(), hub_end = hub_begin + hub();
   for (const Scan::Entry& e : scan.list) {
     if (e.row < 0 && e.column < 0) {
@@ -347,19 +356,13 @@ void PortLayout::place_couplings(const Scan& scan) {
       const Owner owner = owner_of(e.column);
       const PetscInt colour = coupled_.colour[static_cast<std::size_t>(-1 - e.row)];
       f_sources_.push_back(e.source);
-      to.push_back(owner.first * width + colour * owner.count + e.column - owner.first);
+      to.push_back({owner.rank, colour * owner.count + e.column - owner.first});
     }
   }
   const auto count = static_cast<PetscInt>(to.size());
-  f_values_ = core::make_vector(comm_, count, PETSC_DETERMINE);
-  // Stands for the F^T of a matrix that is being filled.
-  check(VecCreateMPIWithArray(comm_, 1, parts() * width, PETSC_DETERMINE, nullptr, f_columns_.put()));
-  PetscInt first = 0;
-  check(VecGetOwnershipRange(f_values_.get(), &first, nullptr));
-  core::IndexSet from, into;
-  check(ISCreateStride(comm_, count, first, 1, from.put()));
-  check(ISCreateGeneral(comm_, count, to.data(), PETSC_COPY_VALUES, into.put()));
-  check(VecScatterCreate(f_values_.get(), from.get(), f_columns_.get(), into.get(), to_f_.put()));
+  check(PetscSFCreate(comm_, to_f_.put()));
+  check(PetscSFSetGraph(to_f_.get(), parts() * width, count, nullptr, PETSC_COPY_VALUES, to.data(), PETSC_COPY_VALUES));
+  check(PetscSFSetUp(to_f_.get()));
 }
 
 void PortLayout::take(const double* whole, double* parts, double* hub) const {

@@ -36,6 +36,7 @@ PortMatrix::PortMatrix(std::shared_ptr<const PortLayout> layout) : layout_(std::
   const PortLayout& l = *layout_;
   values_.assign(l.sources_.size(), 0.0);
   hub_.resize(l.hub_entries_.size());
+  f_values_.resize(l.f_sources_.size());
   g_.setZero(l.parts(), l.ports_.colours);
   f_ = std::make_shared<MatrixXd>(MatrixXd::Zero(l.parts(), l.coupled_.colours));
 }
@@ -58,15 +59,12 @@ void PortMatrix::place(const Value& value) {
     if (l.sources_[k] >= 0) values_[k] = value(l.sources_[k]);
   for (const auto& [k, source] : l.added_) values_[k] += value(source);
   for (std::size_t k = 0; k < hub_.size(); ++k) hub_[k] = value(l.hub_entries_[k].source);
-  for (std::size_t k = 0; k < l.g_sources_.size(); ++k) g_.data()[l.g_places_[k]] = value(l.g_sources_[k]);
-  {
-    const core::WriteArray f(l.f_values_.get());
-    for (std::size_t k = 0; k < l.f_sources_.size(); ++k) f[static_cast<PetscInt>(k)] = value(l.f_sources_[k]);
-  }
-  check(VecPlaceArray(l.f_columns_.get(), f_->data()));
-  check(VecScatterBegin(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecScatterEnd(l.to_f_.get(), l.f_values_.get(), l.f_columns_.get(), INSERT_VALUES, SCATTER_FORWARD));
-  check(VecResetArray(l.f_columns_.get()));
+  g_.setZero();
+  for (std::size_t k = 0; k < l.g_sources_.size(); ++k) g_.data()[l.g_places_[k]] += value(l.g_sources_[k]);
+  f_->setZero();
+  for (std::size_t k = 0; k < l.f_sources_.size(); ++k) f_values_[k] = value(l.f_sources_[k]);
+  check(PetscSFReduceBegin(l.to_f_.get(), MPI_DOUBLE, f_values_.data(), f_->data(), MPI_SUM));
+  check(PetscSFReduceEnd(l.to_f_.get(), MPI_DOUBLE, f_values_.data(), f_->data(), MPI_SUM));
 }
 
 void PortMatrix::scale(Vec rows, Vec columns) {

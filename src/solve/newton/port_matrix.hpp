@@ -38,6 +38,8 @@ public:
   [[nodiscard]] PetscInt hub() const { return local_ - parts(); }
   [[nodiscard]] PetscInt whole_hub() const { return hub_offsets_.back(); }
   [[nodiscard]] PetscInt first_of_hub() const;
+  /// First row of the hub on each rank, and the number of all [ranks + 1].
+  [[nodiscard]] const std::vector<PetscInt>& hub_offsets() const { return hub_offsets_; }
   [[nodiscard]] const core::IndexSet& part_rows() const { return part_rows_; }
 
   /// Entries of a vector of the matrix to those of parts and hub on this rank, and back.
@@ -87,8 +89,9 @@ private:
   struct HubEntry {
     PetscInt row, column, source;
   };
-  /// A part's column on some rank: first column of that rank, its columns, and the part.
+  /// A part's column on some rank: the rank, its first column, its columns, and the part.
   struct Owner {
+    PetscMPIInt rank;
     PetscInt first, count;
     std::size_t part;
   };
@@ -122,8 +125,9 @@ private:
   std::vector<HubEntry> hub_entries_;
   std::vector<PetscInt> g_sources_, g_places_;  // into G, column by column
   std::vector<PetscInt> f_sources_;             // entries of F on this rank
-  core::Scatter to_f_, to_ghosts_;
-  core::Vector f_values_, f_columns_, part_vector_, ghosts_;      // work space of these
+  core::StarForest to_f_;                       // from these to the columns F^T, wherever they stand
+  core::Scatter to_ghosts_;
+  core::Vector part_vector_, ghosts_;                             // work space of the ghosts
   mutable Eigen::VectorXd x_, y_, hub_x_, hub_y_, shared_, few_;  // and of products
 };
 
@@ -155,7 +159,7 @@ private:
   template <class Value>
   void place(const Value& value);
   std::shared_ptr<const PortLayout> layout_;
-  std::vector<double> values_, hub_;  // of A_pp, of A_h
+  std::vector<double> values_, hub_, f_values_;  // of A_pp, of A_h, of the entries of F on this rank
   Eigen::MatrixXd g_;
   std::shared_ptr<Eigen::MatrixXd> f_;  // which eliminations keep
 };

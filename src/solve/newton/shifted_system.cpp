@@ -59,7 +59,7 @@ void ShiftedSystem::factorise(double omega, const ComplexVector& b, const Comple
   }
   check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));
-  if (std::vector<problem::Field> fields = system_.fields(); PortElimination::serves(fields)) {
+  if (std::vector<problem::Field> fields = problem::parts_of(system_.fields()); PortElimination::serves(fields)) {
     for (problem::Field& f : fields) {
       f.begin *= 2;
       f.end *= 2;

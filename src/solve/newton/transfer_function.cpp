@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/newton/frequency_inverse.hpp"
+#include "solve/newton/parts_options.hpp"
 #include "solve/newton/real_form.hpp"
 #include "solve/newton/transfer_part.hpp"
 #include "whirl/core/direct_solver.hpp"
@@ -20,14 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 
 namespace {
-
-// Parts up to this size keep their factors from one frequency to the next, and with them the analysis of the pattern.
-// Factors of larger ones would fill the memory.
-PetscInt kept_up_to() {
-  PetscInt states = 20000;
-  check(PetscOptionsGetInt(nullptr, nullptr, "-parts_kept_states", &states, nullptr));
-  return states;
-}
 
 // `to` holds complex columns in real form: reals and imaginary parts of the rows in turn.
 template <class F>
@@ -82,7 +76,6 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   state_scale_ = core::duplicate(rest_.get());
   row_scale_ = core::duplicate(rest_.get());
   x_ = core::duplicate(rest_.get());
-  if (auto inverse = system.make_part_inverse(); inverse && inverse->exact()) inverse_ = std::move(inverse);
   PetscInt begin = 0;
   check(VecGetOwnershipRange(rest_.get(), &begin, nullptr));
   std::vector<bool> taken(static_cast<std::size_t>(system.local_size()), false);
@@ -107,6 +100,15 @@ TransferFunction::TransferFunction(problem::System& system) : system_(system) {
   for (std::size_t i = 0; i < taken.size(); ++i)
     if (!taken[i]) rows.push_back(begin + static_cast<PetscInt>(i));
   set(rows, hub_rows_);
+  PetscInt largest = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) largest = std::max(largest, states(i));
+  if (auto inverse = system.make_part_inverse(); inverse && inverse->exact()) {
+    inverse_ = std::move(inverse);
+  } else if (inverse && largest > kept_states()) {
+    auto iterated = std::make_unique<FrequencyInverse>(system, std::move(inverse));
+    iterated_ = iterated.get();
+    inverse_ = std::move(iterated);
+  }
   core::IndexSet all;
   check(ISAllGather(hub_rows_.get(), all.put()));
   check(ISGetSize(all.get(), &hub_));
@@ -125,28 +127,32 @@ PetscInt TransferFunction::states(std::size_t i) const {
 }
 
 template <class F>
-void TransferFunction::solve_together(F&& columns, MatrixXcd Coupled::*to) {
+MatrixXcd TransferFunction::together(F&& columns) const {
   Index rows = 0, most = 0;
-  std::vector<MatrixXcd> right;
+  std::vector<MatrixXcd> each;
   for (const auto& p : parts_) {
-    right.push_back(columns(*p));
-    ((*p).*to).resize(right.back().rows(), right.back().cols());
-    rows += right.back().rows();
-    most = std::max(most, right.back().cols());
+    each.push_back(columns(*p));
+    rows += each.back().rows();
+    most = std::max(most, each.back().cols());
   }
-  MatrixXcd r = MatrixXcd::Zero(rows, most), x(rows, most);
+  MatrixXcd all = MatrixXcd::Zero(rows, most);
   Index row = 0;
-  for (const MatrixXcd& m : right) {
-    r.block(row, 0, m.rows(), m.cols()) = m;
+  for (const MatrixXcd& m : each) {
+    all.block(row, 0, m.rows(), m.cols()) = m;
     row += m.rows();
   }
-  inverse_->apply_at(r.data(), x.data(), rows, static_cast<int>(most));
+  return all;
+}
+
+void TransferFunction::solve_together(const MatrixXcd& right, MatrixXcd Coupled::*to) {
+  MatrixXcd x(right.rows(), right.cols());
+  inverse_->apply_at(right.data(), x.data(), right.rows(), static_cast<int>(right.cols()));
   bool finite = x.allFinite();
-  row = 0;
-  for (const auto& p : parts_) {
-    MatrixXcd& out = (*p).*to;
-    out = x.block(row, 0, out.rows(), out.cols());
-    row += out.rows();
+  Index row = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Coupled& p = *parts_[i];
+    p.*to = x.block(row, 0, p.count, static_cast<Index>(ports_[i].seen.size()));
+    row += p.count;
   }
   MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_CXX_BOOL, MPI_LAND, comm());
   if (!finite) throw core::NotConverged("the equations of a film are singular at this frequency");
@@ -165,18 +171,31 @@ void TransferFunction::factorise(Coupled& p, Complex lambda, PetscInt columns) c
 }
 
 // X = A^-1 G, X' = A^-1 (G' - A' X), H = F X, H' = F' X + F X'.
-TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes) {
+TransferFunction::Transfers TransferFunction::evaluate(Complex lambda, bool slopes) {
   const auto right = [lambda](const Coupled& p) -> MatrixXcd { return p.g0 + lambda * p.g1; };
   const auto change = [](const Coupled& p) -> MatrixXcd { return p.g1 - p.rates_times(p.x); };
-  if (inverse_) {
+  const auto solve_all = [&] {
     inverse_->set_at(x_.get(), rest_.get(), lambda);
-    solve_together(right, &Coupled::x);
-    if (slopes) {
-      assemble();  // whose rates these take
-      solve_together(change, &Coupled::dx);
+    solve_together(together(right), &Coupled::x);
+    if (!slopes) return;
+    if (iterated_) {
+      const MatrixXcd g1 = together([](const Coupled& p) -> MatrixXcd { return p.g1.cast<Complex>(); });
+      const MatrixXcd x = together([](const Coupled& p) -> MatrixXcd { return p.x; });
+      solve_together(g1 - iterated_->rates_times(x), &Coupled::dx);
+      return;
     }
+    assemble();  // whose rates these take
+    solve_together(together(change), &Coupled::dx);
+  };
+  try {
+    if (inverse_) solve_all();
+  } catch (const core::NotConverged&) {
+    if (!iterated_ || system_.size() > whole_states()) throw;
+    iterated_ = nullptr;
+    inverse_.reset();
   }
-  Blocks out;
+  if (!inverse_) assemble();
+  Transfers out;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Coupled& p = *parts_[i];
     const auto columns = static_cast<PetscInt>(ports_[i].seen.size());
@@ -197,7 +216,7 @@ TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes)
         MPI_Allreduce(MPI_IN_PLACE, m->data(), static_cast<int>(forces * columns), MPI_C_DOUBLE_COMPLEX, MPI_SUM,
                       comm());
     out.push_back(std::move(block));
-    if (states(i) > kept_up_to()) {
+    if (states(i) > kept_states()) {
       p.solver.reset();
       p.real.reset();
       p.right.reset();
@@ -207,7 +226,7 @@ TransferFunction::Blocks TransferFunction::evaluate(Complex lambda, bool slopes)
   return out;
 }
 
-TransferFunction::Sparse TransferFunction::matrix(Complex lambda, const Blocks& parts, bool slope) const {
+TransferFunction::Sparse TransferFunction::matrix(Complex lambda, const Transfers& parts, bool slope) const {
   std::vector<Eigen::Triplet<Complex>> entries;
   const auto add = [&](const Eigen::SparseMatrix<double>& m, Complex factor) {
     for (int c = 0; c < m.outerSize(); ++c)
@@ -229,7 +248,7 @@ TransferFunction::Sparse TransferFunction::matrix(Complex lambda, const Blocks& 
   return out;
 }
 
-double TransferFunction::magnitude(Complex lambda, const Blocks& parts) const {
+double TransferFunction::magnitude(Complex lambda, const Transfers& parts) const {
   double h = 0;
   for (const Block& b : parts) h += b.value.squaredNorm();
   return a_hub_.norm() + std::abs(lambda) * b_hub_.norm() + std::sqrt(h);

@@ -77,7 +77,7 @@ TransferModes transfer_modes(problem::System& system, Vec x, const TransferOptio
   struct Order {
     double real = 0, imag = 0, ahead_real = 0, ahead_imag = 0, slopes = 0, shape = 0;
   } order;
-  TransferFunction::Blocks h;
+  TransferFunction::Transfers h;
   VectorXcd motion(machine.hub());
   std::vector<Complex> state;
   const auto part = [&] {

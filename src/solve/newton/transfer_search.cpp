@@ -44,7 +44,7 @@ double wrapped(double angle) {
 
 }  // namespace
 
-VectorXcd TransferSearch::joined(const Blocks& h) const {
+VectorXcd TransferSearch::joined(const Transfers& h) const {
   Index size = 0, at = 0;
   for (const auto& b : h) size += b.value.size();
   VectorXcd out(size);
@@ -55,8 +55,8 @@ VectorXcd TransferSearch::joined(const Blocks& h) const {
   return out;
 }
 
-TransferFunction::Blocks TransferSearch::split(const VectorXcd& values, bool slope) const {
-  Blocks out;
+TransferFunction::Transfers TransferSearch::split(const VectorXcd& values, bool slope) const {
+  Transfers out;
   Index at = 0;
   for (const auto& p : machine_.ports()) {
     const auto rows = static_cast<Index>(p.forces.size()), columns = static_cast<Index>(p.seen.size());
@@ -240,7 +240,7 @@ bool TransferSearch::refine_on_fit(Root& root) const {
 
 std::optional<Complex> TransferSearch::refine(Root& root) {
   for (int k = 0; k < 8; ++k) {
-    const Blocks h = solve_(root.lambda, true);
+    const Transfers h = solve_(root.lambda, true);
     const Sparse t = machine_.matrix(root.lambda, h, false), slope = machine_.matrix(root.lambda, h, true);
     const double magnitude = machine_.magnitude(root.lambda, h);
     const auto d = step(t, slope, root.motion);

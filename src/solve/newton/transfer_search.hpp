@@ -58,8 +58,8 @@ struct Root {
 class TransferSearch {
 public:
   using Complex = std::complex<double>;
-  using Blocks = TransferFunction::Blocks;
-  using Solve = std::function<Blocks(Complex, bool slopes)>;
+  using Transfers = TransferFunction::Transfers;
+  using Solve = std::function<Transfers(Complex, bool slopes)>;
   TransferSearch(const TransferFunction& machine, const TransferOptions& options, Solve solve)
       : machine_(machine), options_(options), ellipse_(options), solve_(std::move(solve)) {}
 
@@ -82,8 +82,8 @@ private:
   [[nodiscard]] TransferFunction::Sparse fitted(Complex lambda, bool slope) const {
     return machine_.matrix(lambda, split(slope ? fit_->slope(lambda) : fit_->value(lambda), slope), slope);
   }
-  [[nodiscard]] Eigen::VectorXcd joined(const Blocks& h) const;
-  [[nodiscard]] Blocks split(const Eigen::VectorXcd& values, bool slope) const;
+  [[nodiscard]] Eigen::VectorXcd joined(const Transfers& h) const;
+  [[nodiscard]] Transfers split(const Eigen::VectorXcd& values, bool slope) const;
   /// One step of Newton's method for (lambda, z) with z scaled by its own direction.
   [[nodiscard]] static std::optional<Complex> step(const TransferFunction::Sparse& t,
                                                    const TransferFunction::Sparse& slope, Eigen::VectorXcd& z);

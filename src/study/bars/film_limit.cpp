@@ -10,7 +10,7 @@
 
 namespace whirl::study {
 
-FilmLimit::FilmLimit(const system::Places& places)
+FilmLimit::FilmLimit(const system::ShownPlaces& places)
     : names_(places.names), limits_(places.least_films), clearances_(places.clearances) {}
 
 double FilmLimit::margin(double thickness, std::size_t place) const {

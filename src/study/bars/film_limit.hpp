@@ -21,7 +21,7 @@ struct MarginThere {
 /// The limits of the places of a plant. Thicknesses are those of Plant::film_thickness().
 class FilmLimit {
 public:
-  explicit FilmLimit(const system::Places& places);
+  explicit FilmLimit(const system::ShownPlaces& places);
 
   /// False for plants without films.
   [[nodiscard]] bool exists() const { return !limits_.empty(); }

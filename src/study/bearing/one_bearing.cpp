@@ -33,7 +33,7 @@ OneBearing::OneBearing(const system::Support& support, double speed)
 
 BearingEquilibrium OneBearing::centred() const {
   BearingEquilibrium e{0, 0.5 * std::numbers::pi, 0, nan, nan, {}};
-  film::Motion m;
+  film::JournalMotion m;
   m.speed = speed_;
   e.states.resize(film_->states());
   film_->unloaded(m, e.states);
@@ -117,7 +117,7 @@ BearingCoefficients OneBearing::coefficients(double ratio) {
 
 BearingProfile OneBearing::profile() {
   BearingProfile out;
-  for (const film::Field& f : film_->fields(motion_, states_)) {
+  for (const film::NodalField& f : film_->fields(motion_, states_)) {
     if (f.name == "theta") out.theta.insert(out.theta.end(), f.values.begin(), f.values.end());
     const bool pressure = f.name == "pressure";
     if (!pressure && f.name != "thickness") continue;
@@ -133,7 +133,7 @@ BearingProfile OneBearing::profile() {
 }
 
 std::array<double, 2> OneBearing::impedance(double along, double across) {
-  film::Motion m;
+  film::JournalMotion m;
   m.position = {along * clearance_, across * clearance_, 0, 0};
   m.velocity = {clearance_ * speed_, 0, 0, 0};
   try {

@@ -63,7 +63,7 @@ private:
   double load_ = 0;      // N, of F* = 1
   double pressure_ = 0;  // Pa, of p* = 1
   std::unique_ptr<film::Film> film_;
-  film::Motion motion_;
+  film::JournalMotion motion_;
   film::StateResponse response_;
   std::vector<double> states_, rest_;
 };

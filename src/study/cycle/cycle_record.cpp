@@ -57,7 +57,8 @@ Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
   return e;
 }
 
-std::vector<io::Table::Column> columns(const system::Places& places, const std::string& unit, std::size_t multipliers) {
+std::vector<io::Table::Column> columns(const system::ShownPlaces& places, const std::string& unit,
+                                       std::size_t multipliers) {
   const io::Shape b{places.names.size()}, m{multipliers};
   const std::string& length = places.unit;
   return {
@@ -80,7 +81,7 @@ std::vector<io::Table::Column> columns(const system::Places& places, const std::
       {"multipliers_imag", "1", "their imaginary parts", m}};
 }
 
-std::vector<io::Table::Column> columns_of_birth(const system::Places& places, const std::string& unit) {
+std::vector<io::Table::Column> columns_of_birth(const system::ShownPlaces& places, const std::string& unit) {
   std::vector<io::Table::Column> some;
   for (auto& c : columns(places, unit, 0))
     if (c.name == "parameter" || c.name == "period" || c.name == "eccentricity_max" || c.name.ends_with("_max") ||
@@ -91,7 +92,7 @@ std::vector<io::Table::Column> columns_of_birth(const system::Places& places, co
 
 }  // namespace
 
-CycleRecord::CycleRecord(system::Places places, std::string unit, int multipliers)
+CycleRecord::CycleRecord(system::ShownPlaces places, std::string unit, int multipliers)
     : places_(std::move(places)),
       unit_(std::move(unit)),
       multipliers_(multipliers),

@@ -18,7 +18,7 @@ namespace whirl::study {
 /// on all ranks.
 class CycleRecord {
 public:
-  CycleRecord(system::Places places, std::string unit, int multipliers);
+  CycleRecord(system::ShownPlaces places, std::string unit, int multipliers);
 
   /// Adds a point; `scale` is the SI value of one unit of the parameter.
   void append(const solve::BranchPoint& point, const solve::Cycle& cycle, const solve::Scheme& scheme,
@@ -55,7 +55,7 @@ private:
   void keep(io::Table& end, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
             double scale) const;
   [[nodiscard]] std::vector<double> per_clearance(const std::vector<double>& radius) const;
-  system::Places places_;
+  system::ShownPlaces places_;
   std::string unit_;
   int multipliers_;
   io::Table table_, birth_, closing_;

@@ -102,7 +102,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   }
   problem.from_state(x.get(), range.from, u.get());
 
-  const system::Places places = system->places();
+  const system::ShownPlaces places = system->places();
   io::Table table({{"parameter", unit, "parameter of the branch"},
                    {"stable", "1", "1 if no eigenvalue has a positive real part"},
                    {"unstable_count", "1", "eigenvalues with positive real part"},
@@ -208,7 +208,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     results.summary().suspected.push_back({s.from, s.to, unit, s.reason});
   };
   const solve::BranchEnd end = solve::follow_branch(problem, std::move(u), continuation, callbacks);
-  const std::vector<double> at_limit = system->gather(x.get());  // the last point
+  std::vector<double> at_limit;  // the last point
+  if (end.limited) at_limit = system->gather(x.get());
   if (options.parameter.deflation) {
     system->set_parameter(range.from);
     const auto others = put_solutions(results.group(), results.summary(), [&] {

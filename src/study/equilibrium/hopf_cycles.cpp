@@ -12,7 +12,7 @@ namespace whirl::study {
 using core::check;
 
 solve::MotionSize motion_of_places(system::Plant& system) {
-  const system::Places places = system.places();
+  const system::ShownPlaces places = system.places();
   if (!(std::reduce(places.clearances.begin(), places.clearances.end()) > 0)) return solve::largest_state;
   core::Vector scale = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE),
                rows = core::duplicate(scale.get());
@@ -37,7 +37,7 @@ CriticalMotion critical_motion(system::Plant& system, Vec x, double omega) {
   CriticalMotion out{solve::critical_vector(system, x, omega), 1, {}};
   for (const auto& e : out.q) out.largest = std::max(out.largest, std::abs(e));
   double most = out.largest;
-  const system::Places places = system.places();
+  const system::ShownPlaces places = system.places();
   core::Vector scale = core::duplicate(x), rows = core::duplicate(x);
   system.scales(scale.get(), rows.get());
   const std::vector<double> rest = system.gather(x), unit = core::gather(scale.get());

@@ -17,7 +17,7 @@ namespace whirl::study {
 namespace {
 
 // A field of a pad. Where ranks share a machine, each keeps and writes as many rows, those around the pad.
-io::Dataset dataset_of(film::Field field, MPI_Comm sharing) {
+io::Dataset dataset_of(film::NodalField field, MPI_Comm sharing) {
   io::Dataset data{field.shape, std::move(field.values), field.unit, field.name + " at the nodes of the film mesh"};
   if (sharing == MPI_COMM_NULL || data.shape.size() < 2) return data;
   const auto rank = static_cast<std::size_t>(core::rank_of(sharing)),
@@ -41,10 +41,10 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
   for (int b = 0; b < system.n_bearings(); ++b) {
     const auto k = static_cast<std::size_t>(b);
     const auto& support = system.train().supports[k];
-    std::vector<film::Field> fields;
+    std::vector<film::NodalField> fields;
     core::agree(context.comm, [&] { fields = system.film_fields(b, x.data()); });
     const MPI_Comm sharing = shared && system.own_states(b) > 0 ? context.comm : MPI_COMM_NULL;
-    for (film::Field& f : fields) {
+    for (film::NodalField& f : fields) {
       auto& pad = group.child("films").child(io::safe_name(names[k])).child(fmt::format("pad{}", f.pad + 1));
       const std::string name = f.name;
       pad.put(name, dataset_of(std::move(f), sharing));
@@ -88,7 +88,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
   const std::vector<double> thickness = system.observe(at).film_thickness;
   // A film with own states has coefficients that depend on the frequency: those of the shaft's rotation.
   const std::vector<FilmCoefficients> coefficients = film_coefficients(system, x, system.speed());
-  const std::vector<film::Summary> reports = system.film_summaries(x.data());
+  const std::vector<film::FilmReport> reports = system.film_summaries(x.data());
   double total_loss = 0;
   const char* const axis[] = {"x", "y"};
   for (std::size_t b = 0; b < names.size(); ++b) {
@@ -101,7 +101,7 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
     if (support.geometry.clearance > 0) {
       for (std::size_t d = 0; d < 2; ++d)
         summary.set(head + "eccentricity." + axis[d], journals[b].position[d] / support.geometry.clearance, "1");
-      const film::Summary& report = reports[b];
+      const film::FilmReport& report = reports[b];
       // Between the nodes of a mesh, too.
       const double thinnest = std::min(report.min_thickness, thickness[b]);
       summary.set(head + "min_thickness", thinnest, "m");

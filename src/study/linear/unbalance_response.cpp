@@ -84,11 +84,11 @@ double film_left(const system::Support& s, const system::JournalState& at, const
   return least;
 }
 
-class Machine {
+class Responder {
 public:
   /// `cells`: of the films over those of the deck.
-  Machine(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options, std::vector<int> nodes,
-          const std::array<double, 2>& cells = {1, 1})
+  Responder(const Context& context, const Layout& layout, const UnbalanceResponseOptions& options,
+            std::vector<int> nodes, const std::array<double, 2>& cells = {1, 1})
       : system_(layout.space, with_film_mesh(system::train_of(context.machine, options.unbalance), cells),
                 options.range.from),
         walker_(system_),
@@ -144,7 +144,7 @@ public:
     return r;
   }
 
-  [[nodiscard]] system::Places places() const { return system_.places(); }
+  [[nodiscard]] system::ShownPlaces places() const { return system_.places(); }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
 private:
@@ -186,7 +186,7 @@ void put_motion(io::Group& g, const std::vector<Response>& curve, std::vector<No
 }
 
 // Linear motions know no bore: where they leave less film than the surfaces bear they are none.
-void put_films(io::Group& group, io::StudySummary& summary, const system::Places& places,
+void put_films(io::Group& group, io::StudySummary& summary, const system::ShownPlaces& places,
                const std::vector<Response>& curve, const std::string& unit) {
   std::vector<double> all;
   for (const Response& r : curve) {
@@ -231,14 +231,14 @@ StudyResult UnbalanceResponse::run(Context& context) {
   }
   const std::string unit = options.range.unit;
   const Layout layout = plan(context, Sharing::speeds);
-  Machine machine(context, layout, options, nodes);
+  Responder machine(context, layout, options, nodes);
   auto& results = context.results;
   auto& summary = results.summary();
   const std::size_t n_bearings = context.machine.bearings.size();
   // Responses at several speeds, shared between the groups of ranks.
   std::size_t ready = 0, calls = 0;
   Pieces pieces(results, context.resume);
-  const auto solve_at = [&](Machine& which, const std::vector<double>& speeds, const std::string& piece) {
+  const auto solve_at = [&](Responder& which, const std::vector<double>& speeds, const std::string& piece) {
     const auto compute = [&](std::size_t i) {
       auto packed = pack(which.at(speeds[i]));
       results.progress(fmt::format("{}: {} speeds on this rank, {:.1f} {}, {:.1f} s", summary.name, ++ready,
@@ -342,7 +342,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   }
   put_response_bars(summary, film_meshes(context.machine, context.layout), law_of(context.machine), named, put_peak,
                     [&](const std::array<double, 2>& cells, std::vector<double> at, const std::string& piece) {
-                      std::optional<Machine> other;
+                      std::optional<Responder> other;
                       if (cells != std::array<double, 2>{1, 1}) other.emplace(context, layout, options, nodes, cells);
                       if (options.operating_speed) at.push_back(options.operating_speed->value);
                       std::vector<Response> all = solve_at(other ? *other : machine, at, piece);

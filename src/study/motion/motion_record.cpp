@@ -19,7 +19,7 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, system::Places places, Vec like)
+MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, Vec like)
     : options_(options),
       places_(std::move(places)),
       like_(like),

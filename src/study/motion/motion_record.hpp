@@ -18,7 +18,7 @@ namespace whirl::study {
 class MotionRecord {
 public:
   /// States are laid out as `like`, which outlives this.
-  MotionRecord(const MotionOptions& options, system::Places places, Vec like);
+  MotionRecord(const MotionOptions& options, system::ShownPlaces places, Vec like);
 
   /// A sample at a state; `scaled` is it over its scales. Not collective.
   void sample(const std::vector<system::PlaceState>& shown, Vec scaled);
@@ -45,7 +45,7 @@ private:
   void write_exponents(io::Group& group, io::StudySummary& summary) const;
 
   const MotionOptions& options_;
-  system::Places places_;
+  system::ShownPlaces places_;
   Vec like_;
   double period_;                // of a revolution [s]
   std::vector<double> samples_;  // [sample][place][x, y]

@@ -239,7 +239,7 @@ private:
   system::RotorSystem system_;
   core::Vector x_;
   transient::Integrator integrator_;
-  system::Places places_;
+  system::ShownPlaces places_;
   FilmLimit films_;
   io::Table table_;
   int total_ = 0, done_ = 0;

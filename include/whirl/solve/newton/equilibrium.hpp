@@ -2,6 +2,7 @@
 // Equilibria F(0, x, 0; p) = 0 and their branches.
 
 #include <memory>
+#include <string>
 
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/newton/adjoint.hpp"
@@ -19,8 +20,11 @@ class PortMatrix;
 /// The matrix is [dF/dx dF/dp; row]. Films with own states are eliminated on their ports (`port_elimination`), with the
 /// border part of what is left, by their own preconditioners where all have one: from blocks that are spread like the
 /// films, so that no matrix is assembled unless somebody asks for it. A machine without any is assembled and factorised
-/// as a whole (MUMPS). All are regular at folds. The Krylov method around preconditioners, and MUMPS for the whole,
-/// have the prefix "equilibrium_".
+/// as a whole (MUMPS). All are regular at folds. Where iterations on approximate inverses do not come to the tolerance
+/// (-equilibrium_ksp_rtol, 1e-12; -equilibrium_ksp_max_it, 100), and for transposes, such films are factorised if the
+/// machine has at most -parts_whole_states (1,000,000). Otherwise solve() throws core::DomainError with the reason,
+/// which ends Newton's method without convergence, and solve_transposed() core::NotConverged. The Krylov method around
+/// preconditioners, and MUMPS for the whole, have the prefix "equilibrium_".
 class EquilibriumProblem : public ExtendedProblem, public Adjoint {
 public:
   /// `parameter_scale` is one unit of the scaled parameter in SI, `state_weight` the weight of the mean square scaled
@@ -59,7 +63,8 @@ private:
   void linearise_parts(Vec row);
   void linearise_whole(Vec row);
   void fill_bordered();
-  [[nodiscard]] bool solve_by_inverses(Vec rhs, Vec x);
+  /// Why it did not come far enough; empty if it did. The same on all ranks.
+  [[nodiscard]] std::string solve_by_inverses(Vec rhs, Vec x);
   void solve_by_parts(bool transposed, Vec rhs, Vec x);
   void solve_as_whole(bool transposed, Vec rhs, Vec x);
   void solve(bool transposed, Vec rhs, Vec x);

@@ -12,6 +12,8 @@
 
 namespace whirl::solve {
 
+class FrequencyInverse;
+
 /// The linearised machine at rest, dF/dx + lambda dF/d(dx/dt), after its parts (films, solids) are eliminated:
 ///
 ///     [ A_i(lambda)  G_i(lambda) ] [ x_i ]       H_i = F_i A_i^-1 G_i      (forces x ports)
@@ -19,9 +21,11 @@ namespace whirl::solve {
 ///
 /// Rows are scaled by the residuals, columns by the states (System::scales). One factorisation of A_i in real form
 /// (twice the states; KSP with prefix "parts_", MUMPS) and one solve with k columns give H_i at one lambda, as many
-/// more its derivative. Parts are taken one by one; nothing of a part's size is ever dense or gathered but k columns of
-/// its states, spread like them, and mode shapes if they are asked for. All members are collective on the system's
-/// communicator unless they say not.
+/// more its derivative. Exact inverses of the parts take the place of the factorisation. Approximate ones do so too,
+/// with FGMRES around them, where a part has more states than the option -parts_kept_states says; where FGMRES does not
+/// converge, parts are factorised from then on if the machine has at most -parts_whole_states. Parts are taken one by
+/// one; nothing of a part's size is ever dense or gathered but k columns of its states, spread like them, and mode
+/// shapes if they are asked for. All members are collective on the system's communicator unless they say not.
 class TransferFunction {
 public:
   using Complex = std::complex<double>;
@@ -36,7 +40,7 @@ public:
   struct Block {
     Eigen::MatrixXcd value, slope;
   };
-  using Blocks = std::vector<Block>;
+  using Transfers = std::vector<Block>;
   /// An eigenvalue of a part whose ports are held.
   struct Pole {
     Complex value;
@@ -52,15 +56,18 @@ public:
   void linearise(Vec x);
   /// Ports are known after linearise(). Not collective.
   [[nodiscard]] const std::vector<Ports>& ports() const { return ports_; }
+  /// Whether the parts are solved by iterations on their approximate inverses, none of which has failed so far.
+  /// Not collective.
+  [[nodiscard]] bool iterates() const { return iterated_ != nullptr; }
   /// Number of states of the hub. Not collective.
   [[nodiscard]] PetscInt hub() const { return hub_; }
 
   /// H of every part at lambda [1/s], the same on every rank. Throws core::NotConverged at an eigenvalue of a part.
-  [[nodiscard]] Blocks evaluate(Complex lambda, bool slopes);
+  [[nodiscard]] Transfers evaluate(Complex lambda, bool slopes);
   /// T(lambda), or with `slope` dT/dlambda, from what evaluate() gave there [hub x hub]. Not collective.
-  [[nodiscard]] Sparse matrix(Complex lambda, const Blocks& parts, bool slope) const;
+  [[nodiscard]] Sparse matrix(Complex lambda, const Transfers& parts, bool slope) const;
   /// |A| + |lambda| |B| + |H| in the norm of Frobenius, of what T(lambda) is made of. Not collective.
-  [[nodiscard]] double magnitude(Complex lambda, const Blocks& parts) const;
+  [[nodiscard]] double magnitude(Complex lambda, const Transfers& parts) const;
   /// What part i does at lambda to rows `forces` of the hub where its states `positions` move with rates `rates`, in
   /// SI: dF/d(position) + lambda dF/d(rate) [forces x positions], from what evaluate() gave there. Not collective.
   [[nodiscard]] Eigen::MatrixXcd from_motion(std::size_t i, const Block& part, Complex lambda,
@@ -82,10 +89,12 @@ public:
 
 private:
   struct Coupled;
-  /// A_i^-1 of complex columns of all parts at once, by their own exact inverses set at a frequency: `columns(part)`
-  /// gives those of a part [local x ports], `to` takes the answers. Throws core::NotConverged if they are singular.
+  /// Columns of all parts below each other, `columns(part)` being those of a part [local x ports].
   template <class F>
-  void solve_together(F&& columns, Eigen::MatrixXcd Coupled::*to);
+  [[nodiscard]] Eigen::MatrixXcd together(F&& columns) const;
+  /// A_i^-1 of such columns of all parts at once, by their own inverses set at a frequency; `to` takes the answers.
+  /// Throws core::NotConverged if the parts are singular or iterations end before the tolerance.
+  void solve_together(const Eigen::MatrixXcd& right, Eigen::MatrixXcd Coupled::*to);
   /// Couplings of hub and parts and the hub by itself from the system's list of entries; false if it has none.
   bool take_entries();
   struct Listed;
@@ -98,7 +107,8 @@ private:
   /// Gathers a state of which every rank has its own rows.
   [[nodiscard]] std::vector<Complex> whole(const std::vector<Complex>& local) const;
   problem::System& system_;
-  std::unique_ptr<problem::PartInverse> inverse_;  // exact, or null
+  std::unique_ptr<problem::PartInverse> inverse_;  // exact, or iterated on, or null
+  FrequencyInverse* iterated_ = nullptr;           // `inverse_` where it is iterated on
   core::Vector x_, rest_, state_scale_, row_scale_;
   mutable core::Matrix jx_, jd_;  // where A_i are wanted as matrices
   problem::Entries entries_;

@@ -1,0 +1,44 @@
+#pragma once
+// Thermo-hydrodynamics of one bearing: pressure, temperature in film and solids, heat and power at a given place of its
+// journal, over the speed.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "whirl/study/study.hpp"
+#include "whirl/thermal/options.hpp"
+
+namespace whirl::study {
+
+struct ThdOptions {
+  std::string name;
+  std::string bearing;                  ///< its name; the first of the deck if empty
+  std::vector<deck::Quantity> speeds;   ///< [rad/s]; fields are those at the last
+  double eccentricity = 0;              ///< of the journal, in clearances
+  double attitude = 0;                  ///< of the journal, from +x counter-clockwise [rad]
+  std::array<int, 3> cells{96, 32, 8};  ///< around, along, across the film
+  enum class Cavitation { none, half_sommerfeld, reynolds };
+  Cavitation cavitation = Cavitation::none;
+  bool second_order = true;  ///< convection of heat
+  thermal::FluidOptions fluid;
+  thermal::Ambient ambient;
+  std::vector<thermal::OrificeRing> orifices;
+  std::vector<thermal::SupplyGroove> grooves;
+  thermal::WallOptions bush, journal;
+  double tolerance = 1e-9;  ///< of temperatures, relative to the absolute temperature
+  int most_iterations = 60;
+};
+[[nodiscard]] std::span<const deck::Name<ThdOptions::Cavitation>> names(ThdOptions::Cavitation);
+void describe(deck::Description<ThdOptions>& d);
+
+class Thd final : public StudyWith<ThdOptions> {
+public:
+  static constexpr std::string_view key = "thd";
+  [[nodiscard]] std::string_view kind() const override { return key; }
+  void validate(const system::Machine& machine, const deck::Report& report) const override;
+  [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
+  [[nodiscard]] StudyResult run(Context& context) override;
+};
+
+}  // namespace whirl::study

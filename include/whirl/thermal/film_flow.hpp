@@ -1,0 +1,91 @@
+#pragma once
+// Reynolds' equation with properties that vary across the film, for gas and liquid, and the flow that it gives.
+
+#include <memory>
+#include <vector>
+
+#include "whirl/thermal/flow.hpp"
+#include "whirl/thermal/fluid.hpp"
+#include "whirl/thermal/orifice.hpp"
+
+namespace whirl::thermal {
+
+/// An orifice at a node of the film, which feeds a gas.
+struct Orifice {
+  int i = 0, j = 0;
+  double diameter = 0;       // m
+  double pressure = 0;       // Pa, absolute, of the supply
+  double temperature = 300;  // K, of the supply
+};
+
+/// Nodes [first, last] around and along that stand under the pressure of a groove; around they may run over the end of
+/// a closed film (last >= nodes around).
+struct Feed {
+  int first_around = 0, last_around = 0, first_along = 0, last_along = 0;
+  double pressure = 0;  // Pa
+};
+
+struct FilmFlowOptions {
+  Fluid fluid;
+  double heat_ratio = 1.4;  // -, of a gas
+  double ambient = 0;       // Pa, at the ends of the film and of a pad: absolute of a gas, 0 of a liquid
+  double speed = 0;         // rad/s
+  enum class Cavitation { none, half_sommerfeld, reynolds };
+  Cavitation cavitation = Cavitation::none;  // half_sommerfeld: pressure below 0 does not act on the journal
+  std::vector<Orifice> orifices;
+  std::vector<Feed> feeds;
+};
+
+/// What acts and flows, all positive towards larger coordinates, the flow out of the film.
+struct FlowReport {
+  double force[2] = {0, 0};  // N, on the journal
+  double friction = 0;       // N m, against the rotation
+  double power = 0;          // W, friction times speed
+  double heat = 0;           // W, that the motion leaves in the film
+  double inflow = 0;         // kg/s, of orifices and grooves
+  double outflow = 0;        // kg/s, through the ends
+  double defect = 0;         // kg/s, greatest flow through the journal's wall, which should be none
+  double highest = 0;        // Pa
+};
+
+///   d/dx (G_x) + d/dz (G_z) = inflow,   G = sum over layers of  rho_k (P_k grad p + C_k U)
+///
+/// with u(s) = (dp/dx) (I(s) - (F_1/F_0) J(s)) + U J(s)/F_0, J = int ds/mu, I = int s ds/mu from the bush at rest (s =
+/// 0) to the journal, of surface speed U: exact in layers of constant viscosity. Finite volumes around the nodes; the
+/// properties at a face are the mean of those of both sides. Of a gas rho_k = p/(r T_k).
+/// Source: Dowson (1962); Skarolek (2011) eqs. (4.8)-(4.17) with the errata kept by this project.
+class FilmFlow {
+public:
+  /// `thickness` m [r, n], of the nodes of this rank, i fastest. Options of its solver begin with `film_pressure_`.
+  /// Collective. Throws core::Error, on all ranks, where two orifices share a node or one has no place in the mesh.
+  FilmFlow(const Rows& rows, FilmFlowOptions options, std::vector<double> thickness);
+  ~FilmFlow();
+  FilmFlow(const FilmFlow&) = delete;
+  FilmFlow& operator=(const FilmFlow&) = delete;
+
+  /// K [r, n, l] of the cells: viscosities and densities from now on. Collective.
+  void set_temperature(const std::vector<double>& cells);
+  /// The pressure at these, by Newton's method from the last one. Returns its iterations. Throws core::NotConverged on
+  /// all ranks. Collective.
+  int solve();
+  /// Pa [r, n].
+  [[nodiscard]] const std::vector<double>& pressure() const;
+  /// Mass flows and heat at this pressure. What orifices and grooves give enters layer 0; at the ends each layer leaves
+  /// the film by itself. Collective.
+  [[nodiscard]] Flow flow() const;
+  /// kg/s of each orifice, the same on all ranks. Collective.
+  [[nodiscard]] std::vector<double> orifice_flows() const;
+  /// Collective.
+  [[nodiscard]] FlowReport report(const Flow& flow) const;
+  /// Residual kg/s [nodes, then orifices Pa^2 of this rank] and Jacobian at any such state, to test. Collective.
+  void residual(Vec u, Vec f);
+  void jacobian(Vec u, Mat j);
+  [[nodiscard]] Vec state() const;
+  [[nodiscard]] Mat matrix() const;
+
+private:
+  struct Work;
+  std::unique_ptr<Work> w_;
+};
+
+}  // namespace whirl::thermal

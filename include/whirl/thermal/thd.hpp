@@ -1,0 +1,68 @@
+#pragma once
+// A film with its heat: pressure, temperatures of film, bush and journal together.
+
+#include <memory>
+#include <vector>
+
+#include "whirl/thermal/energy.hpp"
+#include "whirl/thermal/film_flow.hpp"
+#include "whirl/thermal/options.hpp"
+#include "whirl/thermal/solid.hpp"
+
+namespace whirl::thermal {
+
+struct ThdSetup {
+  FilmFlowOptions flow;
+  int order = 2;         // of the convection of heat
+  double ambient = 300;  // K, of what is drawn in through the ends
+  WallOptions bush, journal;
+  bool inlet_from_bush = false;  // what orifices give has the temperature of the bush there, else `supply`
+  std::vector<double> supply;    // K [r, n], of what comes from orifices and grooves
+  double tolerance = 1e-9;       // of temperatures, relative to the ambient's
+  int most_iterations = 60;
+};
+
+/// What a solution cost: largest is the greatest change of a temperature in each iteration, K.
+struct ThdSolve {
+  int iterations = 0, pressure = 0, energy_newton = 0, energy_krylov = 0, solid = 0;
+  std::vector<double> largest;
+  bool converged = false;
+};
+
+/// Pressure, temperature of the film, and temperatures of what conducts heat beside it. One round takes the temperature
+/// to the pressure and the flow, these to the film's temperature between its walls, and that to the solids. Rounds are
+/// joined by Anderson's method (SNES, options begin with `thd_`): where heat leaves the solids slowly they alone would
+/// hardly converge.
+class Thd {
+public:
+  /// thickness m [r, n]. Collective. Throws core::Error, on all ranks, where the flow or a solid does.
+  Thd(const Rows& rows, ThdSetup setup, std::vector<double> thickness);
+  ~Thd();
+  Thd(const Thd&) = delete;
+  Thd& operator=(const Thd&) = delete;
+
+  /// From the last state on, at first the ambient's temperature. Not converging is no error. Collective. Throws
+  /// core::NotConverged where the pressure is not found.
+  ThdSolve solve();
+  [[nodiscard]] const FilmFlow& flow() const;
+  [[nodiscard]] const Flow& flows() const;
+  /// K [r, n, l].
+  [[nodiscard]] const std::vector<double>& temperature() const;
+  /// W. Collective.
+  [[nodiscard]] EnergyBudget budget();
+  /// Null where the wall is none.
+  [[nodiscard]] const Solid* bush() const;
+  [[nodiscard]] const Solid* journal() const;
+  /// K, of their cells.
+  [[nodiscard]] Vec bush_temperature() const;
+  [[nodiscard]] Vec journal_temperature() const;
+  /// K [r, n], of the film's surfaces.
+  [[nodiscard]] std::vector<double> bush_surface() const;
+  [[nodiscard]] std::vector<double> journal_surface() const;
+
+private:
+  struct Work;
+  std::unique_ptr<Work> w_;
+};
+
+}  // namespace whirl::thermal

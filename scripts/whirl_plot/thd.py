@@ -1,0 +1,258 @@
+"""A film with its heat: unwrapped maps, profiles across the film, radial and axial sections through bush, film and journal,
+and what a series of meshes or speeds shows."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .film import panel
+from .style import GREY, INK, length_unit, parameter_label, save
+
+HEAT = "inferno"
+LABEL = "temperature [K]"
+
+
+def ring(theta, values, closed):
+    """Angles and values [..., around] with the first behind the last, where the ring closes."""
+    if not closed:
+        return theta, values
+    return np.append(theta, theta[0] + 2 * np.pi), np.concatenate((values, values[..., :1]), axis=-1)
+
+
+def closes(theta):
+    """Whether the first node is about a step behind the last one."""
+    step = np.diff(theta).max()
+    return abs(theta[0] + 2 * np.pi - theta[-1] - step) < 0.5 * step
+
+
+class Film:
+    """Fields at the nodes, [along, around], and the temperature from the bush (zeta 0) to the journal (zeta 1)."""
+
+    def __init__(self, study):
+        self.theta, self.z = study.get("film/theta"), study.get("film/z")
+        self.thickness, self.pressure = study.get("film/thickness"), study.get("film/pressure")
+        self.radius = float(np.ravel(study.get("film/radius", 0))[0])
+        self.temperature = study.get("film/temperature")
+        layers = self.temperature.shape[2]
+        self.zeta = (np.arange(layers) + 0.5) / layers
+        self.walls = {name: study.get(f"film/{name}_wall") for name in ("bush", "journal") if study.has(f"film/{name}_wall")}
+        for name, at in (("bush", 0), ("journal", 1)):
+            if name in self.walls:
+                side = 0 if at == 0 else len(self.zeta)
+                self.zeta = np.insert(self.zeta, side, at)
+                self.temperature = np.insert(self.temperature, side, self.walls[name], axis=2)
+
+    @property
+    def middle(self):
+        """[along, around] between the walls."""
+        return np.array([[np.interp(0.5, self.zeta, column) for column in row] for row in self.temperature])
+
+    def place(self):
+        """Clearance and eccentricity [m] of the circle that the thickness is the gap of: h = c - x cos - y sin."""
+        h = self.thickness.mean(axis=0)
+        return np.linalg.lstsq(np.stack((np.ones_like(h), -np.cos(self.theta), -np.sin(self.theta)), axis=1), h, rcond=None)[0]
+
+
+def draw_maps(study):
+    if not study.has("film/theta", "film/z", "film/temperature", "film/pressure", "film/thickness"):
+        return []
+    film = Film(study)
+    scale, unit = length_unit(film.thickness)
+    maps = [("temperature in the middle of the film", film.middle, HEAT, LABEL, "white"), ("pressure", film.pressure / 1e6, "YlOrRd", "pressure [MPa]", "#5a1a00"),
+            ("film thickness", film.thickness * scale, "viridis_r", f"thickness [{unit}]", "white")]
+    # The wall of a rotating journal is the same all around.
+    maps += [(f"wall of the {name}", values, HEAT, LABEL, "white") for name, values in film.walls.items() if np.ptp(values, axis=1).max() > 1e-6 * np.ptp(film.temperature)]
+    figure, axes = plt.subplots(-(-len(maps) // 2), 2, figsize=(11.2, 2.9 * -(-len(maps) // 2) + 1.0), squeeze=False)
+    for axis, (title, values, colours, label, ink) in zip(axes.flat, maps):
+        theta, shown = ring(film.theta, values, closes(film.theta))
+        panel(figure, axis, np.degrees(theta), film.z * 1e3, shown.T, colours, label, ink)
+        axis.set_title(f"{title}: {values.min():.5g} to {values.max():.5g} {label.split('[')[1][:-1]}")
+        if title == "pressure" and study.has("film/flow_around", "film/flow_along"):
+            streams(axis, film, study.get("film/flow_around"), study.get("film/flow_along"))
+    for axis in axes.flat[len(maps):]:
+        axis.set_visible(False)
+    return save(figure, study, "thd-maps", "film unwrapped" + (", with lines of mass flow" if film.radius and study.has("film/flow_around") else ""))
+
+
+def streams(axis, film, around, along):
+    """Lines of mass flow over a map, from kg/(m s) at nodes: in degrees and millimetres."""
+    theta = np.degrees(np.linspace(film.theta[0], film.theta[-1], len(film.theta)))
+    z = np.linspace(film.z[0], film.z[-1], len(film.z)) * 1e3
+    axis.streamplot(theta, z, np.degrees(around / film.radius), along * 1e3, color=GREY, linewidth=0.6, density=0.8, arrowsize=0.6)
+
+
+def draw_profiles(study):
+    """Temperature across the film at mid-length, at six angles."""
+    if not study.has("film/theta", "film/temperature", "film/thickness"):
+        return []
+    film = Film(study)
+    row = len(film.z) // 2
+    figure, axis = plt.subplots(figsize=(10.5, 4.6))
+    columns = np.unique(np.linspace(0, len(film.theta) - 1, 7).astype(int))[:6]
+    for n, i in enumerate(columns):
+        axis.plot(film.temperature[row, i], film.zeta, "-o", markersize=3, color=plt.get_cmap("viridis")(n / max(1, len(columns) - 1)),
+                  label=f"{np.degrees(film.theta[i]):.0f} deg")
+    axis.set_xlabel(LABEL)
+    axis.set_ylabel("across the film: 0 bush, 1 journal")
+    axis.set_ylim(0, 1)
+    return save(figure, study, "thd-profiles", f"at z = {film.z[row] * 1e3:.3g} mm", handles=axis.get_legend_handles_labels()[0])
+
+
+def parts(study):
+    """Film and solids, None where there is none, with the limits of temperature of all."""
+    film = Film(study) if study.has("film/theta", "film/z", "film/temperature", "film/thickness", "film/pressure") else None
+    bush = {k: study.get(f"bush/{k}") for k in ("temperature", "theta", "z", "r")} if study.has("bush/temperature") else None
+    journal = {k: study.get(f"journal/{k}") for k in ("temperature", "z", "r")} if study.has("journal/temperature") else None
+    if journal and study.has("journal/theta"):
+        journal["theta"] = study.get("journal/theta")
+    if film and bush and "bush" in film.walls and bush["temperature"].shape[:2] == film.walls["bush"].shape:
+        bush["r"] = np.insert(bush["r"], 0, film.radius)
+        bush["temperature"] = np.insert(bush["temperature"], 0, film.walls["bush"], axis=2)
+    known = [p["temperature"] for p in (bush, journal) if p] + ([film.temperature] if film else [])
+    limits = (min(v.min() for v in known), max(v.max() for v in known)) if known else (0, 1)
+    return film, bush, journal, limits
+
+
+def fill(axis, x, y, values, limits):
+    low, high = limits
+    mesh = axis.pcolormesh(x, y, values, cmap=HEAT, vmin=low, vmax=high, shading="gouraud", rasterized=True)
+    if np.ptp(values) > 1e-3 * (high - low):
+        axis.contour(x, y, values, np.linspace(low, high, 18), colors="white", linewidths=0.5, alpha=0.7)
+    return mesh
+
+
+def edge(axis, x, y):
+    """Where film and solid meet."""
+    axis.plot(x, y, color=INK, linewidth=0.8)
+
+
+def magnified(film, radius):
+    """How many times thicker the film is drawn, and its clearance and the journal's place then [m]."""
+    c, x, y = film.place()
+    factor = 0.15 * radius / c
+    step = 10 ** np.floor(np.log10(factor))
+    factor = max(1, np.floor(factor / step) * step)
+    return factor, factor * c, factor * x, factor * y
+
+
+def draw_radial(study):
+    """Bush, film and journal across the shaft, a quarter of the film's length from its end (the film drawn thicker)."""
+    film, bush, journal, limits = parts(study)
+    if not (film and film.radius and bush and journal):
+        return []
+    row = int(np.argmin(np.abs(film.z - (0.75 * film.z[0] + 0.25 * film.z[-1]))))
+    wall = film.radius
+    factor, clearance, x0, y0 = magnified(film, wall)
+    figure, axis = plt.subplots(figsize=(9.6, 8.0))
+    theta, values = ring(bush["theta"], bush["temperature"][row].T, closes(bush["theta"]))
+    r = 1e3 * (bush["r"] + clearance)[:, None]
+    fill(axis, r * np.cos(theta), r * np.sin(theta), values, limits)
+    theta, values = ring(film.theta, film.temperature[row].T, closes(film.theta))
+    _, h = ring(film.theta, film.thickness[row], closes(film.theta))
+    r = 1e3 * (wall + clearance - factor * h * film.zeta[:, None])
+    mesh = fill(axis, r * np.cos(theta), r * np.sin(theta), values, limits)
+    for side in (0, -1):
+        edge(axis, r[side] * np.cos(theta), r[side] * np.sin(theta))
+    at = int(np.argmin(np.abs(journal["z"] - film.z[row])))
+    turn = np.linspace(0, 2 * np.pi, 181)
+    inside = journal["temperature"][at]
+    if inside.ndim == 2:
+        turn, inside = ring(journal["theta"], inside.T, True)
+    else:
+        inside = inside[:, None] * np.ones(len(turn))
+    r = 1e3 * journal["r"][:, None]
+    fill(axis, 1e3 * x0 + r * np.cos(turn), 1e3 * y0 + r * np.sin(turn), inside, limits)
+    axis.set_aspect("equal")
+    axis.set_xlabel("x [mm]")
+    axis.set_ylabel("y [mm]")
+    figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)
+    return save(figure, study, "thd-radial", f"section at z = {film.z[row] * 1e3:.3g} mm; the film is drawn {factor:.0f} times as thick; isotherms every "
+                f"{np.ptp(limits) / 17:.2g} K")
+
+
+def draw_axial(study):
+    """Bush, film and journal along the shaft where the film is thinnest, and opposite (the film drawn thicker)."""
+    film, bush, journal, limits = parts(study)
+    if not (film and film.radius and bush and journal):
+        return []
+    wall = film.radius
+    factor, _, _, _ = magnified(film, wall)
+    thinnest = int(np.argmin(film.thickness.mean(axis=0)))
+    figure, axis = plt.subplots(figsize=(10.5, 6.4))
+    for side in (1, -1):
+        angle = film.theta[thinnest] + (0 if side > 0 else np.pi)
+        away = lambda theta: np.abs((theta - angle + np.pi) % (2 * np.pi) - np.pi)  # noqa: E731
+        i = int(np.argmin(away(film.theta)))
+        gap = factor * film.thickness[:, i]
+        shift = gap.max()
+        if side > 0 or away(film.theta)[i] < 0.2:
+            r = wall + shift - gap[:, None] * film.zeta
+            fill(axis, np.broadcast_to(film.z[:, None] * 1e3, r.shape), side * r * 1e3, film.temperature[:, i], limits)
+            for wet in (0, -1):
+                edge(axis, film.z * 1e3, side * r[:, wet] * 1e3)
+        k = int(np.argmin(away(bush["theta"])))
+        if side > 0 or away(bush["theta"])[k] < 0.2:
+            z, r = np.meshgrid(bush["z"] * 1e3, (bush["r"] + shift) * side * 1e3, indexing="ij")
+            fill(axis, z, r, bush["temperature"][:, k], limits)
+        inside = journal["temperature"]
+        if inside.ndim == 3:
+            inside = inside[:, int(np.argmin(away(journal["theta"])))]
+        z, r = np.meshgrid(journal["z"] * 1e3, journal["r"] * side * 1e3, indexing="ij")
+        mesh = fill(axis, z, r, inside, limits)
+    axis.set_aspect("equal")
+    axis.set_xlabel("z [mm]")
+    axis.set_ylabel("r [mm]")
+    figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)
+    return save(figure, study, "thd-axial", f"above: at {np.degrees(film.theta[thinnest]):.0f} deg, where the film is thinnest, below: opposite; the film is drawn "
+                f"{factor:.0f} times as thick; isotherms every {np.ptp(limits) / 17:.2g} K")
+
+
+def draw_iterations(study):
+    """The largest of the residuals of each field over the iterations of the coupled problem."""
+    if not study.has("iterations/residual"):
+        return []
+    residual = np.atleast_2d(np.transpose(study.get("iterations/residual")))
+    names = [str(n) for n in study.get("iterations/field", np.arange(len(residual)))]
+    figure, axis = plt.subplots(figsize=(10.5, 4.2))
+    for name, values in zip(names, residual):
+        axis.semilogy(np.arange(len(values)), np.where(values > 0, values, np.nan), "-o", markersize=4, label=name)
+    axis.set_xlabel("iteration")
+    axis.set_ylabel("residual over the first one")
+    return save(figure, study, "thd-iterations", handles=axis.get_legend_handles_labels()[0])
+
+
+def draw_meshes(study):
+    """Least, mean and largest temperature and what the enthalpy budget leaves, over the number of cells."""
+    if not study.has("meshes/cells", "meshes/mean"):
+        return []
+    cells = study.get("meshes/cells")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.2, 4.4))
+    for name, colour in (("minimum", "#3b6fb6"), ("mean", INK), ("maximum", "#c0392b")):
+        if study.has(f"meshes/{name}"):
+            left.semilogx(cells, study.get(f"meshes/{name}"), "-o", markersize=4, color=colour, label=name)
+    left.set_ylabel(LABEL)
+    if study.has("meshes/residual"):
+        left_over = np.abs(study.get("meshes/residual"))
+        right.loglog(cells, np.where(left_over > 0, left_over, np.nan), "-o", markersize=4, color=INK)
+        right.set_ylabel("residual of the enthalpy budget [W]")
+    else:
+        right.set_visible(False)
+    for axis in (left, right):
+        axis.set_xlabel("cells of the film")
+    return save(figure, study, "thd-meshes", handles=left.get_legend_handles_labels()[0])
+
+
+BUDGET = {"power_loss": "power loss", "dissipation": "dissipation", "expansion": "work of pressure", "heat_bush": "heat to the bush", "heat_journal": "heat to the journal",
+          "enthalpy": "enthalpy carried off", "residual": "residual"}
+
+
+def draw_budget(study):
+    """The terms of the enthalpy budget over the parameter."""
+    found = [k for k in BUDGET if study.has(f"budget/{k}")]
+    if not found or not study.has("budget/parameter") or len(study.get("budget/parameter")) < 2:
+        return []
+    figure, axis = plt.subplots(figsize=(10.5, 4.8))
+    for n, name in enumerate(found):
+        axis.plot(study.get("budget/parameter"), study.get(f"budget/{name}"), "-o", markersize=3.5, color=plt.get_cmap("tab10")(n), label=BUDGET[name])
+    axis.axhline(0, color=GREY, linewidth=0.7)
+    axis.set_xlabel(parameter_label(study))
+    axis.set_ylabel("heat flow [W]")
+    return save(figure, study, "thd-budget", handles=axis.get_legend_handles_labels()[0])

@@ -1,0 +1,62 @@
+#pragma once
+// Parts at a complex frequency whose own inverses are approximate.
+
+#include <Eigen/Core>
+#include <complex>
+#include <memory>
+
+#include "solve/newton/port_matrix.hpp"
+#include "whirl/core/gate.hpp"
+#include "whirl/problem/part_inverse.hpp"
+#include "whirl/problem/system.hpp"
+
+namespace whirl::solve {
+
+/// A^-1 of A = a + lambda b, a = dF/dx and b = dF/d(dx/dt) of all parts, lambda = s + i w, by FGMRES on the real form
+///
+///     [ a + s b   -w b    ] [ Re y ]   [ Re r ]
+///     [ w b       a + s b ] [ Im y ] = [ Im r ]
+///
+/// Both halves are preconditioned by the approximate inverse of a + |lambda| b. Where b^-1 a has positive eigenvalues
+/// and that inverse is good, (a + i w b) (a + w b)^-1 has its eigenvalues on the arc (a + i w) / (a + w) between 1 and
+/// i, so that the number of iterations depends neither on the mesh nor on the frequency.
+/// The matrices are stored by pieces of diagonals, spread like the parts; nothing is assembled or factorised.
+/// KSP with prefix "frequency_", by default to the relative residual 1e-12 in at most 300 iterations. Collective.
+class FrequencyInverse final : public problem::PartInverse {
+public:
+  /// `approximate`: of the parts of `system`, which lists its entries and outlives this.
+  FrequencyInverse(problem::System& system, std::unique_ptr<problem::PartInverse> approximate);
+  FrequencyInverse(const FrequencyInverse&) = delete;
+  FrequencyInverse& operator=(const FrequencyInverse&) = delete;
+  ~FrequencyInverse() override = default;
+
+  void set(double angle, Vec x, Vec xdot, double alpha, double sigma) override;
+  void apply(const double* r, double* y) override { approximate_->apply(r, y); }
+  void set_at(Vec x, Vec rest, std::complex<double> lambda) override;
+  /// As of the base. Throws core::NotConverged, on all ranks, if the iterations do not come to the tolerance.
+  void apply_at(const std::complex<double>* r, std::complex<double>* y, std::ptrdiff_t rows, int columns) override;
+  /// b times columns [this rank's rows of the parts x columns].
+  [[nodiscard]] Eigen::MatrixXcd rates_times(const Eigen::MatrixXcd& columns);
+  /// Iterations of all solves so far. Not collective.
+  [[nodiscard]] PetscInt iterations() const { return iterations_; }
+
+private:
+  /// out = a_pp in or b_pp in, of this rank's rows of the parts.
+  void multiply(const PortMatrix& m, const double* in, double* out);
+  void multiply(Vec x, Vec y);
+
+  problem::System& system_;
+  std::unique_ptr<problem::PartInverse> approximate_;
+  std::complex<double> lambda_;
+  problem::Entries entries_;
+  std::unique_ptr<PortMatrix> a_, b_;
+  Eigen::VectorXd whole_in_, whole_out_, hub_;  // work space: this rank's rows, and those of the hub
+  Eigen::VectorXd by_a_, by_b_;                 // and those of the parts
+  core::Gate gate_;
+  core::Matrix shell_;
+  core::Vector right_, answer_;  // in real form: all real parts of a rank, then all imaginary ones
+  core::LinearSolver ksp_;
+  PetscInt iterations_ = 0;
+};
+
+}  // namespace whirl::solve

@@ -1,0 +1,90 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "whirl/study/bearing/thd.hpp"
+#include "whirl/thermal/describe.hpp"
+
+namespace whirl::study {
+
+std::span<const deck::Name<ThdOptions::Cavitation>> names(ThdOptions::Cavitation) {
+  using enum ThdOptions::Cavitation;
+  static constexpr deck::Name<ThdOptions::Cavitation> table[] = {
+      {none, "none", "the film holds together; what a gas film is"},
+      {half_sommerfeld, "half_sommerfeld", "as none, but pressure below the ambient's does not act on the journal"},
+      {reynolds, "reynolds", "no pressure below the ambient's, zero slope where the film ruptures"}};
+  return table;
+}
+
+void describe(deck::Description<ThdOptions>& d) {
+  using O = ThdOptions;
+  d.add("name", &O::name, "name in the results; the kind if not given");
+  d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
+  d.add("speeds", &O::speeds, "rad/s", deck::non_negative,
+        "shaft speeds, one after the other; fields are written of the last")
+      .required();
+  d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
+        "distance of the journal from the bearing centre, in clearances");
+  d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");
+  d.add("cells", &O::cells, deck::in(2, 1e5), "intervals around and along the film, layers across it");
+  d.add("cavitation", &O::cavitation, "what an oil film does where it would be under tension");
+  d.add("second_order", &O::second_order,
+        "convection of heat by limited differences of second order; false: upwind, of first order");
+  d.add("fluid", &O::fluid, "what fills the film, with its properties").required();
+  d.add("ambient", &O::ambient, "what lies beyond the ends of the film");
+  d.add("orifices", &O::orifices, "rings of orifices that feed a gas film");
+  d.add("grooves", &O::grooves, "axial grooves that feed an oil film");
+  d.add("bush", &O::bush, "wall of the film on the side of the bearing");
+  d.add("journal", &O::journal, "wall of the film on the side of the shaft");
+  d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),
+        "change of temperatures in an iteration, relative to the ambient's, below which it ends");
+  d.add("most_iterations", &O::most_iterations, deck::in(1, 10000),
+        "iterations between flow and heat after which it "
+        "gives up");
+}
+
+double Thd::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
+  const auto& [n, m, l] = options.cells;
+  return 600.0 * n * m * l;
+}
+
+void Thd::validate(const system::Machine& machine, const deck::Report& report) const {
+  using Fluid = thermal::FluidOptions;
+  using Wall = thermal::WallOptions;
+  const auto found =
+      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
+  if (!found)
+    return report.fail("bearing",
+                       fmt::format("there is no bearing '{}'{}", options.bearing,
+                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
+  if (machine.bearings.empty()) return;
+  const system::Bearing& bearing = machine.bearings[*found];
+  if (!bearing.geometry) return report.fail(options.bearing.empty() ? "" : "bearing", "the bearing has no geometry");
+  const film::Geometry& g = *bearing.geometry;
+  const bool gas = options.fluid.type == Fluid::Type::gas;
+  if (g.type != film::Geometry::Bore::cylindrical)
+    report.fail(options.bearing.empty() ? "" : "bearing", "a film with heat needs a cylindrical bore");
+  if (options.speeds.empty()) report.fail("speeds", "the list is empty");
+  if (gas && !options.grooves.empty()) report.fail("grooves", "grooves feed a liquid: give a gas 'orifices'");
+  if (!gas && !options.orifices.empty()) report.fail("orifices", "orifices feed a gas: give a liquid 'grooves'");
+  if (gas && options.cavitation != ThdOptions::Cavitation::none)
+    report.fail("cavitation", "a gas does not cavitate: leave 'cavitation' out");
+  for (const thermal::OrificeRing& ring : options.orifices) {
+    if (std::abs(ring.z) >= g.length / 2) report.fail("orifices", "an orifice lies beyond the ends of the film");
+    if (ring.pressure <= options.ambient.pressure)
+      report.fail("orifices", "the supply has no pressure above that of the ambient");
+    if (ring.inlet == thermal::OrificeRing::Inlet::bush && options.bush.type == Wall::Type::adiabatic)
+      report.fail("orifices", "an adiabatic bush has no temperature that the gas could enter with");
+  }
+  if (options.bush.type == Wall::Type::solid && options.bush.radius <= g.radius + g.clearance)
+    report.fail("bush", "the outer 'radius' of the bush must lie beyond the film");
+  if (options.journal.type == Wall::Type::solid) {
+    if (options.journal.radius >= g.radius) report.fail("journal", "the bore's 'radius' must lie within the journal");
+    const double length = options.journal.shaft_length;
+    if (length != 0 && options.journal.shaft_before + g.length > length * (1 + 1e-12))
+      report.fail("journal", "'shaft_before' and the bearing reach beyond 'shaft_length'");
+  }
+}
+
+}  // namespace whirl::study

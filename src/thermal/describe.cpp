@@ -1,0 +1,138 @@
+#include "whirl/thermal/describe.hpp"
+
+#include <numbers>
+
+namespace whirl::thermal {
+
+using deck::positive;
+
+std::span<const deck::Name<FluidOptions::Type>> names(FluidOptions::Type) {
+  static constexpr deck::Name<FluidOptions::Type> table[] = {
+      {FluidOptions::Type::gas, "gas", "ideal: density p/(r T)"},
+      {FluidOptions::Type::liquid, "liquid", "of constant density"}};
+  return table;
+}
+
+std::span<const deck::Name<OrificeRing::Inlet>> names(OrificeRing::Inlet) {
+  static constexpr deck::Name<OrificeRing::Inlet> table[] = {
+      {OrificeRing::Inlet::supply, "supply", "the gas enters with the temperature of the supply"},
+      {OrificeRing::Inlet::bush, "bush", "the gas enters with the temperature of the bush at the orifice"}};
+  return table;
+}
+
+std::span<const deck::Name<WallOptions::Type>> names(WallOptions::Type) {
+  static constexpr deck::Name<WallOptions::Type> table[] = {
+      {WallOptions::Type::isothermal, "isothermal", "of given temperature"},
+      {WallOptions::Type::adiabatic, "adiabatic", "takes no heat"},
+      {WallOptions::Type::solid, "solid",
+       "conducts heat: a bush in three dimensions, a turning journal as a body of revolution"}};
+  return table;
+}
+
+void describe(deck::Description<ConstantViscosity>& d) {
+  d.add("value", &ConstantViscosity::value, "Pa s", positive, "dynamic viscosity").required();
+}
+
+void describe(deck::Description<Sutherland>& d) {
+  d.add("viscosity", &Sutherland::viscosity, "Pa s", positive, "dynamic viscosity at 'temperature'");
+  d.add("temperature", &Sutherland::temperature, "K", positive, "at which the viscosity is given");
+  d.add("constant", &Sutherland::constant, "K", positive, "Sutherland's constant of the gas", "Sutherland 1893");
+}
+
+void describe(deck::Description<Vogel>& d) {
+  d.add("viscosity", &Vogel::viscosity, "Pa s", positive, "dynamic viscosity at 'temperature'").required();
+  d.add("temperature", &Vogel::temperature, "K", positive, "at which the viscosity is given");
+  d.add("b", &Vogel::b, "K", positive, "mu = mu_0 exp(b/(T - c) - b/(T_0 - c))", "Vogel 1921").required();
+  d.add("c", &Vogel::c, "K", deck::non_negative, "temperature at which the law ends").required();
+}
+
+void describe(deck::Description<Walther>& d) {
+  d.add("kinematic", &Walther::kinematic, "m^2/s", positive, "kinematic viscosities at two temperatures", "ASTM D341")
+      .required();
+  d.add("temperatures", &Walther::temperature, "K", positive, "at which these are given").required();
+  d.add("oil_density", &Walther::density, "kg/m^3", positive, "density that makes them dynamic viscosities").required();
+  d.check([](const Walther& w, const deck::Report& r) {
+    if (w.temperature[0] == w.temperature[1]) r.fail("temperatures", "'temperatures' must differ");
+  });
+}
+
+void describe(deck::Description<Quadratic>& d) {
+  d.add("viscosity", &Quadratic::viscosity, "Pa s", positive, "dynamic viscosity at 'celsius'").required();
+  d.add("celsius", &Quadratic::celsius, positive, "temperature T_0 in degrees Celsius at which it is given");
+  d.add("coefficients", &Quadratic::coefficients, deck::any,
+        "mu/mu_0 = c_0 + c_1 t + c_2 t^2 with t the temperature over T_0, both in degrees Celsius",
+        "Ferron, Frene and Boncompain 1983")
+      .required();
+}
+
+void describe(deck::Description<ViscosityOptions>& d) {
+  d.kinds("type", &ViscosityOptions::law, "law of the viscosity over the temperature");
+}
+
+void describe(deck::Description<FluidOptions>& d) {
+  using F = FluidOptions;
+  using enum F::Type;
+  d.add("type", &F::type, "what the film is filled with");
+  d.add("viscosity", &F::viscosity, "dynamic viscosity over the temperature").required();
+  d.add("gas_constant", &F::gas_constant, "J/(kg K)", positive, "r of the gas").only(&F::type, {gas});
+  d.add("heat_ratio", &F::heat_ratio, deck::Check{.min = 1, .min_open = true}, "ratio of the specific heats of the gas")
+      .only(&F::type, {gas});
+  d.add("density", &F::density, "kg/m^3", positive, "density of the liquid").required().only(&F::type, {liquid});
+  d.add("heat_capacity", &F::heat_capacity, "J/(kg K)", positive, "specific heat, of a gas at constant pressure")
+      .required();
+  d.add("conductivity", &F::conductivity, "W/(m K)", positive, "conductivity").required();
+}
+
+void describe(deck::Description<OrificeRing>& d) {
+  using O = OrificeRing;
+  d.add("count", &O::count, deck::in(1, 10000), "orifices, evenly spaced around the bearing");
+  d.add("angle", &O::angle, "rad", deck::any, "place of the first one, from +x counter-clockwise");
+  d.add("z", &O::z, "m", deck::any, "place along the shaft, from the mid-plane of the bearing");
+  d.add("diameter", &O::diameter, "m", positive, "diameter of each").required();
+  d.add("pressure", &O::pressure, "Pa", positive, "absolute pressure of the supply").required();
+  d.add("inlet", &O::inlet, "temperature with which the gas enters the film");
+  d.add("temperature", &O::temperature, "K", positive, "temperature of the supply");
+}
+
+void describe(deck::Description<SupplyGroove>& d) {
+  using G = SupplyGroove;
+  d.add("angle", &G::angle, "rad", deck::any, "middle of the groove, from +x counter-clockwise").required();
+  d.add("width", &G::width, "rad", deck::between(0, 2 * std::numbers::pi),
+        "angle that it covers; its edges are moved to the nearest nodes")
+      .required();
+  d.add("length", &G::length, "m", positive, "length about the mid-plane; that of the bearing if not given");
+  d.add("pressure", &G::pressure, "Pa", deck::non_negative, "pressure in it, above that of the ambient");
+  d.add("temperature", &G::temperature, "K", positive, "temperature of the fresh oil");
+}
+
+void describe(deck::Description<WallOptions>& d) {
+  using W = WallOptions;
+  using enum W::Type;
+  d.add("type", &W::type, "what the wall does with heat");
+  d.add("temperature", &W::temperature, "K", positive, "temperature of the wall").only(&W::type, {isothermal});
+  d.add("conductivity", &W::conductivity, "W/(m K)", positive, "conductivity of the solid")
+      .required()
+      .only(&W::type, {solid});
+  d.add("radius", &W::radius, "m", deck::non_negative,
+        "of a bush its outer radius, of a journal that of its bore (0 if it is not hollow)")
+      .required()
+      .only(&W::type, {solid});
+  d.add("layers", &W::layers, deck::in(2, 10000), "cells from the film to the other side").only(&W::type, {solid});
+  d.add("convection", &W::convection, "W/(m^2 K)", deck::non_negative, "heat transfer at the free surfaces")
+      .only(&W::type, {solid});
+  d.add("bore_convection", &W::bore_convection, "W/(m^2 K)", deck::non_negative,
+        "the same in the bore of a journal; 'convection' if not given")
+      .only(&W::type, {solid});
+  d.add("ambient", &W::ambient, "K", positive, "temperature beyond the free surfaces").only(&W::type, {solid});
+  d.add("shaft_length", &W::shaft_length, "m", deck::non_negative, "length of a journal, from end to end")
+      .only(&W::type, {solid});
+  d.add("shaft_before", &W::shaft_before, "m", deck::non_negative, "of this, what lies before the film (at smaller z)")
+      .only(&W::type, {solid});
+}
+
+void describe(deck::Description<Ambient>& d) {
+  d.add("pressure", &Ambient::pressure, "Pa", positive, "absolute pressure at the ends of the film");
+  d.add("temperature", &Ambient::temperature, "K", positive, "of what is drawn in where the flow comes back");
+}
+
+}  // namespace whirl::thermal

@@ -1,0 +1,76 @@
+#pragma once
+// What the equation for the pressure of a film works with.
+
+#include <utility>
+#include <vector>
+
+#include "whirl/core/gate.hpp"
+#include "whirl/thermal/film_flow.hpp"
+
+namespace whirl::thermal {
+
+struct Profile;
+
+/// kg/s through a face, and its derivatives in the pressures before and behind it.
+struct Flux {
+  double value, before, behind;
+};
+
+struct FilmFlow::Work {
+  struct Face {           // of a gas per pressure
+    double gradient = 0;  // kg/s per m of width and Pa/m: negative
+    double drag = 0;      // kg/s per m of width
+  };
+  struct Hole {
+    double conductance;  // kg/(s Pa^2) of the film around it
+    double logarithm;    // of the rim over the radius at which a node stands for its source
+    double area;         // m^2, with the discharge coefficient
+  };
+
+  Work(const Rows& rows, FilmFlowOptions options, std::vector<double> thickness);
+  void set_temperature(const std::vector<double>& cells);
+  void residual(Vec state, Vec out) const;
+  void jacobian(Vec state, Mat matrix) const;
+  int solve();
+
+  static std::size_t at(PetscInt k) { return static_cast<std::size_t>(k); }
+  /// Place of a node in arrays with a row before and one behind.
+  [[nodiscard]] std::size_t halo(int i, int q) const { return at((q - rows.begin() + 1) * n + i); }
+  /// The profile at the face between two nodes, by their places.
+  void face(std::size_t a, std::size_t b, Profile& profile);
+  [[nodiscard]] double density(std::size_t a, std::size_t b, std::size_t k) const;
+  [[nodiscard]] Flux through(const Face& face, double width, double step, double p, double q) const;
+  [[nodiscard]] MassFlow through_hole(std::size_t k, double p) const;
+
+  const Rows& rows;
+  const Mesh mesh;
+  const FilmFlowOptions options;
+  const int n;
+  std::vector<double> h, temperature, mu;  // with the rows beside
+  std::vector<bool> fixed;                 // nodes whose pressure is given
+  std::vector<double> given;
+  std::vector<std::size_t> here;  // orifices of this rank
+  std::vector<Hole> at_hole;
+  std::vector<Face> around, along;
+  std::vector<double> pressure, hole;  // Pa [r, n], behind the orifices of this rank
+  core::Vector u, f, low, high;
+  core::Matrix j;
+  core::NonlinearSolver snes;
+  PetscInt first = 0, first_before = 0, first_behind = 0;  // numbers: of this rank, of the rows beside
+  double typical = 0;
+  core::Gate gate{rows.comm()};
+
+private:
+  static PetscErrorCode form_residual(SNES snes, Vec x, Vec out, void* context);
+  static PetscErrorCode form_jacobian(SNES snes, Vec x, Mat a, Mat matrix, void* context);
+  void place();
+  void prepare_solver();
+  void load(const std::vector<double>& p);
+  [[nodiscard]] std::vector<double> nodes_of(const double* state) const;
+  /// node(number here, place) of all nodes here, edge(i, j, i', j', flux) of all faces that these have.
+  template <class Node, class Edge>
+  void visit(const std::vector<double>& p, const Node& node, const Edge& edge) const;
+  std::vector<double> mu_at_;
+};
+
+}  // namespace whirl::thermal

@@ -1,0 +1,40 @@
+#include "whirl/thermal/orifice.hpp"
+
+#include <cmath>
+
+namespace whirl::thermal {
+namespace {
+
+// sqrt(b^(2/k) - b^((k+1)/k)) and its derivative in the ratio b of pressures, below 1.
+MassFlow shape(double k, double b) {
+  const double critical = std::pow(2 / (k + 1), k / (k - 1));
+  const bool choked = b < critical;
+  if (choked) b = critical;
+  const double a = std::pow(b, 2 / k), c = std::pow(b, (k + 1) / k), f = std::sqrt(a - c);
+  return {f, choked ? 0 : (2 / k * a - (k + 1) / k * c) / (2 * b * f)};
+}
+
+}  // namespace
+
+MassFlow nozzle(const Gas& gas, double supply, double temperature, double pressure) {
+  constexpr double width = 1e-3;
+  const double k = gas.heat_ratio, factor = std::sqrt(2 * k / ((k - 1) * gas.gas_constant * temperature));
+  const double b = pressure / supply;
+  if (b < 1 - width) {
+    const MassFlow f = shape(k, b);
+    return {factor * supply * f.value, factor * f.slope};
+  }
+  const double edge = shape(k, 1 - width).value;
+  if (b * (1 - width) <= 1) {  // from 1 - width to 1/(1 - width), where the flow back begins with the same value
+    const double slope = edge / width;
+    return {factor * supply * slope * (1 - b), -factor * slope};
+  }
+  const MassFlow f = shape(k, 1 / b);  // q = -factor p f(supply/p)
+  return {-factor * pressure * f.value, -factor * (f.value - f.slope / b)};
+}
+
+double discharge(double thickness, double diameter) {
+  return 0.85 * (1 - std::exp(-8.2 * thickness / diameter));
+}
+
+}  // namespace whirl::thermal

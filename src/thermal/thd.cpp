@@ -1,0 +1,259 @@
+#include "whirl/thermal/thd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "whirl/core/gate.hpp"
+#include "whirl/thermal/bush.hpp"
+#include "whirl/thermal/journal.hpp"
+
+namespace whirl::thermal {
+
+using core::check;
+
+namespace {
+
+Surface convection(double coefficient, double temperature) {
+  return {Surface::Kind::convection, coefficient, temperature};
+}
+
+Solid bush_of(const Rows& rows, const WallOptions& o) {
+  Bush bush;
+  bush.material.conductivity = o.conductivity;
+  bush.outer_radius = o.radius;
+  bush.layers = o.layers;
+  const Surface free = convection(o.convection, o.ambient);
+  bush.surfaces = {free, free, free, free};
+  return make_solid(rows, bush);
+}
+
+Solid journal_of(const Rows& rows, const WallOptions& o) {
+  Journal journal;
+  journal.material.conductivity = o.conductivity;
+  journal.bore_radius = o.radius;
+  journal.length = o.shaft_length > 0 ? o.shaft_length : rows.mesh().length;
+  journal.before = o.shaft_before;
+  journal.layers = o.layers;
+  const Surface free = convection(o.convection, o.ambient);
+  journal.surfaces = {convection(o.bore_convection.value_or(o.convection), o.ambient), free, free, free};
+  return make_solid(rows, journal);
+}
+
+}  // namespace
+
+struct Thd::Work {
+  // One side of the film.
+  struct Side {
+    const WallOptions* options = nullptr;
+    int layer = 0;  // of the film, at this wall
+    std::optional<Solid> solid;
+    core::Vector temperature, rhs;
+    std::vector<double> conductance;  // W/K [r, n], between the film's cell and what stands behind
+    std::vector<double> behind;       // K [r, n]
+  };
+
+  Work(const Rows& r, ThdSetup s, std::vector<double> h)
+      : rows(r), setup(std::move(s)), thickness(std::move(h)), film(rows, setup.flow, thickness), gate(rows.comm()) {
+    const Mesh& mesh = rows.mesh();
+    half = Energy::half_layer(rows, setup.flow.fluid.conductivity, thickness);
+    bush.options = &setup.bush;
+    journal.options = &setup.journal;
+    journal.layer = mesh.across - 1;
+    for (Side* side : {&bush, &journal}) {
+      const bool at_bush = side == &bush;
+      side->behind.assign(half.size(), side->options->temperature);
+      side->conductance = half;
+      if (side->options->type == WallOptions::Type::adiabatic) side->conductance.assign(half.size(), 0.0);
+      if (side->options->type != WallOptions::Type::solid) continue;
+      side->solid.emplace(at_bush ? bush_of(rows, setup.bush) : journal_of(rows, setup.journal));
+      side->solid->join(half);
+      side->conductance = side->solid->joined();
+      side->temperature = side->solid->temperature(side->options->ambient);
+      side->rhs = core::duplicate(side->temperature.get());
+      side->behind.assign(half.size(), side->options->ambient);
+    }
+    cells = half.size() * static_cast<std::size_t>(mesh.across);
+    temperature.assign(cells, setup.ambient);
+    check(DMCreateGlobalVector(rows.cells(), film_temperature.put()));
+    const std::size_t walls = (bush.solid ? half.size() : 0) + (journal.solid ? half.size() : 0);
+    x = core::make_vector(rows.comm(), static_cast<PetscInt>(cells + walls), PETSC_DETERMINE);
+    f = core::duplicate(x.get());
+    check(VecSet(x.get(), setup.ambient));
+  }
+
+  // Behind the film's wall, what a cell of the film and one of the solid have between them.
+  [[nodiscard]] double surface(const Side& side, std::size_t c) const {
+    const double own =
+        temperature[c * static_cast<std::size_t>(rows.mesh().across) + static_cast<std::size_t>(side.layer)];
+    if (side.options->type == WallOptions::Type::adiabatic) return own;  // no gradient
+    if (!side.solid) return side.behind[c];
+    return own + side.conductance[c] / half[c] * (side.behind[c] - own);
+  }
+
+  [[nodiscard]] Surroundings surroundings() const {
+    Surroundings out;
+    out.bush = {bush.conductance, bush.behind};
+    out.journal = {journal.conductance, journal.behind};
+    out.ambient = setup.ambient;
+    out.supply = setup.supply;
+    if (setup.inlet_from_bush) {
+      out.supply.resize(half.size());
+      for (std::size_t c = 0; c < half.size(); ++c) out.supply[c] = surface(bush, c);
+    }
+    return out;
+  }
+
+  // Heat of the film to a solid, and its temperature behind the wall.
+  void conduct(Side& side) {
+    if (!side.solid) return;
+    std::vector<double> own(half.size());
+    for (std::size_t c = 0; c < own.size(); ++c)
+      own[c] = temperature[c * static_cast<std::size_t>(rows.mesh().across) + static_cast<std::size_t>(side.layer)];
+    side.solid->load(own, side.rhs.get());
+    cost.solid += side.solid->solve(side.rhs.get(), side.temperature.get());
+    PetscInt first = 0;
+    check(VecGetOwnershipRange(side.temperature.get(), &first, nullptr));
+    const core::ReadArray t(side.temperature.get());
+    for (std::size_t c = 0; c < own.size(); ++c) side.behind[c] = t[side.solid->wall()[c] - first];
+  }
+
+  void take(const double* from) {
+    std::copy_n(from, cells, temperature.begin());
+    from += cells;
+    for (Side* side : {&bush, &journal})
+      if (side->solid) {
+        std::copy_n(from, half.size(), side->behind.begin());
+        from += half.size();
+      }
+  }
+
+  // One round from the temperatures of x; what it changes of them is `out`.
+  void round(Vec at, Vec out) {
+    const core::ReadArray old(at);
+    take(old.data());
+    film.set_temperature(temperature);
+    cost.pressure += film.solve();
+    flow = film.flow();
+    if (!energy)
+      energy = std::make_unique<Energy>(
+          rows, flow, EnergyModel{setup.flow.fluid.heat_capacity, setup.flow.fluid.conductivity, setup.order},
+          thickness, surroundings());
+    else
+      energy->update(thickness, surroundings());
+    {
+      const core::WriteArray t(film_temperature.get());
+      std::copy(temperature.begin(), temperature.end(), t.data());
+    }
+    const EnergySolve solved = energy->solve(film_temperature.get(), 1e-11);
+    cost.energy_newton += solved.newton;
+    cost.energy_krylov += solved.krylov;
+    {
+      const core::ReadArray t(film_temperature.get());
+      std::copy_n(t.data(), cells, temperature.begin());
+    }
+    conduct(bush);
+    conduct(journal);
+    const core::WriteArray change(out);
+    double largest = 0;
+    PetscInt at_row = 0;
+    const auto put = [&](const std::vector<double>& now) {
+      for (const double value : now) {
+        change[at_row] = old[at_row] - value;
+        largest = std::max(largest, std::abs(change[at_row]));
+        ++at_row;
+      }
+    };
+    put(temperature);
+    for (const Side* side : {&bush, &journal})
+      if (side->solid) put(side->behind);
+    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, rows.comm());
+    cost.largest.push_back(largest);
+  }
+
+  static PetscErrorCode form(SNES snes, Vec at, Vec out, void* self) {
+    auto& w = *static_cast<Work*>(self);
+    const PetscErrorCode code = w.gate.run([&] { w.round(at, out); });
+    return w.gate.domain_error() ? SNESSetFunctionDomainError(snes) : code;
+  }
+
+  const Rows& rows;
+  const ThdSetup setup;
+  const std::vector<double> thickness;
+  std::vector<double> half;  // W/K [r, n]
+  FilmFlow film;
+  Flow flow;
+  std::unique_ptr<Energy> energy;
+  Side bush, journal;
+  std::size_t cells = 0;
+  std::vector<double> temperature;
+  core::Vector film_temperature, x, f;
+  core::NonlinearSolver snes;
+  core::Gate gate;
+  ThdSolve cost;
+};
+
+Thd::Thd(const Rows& rows, ThdSetup setup, std::vector<double> thickness)
+    : w_(std::make_unique<Work>(rows, std::move(setup), std::move(thickness))) {}
+Thd::~Thd() = default;
+
+ThdSolve Thd::solve() {
+  Work& w = *w_;
+  if (!w.snes) {
+    check(SNESCreate(w.rows.comm(), w.snes.put()));
+    check(SNESSetOptionsPrefix(w.snes.get(), "thd_"));
+    check(SNESSetType(w.snes.get(), SNESANDERSON));
+    check(SNESSetFunction(w.snes.get(), w.f.get(), Work::form, &w));
+    check(SNESSetFromOptions(w.snes.get()));
+  }
+  PetscInt n = 0;
+  check(VecGetSize(w.x.get(), &n));
+  check(SNESSetTolerances(w.snes.get(), w.setup.tolerance * w.setup.ambient * std::sqrt(static_cast<double>(n)), 1e-30,
+                          0, w.setup.most_iterations, 100000));
+  w.cost = {};
+  w.gate.rethrow(SNESSolve(w.snes.get(), nullptr, w.x.get()));
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  check(SNESGetConvergedReason(w.snes.get(), &reason));
+  check(SNESGetIterationNumber(w.snes.get(), &iterations));
+  w.cost.iterations = static_cast<int>(iterations);
+  w.cost.converged = reason > 0;
+  return w.cost;
+}
+
+const FilmFlow& Thd::flow() const {
+  return w_->film;
+}
+const Flow& Thd::flows() const {
+  return w_->flow;
+}
+const std::vector<double>& Thd::temperature() const {
+  return w_->temperature;
+}
+EnergyBudget Thd::budget() {
+  return w_->energy->budget(w_->film_temperature.get());
+}
+const Solid* Thd::bush() const {
+  return w_->bush.solid ? &*w_->bush.solid : nullptr;
+}
+const Solid* Thd::journal() const {
+  return w_->journal.solid ? &*w_->journal.solid : nullptr;
+}
+Vec Thd::bush_temperature() const {
+  return w_->bush.temperature.get();
+}
+Vec Thd::journal_temperature() const {
+  return w_->journal.temperature.get();
+}
+std::vector<double> Thd::bush_surface() const {
+  std::vector<double> out;
+  for (std::size_t c = 0; c < w_->half.size(); ++c) out.push_back(w_->surface(w_->bush, c));
+  return out;
+}
+std::vector<double> Thd::journal_surface() const {
+  std::vector<double> out;
+  for (std::size_t c = 0; c < w_->half.size(); ++c) out.push_back(w_->surface(w_->journal, c));
+  return out;
+}
+
+}  // namespace whirl::thermal
