@@ -186,7 +186,7 @@ FlowReport FilmFlow::report(const Flow& flow) const {
   out.force[0] = sums[0];
   out.force[1] = sums[1];
   out.friction = sums[2];
-  out.power = sums[2] * w.options.speed;
+  out.power = sums[2] * w.options.speed + 0.0;  // no -0
   out.heat = sums[3];
   out.expansion = sums[6];
   out.inflow = sums[4];

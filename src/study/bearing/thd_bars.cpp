@@ -110,11 +110,13 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
     group.put("energy_residual", column([&](std::size_t m) { return found[m][count]; }), "W",
               "what the balance of the whole film leaves");
   }
-  // Differences that do not get less from mesh to mesh are no measure of what is left.
+  // Differences that fall more slowly than with the root of the spacing are no measure of what is left: beside point
+  // sources some grow with its logarithm.
   std::vector<std::string> steady;
   for (std::size_t k = 0; k < count && meshes.size() > 2; ++k) {
     const double fine = std::abs(found[0][k] - found[1][k]), coarse = std::abs(found[1][k] - found[2][k]);
-    if (fine >= coarse && fine > 1e-6 * std::abs(found[0][k])) steady.push_back(summary.values[k].first);
+    if (fine * std::numbers::sqrt2 >= coarse && fine > 1e-6 * std::abs(found[0][k]))
+      steady.push_back(summary.values[k].first);
   }
   if (!steady.empty())
     summary.warnings.push_back(fmt::format(

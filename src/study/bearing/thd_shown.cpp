@@ -58,6 +58,7 @@ void put_solid(Context& context, const ThdFilm& film, const thermal::Solid& soli
   std::vector<double> middles;
   for (int k = 0; k < shape.layers(); ++k) middles.push_back(shape.centre(k));
   group.put("r", middles, "m", "of the middles of the cells");
+  group.put("r_faces", shape.r, "m", "between the cells; of a turning journal the last cell is its surface");
   const bool round = shape.columns() > 1;
   if (round) group.put("theta", shape.theta, "rad", "of the nodes around, from +x");
   const core::ReadArray t(temperature);
