@@ -97,8 +97,8 @@ def growth(h):
 
 def bars(h):
     """Error bars of coarse meshes hold the values of a fine one."""
-    for deck, name, cells, fine in (("bearing_a.yaml", "bearing A", "[48, 16, 8]", "[192, 64, 32]"), ("solids.yaml", "cool gas", "[48, 16, 8]", "[144, 48, 24]"),
-                                    ("oil_groove.yaml", "bronze bush", "[80, 16, 8]", "[240, 48, 24]")):
+    for deck, name, cells, fine in (("bearing_a.yaml", "bearing A", "[48, 16, 8]", "[144, 48, 24]"), ("solids.yaml", "cool gas", "[48, 16, 8]", "[96, 32, 16]"),
+                                    ("oil_groove.yaml", "bronze bush", "[80, 16, 8]", "[160, 32, 16]")):
         speed = "[4000 rpm]" if "oil" in deck else "[10000 rad/s]"
         words = [f"studies.*.thd.speeds={speed}"]
         coarse = h.run(f"../thd/{deck}", f"coarse {name}", [*words, f"studies.*.thd.cells={cells}"])[name]
