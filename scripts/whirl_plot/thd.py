@@ -114,10 +114,12 @@ def parts(study):
         bush["r"] = np.insert(bush["r"], 0, film.radius)
         bush["temperature"] = np.insert(bush["temperature"], 0, film.walls["bush"], axis=2)
     for part, side in ((bush, -1), (journal, 0)):
-        faces = study.get("bush/r_faces" if side else "journal/r_faces") if part else None
-        if faces is not None and faces[side] != part["r"][side]:  # to its free surface
-            at = len(part["r"]) if side else 0
-            part["temperature"] = np.insert(part["temperature"], at, part["temperature"][..., side], axis=-1)
+        faces = study.get("bush/r_faces" if side else "journal/r_faces", None) if part else None
+        if faces is not None and faces[side] != part["r"][side]:  # to its free surface, on the line through the last two cells
+            at, next_one = (len(part["r"]), -2) if side else (0, 1)
+            slope = (part["temperature"][..., side] - part["temperature"][..., next_one]) / (part["r"][side] - part["r"][next_one])
+            surface = part["temperature"][..., side] + slope * (faces[side] - part["r"][side])
+            part["temperature"] = np.insert(part["temperature"], at, surface, axis=-1)
             part["r"] = np.insert(part["r"], at, faces[side])
     known = [p["temperature"] for p in (bush, journal) if p] + ([film.temperature] if film else [])
     limits = (min(v.min() for v in known), max(v.max() for v in known)) if known else (0, 1)
@@ -127,8 +129,10 @@ def parts(study):
 def fill(axis, x, y, values, limits):
     low, high = limits
     mesh = axis.pcolormesh(x, y, values, cmap=HEAT, vmin=low, vmax=high, shading="gouraud", rasterized=True)
-    if np.ptp(values) > 1e-3 * (high - low):
-        axis.contour(x, y, values, np.linspace(low, high, 18), colors="white", linewidths=0.5, alpha=0.7)
+    levels = np.linspace(low, high, 18)
+    levels = levels[(levels > values.min()) & (levels < values.max())]
+    if len(levels):
+        axis.contour(x, y, values, levels, colors="white", linewidths=0.5, alpha=0.7)
     return mesh
 
 

@@ -28,8 +28,7 @@ def walls(h):
     h.close("power loss [W]", value(found, "power_loss"), fast["Ploss"], 0.05)
     h.close("consumption [kg/s]", value(found, "mass_flow"), fast["mdot"], 0.001 * fast["mdot"])
     h.close("load [N]", numpy.hypot(value(found, "load.x"), value(found, "load.y")), fast["W"], 0.002 * fast["W"])
-    # The reference's is 0.413 %, this one 0.368 % (0.435 and 0.391 % on 288 x 96 x 8 cells): it lies beside an orifice, where
-    # temperatures do not converge with the mesh.
+    # The reference's is 0.413 %, this one 0.368 %: it takes the viscosity as uniform across the film (docs/validation.md).
     h.close("change of the pressure against isothermal", value(found, "pressure_change"), fast["dp_max_rel"], 0.0006)
     h.close("what heats the film is what the shaft loses [W]", value(found, "heat.film"), value(found, "power_loss"), 1e-9 * fast["Ploss"])
     h.close("balance of the energy [W]", value(found, "energy_residual"), 0, 1e-8 * fast["Ploss"])
@@ -118,7 +117,7 @@ def bars(h):
 def shown(h):
     """Meshes for ParaView: what the XML says is in the file, and encloses the volume that is there."""
     for n in (1, 2):
-        h.run("../thd/solids.yaml", f"shown_{n}", ["studies.*.thd.cells=[48, 16, 8]", "studies.*.thd.meshes=1"], launcher=[*h.launcher, "-n", str(n)] if n > 1 else None)
+        h.run("../thd/solids.yaml", f"shown_{n}", ["studies.*.thd.cells=[48, 16, 8]", "studies.*.thd.meshes=1"], launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])
         grids = {g.get("Name"): g for g in ElementTree.parse(h.work / f"shown_{n}/preheated gas.xdmf").iter("Grid") if g.get("GridType") == "Uniform"}
         wanted = ["bush", "film", "film surface", "film surface unwrapped", "film unwrapped", "journal"]
         h.true(f"{n} ranks: grids", sorted(grids) == wanted, f"{sorted(grids)}")
@@ -167,7 +166,7 @@ def resume(h):
     """A sweep that is killed goes on from the last speed it had, on as many ranks or others."""
     words = ["studies.*.thd.cells=[48, 16, 8]", "studies.1.thd.speeds=[" + ", ".join(f"{k}000 rad/s" for k in range(1, 11)) + "]"]
     deck = "../thd/solids.yaml"
-    h.run(deck, "undisturbed", words)
+    h.run(deck, "undisturbed", words, launcher=[])
     with h5py.File(h.work / "undisturbed/results.h5") as f:
         count = f["studies/preheated gas/budget/iterations"][:]
     h.true("each speed starts from the one before", count[1:].max() <= count[0] + 3, f"{count}")
@@ -177,7 +176,7 @@ def resume(h):
         with h5py.File(next(out.glob("*.checkpoint.h5"))) as f:
             kept = [len(item) for path, item in everything(f) if path.endswith("state/rows")]
         h.true(f"{ranks} ranks: speeds kept", len(kept) == 1 and 1 <= kept[0] < 10, f"{kept}")
-        h.run(deck, out.name, words, ["--resume"], [*h.launcher, "-n", str(ranks)] if ranks > 1 else None)
+        h.run(deck, out.name, words, ["--resume"], [*h.launcher, "-n", str(ranks)] if ranks > 1 else [])
         if ranks == 1:
             for what, off, within in same_results(h.work / "undisturbed", out, 0):
                 h.close(what, off, 0, within)
@@ -186,6 +185,26 @@ def resume(h):
             for study in one:
                 same_values(h, f"{ranks} ranks, {study}", one[study], other[study])
         h.true(f"{ranks} ranks: nothing is left behind", not list(out.glob("*.checkpoint.h5")))
+
+
+def mesh(h):
+    """A series of meshes."""
+    reference = json.loads((h.source / "tests/reference/thd/bearing_a.json").read_text())["walls_300K"]
+    few = ["studies.*.thd.cells=[96, 32, 16]", "studies.*.thd.meshes=3"]
+    found = h.run("../thd/mesh.yaml", "mesh", few)
+    with h5py.File(h.work / "mesh/results.h5") as f:
+        for name, study in found.items():
+            series = {k: v[:] for k, v in f[f"studies/{name}/meshes"].items()}
+            h.true(f"{name}: meshes", list(series["cells"]) == [24 * 8 * 4, 48 * 16 * 8, 96 * 32 * 16], f"{series['cells']}")
+            h.close(f"{name}: the last one is the deck's [K]", series["temperature.mean"][-1], value(study, "temperature.mean"), 0)
+            h.true(f"{name}: the mean settles", abs(numpy.diff(series["temperature.mean"])[1]) < abs(numpy.diff(series["temperature.mean"])[0]))
+            h.true(f"{name}: the least temperature falls", all(numpy.diff(series["temperature.minimum"]) < 0), f"{series['temperature.minimum']}")
+            h.close(f"{name}: residuals [W]", numpy.abs(series["energy_residual"]).max(), 0, 1e-9)
+            warned = " ".join(study.get("warnings", []))
+            h.true(f"{name}: what does not converge is said", "temperature.minimum" in warned and "temperature.mean," not in warned, warned)
+    fast = found["10,000 rad per second"]
+    row = next(r for r in reference if (r["N"], r["nz"]) == (96, 16))
+    h.close("mean temperature [K]", value(fast, "temperature.mean"), row["T_mean"], 0.03)
 
 
 def solids(h):
@@ -259,5 +278,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
     harness.finish()

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "study/bars/summary_bars.hpp"
@@ -112,11 +113,16 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
   }
   // Differences that fall more slowly than with the root of the spacing are no measure of what is left: beside point
   // sources some grow with its logarithm.
+  std::map<std::string, double> size;  // of a vector or of all heats, of which one may vanish
+  const auto kin = [&](std::size_t k) {
+    const std::string& name = summary.values[k].first;
+    return name.starts_with("heat.") ? "heat" : stem_of(name);
+  };
+  for (std::size_t k = 0; k < count; ++k) size[kin(k)] = std::max(size[kin(k)], std::abs(found[0][k]));
   std::vector<std::string> steady;
   for (std::size_t k = 0; k < count && meshes.size() > 2; ++k) {
     const double fine = std::abs(found[0][k] - found[1][k]), coarse = std::abs(found[1][k] - found[2][k]);
-    if (fine * std::numbers::sqrt2 >= coarse && fine > 1e-6 * std::abs(found[0][k]))
-      steady.push_back(summary.values[k].first);
+    if (fine * std::numbers::sqrt2 >= coarse && fine > 1e-6 * size[kin(k)]) steady.push_back(summary.values[k].first);
   }
   if (!steady.empty())
     summary.warnings.push_back(fmt::format(
