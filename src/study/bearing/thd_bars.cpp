@@ -84,6 +84,7 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
       context.results.progress(fmt::format("{} cells for the error bars", fmt::join(meshes[m], " x ")));
       ThdOptions there = options;
       there.cells = meshes[m];
+      for (thermal::WallOptions* wall : {&there.bush, &there.journal}) wall->layers = std::max(2, wall->layers >> m);
       return values_on(context.comm, there, geometry, speed, count);
     }));
     io::StudySummary there;
