@@ -42,7 +42,8 @@ public:
   Thd& operator=(const Thd&) = delete;
 
   /// From the last state, or from that given to start(), on; at first from the ambient's temperature. Not converging is
-  /// no error. Collective. Throws core::NotConverged where the pressure is not found, or bush and journal grow until the film is closed.
+  /// no error. Collective. Throws core::NotConverged where the pressure is not found, or bush and journal grow until
+  /// the film is closed.
   ThdSolve solve();
   /// What start() of another film on this mesh goes on from, [r, n, l + 5]: temperatures of the film [K], those behind
   /// bush and journal [K], what bush and journal grow, over expansion times radius [K], and the pressure [Pa].
