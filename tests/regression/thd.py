@@ -173,21 +173,22 @@ def resume(h):
     with h5py.File(h.work / "undisturbed/results.h5") as f:
         count = f["studies/preheated gas/budget/iterations"][:]
     h.true("each speed starts from the one before", count[1:].max() <= count[0] + 3, f"{count}")
-    for ranks in (1, 2):
-        out = h.work / f"killed {ranks}"
-        h.kill_at_checkpoint(deck, out, words)
+    on = lambda n: [*h.launcher, "-n", str(n)] if n > 1 else []  # noqa: E731
+    for before, ranks in ((1, 1), (1, 2), (2, 1)):
+        out = h.work / f"killed {before} {ranks}"
+        h.kill_at_checkpoint(deck, out, words, launcher=on(before))
         with h5py.File(next(out.glob("*.checkpoint.h5"))) as f:
             kept = [len(item) for path, item in everything(f) if path.endswith("state/rows")]
-        h.true(f"{ranks} ranks: speeds kept", len(kept) == 1 and 1 <= kept[0] < 10, f"{kept}")
-        h.run(deck, out.name, words, ["--resume"], [*h.launcher, "-n", str(ranks)] if ranks > 1 else [])
-        if ranks == 1:
+        h.true(f"{before} ranks, then {ranks}: speeds kept", len(kept) == 1 and 1 <= kept[0] < 10, f"{kept}")
+        h.run(deck, out.name, words, ["--resume"], on(ranks))
+        if before == ranks:
             for what, off, within in same_results(h.work / "undisturbed", out, 0):
                 h.close(what, off, 0, within)
         else:
             one, other = ({s: v["values"] for s, v in h.studies(name).items()} for name in ("undisturbed", out.name))
             for study in one:
-                same_values(h, f"{ranks} ranks, {study}", one[study], other[study])
-        h.true(f"{ranks} ranks: nothing is left behind", not list(out.glob("*.checkpoint.h5")))
+                same_values(h, f"{before} ranks, then {ranks}, {study}", one[study], other[study])
+        h.true(f"{before} ranks, then {ranks}: nothing is left behind", not list(out.glob("*.checkpoint.h5")))
 
 
 def mesh(h):
