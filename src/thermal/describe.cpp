@@ -128,6 +128,14 @@ void describe(deck::Description<WallOptions>& d) {
       .only(&W::type, {solid});
   d.add("shaft_before", &W::shaft_before, "m", deck::non_negative, "of this, what lies before the film (at smaller z)")
       .only(&W::type, {solid});
+  d.add("growth", &W::growth, "its thermal expansion changes the clearance: each section grows as a ring free of load")
+      .only(&W::type, {solid});
+  d.add("expansion", &W::expansion, "1/K", deck::non_negative, "linear expansion of the solid, for 'growth'",
+        "Timoshenko and Goodier 1951, section 135")
+      .only(&W::type, {solid});
+  d.add("reference", &W::reference, "K", positive,
+        "temperature at which the clearance is that of the bearing, for 'growth'; 'ambient' if not given")
+      .only(&W::type, {solid});
 }
 
 void describe(deck::Description<Ambient>& d) {

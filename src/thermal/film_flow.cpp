@@ -20,6 +20,13 @@ FilmFlow::~FilmFlow() = default;
 void FilmFlow::set_temperature(const std::vector<double>& cells) {
   w_->set_temperature(cells);
 }
+void FilmFlow::set_thickness(const std::vector<double>& thickness) {
+  w_->h = with_halo(w_->rows, thickness, Work::at(w_->n));
+}
+void FilmFlow::start(const std::vector<double>& pressure) {
+  core::require(pressure.size() == w_->pressure.size(), "a pressure for each node of this rank");
+  w_->pressure = pressure;
+}
 int FilmFlow::solve() {
   return w_->solve();
 }

@@ -61,6 +61,9 @@ struct WallOptions {
   double ambient = 300;                   // K, solid
   double shaft_length = 0;                // m, solid journal
   double shaft_before = 0;                // m, solid journal: from its first end to the film
+  bool growth = false;                    // solid: its growth changes the clearance
+  double expansion = 0;                   // 1/K, solid with growth, linear
+  std::optional<double> reference;        // K, at which the clearance is that of the bearing; `ambient` if absent
 };
 
 struct Ambient {

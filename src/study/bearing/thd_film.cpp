@@ -71,6 +71,7 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
     : rows_(mesh_of(o, g), comm), flow_(flow_of(o, rows_.mesh(), speed)), ambient_(o.ambient.temperature) {
   const thermal::Mesh& mesh = rows_.mesh();
   const double e = o.eccentricity * g.clearance;
+  place_ = {e * std::cos(o.attitude), e * std::sin(o.attitude)};
   for (int j = rows_.begin(); j < rows_.end(); ++j)
     for (int i = 0; i < mesh.nodes_around(); ++i)
       thickness_.push_back(g.clearance - e * std::cos(mesh.theta(i) - o.attitude));
