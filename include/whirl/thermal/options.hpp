@@ -11,11 +11,6 @@
 
 namespace whirl::thermal {
 
-/// The law of a viscosity, as a choice.
-struct ViscosityOptions {
-  Viscosity law;
-};
-
 struct FluidOptions {
   enum class Type { gas, liquid };
   Type type = Type::liquid;
