@@ -115,15 +115,16 @@ public:
     FilmReport out;
     out.min_thickness = least_thickness(motion, states);
     out.inlet_flow = out.outlet_flow = 0.0;
-    double volume = 0.0, warmth = 0.0, squeezed = 0.0;
+    double volume = 0.0, warmth = 0.0;
+    out.imbalance = 0.0;
     out.max_temperature = 0.0;
     for (const auto& pad : pads_) {
       for (const double p : pad->nodal(ThdPad::Of::pressure)) out.max_pressure = std::max(out.max_pressure, p);
       const Flows flows = pad->flows();
       out.inlet_flow += flows.enters;
       out.outlet_flow += flows.leaves;
-      out.side_flow += flows.sides;
-      squeezed += flows.squeezed;
+      out.side_flow += pad->side_outflow();
+      out.imbalance += flows.enters - flows.leaves - flows.sides - flows.squeezed;
       out.power_loss += pad->friction() * motion.speed;
       const ThdPad::Warmth warm = pad->warmth();
       volume += warm.volume;
@@ -131,7 +132,6 @@ public:
       out.max_temperature = std::max(out.max_temperature, warm.highest);
     }
     out.mean_temperature = warmth / volume;
-    out.imbalance = out.inlet_flow - out.outlet_flow - out.side_flow - squeezed;
     return out;
   }
 

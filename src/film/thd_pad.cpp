@@ -454,6 +454,18 @@ Flows ThdPad::flows() const {
   return out;
 }
 
+double ThdPad::side_outflow() const {
+  double out = 0.0;
+  for (int i = 1; i + 1 < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      if (!nodes_[node(i, j)].edge) continue;
+      double flow = 0.0;
+      for (int k = 0; k < layers_; ++k) flow += left_over(node(i, j), k);
+      out += (whole_ ? 1.0 : 2.0) * std::max(flow, 0.0);
+    }
+  return out;
+}
+
 double ThdPad::friction() const {
   double out = 0.0;
   for (const Face& f : faces_)

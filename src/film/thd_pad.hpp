@@ -44,6 +44,8 @@ public:
   // Of the last evaluate().
   [[nodiscard]] HeatBalance heat() const;
   [[nodiscard]] Flows flows() const;
+  /// m^3/s out of both sides, without what comes in where the pressure is below the ambient's.
+  [[nodiscard]] double side_outflow() const;
   /// N m, of the shear at the journal.
   [[nodiscard]] double friction() const;
   /// m^3, and K m^3 of the temperature over it; K.

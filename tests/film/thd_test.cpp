@@ -86,7 +86,7 @@ TEST(ThdFilm, WarmsAlongAnAdiabaticFilm) {
   const double b = 0.03, far = 1e5, c = 2000;
   std::array<double, 3> error{};
   for (std::size_t level = 0; level < error.size(); ++level) {
-    Thd o = cool({20 << level, 4}, 2, Turbulence::laminar, false);
+    Thd o = cool({20 << level, 4}, 1, Turbulence::laminar, false);
     o.viscosity =
         thermal::ViscosityOptions{thermal::Vogel{oil.viscosity, 313.15, b * (313.15 + far) * (313.15 + far), -far}};
     JournalMotion m;
@@ -131,7 +131,7 @@ TEST(ThdFilm, IsAParabolaBetweenIsothermalWalls) {
     return 0.0;
   };
   EXPECT_GT(risen(1), 313.15);
-  EXPECT_NEAR(at_end(1), mean, 1e-6 * mean);
+  EXPECT_NEAR(at_end(1), mean, 1e-5 * mean);
   for (std::size_t level = 0; level < error.size(); ++level) error[level] = std::abs(at_end(4 << level) - mean);
   EXPECT_GE(std::log2(error[0] / error[1]), 1.9);
   EXPECT_GE(std::log2(error[1] / error[2]), 1.9);
@@ -179,7 +179,7 @@ TEST(ThdFilm, KeepsAConstantTemperature) {
   Thd o = cool({20, 8}, 5, Turbulence::laminar, false);
   o.heat_capacity = 1e14;
   o.bush = {HeatedWall::Type::isothermal, o.feed};
-  const JournalMotion m = motion(lemon(), {0.5, -0.5, 0, 0}, {0.1, 0.1, 0, 0}, kTurn);
+  const JournalMotion m = motion(lemon(), {0.5, -0.5, 0, 0}, {}, kTurn);
   const Settled s = settle(lemon(), o, oil(), m);
   const FilmReport r = s.film->summary(m, s.states);
   EXPECT_NEAR(r.max_temperature, o.feed, 1e-6);
