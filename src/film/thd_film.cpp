@@ -192,8 +192,9 @@ std::span<const deck::Name<HeatedWall::Type>> names(HeatedWall::Type) {
 
 std::span<const deck::Name<Thd::Cavitation>> names(Thd::Cavitation) {
   static constexpr deck::Name<Thd::Cavitation> table[] = {
-      {Thd::Cavitation::half_sommerfeld, "half_sommerfeld", "negative pressure is cut off after the solution"},
-      {Thd::Cavitation::none, "none", "negative pressure stays"}};
+      {Thd::Cavitation::half_sommerfeld, "half_sommerfeld",
+       "negative pressure does not act on the journal; the flow keeps it"},
+      {Thd::Cavitation::none, "none", "negative pressure acts on the journal too"}};
   return table;
 }
 
