@@ -139,7 +139,9 @@ void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::fu
   b = one.bifurcations.front();
 }
 
-double Pieces::between() const { return std::max(least_seconds, 25 * cost()); }
+double Pieces::between() const {
+  return std::max(least_seconds, 25 * cost());
+}
 
 // Saving takes no more than a twentieth of the time. States come first, or work between them would leave them no time;
 // but not before all is repeated that is known of the work behind them.
