@@ -18,6 +18,21 @@ Findings::Findings(MPI_Comm comm, const std::string& name, const std::string& ki
   result_.group.set("title", name);
 }
 
+Findings::~Findings() {
+  for (auto& [count, g] : groups_)
+    for (MPI_Comm* c : {&g.space, &g.time}) MPI_Comm_free(c);
+}
+
+Findings::Groups Findings::groups(int count) {
+  const auto [at, missing] = groups_.try_emplace(count);
+  if (missing) {
+    const int each = core::size_of(comm_) / count;
+    MPI_Comm_split(comm_, rank_ / each, rank_, &at->second.space);
+    MPI_Comm_split(comm_, rank_ % each, rank_, &at->second.time);
+  }
+  return at->second;
+}
+
 StudyResult Findings::finish(const std::string& status, bool delivered) {
   result_.delivered = delivered;
   result_.summary.status = status;

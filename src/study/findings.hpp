@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,20 @@ public:
   [[nodiscard]] io::Group load_checkpoint() const;
   [[nodiscard]] bool has_checkpoint() const;
 
+  /// Communicators of `count` groups of as many neighbouring ranks each: this rank's group, and the ranks that have its
+  /// place in the others. They live as long as this. Collective.
+  struct Groups {
+    MPI_Comm space, time;
+  };
+  [[nodiscard]] Groups groups(int count);
+
+  ~Findings();
+  Findings(const Findings&) = delete;
+  Findings& operator=(const Findings&) = delete;
+
 private:
   MPI_Comm comm_;
+  std::map<int, Groups> groups_;
   int rank_;
   std::filesystem::path checkpoint_;
   Say say_;

@@ -40,6 +40,11 @@ void describe(deck::Description<LayoutOptions>& d) {
         "states of all films together from which all ranks share one machine")
       .only(&LayoutOptions::machine, {automatic});
   d.add(
+      "time_groups", &LayoutOptions::time_groups, deck::positive,
+      "groups of ranks, each of which holds a machine, that share the intervals of a cycle whose states are spread "
+      "over "
+      "ranks; as many of them as divide the number of ranks. Evaluations go side by side, sweeps from group to group");
+  d.add(
        "cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
        "memory, as estimated for the deck's intervals, that a cycle by collocation at Radau points may take on whole "
        "machines, whose intervals the ranks share; films that fill and empty, of film_states and more, are spread over "
@@ -96,8 +101,16 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   out.spread = sharing == Sharing::cycles;
   const bool in_time = sharing == Sharing::intervals, whole = in_time || sharing == Sharing::nothing;  // on every rank
   out.shared = out.large && !whole;
+  int groups = 1;
   if (out.shared) {
     out.space = context.comm;
+    if (out.spread)
+      for (int g = std::min({context.layout.time_groups, size, static_cast<int>(intervals)}); groups == 1 && g > 1; --g)
+        if (size % g == 0) groups = g;
+    if (groups > 1) {
+      out.space = context.results.groups(groups).space;
+      out.time = context.results.groups(groups).time;
+    }
   } else {
     out.space = MPI_COMM_SELF;
     out.count = size;
@@ -107,11 +120,18 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   if (share_time) out.time = context.comm;
   std::string& text = context.results.summary().layout;
   if (size > 1 && text.empty())
-    text = out.space != MPI_COMM_SELF   ? fmt::format("one machine on {} ranks ({})", size, reason)
+    text = groups > 1 ? fmt::format("intervals shared by {} groups, a machine on each one's {} ranks ({})", groups,
+                                    size / groups, reason)
+           : out.space != MPI_COMM_SELF ? fmt::format("one machine on {} ranks ({})", size, reason)
            : sharing == Sharing::speeds ? fmt::format("speeds shared by {} ranks, a machine on each", size)
            : share_time                 ? fmt::format("intervals shared by {} ranks, a machine on each", size)
                                         : fmt::format("{} ranks compute the same", size);
   return out;
+}
+
+int Layout::order() const {
+  constexpr int most_ranks = 1 << 20;
+  return core::size_of(space) + (spread ? most_ranks * (core::size_of(time) - 1) : 0);
 }
 
 namespace {

@@ -30,15 +30,19 @@ enum class Sharing {
 ///
 /// Counts decide, never clocks, so that a decision repeats itself: a shaft or films with fewer states than
 /// LayoutOptions says fit one rank's cache, and their solves are over before a message arrives, so that every rank is a
-/// group of its own. A larger machine is spread over all ranks as one group.
+/// group of its own. A larger machine is spread over all ranks as one group; for a cycle whose states are spread the
+/// deck may ask for several such groups, which share its intervals (solve::TimeGroups).
 struct Layout {
   MPI_Comm world = MPI_COMM_NULL, space = MPI_COMM_NULL;
-  MPI_Comm time = MPI_COMM_SELF;  ///< ranks that share the intervals of a cycle
-  int count = 1;                  ///< number of groups
-  int index = 0;                  ///< of this rank's group
+  MPI_Comm time = MPI_COMM_SELF;  ///< ranks that share the intervals of a cycle, with the same rows of a state
+  int count = 1;                  ///< number of groups that share independent work
+  int index = 0;                  ///< of this rank's group among them
   bool large = false;             ///< the machine is one that several ranks share where there are several
-  bool shared = false;            ///< and it is shared here: `space` is the world, which may be one rank
+  bool shared = false;            ///< and it is shared here: by the ranks of `space`, which may be one
   bool spread = false;            ///< cycles are solved with the states of the films apart, be it on one rank
+
+  /// Vectors stand in the same order where this number is the same.
+  [[nodiscard]] int order() const;
 };
 
 /// The one place where the world is split. The first plan of a study on several ranks says in its summary what was

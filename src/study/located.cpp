@@ -13,7 +13,7 @@ bool is_followed(const Context& context, const std::string& name) {
                      [&](const auto& s) { return s->starts_from() == name; });
 }
 
-void write_located(io::Group& group, const std::vector<Located>& all, Vec like) {
+void write_located(io::Group& group, const std::vector<Located>& all, const SharedRows& like) {
   group.set("count", static_cast<int>(all.size()));
   group.set("restart", 1);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -26,7 +26,7 @@ void write_located(io::Group& group, const std::vector<Located>& all, Vec like) 
   }
 }
 
-std::vector<Located> read_located(const io::Group& group, Vec like) {
+std::vector<Located> read_located(const io::Group& group, const SharedRows& like) {
   std::vector<Located> all;
   for (std::int64_t k = 1; k <= group.integer("count"); ++k) {
     const auto& g = group.group(fmt::format("{}", k));

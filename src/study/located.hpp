@@ -4,6 +4,7 @@
 #include <complex>
 #include <vector>
 
+#include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/solve/branch/continuation.hpp"
 #include "whirl/solve/cycle/cycle.hpp"
@@ -24,7 +25,7 @@ struct Located {
 /// Whether a study of the deck goes on from the bifurcations of the study `name`, which then keeps them.
 [[nodiscard]] bool is_followed(const Context& context, const std::string& name);
 /// `like` as of write_cycle().
-void write_located(io::Group& group, const std::vector<Located>& all, Vec like = nullptr);
-[[nodiscard]] std::vector<Located> read_located(const io::Group& group, Vec like = nullptr);
+void write_located(io::Group& group, const std::vector<Located>& all, const SharedRows& like = {});
+[[nodiscard]] std::vector<Located> read_located(const io::Group& group, const SharedRows& like = {});
 
 }  // namespace whirl::study

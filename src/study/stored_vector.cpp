@@ -51,27 +51,33 @@ void take_vector(const io::Group& group, const std::string& name, Vec v) {
     core::fill(v, group.reals(name));
 }
 
-void put_columns(io::Group& group, const std::string& name, const MatrixXd& columns, Vec like, const std::string& unit,
-                 const std::string& description) {
-  // A cycle that is none has no rows either; its ranks have their place nevertheless.
+void put_columns(io::Group& group, const std::string& name, const MatrixXd& columns, const SharedRows& shared,
+                 const std::string& unit, const std::string& description) {
+  // A cycle that is none has no rows either; its ranks have their place nevertheless. One of equal ranks stores.
+  const Vec like = shared.like;
   const std::size_t rows = like ? rows_here(like) : static_cast<std::size_t>(columns.rows()),
                     count = static_cast<std::size_t>(columns.cols());
-  core::require(count == 0 || static_cast<std::size_t>(columns.rows()) == rows, "columns with the rows of this rank");
+  const bool stores = core::rank_of(shared.time) == 0;
+  core::require(!stores || count == 0 || static_cast<std::size_t>(columns.rows()) == rows,
+                "columns with the rows of this rank");
   std::vector<double> flat(rows * count);
-  if (count > 0) Map<RowMajor>(flat.data(), columns.rows(), columns.cols()) = columns;
+  if (count > 0 && stores) Map<RowMajor>(flat.data(), columns.rows(), columns.cols()) = columns;
   io::Dataset data{{rows, count}, std::move(flat), unit, description};
   if (like) data.share = place_of(like);
   group.put(name, std::move(data));
 }
 
-MatrixXd take_columns(const io::Group& group, const std::string& name, Vec like) {
+MatrixXd take_columns(const io::Group& group, const std::string& name, const SharedRows& shared) {
+  const Vec like = shared.like;
   const io::Dataset& data = group.dataset(name);
   core::require(like || !data.share, "shared columns want a vector with the rows of this rank");
   const auto& flat = std::get<std::vector<double>>(data.values);
   const Map<const RowMajor> rows(flat.data(), static_cast<Index>(data.shape.at(0)),
                                  static_cast<Index>(data.shape.at(1)));
   if (!like) return rows;
-  MatrixXd out(static_cast<Index>(rows_here(like)), rows.cols());
+  auto here = static_cast<long>(rows_here(like));
+  MPI_Bcast(&here, 1, MPI_LONG, 0, shared.time);
+  MatrixXd out(here, rows.cols());
   const core::Vector v = core::duplicate(like);
   std::vector<double> column(data.shape.at(0));
   for (Index k = 0; k < rows.cols(); ++k) {
@@ -81,8 +87,9 @@ MatrixXd take_columns(const io::Group& group, const std::string& name, Vec like)
     else
       core::fill(v.get(), column);
     const core::ReadArray a(v.get());
-    out.col(k) = Map<const Eigen::VectorXd>(a.data(), a.size());
+    if (a.size() > 0) out.col(k) = Map<const Eigen::VectorXd>(a.data(), a.size());
   }
+  MPI_Bcast(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, 0, shared.time);
   return out;
 }
 

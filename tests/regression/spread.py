@@ -31,10 +31,10 @@ def on(ranks):
     return [*h.launcher, "-n", str(ranks)] if ranks > 1 else []
 
 
-def deck(machine, more=FLIP):
-    path = h.work / f"{machine}{len(more)}.yaml"
+def deck(machine, more=FLIP, groups=1):
+    path = h.work / f"{machine}{len(more)}{groups}.yaml"
     path.write_text(f"""base: {h.source / 'inputs/compliant_rotor/finite_curve.yaml'}
-layout: {{machine: {machine}}}
+layout: {{machine: {machine}, time_groups: {groups}}}
 bearings: {{half: {{film: {{cells: [16, 4]}}}}}}
 studies:
   - cycle_branch:
@@ -51,7 +51,7 @@ studies:
     return path
 
 
-def killed(name, ranks, more, wanted, attempts=100):
+def killed(name, ranks, more, wanted, attempts=100, groups=1):
     """A run, resumed if there is one, that is killed as soon as its checkpoint holds the dataset `wanted`, which must be by
     rows. One that ends before it is seen is begun again, at most so often; None if it ended each time: a machine so busy that
     files take long has few of them."""
@@ -65,7 +65,7 @@ def killed(name, ranks, more, wanted, attempts=100):
         shutil.rmtree(out, ignore_errors=True)
         if before.exists():
             shutil.copytree(before, out)
-        process = subprocess.Popen(h.command(deck("all_ranks", more), out, flags=["--resume"] if out.exists() else [],
+        process = subprocess.Popen(h.command(deck("all_ranks", more, groups), out, flags=["--resume"] if out.exists() else [],
                                              launcher=on(ranks)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         while found is None and process.poll() is None and time.monotonic() < limit:
             time.sleep(1e-3)
@@ -121,4 +121,12 @@ h.run(deck("all_ranks", SHORT), "branch", launcher=[])
 h.true("one rank: killed with cycles by rows", killed("three", 1, SHORT, "state/state/cycle/states"))
 h.run(deck("all_ranks", SHORT), "three", flags=["--resume"], launcher=on(3))
 compare("three", "branch", ("s",), 1e-7)
+# Groups that share the intervals, of one rank each and of two: what they leave serves them, and ranks without groups.
+h.true("two groups: killed with cycles by rows", killed("in time", 2, SHORT, "state/state/cycle/states", groups=2))
+h.true("four ranks in two groups: killed with cycles by rows", killed("both", 4, SHORT, "state/state/cycle/states", groups=2))
+for name, ranks in (("in time", 2), ("both", 1)):
+    h.run(deck("all_ranks", SHORT, 2), name, flags=["--resume"], launcher=on(ranks))
+    compare(name, "branch", ("s",), 1e-7)
+said = h.studies("in time")["s"]["layout"]
+h.true("it says so", said.startswith("intervals shared by 2 groups, a machine on each one's 1 ranks"), said)
 h.finish()

@@ -82,6 +82,27 @@ double least_film(const solve::Cycle& cycle, const system::RotorSystem& s) {
   return least;
 }
 
+// All ranks share a machine, or each holds one and they share the intervals.
+class Ranks {
+public:
+  explicit Ranks(bool in_time) {
+    const int rank = core::rank_of(MPI_COMM_WORLD), size = core::size_of(MPI_COMM_WORLD), each = in_time ? 1 : size;
+    MPI_Comm_split(MPI_COMM_WORLD, rank / each, rank, &space_);
+    MPI_Comm_split(MPI_COMM_WORLD, rank % each, rank, &time_);
+  }
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+  ~Ranks() {
+    MPI_Comm_free(&space_);
+    MPI_Comm_free(&time_);
+  }
+  [[nodiscard]] MPI_Comm space() const { return space_; }
+  [[nodiscard]] solve::TimeGroups groups() const { return {MPI_COMM_WORLD, time_}; }
+
+private:
+  MPI_Comm space_ = MPI_COMM_NULL, time_ = MPI_COMM_NULL;
+};
+
 solve::SpreadCollocationOptions options(int degree) {
   solve::SpreadCollocationOptions o;
   o.parameter_scale = scale;
@@ -90,15 +111,17 @@ solve::SpreadCollocationOptions options(int degree) {
   return o;
 }
 
-void compare(const Case& c, int degree, const std::vector<double>& mesh, const solve::SpreadCollocationOptions& o) {
-  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+void compare(const Case& c, int degree, const std::vector<double>& mesh, const solve::SpreadCollocationOptions& o,
+             bool in_time = false) {
+  const Ranks ranks(in_time);
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(ranks.space(), c.train, c.speed);
   const solve::Cycle rest = at_rest(alone, c);
   solve::CycleOptions one;
   one.parameter_scale = scale;
   one.degree = degree;
   solve::CycleProblem dense(PETSC_COMM_SELF, alone, one, mesh);
   const Answer expected = solved(dense, c, rest, alone);
-  solve::SpreadCollocation spread(s, o, mesh);
+  solve::SpreadCollocation spread(s, o, mesh, ranks.groups());
   const Answer found = solved(spread, c, rest, s);
   EXPECT_LE(found.iterations, expected.iterations + 2);
   const Eigen::VectorXd unit = dense.state_scale();
@@ -146,6 +169,45 @@ TEST(SpreadCollocation, IsCollocationOnContents) {
   compare(c, 2, solve::uniform_mesh(5), o);
 }
 
+TEST(SpreadCollocation, RanksShareIntervals) {
+  compare(liner(), 2, uneven(10), options(2), true);
+  auto o = options(2);
+  o.radius = 0.05;
+  compare(content(), 2, solve::uniform_mesh(5), o, true);
+}
+
+// One group has a journal outside its bearing.
+TEST(SpreadCollocation, ErrorsOfOneGroupAreThoseOfAll) {
+  const Case c = liner();
+  const Ranks ranks(true);
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(ranks.space(), c.train, c.speed);
+  solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(6), ranks.groups());
+  solve::Cycle cycle = at_rest(alone, c);
+  cycle.mesh = spread.mesh();
+  cycle.x = cycle.x.replicate(1, 12).eval();
+  core::Vector u = spread.scatter(test::rows_of(cycle, s)), row = core::duplicate(u.get()),
+               y = core::duplicate(u.get());
+  EXPECT_NO_THROW(spread.residual(u.get(), y.get()));
+  cycle.x(0, 11) = 10 * c.train.supports[0].geometry.clearance;
+  u = spread.scatter(test::rows_of(cycle, s));
+  solve::parameter_row(spread, row.get());
+  for (const bool derivatives : {false, true}) try {
+      derivatives ? spread.linearise(u.get(), row.get()) : spread.residual(u.get(), y.get());
+      ADD_FAILURE() << "no error";
+    } catch (const core::DomainError& e) {
+      EXPECT_TRUE(e.agreed() || core::size_of(MPI_COMM_WORLD) == 1) << e.what();
+    }
+  EXPECT_FALSE(spread.settle(u.get()));
+}
+
+TEST(SpreadCollocation, RefusesMoreGroupsThanIntervals) {
+  if (core::size_of(MPI_COMM_WORLD) == 1) GTEST_SKIP() << "one group";
+  const Case c = liner();
+  const Ranks ranks(true);
+  system::RotorSystem s(ranks.space(), c.train, c.speed);
+  EXPECT_THROW(solve::SpreadCollocation(s, options(2), {0, 1}, ranks.groups()), core::InputError);
+}
+
 // The radius of the search for multipliers stands in checkpoints: another object looks for the same ones.
 TEST(SpreadCollocation, GoesOnWithItsRadius) {
   const Case c = liner();
@@ -182,10 +244,11 @@ TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
 }
 
 // Which nodes are full differs from point to point of an interval, and no two points have similar matrices.
-TEST(SpreadCollocation, SettlesWhereFrontsMoveWithinAnInterval) {
+static void settle_fronts(bool in_time) {
   const Case c = content(48, 6);
-  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
-  solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(8));
+  const Ranks ranks(in_time);
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(ranks.space(), c.train, c.speed);
+  solve::SpreadCollocation spread(s, options(2), solve::uniform_mesh(8), ranks.groups());
   solve::CycleOptions one;
   one.parameter_scale = scale;
   one.degree = 2;
@@ -206,13 +269,19 @@ TEST(SpreadCollocation, SettlesWhereFrontsMoveWithinAnInterval) {
   EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-8 * 25e-6);
 }
 
-TEST(SpreadCollocation, AdaptsItsMesh) {
+TEST(SpreadCollocation, SettlesWhereFrontsMoveWithinAnInterval) {
+  settle_fronts(false);
+  if (core::size_of(MPI_COMM_WORLD) > 1) settle_fronts(true);
+}
+
+static void adapt_mesh(bool in_time) {
   const Case c = liner();
-  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
+  const Ranks ranks(in_time);
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(ranks.space(), c.train, c.speed);
   auto o = options(2);
   o.mesh_tolerance = 1e-4;
   o.base_intervals = 8;
-  solve::SpreadCollocation spread(s, o, solve::uniform_mesh(8));
+  solve::SpreadCollocation spread(s, o, solve::uniform_mesh(8), ranks.groups());
   solve::CycleOptions one;
   one.parameter_scale = scale;
   one.mesh_tolerance = o.mesh_tolerance;
@@ -233,50 +302,59 @@ TEST(SpreadCollocation, AdaptsItsMesh) {
   EXPECT_LE((a.x - b.x).cwiseAbs().maxCoeff(), 1e-7 * a.x.cwiseAbs().maxCoeff());
 }
 
+TEST(SpreadCollocation, AdaptsItsMesh) {
+  adapt_mesh(false);
+  if (core::size_of(MPI_COMM_WORLD) > 1) adapt_mesh(true);
+}
+
+static void products_are_derivatives(const Case& c, bool autonomous, bool in_time) {
+  const Ranks ranks(in_time);
+  system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(ranks.space(), c.train, c.speed);
+  solve::Cycle cycle = at_rest(alone, c);
+  s.set_forcing(!autonomous);
+  auto o = options(3);
+  o.autonomous = autonomous;
+  solve::SpreadCollocation spread(s, o, uneven(6), ranks.groups());
+  cycle.x = cycle.x.replicate(1, 3 * 7).eval();
+  cycle.mesh = spread.mesh();
+  for (Eigen::Index k = 0; k < cycle.x.cols(); ++k)
+    for (Eigen::Index i = 0; i < cycle.x.rows(); ++i)
+      cycle.x(i, k) *= 1 + 0.02 * std::sin(0.3 * static_cast<double>(k) + 1.7 * static_cast<double>(i));
+  cycle = test::rows_of(cycle, s);
+  if (autonomous) spread.set_phase_reference(cycle);
+  core::Vector u = spread.scatter(cycle), row = core::duplicate(u.get()), v = core::duplicate(u.get()),
+               y = core::duplicate(u.get()), above = core::duplicate(u.get()), below = core::duplicate(u.get());
+  PetscInt begin = 0;
+  core::check(VecGetOwnershipRange(v.get(), &begin, nullptr));
+  {
+    const core::WriteArray a(v.get());
+    for (PetscInt k = 0; k < a.size(); ++k) a[k] = std::sin(1 + 0.37 * static_cast<double>(begin + k));
+  }
+  solve::set_last_entry(spread.comm(), v.get(), 0.5);
+  solve::parameter_row(spread, row.get());
+  spread.linearise(u.get(), row.get());
+  spread.multiply(v.get(), y.get());
+  constexpr double step = 1e-6;
+  core::check(VecAXPY(u.get(), step, v.get()));
+  spread.residual(u.get(), above.get());
+  core::check(VecAXPY(u.get(), -2 * step, v.get()));
+  spread.residual(u.get(), below.get());
+  core::check(VecAXPY(above.get(), -1, below.get()));
+  core::check(VecAXPBY(above.get(), 1, -1 / (2 * step), y.get()));
+  solve::set_last_entry(spread.comm(), above.get(), 0);
+  EXPECT_LE(core::norm(above.get()), 1e-6 * core::norm(y.get())) << autonomous;
+  // And what is solved for comes back.
+  core::Vector back = core::duplicate(v.get());
+  EXPECT_LE(solve::solve_linear(spread, y.get(), back.get(), "tangent_"), 8);
+  core::check(VecAXPY(back.get(), -1, v.get()));
+  EXPECT_LE(core::norm(back.get()), 1e-6 * core::norm(v.get())) << autonomous;
+}
+
 // With the speed as the unknown of a forced cycle, and with the period beside it on a self-excited one.
 TEST(SpreadCollocation, ProductsAreDerivativesOfTheResidual) {
   const Case c = liner();
-  for (const bool autonomous : {false, true}) {
-    system::RotorSystem alone(PETSC_COMM_SELF, c.train, c.speed), s(MPI_COMM_WORLD, c.train, c.speed);
-    solve::Cycle cycle = at_rest(alone, c);
-    s.set_forcing(!autonomous);
-    auto o = options(3);
-    o.autonomous = autonomous;
-    solve::SpreadCollocation spread(s, o, uneven(6));
-    cycle.x = cycle.x.replicate(1, 3 * 7).eval();
-    cycle.mesh = spread.mesh();
-    for (Eigen::Index k = 0; k < cycle.x.cols(); ++k)
-      for (Eigen::Index i = 0; i < cycle.x.rows(); ++i)
-        cycle.x(i, k) *= 1 + 0.02 * std::sin(0.3 * static_cast<double>(k) + 1.7 * static_cast<double>(i));
-    cycle = test::rows_of(cycle, s);
-    if (autonomous) spread.set_phase_reference(cycle);
-    core::Vector u = spread.scatter(cycle), row = core::duplicate(u.get()), v = core::duplicate(u.get()),
-                 y = core::duplicate(u.get()), above = core::duplicate(u.get()), below = core::duplicate(u.get());
-    PetscInt begin = 0;
-    core::check(VecGetOwnershipRange(v.get(), &begin, nullptr));
-    {
-      const core::WriteArray a(v.get());
-      for (PetscInt k = 0; k < a.size(); ++k) a[k] = std::sin(1 + 0.37 * static_cast<double>(begin + k));
-    }
-    solve::set_last_entry(spread.comm(), v.get(), 0.5);
-    solve::parameter_row(spread, row.get());
-    spread.linearise(u.get(), row.get());
-    spread.multiply(v.get(), y.get());
-    constexpr double step = 1e-6;
-    core::check(VecAXPY(u.get(), step, v.get()));
-    spread.residual(u.get(), above.get());
-    core::check(VecAXPY(u.get(), -2 * step, v.get()));
-    spread.residual(u.get(), below.get());
-    core::check(VecAXPY(above.get(), -1, below.get()));
-    core::check(VecAXPBY(above.get(), 1, -1 / (2 * step), y.get()));
-    solve::set_last_entry(spread.comm(), above.get(), 0);
-    EXPECT_LE(core::norm(above.get()), 1e-6 * core::norm(y.get())) << autonomous;
-    // And what is solved for comes back.
-    core::Vector back = core::duplicate(v.get());
-    EXPECT_LE(solve::solve_linear(spread, y.get(), back.get(), "tangent_"), 8);
-    core::check(VecAXPY(back.get(), -1, v.get()));
-    EXPECT_LE(core::norm(back.get()), 1e-6 * core::norm(v.get())) << autonomous;
-  }
+  for (const bool in_time : {false, true})
+    for (const bool autonomous : {false, true}) products_are_derivatives(c, autonomous, in_time);
 }
 
 // Time points times states outgrow what PETSc counts long before the states do.

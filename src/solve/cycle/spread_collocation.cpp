@@ -48,7 +48,11 @@ struct SpreadCollocation::Tools {
 
 SpreadCollocation::SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options,
                                      std::vector<double> mesh)
-    : SpreadCycle(system, options, make_scheme(options.degree, Points::radau), std::move(mesh), true),
+    : SpreadCollocation(system, options, std::move(mesh), TimeGroups(system.comm())) {}
+
+SpreadCollocation::SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options,
+                                     std::vector<double> mesh, const TimeGroups& groups)
+    : SpreadCycle(system, options, make_scheme(options.degree, Points::radau), std::move(mesh), true, groups),
       options_(options),
       tools_(std::make_unique<Tools>(system, scheme())) {
   for (core::Vector* v : {&value_, &rate_, &f_}) *v = core::duplicate(work());
@@ -62,31 +66,28 @@ std::vector<problem::Field> SpreadCollocation::fields() const {
 
 void SpreadCollocation::refresh() {}
 
-void SpreadCollocation::interpolate(const Eigen::Ref<const MatrixXd>& x, Index i, Index j, double period) {
+void SpreadCollocation::interpolate(const MatrixXd& x, Index i, Index j, double period) {
   const Index m = scheme().degree;
-  VectorXd rate = x.middleCols(i * m, m) * scheme().slope.row(j).tail(m).transpose();
-  rate += scheme().slope(j, 0) * x.col(before(i));
-  put(x.col(i * m + j), value_.get());
+  put(x.col(i * m + 1 + j), value_.get());
+  const VectorXd rate = x.middleCols(i * m, m + 1) * scheme().slope.row(j).transpose();
   put(rate / (length(i) * period), rate_.get());
 }
 
-void SpreadCollocation::residual_of(const Eigen::Ref<const MatrixXd>& x, Index i, double period, double* r) {
+void SpreadCollocation::residual_of(const MatrixXd& x, Index i, double period, double* r) {
   for (Index j = 0; j < scheme().degree; ++j) {
     interpolate(x, i, j, period);
-    tools_->point.residual(angle(mesh()[at(i)] + length(i) * scheme().c(j)), value_.get(), rate_.get(), f_.get());
+    tools_->point.residual(angle(begin(i) + length(i) * scheme().c(j)), value_.get(), rate_.get(), f_.get());
     Map<VectorXd>(r + j * local(), local()) = get(f_.get());
   }
 }
 
-void SpreadCollocation::residuals(Vec u, double period, MatrixXd& r) {
-  const core::ReadArray ua(u);
-  const auto x = nodes(ua);
+void SpreadCollocation::residuals(const MatrixXd& x, double period, MatrixXd& r) {
   r.resize(scheme().degree * local(), intervals());
   for (Index i = 0; i < intervals(); ++i) residual_of(x, i, period, r.col(i).data());
 }
 
-std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<const MatrixXd>& x, Index i,
-                                                               double period, std::shared_ptr<const PortMatrix>& rate,
+std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const MatrixXd& x, Index i, double period,
+                                                               std::shared_ptr<const PortMatrix>& rate,
                                                                std::vector<std::shared_ptr<PortElimination>>& similar,
                                                                MatrixXd* columns) {
   const Index m = scheme().degree;
@@ -98,7 +99,7 @@ std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<
   std::vector<std::shared_ptr<const PortMatrix>> blocks(at(m)), rates(at(m));
   VectorXd by_rate(local());
   for (Index j = 0; j < m; ++j) {
-    const double here = angle(mesh()[at(i)] + length(i) * scheme().c(j)), own = h * tools_->step.own(j, each);
+    const double here = angle(begin(i) + length(i) * scheme().c(j)), own = h * tools_->step.own(j, each);
     interpolate(x, i, j, period);
     if (!rate || !options().constant_rates) {
       point.jacobian(here, value_.get(), rate_.get(), 0, 1, tools_->matrix);
@@ -126,9 +127,7 @@ std::unique_ptr<SpreadInterval> SpreadCollocation::interval_at(const Eigen::Ref<
   return std::make_unique<SpreadInterval>(tools_->step, h, std::move(blocks), std::move(rates), similar);
 }
 
-void SpreadCollocation::linearise_intervals(Vec u, double period) {
-  const core::ReadArray ua(u);
-  const auto x = nodes(ua);
+void SpreadCollocation::linearise_intervals(const MatrixXd& x, double period) {
   intervals_.clear();
   columns_.assign(at(intervals()), MatrixXd(scheme().degree * local(), borders()));
   constant_.reset();
@@ -145,14 +144,14 @@ void SpreadCollocation::linearise_intervals(Vec u, double period) {
 
 double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
   const Index m = scheme().degree;
-  const VectorXd end = x.col(i * m + m - 1);
+  const VectorXd end = x.col((i + 1) * m);
   // Smooth films: factors of the last linearisation precondition here as well; without any, those of the first step do.
   std::vector<std::shared_ptr<PortElimination>> similar;
   if (!tools_->each_point && !intervals_.empty()) similar = intervals_[at(i)]->similar();
   MatrixXd step(m * local(), 1);
   const auto largest_of = [&](const auto& v) {
     double size = v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
-    MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, comm());
+    MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_DOUBLE, MPI_MAX, system().comm());
     return size;
   };
   for (int k = 0; k < settling_steps; ++k) {
@@ -161,28 +160,29 @@ double SpreadCollocation::settle_interval(MatrixXd& x, Index i, double period) {
     const auto interval = interval_at(x, i, period, constant_, similar, nullptr);
     SpreadStep::hold(*tools_->maker->layout(), step.data(), m);  // known once there is a matrix
     interval->solve(step, settling_tolerance, true);
-    x.middleCols(i * m, m) -= Map<const MatrixXd>(step.data(), local(), m);
-    if (largest_of(step) <= settled) return largest_of(x.col(i * m + m - 1) - end);
+    x.middleCols(i * m + 1, m) -= Map<const MatrixXd>(step.data(), local(), m);
+    if (largest_of(step) <= settled) return largest_of(x.col((i + 1) * m) - end);
   }
   throw core::NotConverged("the films did not settle within an interval");
 }
 
 bool SpreadCollocation::settle(Vec u) {
-  MatrixXd x;
-  {
-    const core::ReadArray ua(u);
-    x = nodes(ua);
-  }
+  MatrixXd x = nodes(u);
   try {
     const double period = begin_point(border_of(u));
     if (constant_at_ != system().parameter()) constant_.reset();
-    double moved = 1;
-    for (int lap = 0; lap < settling_laps && moved > settled; ++lap) {
-      for (Index i = 0; i < intervals(); ++i) {
-        moved = settle_interval(x, i, period);
-        if (lap > 0 && moved <= settled) break;  // all behind it stays
-      }
-    }
+    // What leaves the group before, with how far it has moved in this lap below it on each rank.
+    MatrixXd entering(local() + 1, 1);
+    entering.topRows(local()) = x.col(0);
+    entering(local(), 0) = 1;
+    double& moved = entering(local(), 0);
+    for (int lap = 0; lap < settling_laps && moved > settled; ++lap)
+      groups().in_turn(entering, [&] {
+        x.col(0) = entering.topRows(local());
+        for (Index i = 0; i < intervals() && (lap == 0 || moved > settled); ++i)
+          moved = settle_interval(x, i, period);  // if it stays, all behind it stays
+        entering.topRows(local()) = x.rightCols(1);
+      });
     if (!(moved <= settled)) return false;
   } catch (const core::DomainError&) {
     return false;
@@ -190,7 +190,7 @@ bool SpreadCollocation::settle(Vec u) {
     return false;
   }
   const core::WriteArray ua(u);
-  Map<MatrixXd>(ua.data(), x.rows(), x.cols()) = x;
+  Map<MatrixXd>(ua.data(), local(), x.cols() - 1) = x.rightCols(x.cols() - 1);
   return true;
 }
 
@@ -220,17 +220,17 @@ MatrixXd SpreadCollocation::advance(Index i, const MatrixXd& start, const Matrix
 VectorXd SpreadCollocation::reference_rate(const MatrixXd& x, double /*period*/, Index i, Index l) {
   const Index m = scheme().degree;
   const VectorXd w = lagrange_slope(scheme(), scheme().node(l)) / length(i);
-  return w(0) * x.col(before(i)) + x.middleCols(i * m, m) * w.tail(m);
+  return x.middleCols(i * m, m + 1) * w;
 }
 
 bool SpreadCollocation::adapt(core::Vector& u, core::Vector& tangent) {
   if (options_.mesh_tolerance <= 0) return false;
   const Cycle cycle = gather(u.get()), direction = gather(tangent.get());
   double longest = 0;
-  for (Index i = 0; i < intervals(); ++i) longest = std::max(longest, length(i));
+  for (std::size_t i = 0; i + 1 < mesh().size(); ++i) longest = std::max(longest, mesh()[i + 1] - mesh()[i]);
   const int base = options_.base_intervals > 0 ? options_.base_intervals : static_cast<int>(std::lround(1 / longest));
-  std::vector<double> better =
-      adapted_mesh(scheme(), cycle, state_scale(), options_.mesh_tolerance, base, options_.max_intervals, comm());
+  std::vector<double> better = adapted_mesh(scheme(), cycle, state_scale(), options_.mesh_tolerance, base,
+                                            options_.max_intervals, system().comm());
   if (better == mesh()) return false;
   intervals_.clear();
   set_mesh(std::move(better));

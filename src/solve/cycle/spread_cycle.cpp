@@ -36,14 +36,15 @@ private:
 }  // namespace
 
 SpreadCycle::SpreadCycle(problem::System& system, const NewtonPicardOptions& options, Scheme scheme,
-                         std::vector<double> mesh, bool inexact)
+                         std::vector<double> mesh, bool inexact, const TimeGroups& groups)
     : system_(system),
+      groups_(groups),
       options_(options),
       radius_(options.radius),
       scheme_(std::move(scheme)),
       local_(system.local_size()),
       borders_(options.autonomous ? 2 : 1),
-      last_(core::rank_of(system.comm()) == core::size_of(system.comm()) - 1),
+      last_(core::rank_of(groups.all()) == core::size_of(groups.all()) - 1),
       inexact_(inexact) {
   work_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   const core::Vector scale = core::duplicate(work_.get()), unused = core::duplicate(work_.get());
@@ -54,10 +55,14 @@ SpreadCycle::SpreadCycle(problem::System& system, const NewtonPicardOptions& opt
 
 void SpreadCycle::set_mesh(std::vector<double> mesh) {
   mesh_ = std::move(mesh);
+  const auto all = static_cast<Index>(mesh_.size()) - 1;
   core::agree(comm(), [&] {
-    (void)core::count_of(std::int64_t{intervals()} * scheme_.degree * system_.size() + borders_,
+    (void)core::count_of(std::int64_t{all} * scheme_.degree * system_.size() + borders_,
                          "unknowns of a cycle (intervals x points x states)");
+    if (all < groups_.count()) throw core::InputError("fewer intervals than groups of ranks that share them");
   });
+  first_ = groups_.first(all, groups_.index());
+  count_ = groups_.first(all, groups_.index() + 1) - first_;
   weights_ = make_unknown();
   const Index m = scheme_.degree;
   const core::WriteArray w(weights_.get());
@@ -69,8 +74,12 @@ void SpreadCycle::set_mesh(std::vector<double> mesh) {
   if (last_) w[w.size() - 1] = 1;
 }
 
+double SpreadCycle::begin(Index i) const {
+  return mesh_[at(first_ + i)];
+}
+
 double SpreadCycle::length(Index i) const {
-  return mesh_[at(i) + 1] - mesh_[at(i)];
+  return mesh_[at(first_ + i) + 1] - mesh_[at(first_ + i)];
 }
 
 double SpreadCycle::angle(double s) const {
@@ -102,20 +111,32 @@ double SpreadCycle::begin_point(const VectorXd& border) {
 }
 
 void SpreadCycle::sum(MatrixXd& values) const {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
+}
+
+void SpreadCycle::sum_over_time(MatrixXd& values) const {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm());
+}
+
+MatrixXd SpreadCycle::nodes(Vec u) const {
+  const core::ReadArray ua(u);
+  MatrixXd x(local_, 1 + count_ * scheme_.degree);
+  x.rightCols(x.cols() - 1) = Map<const MatrixXd>(ua.data(), local_, x.cols() - 1);
+  x.col(0) = groups_.from_before(x.rightCols(1));
+  return x;
 }
 
 void SpreadCycle::residual(Vec u, Vec r) {
   const double period = begin_point(border_of(u));
+  const MatrixXd x = nodes(u);
   MatrixXd equations;
-  residuals(u, period, equations);
-  const core::ReadArray ua(u);
+  groups_.together([&] { residuals(x, period, equations); });
   const core::WriteArray ra(r);
   Map<MatrixXd>(ra.data(), equations.rows(), equations.cols()) = equations;
   if (!options_.autonomous) return;
   MatrixXd phase(1, 1);
-  phase(0, 0) = (nodes(ua).array() * phase_row_.array()).sum();
-  sum(phase);
+  phase(0, 0) = (x.rightCols(phase_row_.cols()).array() * phase_row_.array()).sum();
+  sum_over_time(phase);
   if (last_) ra[ra.size() - 2] = phase(0, 0) - phase_offset_;
 }
 
@@ -132,8 +153,10 @@ void SpreadCycle::carry(Index i, MatrixXd& state, const MatrixXd* rhs, bool rest
 MatrixXd SpreadCycle::monodromy_times(const MatrixXd& v, MatrixXd& added) const {
   MatrixXd state = v;
   added = MatrixXd::Zero(borders_, v.cols());
-  for (Index i = 0; i < intervals(); ++i) carry(i, state, nullptr, false, added);
-  sum(added);
+  groups_.in_turn(state, [&] {
+    for (Index i = 0; i < count_; ++i) carry(i, state, nullptr, false, added);
+  });
+  sum_over_time(added);
   products_ += v.cols();
   return state;
 }
@@ -163,9 +186,12 @@ MatrixXd SpreadCycle::picard(const MatrixXd& right, MatrixXd& image, MatrixXd& a
 
 void SpreadCycle::linearise(Vec u, Vec row) {
   const double period = begin_point(border_of(u));
-  linearise_intervals(u, period);
+  {
+    const MatrixXd x = nodes(u);
+    groups_.together([&] { linearise_intervals(x, period); });
+  }
   const core::ReadArray wa(row);
-  const Index count = intervals(), m = scheme_.degree;
+  const Index count = count_, m = scheme_.degree;
   const Map<const MatrixXd> w(wa.data(), m * local_, count), phase(phase_row_.data(), m * local_, count);
   rows_.resize(at(count));
   for (Index i = 0; i < count; ++i) {
@@ -179,12 +205,14 @@ void SpreadCycle::linearise(Vec u, Vec row) {
   const Roughly here(rough_, inexact_);
   ends_ = MatrixXd::Zero(local_, borders_);
   ends_added_ = MatrixXd::Zero(borders_, borders_);
-  MatrixXd load;
-  for (Index i = 0; i < count; ++i) {
-    load = -columns(i);
-    carry(i, ends_, &load, i == 0, ends_added_);
-  }
-  sum(ends_added_);
+  groups_.in_turn(ends_, [&] {
+    MatrixXd load;
+    for (Index i = 0; i < count; ++i) {
+      load = -columns(i);
+      carry(i, ends_, &load, first_ + i == 0, ends_added_);
+    }
+  });
+  sum_over_time(ends_added_);
 
   const bool stale = solves_ > stale_after || !image_known_;
   if (stale)
@@ -218,16 +246,19 @@ void SpreadCycle::multiply(Vec v, Vec y) {
   const core::ReadArray va(v);
   const core::WriteArray ya(y);
   const Index size = scheme_.degree * local_;
-  const auto x = nodes(va);
+  const VectorXd entering = groups_.from_before(Map<const VectorXd>(va.data() + count_ * size - local_, local_));
   MatrixXd added = MatrixXd::Zero(borders_, 1);
-  VectorXd own;
-  for (Index i = 0; i < intervals(); ++i) {
-    own = Map<const VectorXd>(va.data() + i * size, size);
-    Map<VectorXd>(ya.data() + i * size, size) = product(i, x.col(before(i)), own) + columns(i).lazyProduct(border);
-    added.noalias() += rows_[at(i)].transpose().lazyProduct(own);
-  }
+  groups_.together([&] {
+    VectorXd own, start = entering;
+    for (Index i = 0; i < count_; ++i) {
+      own = Map<const VectorXd>(va.data() + i * size, size);
+      Map<VectorXd>(ya.data() + i * size, size) = product(i, start, own) + columns(i).lazyProduct(border);
+      added.noalias() += rows_[at(i)].transpose().lazyProduct(own);
+      start = own.tail(local_);
+    }
+  });
   ++products_;
-  sum(added);
+  sum_over_time(added);
   added += corner_ * border;
   if (last_) Map<VectorXd>(ya.data() + ya.size() - borders_, borders_) = added;
 }
@@ -237,20 +268,22 @@ void SpreadCycle::solve(Vec rhs, Vec out) {
   const VectorXd r_border = border_of(rhs);
   const core::ReadArray ra(rhs);
   const core::WriteArray xa(out);
-  const Index count = intervals(), p = basis_.cols(), size = scheme_.degree * local_;
+  const Index count = count_, p = basis_.cols(), size = scheme_.degree * local_;
   const Map<const MatrixXd> r(ra.data(), size, count);
   // The motion that the right-hand side alone drives: none for a tangent.
   MatrixXd added = MatrixXd::Zero(borders_, 1), driven(1, 1), load;
   MatrixXd state = MatrixXd::Zero(local_, 1), q = state, image_q = state, q_added = added;
   driven(0) = r.squaredNorm();
-  sum(driven);
+  sum_over_time(driven);
   if (driven(0) > 0) {
-    for (Index i = 0; i < count; ++i) {
-      load = r.col(i);
-      carry(i, state, &load, i == 0, added);
-    }
-    sum(added);
-    products_ += count > 1;
+    groups_.in_turn(state, [&] {
+      for (Index i = 0; i < count; ++i) {
+        load = r.col(i);
+        carry(i, state, &load, first_ + i == 0, added);
+      }
+    });
+    sum_over_time(added);
+    products_ += mesh_.size() > 2;
     q = picard(state, image_q, q_added);
   }
   MatrixXd top = basis_.transpose() * (state + image_q);
@@ -260,12 +293,14 @@ void SpreadCycle::solve(Vec rhs, Vec out) {
   small = small_.solve(small).eval();
   const VectorXd border = small.tail(borders_);
   state = basis_ * small.head(p) + q + q_ends_ * border;
-  for (Index i = 0; i < count; ++i) {
-    load = r.col(i) - columns(i).lazyProduct(border);
-    const MatrixXd x = advance(i, state, &load, false);
-    state = x.bottomRows(local_);
-    Map<VectorXd>(xa.data() + i * size, size) = x.col(0);
-  }
+  groups_.in_turn(state, [&] {
+    for (Index i = 0; i < count; ++i) {
+      load = r.col(i) - columns(i).lazyProduct(border);
+      const MatrixXd x = advance(i, state, &load, false);
+      state = x.bottomRows(local_);
+      Map<VectorXd>(xa.data() + i * size, size) = x.col(0);
+    }
+  });
   ++products_;
   ++solves_;
   if (last_) Map<VectorXd>(xa.data() + xa.size() - borders_, borders_) = border;

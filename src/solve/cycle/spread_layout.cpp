@@ -16,7 +16,8 @@ Cycle SpreadCycle::gather(Vec u) const {
   const VectorXd border = border_of(u);
   const core::ReadArray ua(u);
   Cycle cycle{mesh_, {}, 0, border(borders_ - 1) * options_.parameter_scale};
-  cycle.x = scale_.asDiagonal() * nodes(ua);
+  const Map<const MatrixXd> own(ua.data(), local_, count_ * scheme_.degree);
+  cycle.x = scale_.asDiagonal() * groups_.joined(own, static_cast<Index>(mesh_.size()) - 1);
   if (options_.autonomous)
     cycle.period = border(0) * period_scale_;
   else
@@ -31,7 +32,9 @@ core::Vector SpreadCycle::scatter(const Cycle& cycle) const {
   const Cycle here = cycle.on(scheme_, mesh_);
   core::Vector u = make_unknown();
   const core::WriteArray ua(u.get());
-  Map<MatrixXd>(ua.data(), local_, intervals() * scheme_.degree) = scale_.cwiseInverse().asDiagonal() * here.x;
+  const Index m = scheme_.degree;
+  Map<MatrixXd>(ua.data(), local_, count_ * m) =
+      scale_.cwiseInverse().asDiagonal() * here.x.middleCols(first_ * m, count_ * m);
   if (last_) {
     if (options_.autonomous) ua[ua.size() - 2] = cycle.period / period_scale_;
     ua[ua.size() - 1] = cycle.parameter / options_.parameter_scale;
@@ -45,21 +48,22 @@ void SpreadCycle::set_phase_reference(const Cycle& reference) {
   system_.set_parameter(reference.parameter);
   refresh();
   const core::Vector u = scatter(reference);
-  const core::ReadArray ua(u.get());
-  const MatrixXd x = nodes(ua);
+  const MatrixXd x = nodes(u.get());
   const Index m = scheme_.degree;
-  phase_row_.resize(local_, x.cols());
+  phase_row_.resize(local_, count_ * m);
   MatrixXd values = MatrixXd::Zero(2, 1);
-  for (Index i = 0; i < intervals(); ++i)
-    for (Index l = 1; l <= m; ++l) {
-      const Index k = i * m + l - 1;
-      const double weight = length(i) * scheme_.node_weight(l - 1);
-      const VectorXd rate = reference_rate(x, reference.period, i, l);
-      phase_row_.col(k) = weight * rate;
-      values(0) += weight * rate.squaredNorm();
-      values(1) += weight * rate.dot(x.col(k));
-    }
-  sum(values);
+  groups_.together([&] {
+    for (Index i = 0; i < count_; ++i)
+      for (Index l = 1; l <= m; ++l) {
+        const Index k = i * m + l;
+        const double weight = length(i) * scheme_.node_weight(l - 1);
+        const VectorXd rate = reference_rate(x, reference.period, i, l);
+        phase_row_.col(k - 1) = weight * rate;
+        values(0) += weight * rate.squaredNorm();
+        values(1) += weight * rate.dot(x.col(k));
+      }
+  });
+  sum_over_time(values);
   const double norm = std::sqrt(values(0));
   core::require(norm > 0, "the phase reference does not move");
   phase_row_ /= norm;

@@ -80,7 +80,9 @@ std::vector<std::complex<double>> SpreadCycle::find_subspace() {
   DominantSubspace found = dominant_multipliers(
       [this](Vec v) {
         MatrixXd state = get(v);
-        for (Index i = 0; i < intervals(); ++i) state = advance(i, state, nullptr, false).bottomRows(local_).eval();
+        groups_.in_turn(state, [&] {
+          for (Index i = 0; i < count_; ++i) state = advance(i, state, nullptr, false).bottomRows(local_).eval();
+        });
         put(state, v);
         ++products_;
       },
@@ -165,13 +167,15 @@ MatrixXd SpreadCycle::critical_motion(double mu) {
   sum(projected);
   MatrixXd state = basis_ * spectral::eigenpairs(projected).nearest(mu).real().normalized();
   const Index m = scheme_.degree;
-  MatrixXd motion(local_, intervals() * m);
-  for (Index i = 0; i < intervals(); ++i) {
-    const MatrixXd x = advance(i, state, nullptr, false);
-    state = x.bottomRows(local_);
-    for (Index l = 0; l < m; ++l) motion.col(i * m + l) = scale_.cwiseProduct(x.col(0).segment(l * local_, local_));
-  }
-  return motion;
+  MatrixXd motion(local_, count_ * m);
+  groups_.in_turn(state, [&] {
+    for (Index i = 0; i < count_; ++i) {
+      const MatrixXd x = advance(i, state, nullptr, false);
+      state = x.bottomRows(local_);
+      for (Index l = 0; l < m; ++l) motion.col(i * m + l) = scale_.cwiseProduct(x.col(0).segment(l * local_, local_));
+    }
+  });
+  return groups_.joined(motion, static_cast<Index>(mesh_.size()) - 1);
 }
 
 }  // namespace whirl::solve

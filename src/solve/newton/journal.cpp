@@ -75,7 +75,8 @@ Journal::Rows Journal::keep(const Journal* journal, Vec v) {
   core::check(VecGetOwnershipRange(v, &begin, nullptr));
   core::check(VecGetSize(v, &size));
   const auto total = static_cast<std::size_t>(size);
-  if (journal && !journal->by_rows) return {true, 0, total, core::gather(v)};
+  if (journal && journal->by_rows != core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(v))))
+    return {true, 0, total, core::gather(v)};
   const core::ReadArray a(v);
   return {false, static_cast<std::size_t>(begin), total, {a.data(), a.data() + a.size()}};
 }

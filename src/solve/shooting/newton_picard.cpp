@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 NewtonPicardProblem::NewtonPicardProblem(problem::System& system, const NewtonPicardOptions& options, Tableau tableau,
                                          int steps, std::vector<double> mesh)
-    : SpreadCycle(system, options, make_scheme(1, Points::radau), std::move(mesh), false),
+    : SpreadCycle(system, options, make_scheme(1, Points::radau), std::move(mesh), false, TimeGroups(system.comm())),
       steps_(steps),
       stepper_(std::make_unique<SparseRungeKutta>(system, std::move(tableau), options.constant_rates,
                                                   options.autonomous || system.parameter_is_speed())) {
@@ -55,38 +55,42 @@ void NewtonPicardProblem::march(Index i, double period, Vec x, Links* links) {
 }
 
 // The ends of all intervals from the states of u, with what linearise() wants of them if `links` is not null.
-void NewtonPicardProblem::march_all(Vec u, double period, MatrixXd& ends, Links* links) {
-  const core::ReadArray ua(u);
-  const auto x = nodes(ua);
+void NewtonPicardProblem::march_all(const MatrixXd& x, double period, MatrixXd& ends, Links* links) {
   if (links) {
-    links->u.resize(0);
+    links->x.resize(0, 0);
     links->steps.resize(at(intervals()));
     links->columns.resize(at(intervals()));
   }
   ends.resize(local(), intervals());
   for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(before(i)), work());
+    put(x.col(i), work());
     march(i, period, work(), links);
     ends.col(i) = get(work());
   }
-  if (links) links->u = get(u);
+  if (links) {
+    links->x = x;
+    links->period = period;
+    links->parameter = system().parameter();
+  }
 }
 
-void NewtonPicardProblem::residuals(Vec u, double period, MatrixXd& r) {
-  march_all(u, period, r, stepper_->product_is_free() ? &next_ : nullptr);
-  const core::ReadArray ua(u);
-  r = nodes(ua) - r;
+void NewtonPicardProblem::residuals(const MatrixXd& x, double period, MatrixXd& r) {
+  march_all(x, period, r, stepper_->product_is_free() ? &next_ : nullptr);
+  r = x.rightCols(intervals()) - r;
 }
 
-void NewtonPicardProblem::linearise_intervals(Vec u, double period) {
-  // The residual at u may have left its links behind; they are exchanged, because those of this linearisation are
+void NewtonPicardProblem::linearise_intervals(const MatrixXd& x, double period) {
+  // The residual at x may have left its links behind; they are exchanged, because those of this linearisation are
   // wanted until the next one.
-  if (stepper_->product_is_free() && next_.u.size() > 0 && next_.u == get(u)) {
+  int known = stepper_->product_is_free() && next_.x.cols() == x.cols() && next_.period == period &&
+              next_.parameter == system().parameter() && next_.x == x;
+  MPI_Allreduce(MPI_IN_PLACE, &known, 1, MPI_INT, MPI_LAND, comm());
+  if (known != 0) {
     std::swap(links_, next_);
-    next_.u.resize(0);
+    next_.x.resize(0, 0);
   } else {
     MatrixXd ends;
-    march_all(u, period, ends, &links_);
+    march_all(x, period, ends, &links_);
   }
 }
 
@@ -108,7 +112,7 @@ VectorXd NewtonPicardProblem::product(Index i, const VectorXd& start, const Vect
 
 VectorXd NewtonPicardProblem::reference_rate(const MatrixXd& x, double /*period*/, Index i, Index /*l*/) {
   const core::Vector state = core::duplicate(work()), slope = core::duplicate(work());
-  put(x.col(i), state.get());
+  put(x.col(i + 1), state.get());
   stepper_->rate(0, state.get(), slope.get());
   return get(slope.get());
 }
@@ -117,11 +121,10 @@ Cycle NewtonPicardProblem::orbit(Vec u) {
   const double period = begin_point(border_of(u));
   const Cycle ends = gather(u);
   Cycle points{refined(mesh(), steps_), MatrixXd(local(), intervals() * steps_), ends.period, ends.parameter};
-  const core::ReadArray ua(u);
-  const auto x = nodes(ua);
+  const MatrixXd x = nodes(u);
   core::Vector state = core::duplicate(work());
   for (Index i = 0; i < intervals(); ++i) {
-    put(x.col(before(i)), state.get());
+    put(x.col(i), state.get());
     const double begin = mesh()[at(i)], h = length(i) / steps_;
     for (int k = 0; k < steps_; ++k) {
       stepper_->step(angle(begin + k * h), angle(h), h * period, state.get(), nullptr);

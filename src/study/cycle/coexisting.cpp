@@ -113,7 +113,8 @@ solve::Cycle other_vibration(const solve::Cycle& cycle, const solve::Scheme& sch
 }
 
 std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
-                                        const std::function<std::vector<solve::Cycle>()>& find, Vec like) {
+                                        const std::function<std::vector<solve::Cycle>()>& find,
+                                        const SharedRows& like) {
   std::vector<solve::Cycle> further;
   const auto lost = [&](const core::Error& e) {
     summary.warnings.push_back(

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/solve/branch/deflation.hpp"
@@ -32,7 +33,8 @@ namespace whirl::study {
 /// search that ends in core::NotConverged or core::DomainError found nothing, which a warning says: the branch itself
 /// stays. `like` as of write_cycle(). Returns what was found.
 std::vector<solve::Cycle> put_solutions(io::Group& group, io::StudySummary& summary,
-                                        const std::function<std::vector<solve::Cycle>()>& find, Vec like = nullptr);
+                                        const std::function<std::vector<solve::Cycle>()>& find,
+                                        const SharedRows& like = {});
 /// The cycles of put_solutions(), for read_cycle(), in what it was given.
 [[nodiscard]] std::vector<io::Group> solutions_in(const io::Group& group);
 

@@ -9,7 +9,7 @@
 
 namespace whirl::study {
 
-void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds, Vec like) {
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds, const SharedRows& like) {
   group.set("count", static_cast<int>(seeds.size()));
   group.set("restart", 1);
   for (std::size_t k = 0; k < seeds.size(); ++k) {
@@ -23,7 +23,7 @@ std::size_t count_seeds(const io::Group& group) {
   return static_cast<std::size_t>(group.integer("count"));
 }
 
-std::vector<FlipSeed> read_seeds(const io::Group& group, Vec like) {
+std::vector<FlipSeed> read_seeds(const io::Group& group, const SharedRows& like) {
   std::vector<FlipSeed> seeds;
   for (std::size_t k = 1; k <= count_seeds(group); ++k) {
     const auto& g = group.group(fmt::format("{}", k));
@@ -96,10 +96,9 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
 }
 
 std::optional<solve::Restart> CycleFollower::restore() {
-  pieces_ =
-      std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, core::size_of(layout().space));
+  pieces_ = std::make_unique<Pieces>(context_.results, context_.resume, options_.checkpoint, layout().order());
   newton_.journal = continuation_.newton.journal = pieces_->journal();
-  if (newton_.journal) newton_.journal->by_rows = layout().shared;
+  if (newton_.journal) newton_.journal->by_rows = layout().shared ? core::size_of(context_.comm) : 0;
   if (!pieces_->state().has_group("cycle")) return std::nullopt;
   const io::Group& state = pieces_->state();
   record_.read(state.group("record"));

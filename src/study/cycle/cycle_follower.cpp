@@ -27,7 +27,6 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
       unit_(options_.parameter.range.unit),
       scale_(deck::number_to_si(1, unit_)),
       system_(make_system({1, 1})),
-      state_(core::make_vector(system_->comm(), system_->local_size(), PETSC_DETERMINE)),
       record_(system_->places(), unit_, options_.multipliers),
       films_(system_->places()),
       nodes_(options_.nodes, unit_),
@@ -49,6 +48,9 @@ CycleFollower::CycleFollower(Context& context, CycleBranchOptions options)
   continuation_.location_tolerance = 1e-7 * std::max(std::abs(range.from), std::abs(range.to)) / scale_;
   newton_.tolerance = options_.tolerance;
   continuation_.newton = newton_;
+  if (const Layout shared = layout(); shared.shared)
+    stored_ =
+        core::make_vector(context_.comm, core::rank_of(shared.time) == 0 ? system_->local_size() : 0, PETSC_DETERMINE);
 }
 
 void CycleFollower::leave_from(const io::Group& flips, std::size_t which) {
@@ -58,6 +60,10 @@ void CycleFollower::leave_from(const io::Group& flips, std::size_t which) {
 
 void CycleFollower::begin_at(const io::Group& cycle) {
   first_ = read_cycle(cycle, stored());
+}
+
+SharedRows CycleFollower::stored() const {
+  return {stored_.get(), stored_ ? layout().time : MPI_COMM_SELF};
 }
 
 std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells) const {

@@ -16,6 +16,7 @@
 #include "study/cycle/node_record.hpp"
 #include "study/located.hpp"
 #include "study/pieces.hpp"
+#include "study/stored_vector.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/solve/cycle/cycle_problem.hpp"
 #include "whirl/study/cycle/cycle_branch.hpp"
@@ -28,8 +29,8 @@ struct FlipSeed {
   solve::Cycle cycle, direction;
 };
 /// `like` as of write_cycle().
-void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds, Vec like);
-[[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group, Vec like);
+void write_seeds(io::Group& group, const std::vector<FlipSeed>& seeds, const SharedRows& like);
+[[nodiscard]] std::vector<FlipSeed> read_seeds(const io::Group& group, const SharedRows& like);
 /// Their number.
 [[nodiscard]] std::size_t count_seeds(const io::Group& group);
 
@@ -126,8 +127,8 @@ private:
   [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
-  /// The layout of states where the ranks share them, for what is stored of them; else null.
-  [[nodiscard]] Vec stored() const { return layout().shared ? state_.get() : nullptr; }
+  /// Which rows of a state this rank stores.
+  [[nodiscard]] SharedRows stored() const;
   /// What vanishes where the branch runs back into what it was born of [rows here x times]. Its sign changes beyond.
   [[nodiscard]] Eigen::MatrixXd vanishing(const solve::Cycle& orbit) const;
   /// The sum of products of entries, of all ranks.
@@ -196,7 +197,7 @@ private:
   solve::NewtonOptions newton_;
   solve::ContinuationOptions continuation_;
   std::unique_ptr<system::Plant> system_;
-  core::Vector state_;  // of the system
+  core::Vector stored_;  // rows of a state that ranks store, if they share it
   std::unique_ptr<solve::PeriodicProblem> problem_;
   CycleRecord record_;
   FilmLimit films_;

@@ -51,7 +51,8 @@ Layout CycleFollower::layout(std::size_t intervals) const {
       : radau && spreads_cycles(context_.layout, context_.machine, options_.intervals, options_.degree)
           ? Sharing::cycles
           : Sharing::intervals;
-  return plan(context_, sharing, intervals);
+  // The groups of a machine whose states are spread stay the same on all meshes.
+  return plan(context_, sharing, sharing == Sharing::cycles ? static_cast<std::size_t>(options_.intervals) : intervals);
 }
 
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plant& system, int turns,
@@ -92,7 +93,8 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
     o.degree = options_.degree;
     o.base_intervals = options_.intervals * laps;
     o.mesh_tolerance = tolerance;
-    return std::make_unique<solve::SpreadCollocation>(system, o, std::move(mesh));
+    return std::make_unique<solve::SpreadCollocation>(system, o, std::move(mesh),
+                                                      solve::TimeGroups(shared.world, shared.time));
   }
   auto o = common(solve::CycleOptions());
   o.degree = options_.degree;

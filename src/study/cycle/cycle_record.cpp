@@ -239,14 +239,14 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
 }
 
-void write_cycle(io::Group& group, const solve::Cycle& cycle, Vec like) {
+void write_cycle(io::Group& group, const solve::Cycle& cycle, const SharedRows& like) {
   group.put("mesh", cycle.mesh, "1", "s = t/T");
   put_columns(group, "states", cycle.x, like, "SI", "in natural order [state][node]");
   group.set("period", cycle.period);
   group.set("parameter", cycle.parameter);
 }
 
-solve::Cycle read_cycle(const io::Group& group, Vec like) {
+solve::Cycle read_cycle(const io::Group& group, const SharedRows& like) {
   solve::Cycle cycle;
   cycle.mesh = group.reals("mesh");
   cycle.x = take_columns(group, "states", like);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/io/table.hpp"
@@ -65,8 +66,8 @@ private:
 
 /// `like`: null where every rank has the whole cycle, else a state of which it has these rows (see put_columns()).
 /// Collective.
-void write_cycle(io::Group& group, const solve::Cycle& cycle, Vec like = nullptr);
-[[nodiscard]] solve::Cycle read_cycle(const io::Group& group, Vec like = nullptr);
+void write_cycle(io::Group& group, const solve::Cycle& cycle, const SharedRows& like = {});
+[[nodiscard]] solve::Cycle read_cycle(const io::Group& group, const SharedRows& like = {});
 void write_stability(io::Group& group, const solve::Stability& stability);
 [[nodiscard]] solve::Stability read_stability(const io::Group& group);
 void write_point(io::Group& group, const solve::BranchPoint& point);

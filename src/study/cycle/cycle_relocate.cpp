@@ -32,7 +32,7 @@ solve::Cycle CycleFollower::on_film_of(const system::Plant& to, solve::Cycle c) 
 
 Relocated CycleFollower::relocate(const Located& from, const CycleFollower& other, solve::Journal* journal) {
   newton_.journal = journal;
-  if (journal) journal->by_rows = layout().shared;
+  if (journal) journal->by_rows = layout().shared ? core::size_of(context_.comm) : 0;
   const solve::Cycle cycle = other.on_film_of(*system_, from.cycle);
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);
   if (autonomous()) problem_->set_phase_reference(cycle);

@@ -81,7 +81,7 @@ solve::Restart CycleFollower::start_at_hopf() {
   const io::Group& piece = pieces_->get("hopf", [&](io::Group& found) {
     search();
     found.put("values", {parameter, hopf.parameter, hopf.bracket, hopf.sensitivity}, "1", "where");
-    put_vector(found, "state", at_hopf.get(), layout().shared, "equilibrium, SI");
+    put_columns(found, "state", rows_of(at_hopf.get()), stored(), "SI", "equilibrium, in natural order");
   });
   const std::vector<double>& known = piece.reals("values");
   parameter = known[0];
@@ -89,7 +89,14 @@ solve::Restart CycleFollower::start_at_hopf() {
   hopf.bracket = known[2];
   hopf.sensitivity = known[3];
   at_hopf = core::duplicate(x.get());
-  take_vector(piece, "state", at_hopf.get());
+  {
+    const Eigen::MatrixXd state = take_columns(piece, "state", stored());
+    const core::WriteArray a(at_hopf.get());
+    if (layout().shared)
+      std::copy_n(state.data(), a.size(), a.data());
+    else
+      core::fill(at_hopf.get(), {state.data(), state.data() + state.size()});
+  }
 
   system_->set_parameter(parameter);
   const auto modes = solve::machine_modes(*system_, at_hopf.get(), {}).modes;

@@ -30,6 +30,9 @@ public:
   static constexpr std::size_t most_parts = 63;
   /// `system` outlives this and has parts that an elimination keeps apart, at least one; core::Bug of others.
   SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh);
+  /// The same in groups of ranks that share the intervals; `system` is that of this group.
+  SpreadCollocation(problem::System& system, const SpreadCollocationOptions& options, std::vector<double> mesh,
+                    const TimeGroups& groups);
   ~SpreadCollocation() override;
 
   [[nodiscard]] bool settles() const override { return true; }
@@ -42,8 +45,8 @@ public:
 
 private:
   void refresh() override;
-  void residuals(Vec u, double period, Eigen::MatrixXd& r) override;
-  void linearise_intervals(Vec u, double period) override;
+  void residuals(const Eigen::MatrixXd& x, double period, Eigen::MatrixXd& r) override;
+  void linearise_intervals(const Eigen::MatrixXd& x, double period) override;
   [[nodiscard]] const Eigen::MatrixXd& columns(Eigen::Index i) const override {
     return columns_[static_cast<std::size_t>(i)];
   }
@@ -53,14 +56,14 @@ private:
                                         const Eigen::VectorXd& x) const override;
   [[nodiscard]] Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                Eigen::Index l) override;
-  /// State and rate at point j of interval i into value_ and rate_; `x` [local x N m].
-  void interpolate(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, Eigen::Index j, double period);
+  /// State and rate at point j of interval i into value_ and rate_; `x` as nodes().
+  void interpolate(const Eigen::MatrixXd& x, Eigen::Index i, Eigen::Index j, double period);
   /// F of interval i [m local].
-  void residual_of(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i, double period, double* r);
+  void residual_of(const Eigen::MatrixXd& x, Eigen::Index i, double period, double* r);
   /// The linearised interval; `rate` is dF/d(dx/dt) if that is constant, once it is known. What is eliminated of it
   /// stands in `similar` already, or is put there, if there are no `columns` of the parts alone.
-  [[nodiscard]] std::unique_ptr<SpreadInterval> interval_at(const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::Index i,
-                                                            double period, std::shared_ptr<const PortMatrix>& rate,
+  [[nodiscard]] std::unique_ptr<SpreadInterval> interval_at(const Eigen::MatrixXd& x, Eigen::Index i, double period,
+                                                            std::shared_ptr<const PortMatrix>& rate,
                                                             std::vector<std::shared_ptr<PortElimination>>& similar,
                                                             Eigen::MatrixXd* columns);
   /// How far the end of interval i has moved.

@@ -8,6 +8,7 @@
 
 #include "whirl/problem/system.hpp"
 #include "whirl/solve/cycle/periodic_problem.hpp"
+#include "whirl/solve/cycle/time_groups.hpp"
 
 namespace whirl::solve {
 
@@ -23,9 +24,9 @@ struct NewtonPicardOptions {
   bool constant_rates = false;  ///< dF/d(dx/dt) depends on nothing but the parameter
 };
 
-/// Cycles whose unknowns are this rank's rows of the states at the nodes of all intervals. What the equations of an
-/// interval are is told by derived classes; eliminated, they give X_i = -A_i^-1 A0_i x_i + ... and x_(i+1) as its last
-/// block, so that the monodromy matrix M is known by its products only: sweeps of a state through all intervals.
+/// Cycles whose unknowns are this rank's rows of the states at the nodes of its group's intervals. What the equations
+/// of an interval are is told by derived classes; eliminated, they give X_i = -A_i^-1 A0_i x_i + ... and x_(i+1) as its
+/// last block, so that the monodromy matrix M is known by its products only: sweeps of a state through all intervals.
 ///
 /// With V an orthonormal basis of the invariant subspace of the multipliers above `radius`, Q = I - V V^T and the
 /// condensed system (I - M) x_0 - E d = R, K x_0 + D d = r_c (d = period, parameter), solve() takes in this order
@@ -41,9 +42,12 @@ struct NewtonPicardOptions {
 /// costs nothing, because M V is known. multipliers() takes V as long as it is invariant, two generic vectors find no
 /// other multiplier above the radius, and their number stays; else Krylov-Schur again. Source: Lust (1997); van de
 /// Vrande (2001), Sec. 3.2 and (3.18), with errata.
+///
+/// Groups of ranks share the intervals: each evaluates and linearises its own, and sweeps go from group to group. A
+/// Cycle has this rank's rows at the nodes of all intervals, the same in all groups.
 class SpreadCycle : public PeriodicProblem {
 public:
-  [[nodiscard]] MPI_Comm comm() const override { return system_.comm(); }
+  [[nodiscard]] MPI_Comm comm() const override { return groups_.all(); }
   [[nodiscard]] core::Vector make_unknown() const override;
   [[nodiscard]] Vec weights() const override { return weights_.get(); }
   [[nodiscard]] double parameter_scale() const override { return options_.parameter_scale; }
@@ -81,16 +85,17 @@ protected:
   /// With `inexact`, products of intervals are solved by iteration: those that only precondition take few digits, as
   /// rough() tells.
   SpreadCycle(problem::System& system, const NewtonPicardOptions& options, Scheme scheme, std::vector<double> mesh,
-              bool inexact);
+              bool inexact, const TimeGroups& groups);
 
-  // What a derived class tells of its intervals. Collective; states are scaled, this rank's rows.
+  // What a derived class tells of its group's intervals. Collective on the system's communicator; states are scaled,
+  // this rank's rows.
 
   /// The parameter of the system has changed.
   virtual void refresh() = 0;
-  /// R [m local x N] at u.
-  virtual void residuals(Vec u, double period, Eigen::MatrixXd& r) = 0;
-  /// Takes A0_i, A_i and columns(i) at u.
-  virtual void linearise_intervals(Vec u, double period) = 0;
+  /// R [m local x N] at nodes x.
+  virtual void residuals(const Eigen::MatrixXd& x, double period, Eigen::MatrixXd& r) = 0;
+  /// Takes A0_i, A_i and columns(i) at nodes x.
+  virtual void linearise_intervals(const Eigen::MatrixXd& x, double period) = 0;
   /// dR_i/d(period, parameter) [m local x nb].
   [[nodiscard]] virtual const Eigen::MatrixXd& columns(Eigen::Index i) const = 0;
   /// X = A_i^-1 (rhs - A0_i start) [m local x k]; `rhs` may be null. With `rest` the start is zero.
@@ -99,22 +104,23 @@ protected:
   /// A0_i start + A_i x [m local].
   [[nodiscard]] virtual Eigen::VectorXd product(Eigen::Index i, const Eigen::VectorXd& start,
                                                 const Eigen::VectorXd& x) const = 0;
-  /// x'(s) of a reference at node l = 1..m of interval i, in scaled states [local]; `x` [local x N m] are its nodes.
+  /// x'(s) of a reference at node l = 1..m of interval i, in scaled states [local]; `x` are its nodes.
   [[nodiscard]] virtual Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                        Eigen::Index l) = 0;
 
   [[nodiscard]] problem::System& system() const { return system_; }
   [[nodiscard]] const NewtonPicardOptions& options() const { return options_; }
-  [[nodiscard]] Eigen::Index intervals() const { return static_cast<Eigen::Index>(mesh_.size()) - 1; }
+  [[nodiscard]] const TimeGroups& groups() const { return groups_; }
+  /// N, of this group; interval i begins at s = begin(i).
+  [[nodiscard]] Eigen::Index intervals() const { return count_; }
+  [[nodiscard]] double begin(Eigen::Index i) const;
   [[nodiscard]] Eigen::Index local() const { return local_; }
   [[nodiscard]] Eigen::Index borders() const { return borders_; }
   [[nodiscard]] double length(Eigen::Index i) const;
   [[nodiscard]] double angle(double s) const;
-  /// The nodes of u [local x N m], and the start of interval i among them.
-  [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> nodes(const core::ReadArray& u) const {
-    return {u.data(), local_, intervals() * scheme_.degree};
-  }
-  [[nodiscard]] Eigen::Index before(Eigen::Index i) const { return (i == 0 ? intervals() : i) * scheme_.degree - 1; }
+  /// The nodes of u [local x 1 + N m]: the state that enters the first interval, and those of all intervals; that at
+  /// the start of interval i is column i m. Collective.
+  [[nodiscard]] Eigen::MatrixXd nodes(Vec u) const;
   [[nodiscard]] bool rough() const { return rough_; }
   /// Sets the parameter and returns the period.
   [[nodiscard]] double begin_point(const Eigen::VectorXd& border);
@@ -125,7 +131,9 @@ protected:
   void set_mesh(std::vector<double> mesh);
 
 private:
+  /// The sum of what stands at one time over the ranks of the system, and over all.
   void sum(Eigen::MatrixXd& values) const;
+  void sum_over_time(Eigen::MatrixXd& values) const;
   /// state := that after interval i, added += rows X.
   void carry(Eigen::Index i, Eigen::MatrixXd& state, const Eigen::MatrixXd* rhs, bool rest,
              Eigen::MatrixXd& added) const;
@@ -139,12 +147,14 @@ private:
   void prepare();
 
   problem::System& system_;
+  TimeGroups groups_;
   NewtonPicardOptions options_;
   double radius_;         // multipliers above it are found
   bool limited_ = false;  // and there are more than were asked for
   Scheme scheme_;
   std::vector<double> mesh_;
-  Eigen::Index local_, borders_;  // this rank's states; 1 or 2
+  Eigen::Index first_ = 0, count_ = 0;  // intervals of this group
+  Eigen::Index local_, borders_;        // this rank's states; 1 or 2
   bool last_, inexact_, rough_ = false;
   double period_scale_ = 0, phase_offset_ = 0;
   Eigen::VectorXd scale_;  // of this rank's states

@@ -49,8 +49,8 @@ public:
   /// What the question under way has come to, if anybody wants to know now (see `due`).
   void note(const std::function<Answer()>& so_far);
 
-  /// What an answer keeps of v: this rank's entries if the ranks of a study share its states (by_rows) or nothing is
-  /// saved (`journal` is null), else all of them. Collective on v.
+  /// What an answer keeps of v: this rank's entries if the ranks of a study share them (by_rows) or nothing is saved
+  /// (`journal` is null), else all of them. Collective on v.
   [[nodiscard]] static Rows keep(const Journal* journal, Vec v);
   /// The other way, into a vector in whatever layout. core::Error if it is of another size. Collective on v.
   static void give(const Rows& rows, Vec v);
@@ -65,7 +65,7 @@ public:
   /// Begins anew with the entries of an interrupted computation.
   void begin(std::vector<Entry> entries = {});
 
-  bool by_rows = false;           ///< answers keep vectors by rows
+  int by_rows = 0;                ///< answers keep vectors of so many ranks by rows; 0: none
   std::function<bool()> due;      ///< whether it is time to save; collective
   std::function<void()> changed;  ///< called after each answer and note; collective
 

@@ -32,8 +32,8 @@ public:
 
 private:
   void refresh() override;
-  void residuals(Vec u, double period, Eigen::MatrixXd& r) override;
-  void linearise_intervals(Vec u, double period) override;
+  void residuals(const Eigen::MatrixXd& x, double period, Eigen::MatrixXd& r) override;
+  void linearise_intervals(const Eigen::MatrixXd& x, double period) override;
   [[nodiscard]] const Eigen::MatrixXd& columns(Eigen::Index i) const override;
   [[nodiscard]] Eigen::MatrixXd advance(Eigen::Index i, const Eigen::MatrixXd& start, const Eigen::MatrixXd* rhs,
                                         bool rest) const override;
@@ -42,12 +42,13 @@ private:
   [[nodiscard]] Eigen::VectorXd reference_rate(const Eigen::MatrixXd& x, double period, Eigen::Index i,
                                                Eigen::Index l) override;
   struct Links {
-    Eigen::VectorXd u;                            // where: this rank's unknowns
+    Eigen::MatrixXd x;                            // where: this rank's rows of the nodes,
+    double period = 0, parameter = 0;             // and these
     std::vector<std::vector<StepProduct>> steps;  // per interval
     std::vector<Eigen::MatrixXd> columns;         // dR/d(border) per interval [local x nb]
   };
   void march(Eigen::Index i, double period, Vec x, Links* links);
-  void march_all(Vec u, double period, Eigen::MatrixXd& ends, Links* links);
+  void march_all(const Eigen::MatrixXd& x, double period, Eigen::MatrixXd& ends, Links* links);
 
   int steps_;
   std::unique_ptr<SparseRungeKutta> stepper_;
