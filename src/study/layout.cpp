@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 
 #include "cost.hpp"
@@ -41,9 +42,8 @@ void describe(deck::Description<LayoutOptions>& d) {
       .only(&LayoutOptions::machine, {automatic});
   d.add(
       "time_groups", &LayoutOptions::time_groups, deck::positive,
-      "groups of ranks, each of which holds a machine, that share the intervals of a cycle whose states are spread "
-      "over "
-      "ranks; as many of them as divide the number of ranks. Evaluations go side by side, sweeps from group to group");
+      "groups of ranks, each of which holds a machine, that share the intervals of a cycle whose states are spread; as "
+      "many of them as divide the number of ranks. If absent, so many that each rank has a thousand states of films");
   d.add(
        "cycle_memory", &LayoutOptions::cycle_memory, "byte", deck::positive,
        "memory, as estimated for the deck's intervals, that a cycle by collocation at Radau points may take on whole "
@@ -92,6 +92,23 @@ bool spreads_cycles(const LayoutOptions& options, const system::Machine& machine
   return liners || memory_of_cycles(machine, intervals, stages, true) > options.cycle_memory;
 }
 
+namespace {
+
+// Messages within a solve cost more than its halves save where a rank has fewer states (docs/speed.md).
+constexpr double states_of_a_rank = 1000;
+
+// Of `size` ranks, groups of equal size that share the intervals of a cycle: as many as the deck says, or as fill
+// ranks.
+int time_groups(const Context& context, int size, std::size_t intervals) {
+  const double ranks_to_fill = std::max(1.0, n_film_states(context.machine) / states_of_a_rank);
+  const double wanted = context.layout.time_groups ? *context.layout.time_groups : std::ceil(size / ranks_to_fill);
+  int groups = static_cast<int>(std::min({wanted, static_cast<double>(size), static_cast<double>(intervals)}));
+  while (size % groups != 0) --groups;
+  return groups;
+}
+
+}  // namespace
+
 Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   const std::string reason = reason_to_share(context.layout, context.machine);
   const int size = core::size_of(context.comm);
@@ -104,9 +121,7 @@ Layout plan(const Context& context, Sharing sharing, std::size_t intervals) {
   int groups = 1;
   if (out.shared) {
     out.space = context.comm;
-    if (out.spread)
-      for (int g = std::min({context.layout.time_groups, size, static_cast<int>(intervals)}); groups == 1 && g > 1; --g)
-        if (size % g == 0) groups = g;
+    if (out.spread) groups = time_groups(context, size, intervals);
     if (groups > 1) {
       out.space = context.results.groups(groups).space;
       out.time = context.results.groups(groups).time;

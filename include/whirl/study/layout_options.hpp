@@ -1,6 +1,7 @@
 #pragma once
 // What a deck may say about how ranks share the work, and how much of it there may be.
 
+#include <optional>
 #include <span>
 
 #include "whirl/deck/description.hpp"
@@ -13,7 +14,7 @@ struct LayoutOptions {
   Machine machine = Machine::automatic;
   int shaft_freedoms = 20000;  ///< of the shaft before its reduction; other systems: half their states
   int film_states = 3000;      ///< of all films together
-  int time_groups = 1;         ///< of ranks that share the intervals of a cycle whose states are spread
+  std::optional<int> time_groups;  ///< of ranks that share the intervals of a cycle whose states are spread
   double cycle_memory = 4e9;   ///< of a cycle's intervals, up to which films that fill and empty are whole [byte]
   int refined_states = 4000;   ///< of all films together, up to which bars are computed on finer meshes too
 };
