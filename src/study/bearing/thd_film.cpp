@@ -68,13 +68,16 @@ std::vector<double> supply_of(const ThdOptions& o, const thermal::Rows& rows, co
 }  // namespace
 
 ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
-    : rows_(mesh_of(o, g), comm), flow_(flow_of(o, rows_.mesh(), speed)), ambient_(o.ambient.temperature) {
+    : rows_(mesh_of(o, g), comm),
+      flow_(flow_of(o, rows_.mesh(), speed)),
+      ambient_(o.ambient.temperature),
+      clearance_(g.clearance) {
   const thermal::Mesh& mesh = rows_.mesh();
-  const double e = o.eccentricity * g.clearance;
-  place_ = {e * std::cos(o.attitude), e * std::sin(o.attitude)};
+  const double e = o.eccentricity.value_or(0) * g.clearance, attitude = o.attitude.value_or(0);
+  place_ = {e * std::cos(attitude), e * std::sin(attitude)};
   for (int j = rows_.begin(); j < rows_.end(); ++j)
     for (int i = 0; i < mesh.nodes_around(); ++i)
-      thickness_.push_back(g.clearance - e * std::cos(mesh.theta(i) - o.attitude));
+      thickness_.push_back(g.clearance - e * std::cos(mesh.theta(i) - attitude));
   thermal::ThdSetup setup;
   setup.flow = flow_;
   setup.order = o.second_order ? 2 : 1;
@@ -86,6 +89,21 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   setup.tolerance = o.tolerance;
   setup.most_iterations = o.most_iterations;
   thd_ = std::make_unique<thermal::Thd>(rows_, std::move(setup), thickness_);
+}
+
+std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move) const {
+  const thermal::Mesh& mesh = rows_.mesh();
+  std::vector<double> thickness = this->thickness();
+  for (int j = rows_.begin(); j < rows_.end(); ++j)
+    for (int i = 0; i < mesh.nodes_around(); ++i)
+      thickness[static_cast<std::size_t>(rows_.node(i, j))] -=
+          move[0] * std::cos(mesh.theta(i)) + move[1] * std::sin(mesh.theta(i));
+  thermal::FilmFlow flow(rows_, flow_, std::move(thickness));
+  flow.set_temperature(thd_->temperature());
+  flow.start(thd_->flow().pressure());
+  (void)flow.solve();
+  const thermal::FlowReport report = flow.report(flow.flow());
+  return {report.force[0], report.force[1]};
 }
 
 ThdFilm::Isothermal ThdFilm::isothermal() const {

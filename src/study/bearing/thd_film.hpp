@@ -2,6 +2,7 @@
 // One bearing with heat as a deck describes it, on the ranks of a communicator.
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -21,6 +22,9 @@ public:
   [[nodiscard]] const std::vector<double>& thickness() const { return thd_->thickness(); }
   /// m, of the journal's middle from the bearing's.
   [[nodiscard]] const std::array<double, 2>& place() const { return place_; }
+  /// In clearances; rad, from +x.
+  [[nodiscard]] double eccentricity() const { return std::hypot(place_[0], place_[1]) / clearance_; }
+  [[nodiscard]] double attitude() const { return std::atan2(place_[1], place_[0]); }
   [[nodiscard]] thermal::Thd& thd() { return *thd_; }
   /// Whether the temperatures settled. Collective.
   bool solve() { return (cost_ = thd_->solve()).converged; }
@@ -32,12 +36,15 @@ public:
     thermal::FlowReport report;
   };
   [[nodiscard]] Isothermal isothermal() const;
+  /// N, on the journal `move` m from where it is, with the temperatures that the film has. Collective. Throws
+  /// core::NotConverged.
+  [[nodiscard]] std::array<double, 2> force_beside(const std::array<double, 2>& move) const;
 
 private:
   thermal::Rows rows_;
   std::vector<double> thickness_;
   thermal::FilmFlowOptions flow_;
-  double ambient_;
+  double ambient_, clearance_;
   std::array<double, 2> place_;
   std::unique_ptr<thermal::Thd> thd_;
   thermal::ThdSolve cost_;

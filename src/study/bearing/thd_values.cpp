@@ -50,7 +50,9 @@ std::span<const ThdColumn> thd_columns() {
       {"mass_flow", "kg/s", "of orifices and grooves"},
       {"load_x", "N", "force of the journal on the film"},
       {"load_y", "N", "force of the journal on the film"},
-      {"iterations", "1", "rounds of flow and heat"}};
+      {"iterations", "1", "rounds of flow and heat"},
+      {"eccentricity", "1", "of the journal, in clearances"},
+      {"attitude", "rad", "direction of the journal from the bearing's middle, from +x"}};
   return table;
 }
 
@@ -75,7 +77,9 @@ std::vector<double> thd_row(ThdFilm& film, double speed) {
           report.inflow,
           -report.force[0],
           -report.force[1],
-          static_cast<double>(film.cost().iterations)};
+          static_cast<double>(film.cost().iterations),
+          film.eccentricity(),
+          film.attitude()};
 }
 
 void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options) {
@@ -112,6 +116,10 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
   summary.set("temperature.bush.maximum", at_bush.maximum, "K");
   summary.set("temperature.journal.mean", at_journal.mean, "K");
   summary.set("temperature.journal.maximum", at_journal.maximum, "K");
+  if (!options.load.values.empty()) {
+    summary.set("eccentricity", film.eccentricity(), "1");
+    summary.set("attitude", film.attitude(), "rad");
+  }
   if (options.bush.growth || options.journal.growth)
     summary.set("clearance", surface_numbers(film, film.thickness()).mean, "m");
 }
