@@ -192,8 +192,9 @@ std::span<const deck::Name<HeatedWall::Type>> names(HeatedWall::Type) {
 
 std::span<const deck::Name<Thd::Cavitation>> names(Thd::Cavitation) {
   static constexpr deck::Name<Thd::Cavitation> table[] = {
-      {Thd::Cavitation::half_sommerfeld, "half_sommerfeld", "negative pressure is cut off after the solution"},
-      {Thd::Cavitation::none, "none", "negative pressure stays"}};
+      {Thd::Cavitation::half_sommerfeld, "half_sommerfeld",
+       "negative pressure does not act on the journal; the flow keeps it"},
+      {Thd::Cavitation::none, "none", "negative pressure acts on the journal too"}};
   return table;
 }
 
@@ -215,11 +216,11 @@ void describe(deck::Description<Thd>& d) {
   d.add("layers", &Thd::layers, deck::in(1, 64),
         "layers of the energy equation across the film; 1: the mean temperature, with a parabola across the film");
   d.add("tilt", &Thd::tilt, "follow the slope of the journal, and turn it by moments");
-  d.add("feed_temperature", &Thd::feed, "K", deck::positive, "temperature of the oil that enters a pad").continuable();
+  d.add("feed_temperature", &Thd::feed, "K", deck::positive, "temperature of the oil that enters a pad");
   d.add("viscosity", &Thd::viscosity,
         "dynamic viscosity over the temperature; constant, that of the lubricant, if not given");
-  d.add("heat_capacity", &Thd::heat_capacity, "J/(kg K)", deck::positive, "specific heat of the oil").continuable();
-  d.add("conductivity", &Thd::conductivity, "W/(m K)", deck::non_negative, "conductivity of the oil").continuable();
+  d.add("heat_capacity", &Thd::heat_capacity, "J/(kg K)", deck::positive, "specific heat of the oil");
+  d.add("conductivity", &Thd::conductivity, "W/(m K)", deck::non_negative, "conductivity of the oil");
   d.add("bush", &Thd::bush, "the wall at the bush");
   d.add("journal", &Thd::journal, "the wall at the journal");
 }

@@ -58,6 +58,7 @@ struct Thd::Work {
     std::vector<double> behind;       // K [r, n]
     std::vector<double> rise;         // K [r], growth over expansion times radius; empty: it does not grow
     double grows = 0;                 // m/K, of the clearance
+    std::vector<double> factor;       // - [r, n], of the film's half layer; empty: 1
   };
 
   Work(const Rows& r, ThdSetup s, std::vector<double> h)
@@ -68,7 +69,7 @@ struct Thd::Work {
         film(rows, setup.flow, thickness),
         gate(rows.comm()) {
     const Mesh& mesh = rows.mesh();
-    half = Energy::half_layer(rows, setup.flow.fluid.conductivity, thickness);
+    half = Energy::half_layer(rows, setup.flow.fluid.k(setup.ambient), thickness);
     bush.options = &setup.bush;
     journal.options = &setup.journal;
     journal.layer = mesh.across - 1;
@@ -80,7 +81,7 @@ struct Thd::Work {
       if (side->options->type != WallOptions::Type::solid) continue;
       side->solid.emplace(at_bush ? bush_of(rows, setup.bush) : journal_of(rows, setup.journal));
       side->solid->join(half);
-      side->conductance = side->solid->joined();
+      side->conductance = side->solid->joined();  // at the ambient's temperature
       side->temperature = side->solid->temperature(side->options->ambient);
       side->rhs = core::duplicate(side->temperature.get());
       side->behind.assign(half.size(), side->options->ambient);
@@ -131,11 +132,12 @@ struct Thd::Work {
       closed = 1;
     }
     film.set_thickness(thickness);
-    half = Energy::half_layer(rows, setup.flow.fluid.conductivity, thickness);
+    half = Energy::half_layer(rows, setup.flow.fluid.k(setup.ambient), thickness);
     for (Side* side : {&bush, &journal}) {
       if (side->options->type == WallOptions::Type::adiabatic) continue;
       if (side->solid) side->solid->join(half);
       side->conductance = side->solid ? side->solid->joined() : half;
+      join(*side);
     }
   }
 
@@ -145,7 +147,8 @@ struct Thd::Work {
         temperature[c * static_cast<std::size_t>(rows.mesh().across) + static_cast<std::size_t>(side.layer)];
     if (side.options->type == WallOptions::Type::adiabatic) return own;  // no gradient
     if (!side.solid) return side.behind[c];
-    return own + side.conductance[c] / half[c] * (side.behind[c] - own);
+    const double conductance = side.factor.empty() ? side.conductance[c] : side.solid->joined()[c];
+    return own + conductance / (half[c] * (side.factor.empty() ? 1.0 : side.factor[c])) * (side.behind[c] - own);
   }
 
   [[nodiscard]] Surroundings surroundings() const {
@@ -159,6 +162,22 @@ struct Thd::Work {
       for (std::size_t c = 0; c < half.size(); ++c) out.supply[c] = surface(bush, c);
     }
     return out;
+  }
+
+  // Where the film's conductance at a wall changes with the temperature or by turbulence, the solid has the same.
+  void rejoin() {
+    if (is_constant(setup.flow.fluid.conductivity_law) && flow.mixing.empty()) return;
+    for (Side* side : {&bush, &journal}) {
+      side->factor = energy->wall_factors(film_temperature.get(), side == &journal);
+      join(*side);
+    }
+  }
+
+  void join(Side& side) const {
+    if (!side.solid || side.factor.empty()) return;
+    std::vector<double> now = half;
+    for (std::size_t c = 0; c < now.size(); ++c) now[c] *= side.factor[c];
+    side.solid->join(now);
   }
 
   // Heat of the film to a solid, and its temperature behind the wall.
@@ -195,7 +214,9 @@ struct Thd::Work {
     flow = film.flow();
     if (!energy)
       energy = std::make_unique<Energy>(
-          rows, flow, EnergyModel{setup.flow.fluid.heat_capacity, setup.flow.fluid.conductivity, setup.order},
+          rows, flow,
+          EnergyModel{setup.flow.fluid.heat_capacity, setup.flow.fluid.conductivity, setup.order,
+                      setup.flow.fluid.heat_capacity_law, setup.flow.fluid.conductivity_law},
           thickness, surroundings());
     else
       energy->update(thickness, surroundings());
@@ -210,6 +231,7 @@ struct Thd::Work {
       const core::ReadArray t(film_temperature.get());
       std::copy_n(t.data(), cells, temperature.begin());
     }
+    rejoin();
     conduct(bush);
     conduct(journal);
     const core::WriteArray change(out);

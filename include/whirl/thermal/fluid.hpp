@@ -5,6 +5,8 @@
 #include <string_view>
 #include <variant>
 
+#include "whirl/thermal/property.hpp"
+
 namespace whirl::thermal {
 
 /// mu = value.
@@ -59,7 +61,7 @@ struct Valued {
 };
 [[nodiscard]] Valued viscosity(const Viscosity& law, double temperature);
 
-/// A gas, rho = p/(r T), or a liquid of constant density.
+/// A gas, rho = p/(r T), or a liquid. Laws over the temperature are factors of the values.
 struct Fluid {
   Viscosity viscosity;
   bool gas = false;
@@ -67,9 +69,20 @@ struct Fluid {
   double density = 0;           // kg/m^3, of a liquid
   double heat_capacity = 0;     // J/(kg K), at constant pressure
   double conductivity = 0;      // W/(m K)
+  PropertyLaw density_law{}, heat_capacity_law{}, conductivity_law{};
   /// kg/m^3 at a pressure [Pa] and a temperature [K].
   [[nodiscard]] double rho(double p, double temperature) const {
-    return gas ? p / (gas_constant * temperature) : density;
+    return gas ? p / (gas_constant * temperature) : density * evaluate(density_law, temperature).value;
+  }
+  /// J/(kg K), W/(m K) at a temperature [K]; the Prandtl number mu c/k there.
+  [[nodiscard]] double c(double temperature) const {
+    return heat_capacity * evaluate(heat_capacity_law, temperature).value;
+  }
+  [[nodiscard]] double k(double temperature) const {
+    return conductivity * evaluate(conductivity_law, temperature).value;
+  }
+  [[nodiscard]] double prandtl(double temperature) const {
+    return thermal::viscosity(viscosity, temperature).value * c(temperature) / k(temperature);
   }
 };
 

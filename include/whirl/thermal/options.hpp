@@ -11,6 +11,11 @@
 
 namespace whirl::thermal {
 
+/// The law of another property, as a choice.
+struct PropertyOptions {
+  PropertyLaw law;
+};
+
 struct FluidOptions {
   enum class Type { gas, liquid };
   Type type = Type::liquid;
@@ -20,7 +25,11 @@ struct FluidOptions {
   double density = 0;           // kg/m^3, of a liquid
   double heat_capacity = 0;     // J/(kg K)
   double conductivity = 0;      // W/(m K)
+  PropertyOptions density_law, heat_capacity_law, conductivity_law;
 };
+
+/// What the options say of the fluid of a film.
+[[nodiscard]] Fluid make_fluid(const FluidOptions& options);
 
 /// A ring of equal orifices.
 struct OrificeRing {

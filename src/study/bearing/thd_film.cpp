@@ -21,12 +21,7 @@ thermal::FilmFlowOptions flow_of(const ThdOptions& o, const thermal::Mesh& mesh,
   using Cavitation = thermal::FilmFlowOptions::Cavitation;
   const bool gas = o.fluid.type == thermal::FluidOptions::Type::gas;
   thermal::FilmFlowOptions out;
-  out.fluid.viscosity = o.fluid.viscosity.law;
-  out.fluid.gas = gas;
-  out.fluid.gas_constant = o.fluid.gas_constant;
-  out.fluid.density = o.fluid.density;
-  out.fluid.heat_capacity = o.fluid.heat_capacity;
-  out.fluid.conductivity = o.fluid.conductivity;
+  out.fluid = thermal::make_fluid(o.fluid);
   out.heat_ratio = o.fluid.heat_ratio;
   out.ambient = gas ? o.ambient.pressure : 0;
   out.speed = speed;
