@@ -256,12 +256,15 @@ def load(h):
     found = h.run(deck, "load", few, launcher=[])[name]
     e, angle = (value(found, k) for k in ("eccentricity", "attitude"))
     h.true("below and ahead of the load", 0.2 < e < 0.9 and -1.57 < angle < 0, f"{e}, {angle} rad")
-    place = [f"studies.1.thd.eccentricity={e!r}", f"studies.1.thd.attitude={angle!r} rad"]
-    refused = subprocess.run(h.command(deck, h.work / "refused", [*few, *place], launcher=[]), capture_output=True, text=True)
-    h.true("place and load together are refused", refused.returncode == 2 and "leave 'eccentricity' out" in refused.stdout + refused.stderr, refused.stderr[-300:])
-    text = (h.source / "inputs/thd/oil_groove.yaml").read_text().replace("      load: 6 kN\n", f"      eccentricity: {e!r}\n      attitude: {angle!r} rad\n", 1)
-    there = h.work / "place.yaml"
-    there.write_text(text)
+    text = (h.source / "inputs/thd/oil_groove.yaml").read_text()
+    lines = f"      eccentricity: {e!r}\n      attitude: {angle!r} rad\n"
+    both, there = h.work / "both.yaml", h.work / "place.yaml"
+    both.write_text(text.replace("      load: 6 kN\n", "      load: 6 kN\n" + lines, 1))
+    there.write_text(text.replace("      load: 6 kN\n", lines, 1))
+    refused = subprocess.run(h.command(both, h.work / "refused", few, launcher=[]), capture_output=True, text=True)
+    at = text[:text.index("      load: 6 kN\n")].count("\n") + 2
+    said = refused.stdout + refused.stderr
+    h.true("place and load together are refused", refused.returncode == 2 and f"both.yaml:{at}:" in said and "leave 'eccentricity' out" in said, said[-300:])
     back = h.run(there, "place", few, launcher=[])[name]
     h.close("load there, sideways [N]", value(back, "load.x"), 0, 2e-6 * 6000)
     h.close("load there [N]", value(back, "load.y"), -6000, 2e-6 * 6000)
