@@ -60,6 +60,23 @@ std::vector<double> supply_of(const ThdOptions& o, const thermal::Rows& rows, co
   return out;
 }
 
+// [r, n], the groove of each node that is mixed; empty if none is.
+std::vector<int> mixed_of(const ThdOptions& o, const thermal::Rows& rows, const thermal::FilmFlowOptions& flow) {
+  std::vector<int> out;
+  const int n = rows.mesh().nodes_around();
+  int groove = 0;
+  for (std::size_t k = 0; k < flow.feeds.size(); ++k) {
+    if (!o.grooves[k].mixing) continue;
+    out.resize(static_cast<std::size_t>(rows.count() * n));
+    ++groove;
+    for (int j = std::max(flow.feeds[k].first_along, rows.begin());
+         j <= std::min(flow.feeds[k].last_along, rows.end() - 1); ++j)
+      for (int i = flow.feeds[k].first_around; i <= flow.feeds[k].last_around; ++i)
+        out[static_cast<std::size_t>(rows.node(((i % n) + n) % n, j))] = groove;
+  }
+  return out;
+}
+
 }  // namespace
 
 ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
@@ -81,6 +98,7 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   setup.journal = o.journal;
   setup.inlet_from_bush = !o.orifices.empty() && o.orifices.front().inlet == thermal::OrificeRing::Inlet::bush;
   setup.supply = supply_of(o, rows_, flow_);
+  setup.mixed = mixed_of(o, rows_, flow_);
   setup.tolerance = o.tolerance;
   setup.most_iterations = o.most_iterations;
   thd_ = std::make_unique<thermal::Thd>(rows_, std::move(setup), thickness_);

@@ -1,5 +1,7 @@
 #include "study/bearing/thd_values.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -116,6 +118,9 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
   summary.set("temperature.bush.maximum", at_bush.maximum, "K");
   summary.set("temperature.journal.mean", at_journal.mean, "K");
   summary.set("temperature.journal.maximum", at_journal.maximum, "K");
+  const std::vector<double> mixed = thd.mixed();
+  for (std::size_t k = 0, m = 0; k < options.grooves.size(); ++k)
+    if (options.grooves[k].mixing) summary.set(fmt::format("temperature.groove.{}", k + 1), mixed.at(m++), "K");
   if (!options.load.values.empty()) {
     summary.set("eccentricity", film.eccentricity(), "1");
     summary.set("attitude", film.attitude(), "rad");
