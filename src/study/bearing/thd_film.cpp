@@ -104,7 +104,7 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   thd_ = std::make_unique<thermal::Thd>(rows_, std::move(setup), thickness_);
 }
 
-std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move) const {
+std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move, std::vector<double>& pressure) const {
   const thermal::Mesh& mesh = rows_.mesh();
   std::vector<double> thickness = this->thickness();
   for (int j = rows_.begin(); j < rows_.end(); ++j)
@@ -113,8 +113,9 @@ std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move) c
           move[0] * std::cos(mesh.theta(i)) + move[1] * std::sin(mesh.theta(i));
   thermal::FilmFlow flow(rows_, flow_, std::move(thickness));
   flow.set_temperature(thd_->temperature());
-  flow.start(thd_->flow().pressure());
+  if (!pressure.empty()) flow.start(pressure);
   (void)flow.solve();
+  pressure = flow.pressure();
   const thermal::FlowReport report = flow.report(flow.flow());
   return {report.force[0], report.force[1]};
 }

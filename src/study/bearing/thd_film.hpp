@@ -36,9 +36,10 @@ public:
     thermal::FlowReport report;
   };
   [[nodiscard]] Isothermal isothermal() const;
-  /// N, on the journal `move` m from where it is, with the temperatures that the film has. Collective. Throws
-  /// core::NotConverged.
-  [[nodiscard]] std::array<double, 2> force_beside(const std::array<double, 2>& move) const;
+  /// N, on the journal `move` m from where it is, with the temperatures that the film has. `pressure` Pa [r, n] is where
+  /// the search for it begins, empty: from none, and what it finds. Collective. Throws core::NotConverged.
+  [[nodiscard]] std::array<double, 2> force_beside(const std::array<double, 2>& move,
+                                                   std::vector<double>& pressure) const;
 
 private:
   thermal::Rows rows_;

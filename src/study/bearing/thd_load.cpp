@@ -123,15 +123,15 @@ Pair left_of(MPI_Comm comm, const Pair& force, const Pair& load) {
 }
 
 // Difference quotients to the side of the wider gap.
-Matrix quotients(MPI_Comm comm, ThdFilm& film, double clearance, const Pair& load) {
+Matrix quotients(MPI_Comm comm, ThdFilm& film, double clearance, const Pair& load, std::vector<double> pressure) {
   const Pair& place = film.place();
   const double step = 1e-4 * (clearance - size(place));
-  const Pair here = left_of(comm, film.force_beside({0, 0}), load);
+  const Pair here = left_of(comm, film.force_beside({0, 0}, pressure), load);
   Matrix out{};
   for (std::size_t c = 0; c < 2; ++c) {
     Pair move{};
     move[c] = place[c] > 0 ? -step : step;
-    const Pair there = left_of(comm, film.force_beside(move), load);
+    const Pair there = left_of(comm, film.force_beside(move, pressure), load);
     for (std::size_t r = 0; r < 2; ++r) out[r][c] = (there[r] - here[r]) / (move[c] / clearance);
   }
   return out;
@@ -147,11 +147,11 @@ public:
     Pair out{std::numeric_limits<double>::quiet_NaN(), 0};
     (void)has_answer([&] {
       film_ = std::make_unique<ThdFilm>(comm_, at_place(options_, place), geometry_, speed_);
-      out = left_of(comm_, film_->force_beside({0, 0}), load_);
+      out = left_of(comm_, film_->force_beside({0, 0}, pressure_), load_);
     });
     return out;
   }
-  Matrix slope() override { return quotients(comm_, *film_, geometry_.clearance, load_); }
+  Matrix slope() override { return quotients(comm_, *film_, geometry_.clearance, load_, pressure_); }
 
 private:
   MPI_Comm comm_;
@@ -160,6 +160,7 @@ private:
   double speed_;
   Pair load_;
   std::unique_ptr<ThdFilm> film_;
+  std::vector<double> pressure_;
 };
 
 // Films with heat, each of which begins with the state of the one before.
@@ -181,7 +182,9 @@ public:
     });
     return out;
   }
-  Matrix slope() override { return quotients(comm_, *film_, geometry_.clearance, load_); }
+  Matrix slope() override {
+    return quotients(comm_, *film_, geometry_.clearance, load_, film_->thd().flow().pressure());
+  }
   SolvedFilm result() { return {std::move(film_), films(), settled_}; }
 
 private:
