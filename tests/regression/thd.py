@@ -244,6 +244,13 @@ def oil(h):
         h.true(f"{name}: the journal rises with the speed", all(numpy.diff(table["eccentricity"]) < 0), f"{table['eccentricity']}")
         gone = table["heat_bush"] + table["heat_journal"] + table["enthalpy"]
         h.close(f"{name}: heat that leaves [W]", numpy.abs(gone - table["heat"]).max(), 0, 1e-8 * table["heat"].max())
+    for name in walls:
+        groove, one = value(found[name], "temperature.groove.1"), value(found[name], "temperature.lumped")
+        h.true(f"{name}: the groove mixes fresh oil with warm", 313.15 < groove < value(found[name], "temperature.maximum"), f"{groove} K")
+        # What comes in is heated to this temperature, but for what the walls take: less than all of the loss.
+        rise = value(found[name], "power_loss.lumped") / (2000 * value(found[name], "mass_flow.lumped"))
+        h.true(f"{name}: one temperature by the balance of heat", 0.5 * rise < one - 313.15 < 1.2 * rise, f"{one} K, {rise} K without walls")
+        h.close(f"{name}: load of a film of that temperature [N]", value(found[name], "load.lumped.y"), -6000, 0.2 * 6000)
     bronze = found["bronze bush"]
     h.close("place in the summary", value(bronze, "eccentricity"), tables["bronze bush"]["eccentricity"][-1], 0)
     h.true("less viscous oil carries the load in a thinner film", (tables[walls[2]]["eccentricity"] > tables[walls[0]]["eccentricity"]).all())
@@ -274,6 +281,8 @@ def load(h):
     h.close("the same on two ranks", value(shared, "eccentricity"), e, 1e-6)
     h.close("the same on two ranks [rad]", value(shared, "attitude"), angle, 1e-6)
     lost = subprocess.run(h.command(deck, h.work / "lost", [*few, "studies.1.thd.load=1e9 kN"], launcher=[]), capture_output=True, text=True)
+    gas = h.run("../thd/solids.yaml", "gas", ["studies.*.thd.cells=[24, 12, 4]", "studies.*.thd.meshes=1"], launcher=[])
+    h.true("a gas has no heat balance of one temperature", not any("lumped" in key for study in gas.values() for key in study["values"]))
     h.true("what no film carries is said", lost.returncode == 3 and "no place of the journal" in lost.stdout + lost.stderr, f"{lost.returncode} {(lost.stdout + lost.stderr)[-400:]}")
 
 

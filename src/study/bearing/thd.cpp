@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "study/bearing/thd_load.hpp"
+#include "study/bearing/thd_lumped.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
@@ -105,6 +106,7 @@ StudyResult Thd::run(Context& context) {
     put_thd_values(summary, film, options);
     const double residual = film.thd().budget().residual();
     put_thd_bars(context, options, geometry, speed, {sweep.place(), {}}, residual, pieces);
+    put_lumped(summary, film, options, geometry);
     const thermal::ThdSolve& cost = film.cost();
     summary.set("energy_residual", residual, "W");
     summary.set("iterations", cost.iterations, "1");

@@ -82,6 +82,7 @@ std::vector<int> mixed_of(const ThdOptions& o, const thermal::Rows& rows, const 
 ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
     : rows_(mesh_of(o, g), comm),
       flow_(flow_of(o, rows_.mesh(), speed)),
+      supply_(supply_of(o, rows_, flow_)),
       ambient_(o.ambient.temperature),
       clearance_(g.clearance) {
   const thermal::Mesh& mesh = rows_.mesh();
@@ -97,7 +98,7 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   setup.bush = o.bush;
   setup.journal = o.journal;
   setup.inlet_from_bush = !o.orifices.empty() && o.orifices.front().inlet == thermal::OrificeRing::Inlet::bush;
-  setup.supply = supply_of(o, rows_, flow_);
+  setup.supply = supply_;
   setup.mixed = mixed_of(o, rows_, flow_);
   setup.tolerance = o.tolerance;
   setup.most_iterations = o.most_iterations;
@@ -121,11 +122,33 @@ std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move, s
 }
 
 ThdFilm::Isothermal ThdFilm::isothermal() const {
-  thermal::FilmFlow flow(rows_, flow_, thickness_);
-  flow.set_temperature(
-      std::vector<double>(thickness_.size() * static_cast<std::size_t>(rows_.mesh().across), ambient_));
-  (void)flow.solve();
-  return {flow.pressure(), flow.report(flow.flow())};
+  std::vector<double> pressure;
+  return isothermal(ambient_, pressure);
+}
+
+ThdFilm::Isothermal ThdFilm::isothermal(double temperature, std::vector<double>& pressure) const {
+  const thermal::Mesh& mesh = rows_.mesh();
+  const auto l = static_cast<std::size_t>(mesh.across);
+  thermal::FilmFlow film(rows_, flow_, thickness_);
+  film.set_temperature(std::vector<double>(thickness_.size() * l, temperature));
+  if (!pressure.empty()) film.start(pressure);
+  (void)film.solve();
+  pressure = film.pressure();
+  const thermal::Flow flow = film.flow();
+  double sums[2] = {0, 0};  // kg/s, kg K/s
+  const auto enters = [&](double mass, double of) {
+    if (mass <= 0) return;
+    sums[0] += mass;
+    sums[1] += mass * of;
+  };
+  for (std::size_t cell = 0; cell < flow.inflow.size(); ++cell) enters(flow.inflow[cell], supply_[cell / l]);
+  const std::size_t row = static_cast<std::size_t>(mesh.nodes_around()) * l;
+  for (std::size_t k = 0; k < row; ++k) {
+    if (rows_.begin() == 0) enters(flow.along[k], ambient_);
+    if (rows_.end() == mesh.nodes_along()) enters(-flow.along[flow.along.size() - row + k], ambient_);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, rows_.comm());
+  return {film.pressure(), film.report(flow), sums[0], sums[0] > 0 ? sums[1] / sums[0] : ambient_};
 }
 
 }  // namespace whirl::study

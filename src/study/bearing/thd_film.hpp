@@ -30,14 +30,20 @@ public:
   bool solve() { return (cost_ = thd_->solve()).converged; }
   [[nodiscard]] const thermal::ThdSolve& cost() const { return cost_; }
   [[nodiscard]] bool is_gas() const { return flow_.fluid.gas; }
-  /// Pressure Pa [r, n] and what it does with the temperature of the ambient everywhere.
+  [[nodiscard]] const thermal::Fluid& fluid() const { return flow_.fluid; }
+  /// Pressure Pa [r, n] and what it does with one temperature everywhere.
   struct Isothermal {
     std::vector<double> pressure;
     thermal::FlowReport report;
+    double drawn = 0;  ///< kg/s, of all that comes in
+    double inlet = 0;  ///< K, mean temperature of that
   };
+  /// Before solids grow, at the temperature of the ambient / at another, K: `pressure` is as in force_beside().
+  /// Collective.
   [[nodiscard]] Isothermal isothermal() const;
-  /// N, on the journal `move` m from where it is, with the temperatures that the film has. `pressure` Pa [r, n] is where
-  /// the search for it begins, empty: from none, and what it finds. Collective. Throws core::NotConverged.
+  [[nodiscard]] Isothermal isothermal(double temperature, std::vector<double>& pressure) const;
+  /// N, on the journal `move` m from where it is, with the temperatures that the film has. `pressure` Pa [r, n] is
+  /// where the search for it begins, empty: from none, and what it finds. Collective. Throws core::NotConverged.
   [[nodiscard]] std::array<double, 2> force_beside(const std::array<double, 2>& move,
                                                    std::vector<double>& pressure) const;
 
@@ -45,6 +51,7 @@ private:
   thermal::Rows rows_;
   std::vector<double> thickness_;
   thermal::FilmFlowOptions flow_;
+  std::vector<double> supply_;  // K [r, n]
   double ambient_, clearance_;
   std::array<double, 2> place_;
   std::unique_ptr<thermal::Thd> thd_;
