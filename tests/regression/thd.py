@@ -191,6 +191,18 @@ def resume(h):
         h.true(f"{before} ranks, then {ranks}: nothing is left behind", not list(out.glob("*.checkpoint.h5")))
 
 
+def resume_load(h):
+    """A sweep under a load that is killed goes on from the place of the last speed: to the last bit."""
+    words = ["studies.*.thd.cells=[40, 16, 4]", "studies.*.thd.meshes=2", "studies.1.thd.speeds=[" + ", ".join(f"{k}00 rpm" for k in range(15, 25)) + "]",
+             "studies.{2,3}.thd.speeds=[2000 rpm]"]
+    deck, out = "../thd/oil_groove.yaml", h.work / "killed"
+    h.run(deck, "undisturbed", words, launcher=[])
+    h.kill_at_checkpoint(deck, out, words)
+    h.run(deck, out.name, words, ["--resume"], [])
+    for what, off, within in same_results(h.work / "undisturbed", out, 0):
+        h.close(what, off, 0, within)
+
+
 def mesh(h):
     """A series of meshes."""
     reference = json.loads((h.source / "tests/reference/thd/bearing_a.json").read_text())["walls_300K"]
@@ -324,5 +336,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "load": load, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
     harness.finish()
