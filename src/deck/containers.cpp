@@ -10,6 +10,7 @@
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/load.hpp"
+#include "whirl/deck/one_or_more.hpp"
 
 namespace whirl::deck {
 namespace {
@@ -20,9 +21,15 @@ class ListCodec : public Codec, public Knows {
 public:
   ListCodec(CodecPtr item, ListAccess a, bool isotropic = false)
       : item_(std::move(item)), a_(std::move(a)), isotropic_(isotropic) {}
+  [[nodiscard]] CodecPtr single() const {
+    auto out = std::make_shared<ListCodec>(item_, a_);
+    out->single_ = true;
+    return out;
+  }
   [[nodiscard]] CodecPtr isotropic() const { return std::make_shared<ListCodec>(item_, a_, true); }
   void read(const Node& node, void* value, Reading& r) const override {
     if (isotropic_ && node.kind == Node::Kind::scalar) return read(spread(node), value, r);
+    if (single_ && node.kind == Node::Kind::scalar) return read_one(node, value, r);
     if (node.kind != Node::Kind::list)
       return r.problems.add(node.place, fmt::format("{} must be {}", name_of_value(node), type()));
     if (!a_.resize(value, node.items.size()))
@@ -46,11 +53,12 @@ public:
       n.set("minItems", Node::scalar(fmt::format("{}", a_.fixed)));
       n.set("maxItems", Node::scalar(fmt::format("{}", a_.fixed)));
     }
-    return isotropic_ ? either_schema(item_->schema(whole), std::move(n)) : n;
+    return isotropic_ || single_ ? either_schema(item_->schema(whole), std::move(n)) : n;
   }
   std::string type() const override {
     if (isotropic_)
       return fmt::format("a {}, or a list of {}", item_->type(), a_.fixed == 4 ? "4: xx, xy, yx, yy" : "2: x, y");
+    if (single_) return fmt::format("a {}, or a list of such", item_->type());
     return a_.fixed > 0 ? fmt::format("a list of {}, each a {}", a_.fixed, item_->type())
                         : fmt::format("a list, each item a {}", item_->type());
   }
@@ -69,6 +77,10 @@ public:
   }
 
 private:
+  void read_one(const Node& node, void* value, Reading& r) const {
+    a_.resize(value, 1);
+    item_->read(node, a_.at(value, 0), r);
+  }
   // One value is that of x and y; of a matrix xx, xy, yx, yy the diagonal.
   Node spread(const Node& one) const {
     Node n = Node::list();
@@ -83,7 +95,7 @@ private:
   }
   CodecPtr item_;
   ListAccess a_;
-  bool isotropic_ = false;
+  bool isotropic_ = false, single_ = false;
 };
 
 class TableCodec : public Codec, public Knows {
@@ -277,6 +289,11 @@ CodecPtr isotropic_codec(const CodecPtr& list) {
   const auto* codec = dynamic_cast<const ListCodec*>(list.get());
   core::require(codec != nullptr, "only a list of numbers is isotropic");
   return codec->isotropic();
+}
+CodecPtr single_codec(const CodecPtr& list) {
+  const auto* codec = dynamic_cast<const ListCodec*>(list.get());
+  core::require(codec != nullptr, "only a list may be a single number");
+  return codec->single();
 }
 CodecPtr table_codec(const Structure& row, ListAccess access, std::string scalar) {
   return std::make_shared<TableCodec>(row, std::move(access), std::move(scalar));

@@ -3,9 +3,11 @@
 #include <cmath>
 
 #include "film/banded_pad.hpp"
-#include "film/truncation.hpp"
+#include "whirl/core/truncation.hpp"
 
 namespace whirl::film {
+
+using core::EdgeInterval, core::Interval, core::truncated_edge, core::truncated_linear;
 
 BandedPad::BandedPad(const Pad& pad, const Reynolds& options, const Lubricant& lubricant)
     : PadEquations(pad, options, lubricant),

@@ -13,10 +13,12 @@
 #include "film/mobility.hpp"
 #include "film/pack.hpp"
 #include "film/pad.hpp"
-#include "film/truncation.hpp"
+#include "whirl/core/truncation.hpp"
 
 namespace whirl::film {
 namespace {
+
+using core::EdgeInterval, core::Interval, core::truncated_edge, core::truncated_linear;
 
 class ModalPad final : public PadSolver {
 public:

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/truncation.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/truncation.hpp"
 
 namespace whirl::film {
+
+using core::EdgeInterval, core::Interval, core::truncated_edge, core::truncated_linear;
 namespace {
 
 // Conduction across a film of L layers, in lambda/h: out of layer k flows (K T - b)_k. One layer is a parabola, which a

@@ -144,6 +144,10 @@ void describe(deck::Description<SupplyGroove>& d) {
   d.add("length", &G::length, "m", positive, "length about the mid-plane; that of the bearing if not given");
   d.add("pressure", &G::pressure, "Pa", deck::non_negative, "pressure in it, above that of the ambient");
   d.add("temperature", &G::temperature, "K", positive, "temperature of the fresh oil");
+  d.add(
+      "mixing", &G::mixing,
+      "fresh oil and what the journal carries over are mixed in the groove to one temperature; false: what is carried "
+      "over passes beside the fresh oil");
 }
 
 void describe(deck::Description<WallOptions>& d) {

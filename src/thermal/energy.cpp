@@ -191,6 +191,11 @@ int Energy::sweeps() const {
   return lines_->sweeps();
 }
 
+std::vector<double> Energy::mixed(Vec temperature) {
+  const ReadArray in(temperature);
+  return terms_->grooves().means(rows_, in.data());
+}
+
 EnergyBudget Energy::budget(Vec temperature) {
   check(VecCopy(temperature, rise_.get()));
   check(VecShift(rise_.get(), -terms_->surroundings().ambient));

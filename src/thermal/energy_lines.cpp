@@ -57,7 +57,8 @@ void EnergyLines::factor(int i, int j) {
   const double* above = flow.along.data() + node_above * l;
   const double *across = flow.across.data() + node * (l + 1), *inflow = flow.inflow.data() + first;
   const double around = terms_.around(node) + (entry ? 0.0 : terms_.around(node_left));
-  const double sides = around + terms_.along(node) + terms_.along(node_above), layer = terms_.across(node);
+  const double sides = terms_.grooves().at(node) + around + terms_.along(node) + terms_.along(node_above),
+               layer = terms_.across(node);
   const double* mix = terms_.mixing(node);
   const auto conduct = [&](int k) { return mix ? layer * mix[k] : layer; };  // from layer k - 1 to k
   double* inverse = inverse_.data() + first;

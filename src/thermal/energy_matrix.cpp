@@ -101,6 +101,7 @@ void EnergyTerms::fill(Mat matrix) const {
         const double rise = laws_.varied() ? at_[at(rows_.cell(k, i, j))] : 0.0;
         add(id(k, i, j), id(k, i, j), wall_heat(journal, node, rise).slope);
       };
+      for (int k = 0; k < l && grooves_.at(node) > 0; ++k) add(id(k, i, j), id(k, i, j), grooves_.at(node));
       wall(false, 0);
       wall(true, l - 1);
     }

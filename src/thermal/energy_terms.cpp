@@ -36,9 +36,12 @@ void EnergyTerms::set_surroundings(Surroundings surroundings) {
       throw core::Bug("there is a temperature of the supply of each column of the film");
     if (!surroundings.entering.empty() && surroundings.entering.size() != flow_.entry.size())
       throw core::Bug("there is a temperature of each flow into a pad");
+    if (!surroundings.mixed.empty() && surroundings.mixed.size() != nodes)
+      throw core::Bug("there is a groove or none of each column of the film");
   });
   surroundings_ = std::move(surroundings);
   laws_.set_ambient(surroundings_.ambient);
+  if (!across_.empty()) grooves_.update(rows_, flow_, laws_.heat_capacity(), across_, surroundings_.mixed);
 }
 
 void EnergyTerms::update(const std::vector<double>& thickness, Surroundings surroundings) {
@@ -71,6 +74,7 @@ void EnergyTerms::update(const std::vector<double>& thickness, Surroundings surr
       across_[node] = k * mesh.width(i) * mesh.depth(j) * l / row[i];
     }
   }
+  grooves_.update(rows_, flow_, laws_.heat_capacity(), across_, surroundings_.mixed);
   fed_.assign(nodes, 0);
   for (std::size_t c = 0; c < cells; ++c)
     if (flow_.inflow[c] != 0) fed_[c / at(l)] = 1;
@@ -251,6 +255,7 @@ void EnergyTerms::boundaries(const double* rise, double given, double* out) cons
   const int n = mesh.nodes_around(), l = mesh.across;
   const double c = laws_.heat_capacity();
   const bool varied = laws_.varied();
+  grooves_.add(rows_, rise, out);
   const auto inside = [&](PetscInt cell) {
     if (!varied) return rise[cell];
     return given != 0 ? laws_.content(rise[cell]) : laws_.capacity(at_[at(cell)]) * rise[cell];

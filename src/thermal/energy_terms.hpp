@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "thermal/energy_laws.hpp"
+#include "thermal/energy_mixing.hpp"
 #include "thermal/halo.hpp"
 #include "whirl/thermal/energy.hpp"
 
@@ -41,6 +42,7 @@ public:
   [[nodiscard]] const EnergyModel& model() const { return model_; }
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
   [[nodiscard]] const EnergyLaws& laws() const { return laws_; }
+  [[nodiscard]] const GrooveMixing& grooves() const { return grooves_; }
   /// [l + 1] of a column, null where the flow is laminar.
   [[nodiscard]] const double* mixing(PetscInt node) const {
     const auto layers = static_cast<std::size_t>(rows_.mesh().across) + 1;
@@ -90,6 +92,7 @@ private:
   EnergyModel model_;
   EnergyLaws laws_;
   Surroundings surroundings_;
+  GrooveMixing grooves_;
   std::vector<double> around_, along_, across_;  // W/K [r, n], [r + 1, n], [r, n], of one face
   std::vector<char> fed_;                        // [r, n]
   Halo halo_;

@@ -26,6 +26,7 @@ void FilmFlow::set_thickness(const std::vector<double>& thickness) {
 void FilmFlow::start(const std::vector<double>& pressure) {
   core::require(pressure.size() == w_->pressure.size(), "a pressure for each node of this rank");
   w_->pressure = pressure;
+  w_->cold = false;
 }
 int FilmFlow::solve() {
   return w_->solve();
@@ -321,6 +322,8 @@ void FilmFlow::Work::load(const std::vector<double>& p) {
 
 int FilmFlow::Work::solve() {
   if (!snes) prepare_solver();
+  if (cold) begin_on_half();
+  cold = false;
   load(pressure);
   check(SNESSetTolerances(snes.get(), 1e-13 * typical, 1e-30, 1e-14, 60, 10000));
   gate.rethrow(SNESSolve(snes.get(), nullptr, u.get()));

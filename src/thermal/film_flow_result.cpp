@@ -5,6 +5,7 @@
 #include "thermal/film_flow_work.hpp"
 #include "thermal/profile.hpp"
 #include "thermal/row_halo.hpp"
+#include "whirl/core/truncation.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -148,14 +149,24 @@ FlowReport FilmFlow::report(const Flow& flow) const {
     for (int k = 0; k < l; ++k) out += mass[k] / (w.density(a, b, at(k)) * dense);
     return out * (p[b] - p[a]);
   };
+  // Pressure times normal is linear between two nodes of a row, and acts where the pressure is above the ambient's: it
+  // is cut off within cells, not by node, so that the force goes smoothly with the place of the journal. The
+  // derivatives of the integral of max(p, 0) are the integrals of both hat functions where p > 0. A whole film is the
+  // trapezoidal rule.
+  const bool truncated = w.options.cavitation == FilmFlowOptions::Cavitation::half_sommerfeld;
+  const auto press = [&](double left, double right, double angle, double next, double area) {
+    double by_left = 0.5, by_right = 0.5;
+    if (truncated) {
+      const auto part = core::truncated_linear(left, right);
+      by_left = part.d_left;
+      by_right = part.d_right;
+    }
+    sums[0] -= (left * by_left * std::cos(angle) + right * by_right * std::cos(next)) * area;
+    sums[1] -= (left * by_left * std::sin(angle) + right * by_right * std::sin(next)) * area;
+  };
   for (int q = w.rows.begin(); q < w.rows.end(); ++q)
     for (int i = 0; i < n; ++i) {
       const auto node = at(w.rows.node(i, q));
-      double over = w.pressure[node] - w.options.ambient;
-      if (w.options.cavitation == FilmFlowOptions::Cavitation::half_sommerfeld) over = std::max(over, 0.0);
-      const double area = mesh.width(i) * mesh.depth(q);
-      sums[0] -= over * std::cos(mesh.theta(i)) * area;
-      sums[1] -= over * std::sin(mesh.theta(i)) * area;
       most[0] = std::max(most[0], std::abs(flow.across[node * at(l + 1) + at(l)]));
       most[1] = std::max(most[1], w.pressure[node]);
       for (int k = 0; k < l; ++k) {
@@ -169,6 +180,8 @@ FlowReport FilmFlow::report(const Flow& flow) const {
                              flow.along.data() + (static_cast<std::ptrdiff_t>(q - w.rows.begin()) * n + i) * l);
       if (!mesh.closed && i == n - 1) continue;
       const std::size_t a = w.halo(i, q), b = w.halo((i + 1) % n, q);
+      press(p[a] - w.options.ambient, p[b] - w.options.ambient, mesh.theta(i), mesh.theta(i + 1),
+            mesh.dx() * mesh.depth(q));
       w.face(a, b, profile);
       sums[6] += expansion(a, b, flow.around.data() + w.rows.cell(0, i, q));
       const double tau = (p[b] - p[a]) / mesh.dx() * (0.5 * (w.h[a] + w.h[b]) - profile.neutral) +

@@ -32,6 +32,8 @@ struct FilmFlow::Work {
   void residual(Vec state, Vec out) const;
   void jacobian(Vec state, Mat matrix) const;
   int solve();
+  /// Pressure of every other node around, in between their mean.
+  void begin_on_half();
 
   static std::size_t at(PetscInt k) { return static_cast<std::size_t>(k); }
   /// Place of a node in arrays with a row before and one behind.
@@ -58,6 +60,7 @@ struct FilmFlow::Work {
   core::NonlinearSolver snes;
   PetscInt first = 0, first_before = 0, first_behind = 0;  // numbers: of this rank, of the rows beside
   double typical = 0;
+  bool cold = true;  // no pressure was given or found before
   core::Gate gate{rows.comm()};
 
 private:

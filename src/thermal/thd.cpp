@@ -157,6 +157,7 @@ struct Thd::Work {
     out.journal = {journal.conductance, journal.behind};
     out.ambient = setup.ambient;
     out.supply = setup.supply;
+    out.mixed = setup.mixed;
     if (setup.inlet_from_bush) {
       out.supply.resize(half.size());
       for (std::size_t c = 0; c < half.size(); ++c) out.supply[c] = surface(bush, c);
@@ -351,6 +352,9 @@ const Flow& Thd::flows() const {
 }
 const std::vector<double>& Thd::temperature() const {
   return w_->temperature;
+}
+std::vector<double> Thd::mixed() {
+  return w_->energy->mixed(w_->film_temperature.get());
 }
 EnergyBudget Thd::budget() {
   return w_->energy->budget(w_->film_temperature.get());

@@ -4,10 +4,12 @@
 #include <random>
 
 #include "film/cases.hpp"
-#include "film/truncation.hpp"
+#include "whirl/core/truncation.hpp"
 
 namespace whirl::film::testing {
 namespace {
+
+using core::truncated_edge, core::truncated_linear;
 
 using C = Reynolds::Cavitation;
 

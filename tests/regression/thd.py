@@ -191,6 +191,18 @@ def resume(h):
         h.true(f"{before} ranks, then {ranks}: nothing is left behind", not list(out.glob("*.checkpoint.h5")))
 
 
+def resume_load(h):
+    """A sweep under a load that is killed goes on from the place of the last speed: to the last bit."""
+    words = ["studies.*.thd.cells=[40, 16, 4]", "studies.*.thd.meshes=2", "studies.1.thd.speeds=[" + ", ".join(f"{k}00 rpm" for k in range(15, 25)) + "]",
+             "studies.{2,3}.thd.speeds=[2000 rpm]"]
+    deck, out = "../thd/oil_groove.yaml", h.work / "killed"
+    h.run(deck, "undisturbed", words, launcher=[])
+    h.kill_at_checkpoint(deck, out, words)
+    h.run(deck, out.name, words, ["--resume"], [])
+    for what, off, within in same_results(h.work / "undisturbed", out, 0):
+        h.close(what, off, 0, within)
+
+
 def mesh(h):
     """A series of meshes."""
     reference = json.loads((h.source / "tests/reference/thd/bearing_a.json").read_text())["walls_300K"]
@@ -228,22 +240,62 @@ def solids(h):
 
 
 def oil(h):
-    """An oil bearing with a groove: bush of bronze, cold, and without heat."""
-    few = ["studies.*.thd.cells=[72, 16, 10]"]
+    """An oil bearing with a groove under a load: bush of bronze, cold, and without heat."""
+    walls = ("cold bush", "bronze bush", "bush without heat")
+    few = ["studies.*.thd.cells=[40, 16, 6]", "studies.*.thd.meshes=1"]
     found = h.run("../thd/oil_groove.yaml", "oil", few)
-    bronze, cold, none = (found[name] for name in ("bronze bush", "cold bush", "bush without heat"))
-    peak = [value(s, "temperature.maximum") for s in (cold, bronze, none)]
-    h.true("the film is warmest where the bush takes no heat", peak[0] < peak[2] and peak[1] < peak[2], f"{peak} K")
-    at_bush = [value(s, "temperature.bush.maximum") for s in (cold, bronze, none)]
-    h.true("peak of the bush between cold and without heat", at_bush[0] < at_bush[1] < at_bush[2], f"{at_bush} K")
     with h5py.File(h.work / "oil/results.h5") as f:
-        peaks = f["studies/bronze bush/budget/peak_bush_temperature"][:]
-        budget = {k: f[f"studies/bronze bush/budget/{k}"][:] for k in ("heat", "heat_bush", "heat_journal", "enthalpy")}
-    h.true("it rises with the speed", all(numpy.diff(peaks) > 0), f"{peaks} K")
-    for k, heat in enumerate(budget["heat"]):
-        h.close(f"point {k + 1}: heat that leaves [W]", budget["heat_bush"][k] + budget["heat_journal"][k] + budget["enthalpy"][k], heat, 1e-8 * heat)
-    fine = h.run("../thd/oil_groove.yaml", "fine", ["studies.*.thd.cells=[108, 24, 15]", "studies.*.thd.speeds=[4000 rpm]"])
-    h.close("peak of the bush on a finer mesh [K]", value(fine["bronze bush"], "temperature.bush.maximum"), at_bush[1], 1)
+        tables = {name: {k: v[:] for k, v in f[f"studies/{name}/budget"].items()} for name in walls}
+    peaks = numpy.array([tables[name]["peak_bush_temperature"] for name in walls])
+    h.true("peak of the bush between cold and without heat", (numpy.diff(peaks, axis=0) > 0).all(), f"{peaks} K")
+    h.true("it rises with the speed", (numpy.diff(peaks[1:], axis=1) > 0).all(), f"{peaks} K")
+    h.close("a cold bush is as warm as the oil that comes [K]", peaks[0].max(), 313.15, 1e-9)
+    for name, table in tables.items():
+        h.close(f"{name}: sideways [N]", numpy.abs(table["load_x"]).max(), 0, 1e-6 * 6000)
+        h.close(f"{name}: load [N]", numpy.abs(table["load_y"] + 6000).max(), 0, 1e-6 * 6000)
+        h.true(f"{name}: the journal rises with the speed", all(numpy.diff(table["eccentricity"]) < 0), f"{table['eccentricity']}")
+        gone = table["heat_bush"] + table["heat_journal"] + table["enthalpy"]
+        h.close(f"{name}: heat that leaves [W]", numpy.abs(gone - table["heat"]).max(), 0, 1e-8 * table["heat"].max())
+    for name in walls:
+        groove, one = value(found[name], "temperature.groove.1"), value(found[name], "temperature.lumped")
+        h.true(f"{name}: the groove mixes fresh oil with warm", 313.15 < groove < value(found[name], "temperature.maximum"), f"{groove} K")
+        # What comes in is heated to this temperature, but for what the walls take: less than all of the loss.
+        rise = value(found[name], "power_loss.lumped") / (2000 * value(found[name], "mass_flow.lumped"))
+        h.true(f"{name}: one temperature by the balance of heat", 0.5 * rise < one - 313.15 < 1.2 * rise, f"{one} K, {rise} K without walls")
+        h.close(f"{name}: load of a film of that temperature [N]", value(found[name], "load.lumped.y"), -6000, 0.2 * 6000)
+    bronze = found["bronze bush"]
+    h.close("place in the summary", value(bronze, "eccentricity"), tables["bronze bush"]["eccentricity"][-1], 0)
+    h.true("less viscous oil carries the load in a thinner film", (tables[walls[2]]["eccentricity"] > tables[walls[0]]["eccentricity"]).all())
+
+
+def load(h):
+    """A journal under a load: it is where the same place gives that load, on any ranks; what cannot be carried is said."""
+    few = ["studies.*.thd.cells=[40, 16, 4]", "studies.*.thd.meshes=1", "studies.*.thd.speeds=[2000 rpm]"]
+    deck, name = "../thd/oil_groove.yaml", "bronze bush"
+    found = h.run(deck, "load", few, launcher=[])[name]
+    e, angle = (value(found, k) for k in ("eccentricity", "attitude"))
+    h.true("below and ahead of the load", 0.2 < e < 0.9 and -1.57 < angle < 0, f"{e}, {angle} rad")
+    text = (h.source / "inputs/thd/oil_groove.yaml").read_text()
+    lines = f"      eccentricity: {e!r}\n      attitude: {angle!r} rad\n"
+    both, there = h.work / "both.yaml", h.work / "place.yaml"
+    both.write_text(text.replace("      load: 6 kN\n", "      load: 6 kN\n" + lines, 1))
+    there.write_text(text.replace("      load: 6 kN\n", lines, 1))
+    refused = subprocess.run(h.command(both, h.work / "refused", few, launcher=[]), capture_output=True, text=True)
+    at = text[:text.index("      load: 6 kN\n")].count("\n") + 2
+    said = refused.stdout + refused.stderr
+    h.true("place and load together are refused", refused.returncode == 2 and f"both.yaml:{at}:" in said and "leave 'eccentricity' out" in said, said[-300:])
+    back = h.run(there, "place", few, launcher=[])[name]
+    h.close("load there, sideways [N]", value(back, "load.x"), 0, 2e-6 * 6000)
+    h.close("load there [N]", value(back, "load.y"), -6000, 2e-6 * 6000)
+    pair = h.run(deck, "pair", [*few, "studies.1.thd.load=[0 kN, -6 kN]"], launcher=[])[name]
+    h.close("[x, y] is the same", value(pair, "eccentricity"), e, 0)
+    shared = h.run(deck, "shared", few, launcher=[*h.launcher, "-n", "2"])[name]
+    h.close("the same on two ranks", value(shared, "eccentricity"), e, 1e-6)
+    h.close("the same on two ranks [rad]", value(shared, "attitude"), angle, 1e-6)
+    lost = subprocess.run(h.command(deck, h.work / "lost", [*few, "studies.1.thd.load=1e9 kN"], launcher=[]), capture_output=True, text=True)
+    gas = h.run("../thd/solids.yaml", "gas", ["studies.*.thd.cells=[24, 12, 4]", "studies.*.thd.meshes=1"], launcher=[])
+    h.true("a gas has no heat balance of one temperature", not any("lumped" in key for study in gas.values() for key in study["values"]))
+    h.true("what no film carries is said", lost.returncode == 3 and "no place of the journal" in lost.stdout + lost.stderr, f"{lost.returncode} {(lost.stdout + lost.stderr)[-400:]}")
 
 
 def same_values(h, what, one, other):
@@ -284,5 +336,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
     harness.finish()

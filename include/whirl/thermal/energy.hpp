@@ -34,6 +34,8 @@ struct Surroundings {
   double ambient = 300;          // K, of what flows in through the ends
   std::vector<double> supply;    // K [r, n], of what comes from orifices and grooves; empty: ambient
   std::vector<double> entering;  // K [r, l], of what flows into cells i = 0 of a pad; empty: ambient
+  // [r, n], the groove of a node whose oil is mixed to one temperature, counted from 1, 0 of none; empty: there is none
+  std::vector<int> mixed{};
 };
 
 /// The lubricant and the order of the scheme. Where a law falls to zero or below, DomainError ends the solution.
@@ -100,13 +102,16 @@ public:
   void linearise(Vec temperature);
   /// W/K: exact derivative of residual(), as a product.
   [[nodiscard]] Mat jacobian() const { return jacobian_.get(); }
-  /// The same as a sparse matrix, in the numbering of rows.cells(). Collective.
+  /// The same as a sparse matrix, in the numbering of rows.cells(), without the means of grooves that are mixed, which
+  /// join all cells of a groove. Collective.
   [[nodiscard]] core::Matrix assemble() const;
   /// x = one application of the line preconditioner to r. Collective.
   void precondition(Vec r, Vec x);
   /// Sweeps of each application.
   [[nodiscard]] int sweeps() const;
   [[nodiscard]] EnergyBudget budget(Vec temperature);
+  /// K, of each groove that is mixed. Collective.
+  [[nodiscard]] std::vector<double> mixed(Vec temperature);
   /// - [r, n]: how much better than half_layer() says the half layer at a wall conducts, by the conductivity there over
   /// that at the ambient's temperature and by turbulence.
   [[nodiscard]] std::vector<double> wall_factors(Vec temperature, bool journal);

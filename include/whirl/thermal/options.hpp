@@ -50,6 +50,7 @@ struct SupplyGroove {
   std::optional<double> length;  // m, about the mid-plane; that of the bearing if absent
   double pressure = 0;           // Pa, above ambient
   double temperature = 313.15;   // K
+  bool mixing = false;           // of fresh oil with what comes from upstream, to one temperature
 };
 
 /// What a wall of the film is.

@@ -18,6 +18,7 @@ struct ThdSetup {
   WallOptions bush, journal;
   bool inlet_from_bush = false;  // what orifices give has the temperature of the bush there, else `supply`
   std::vector<double> supply;    // K [r, n], of what comes from orifices and grooves
+  std::vector<int> mixed{};      // [r, n], the groove of a node that is mixed, from 1, 0 of none; empty: there is none
   double tolerance = 1e-9;       // of temperatures, relative to the ambient's
   int most_iterations = 60;
 };
@@ -57,6 +58,8 @@ public:
   [[nodiscard]] const std::vector<double>& temperature() const;
   /// W. Collective.
   [[nodiscard]] EnergyBudget budget();
+  /// K, of each groove that is mixed. Collective.
+  [[nodiscard]] std::vector<double> mixed();
   /// Null where the wall is none.
   [[nodiscard]] const Solid* bush() const;
   [[nodiscard]] const Solid* journal() const;

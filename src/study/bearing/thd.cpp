@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "study/bearing/thd_film.hpp"
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "study/bearing/thd_load.hpp"
+#include "study/bearing/thd_lumped.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
@@ -30,6 +35,17 @@ struct Sweep {
       data.share = {static_cast<std::size_t>(r.begin()), static_cast<std::size_t>(r.mesh().nodes_along())};
     out.put("last", std::move(data));
     return out;
+  }
+
+  // Of the journal at the last speed, in clearances.
+  [[nodiscard]] std::array<double, 2> place() const {
+    const auto column = [&](std::string_view name) {
+      for (std::size_t c = 0; c < thd_columns().size(); ++c)
+        if (thd_columns()[c].name == name) return rows.back()[c];
+      throw core::Bug("a column of the table is missing");
+    };
+    const double e = column("eccentricity"), angle = column("attitude");
+    return {e * std::cos(angle), e * std::sin(angle)};
   }
 
   void read(const io::Group& from) {
@@ -74,10 +90,13 @@ StudyResult Thd::run(Context& context) {
   for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
     const double speed = options.speeds[k].value;
     results.progress(fmt::format("speed {:.6g} rad/s", speed));
-    ThdFilm film(context.comm, options, geometry, speed);
-    if (k > 0 && last.empty()) last = last_state(pieces.state(), film.rows());
-    if (k > 0) film.thd().start(last);
-    if (!film.solve()) sweep.unsettled.push_back(fmt::format("{:.6g} rad/s", speed));
+    FilmStart start;
+    if (k > 0 && last.empty())
+      last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
+    if (k > 0) start = {sweep.place(), last};
+    const SolvedFilm solved = solve_film(context.comm, options, geometry, speed, start);
+    ThdFilm& film = *solved.film;
+    if (!solved.settled) sweep.unsettled.push_back(fmt::format("{:.6g} rad/s", speed));
     sweep.rows.push_back(thd_row(film, speed));
     if (k + 1 < options.speeds.size()) {
       last = film.thd().state();
@@ -86,11 +105,13 @@ StudyResult Thd::run(Context& context) {
     }
     put_thd_values(summary, film, options);
     const double residual = film.thd().budget().residual();
-    put_thd_bars(context, options, geometry, speed, residual, pieces);
+    put_thd_bars(context, options, geometry, speed, {sweep.place(), {}}, residual, pieces);
+    put_lumped(summary, film, options, geometry);
     const thermal::ThdSolve& cost = film.cost();
     summary.set("energy_residual", residual, "W");
     summary.set("iterations", cost.iterations, "1");
     summary.set("iterations.pressure", cost.pressure, "1");
+    if (!options.load.values.empty()) summary.set("iterations.position", solved.films, "1");
     summary.set("iterations.energy_newton", cost.energy_newton, "1");
     summary.set("iterations.energy_krylov", cost.energy_krylov, "1");
     auto& rounds = group.child("iterations");

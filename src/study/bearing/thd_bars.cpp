@@ -33,13 +33,14 @@ std::array<double, 2> displacement(const ThdOptions& o, const std::array<int, 3>
 
 // Values on another mesh with the residual of the energy behind them; not a number where there is no answer.
 std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                              std::size_t count) {
+                              const FilmStart& start, std::size_t count) {
   std::vector<double> out(count + 1, io::no_value);
   // A mesh of few rows is solved by each rank for itself.
   const bool shared = options.cells[1] + 1 >= 2 * core::size_of(comm);
   const bool answered = has_answer([&] {
-    ThdFilm film(shared ? comm : MPI_COMM_SELF, options, geometry, speed);
-    if (!film.solve()) throw core::NotConverged("temperatures did not settle");
+    const SolvedFilm solved = solve_film(shared ? comm : MPI_COMM_SELF, options, geometry, speed, start);
+    ThdFilm& film = *solved.film;
+    if (!solved.settled) throw core::NotConverged("temperatures did not settle");
     io::StudySummary there;
     put_thd_values(there, film, options);
     core::require(there.values.size() == count, "the same values on all meshes");
@@ -68,7 +69,7 @@ std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double len
 }
 
 void put_thd_bars(Context& context, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                  double energy_residual, Pieces& pieces) {
+                  const FilmStart& start, double energy_residual, Pieces& pieces) {
   const std::vector<std::array<int, 3>> meshes = thd_meshes(options, geometry.length);
   io::StudySummary& summary = context.results.summary();
   const auto total = [](const std::array<int, 3>& c) { return static_cast<double>(c[0]) * c[1] * c[2]; };
@@ -85,7 +86,7 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
       ThdOptions there = options;
       there.cells = meshes[m];
       for (thermal::WallOptions* wall : {&there.bush, &there.journal}) wall->layers = std::max(2, wall->layers >> m);
-      return values_on(context.comm, there, geometry, speed, count);
+      return values_on(context.comm, there, geometry, speed, start, count);
     }));
     io::StudySummary there;
     for (std::size_t k = 0; k < count; ++k)

@@ -60,16 +60,37 @@ std::vector<double> supply_of(const ThdOptions& o, const thermal::Rows& rows, co
   return out;
 }
 
+// [r, n], the groove of each node that is mixed; empty if none is.
+std::vector<int> mixed_of(const ThdOptions& o, const thermal::Rows& rows, const thermal::FilmFlowOptions& flow) {
+  std::vector<int> out;
+  const int n = rows.mesh().nodes_around();
+  int groove = 0;
+  for (std::size_t k = 0; k < flow.feeds.size(); ++k) {
+    if (!o.grooves[k].mixing) continue;
+    out.resize(static_cast<std::size_t>(rows.count() * n));
+    ++groove;
+    for (int j = std::max(flow.feeds[k].first_along, rows.begin());
+         j <= std::min(flow.feeds[k].last_along, rows.end() - 1); ++j)
+      for (int i = flow.feeds[k].first_around; i <= flow.feeds[k].last_around; ++i)
+        out[static_cast<std::size_t>(rows.node(((i % n) + n) % n, j))] = groove;
+  }
+  return out;
+}
+
 }  // namespace
 
 ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
-    : rows_(mesh_of(o, g), comm), flow_(flow_of(o, rows_.mesh(), speed)), ambient_(o.ambient.temperature) {
+    : rows_(mesh_of(o, g), comm),
+      flow_(flow_of(o, rows_.mesh(), speed)),
+      supply_(supply_of(o, rows_, flow_)),
+      ambient_(o.ambient.temperature),
+      clearance_(g.clearance) {
   const thermal::Mesh& mesh = rows_.mesh();
-  const double e = o.eccentricity * g.clearance;
-  place_ = {e * std::cos(o.attitude), e * std::sin(o.attitude)};
+  const double e = o.eccentricity.value_or(0) * g.clearance, attitude = o.attitude.value_or(0);
+  place_ = {e * std::cos(attitude), e * std::sin(attitude)};
   for (int j = rows_.begin(); j < rows_.end(); ++j)
     for (int i = 0; i < mesh.nodes_around(); ++i)
-      thickness_.push_back(g.clearance - e * std::cos(mesh.theta(i) - o.attitude));
+      thickness_.push_back(g.clearance - e * std::cos(mesh.theta(i) - attitude));
   thermal::ThdSetup setup;
   setup.flow = flow_;
   setup.order = o.second_order ? 2 : 1;
@@ -77,18 +98,57 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   setup.bush = o.bush;
   setup.journal = o.journal;
   setup.inlet_from_bush = !o.orifices.empty() && o.orifices.front().inlet == thermal::OrificeRing::Inlet::bush;
-  setup.supply = supply_of(o, rows_, flow_);
+  setup.supply = supply_;
+  setup.mixed = mixed_of(o, rows_, flow_);
   setup.tolerance = o.tolerance;
   setup.most_iterations = o.most_iterations;
   thd_ = std::make_unique<thermal::Thd>(rows_, std::move(setup), thickness_);
 }
 
-ThdFilm::Isothermal ThdFilm::isothermal() const {
-  thermal::FilmFlow flow(rows_, flow_, thickness_);
-  flow.set_temperature(
-      std::vector<double>(thickness_.size() * static_cast<std::size_t>(rows_.mesh().across), ambient_));
+std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move, std::vector<double>& pressure) const {
+  const thermal::Mesh& mesh = rows_.mesh();
+  std::vector<double> thickness = this->thickness();
+  for (int j = rows_.begin(); j < rows_.end(); ++j)
+    for (int i = 0; i < mesh.nodes_around(); ++i)
+      thickness[static_cast<std::size_t>(rows_.node(i, j))] -=
+          move[0] * std::cos(mesh.theta(i)) + move[1] * std::sin(mesh.theta(i));
+  thermal::FilmFlow flow(rows_, flow_, std::move(thickness));
+  flow.set_temperature(thd_->temperature());
+  if (!pressure.empty()) flow.start(pressure);
   (void)flow.solve();
-  return {flow.pressure(), flow.report(flow.flow())};
+  pressure = flow.pressure();
+  const thermal::FlowReport report = flow.report(flow.flow());
+  return {report.force[0], report.force[1]};
+}
+
+ThdFilm::Isothermal ThdFilm::isothermal() const {
+  std::vector<double> pressure;
+  return isothermal(ambient_, pressure);
+}
+
+ThdFilm::Isothermal ThdFilm::isothermal(double temperature, std::vector<double>& pressure) const {
+  const thermal::Mesh& mesh = rows_.mesh();
+  const auto l = static_cast<std::size_t>(mesh.across);
+  thermal::FilmFlow film(rows_, flow_, thickness_);
+  film.set_temperature(std::vector<double>(thickness_.size() * l, temperature));
+  if (!pressure.empty()) film.start(pressure);
+  (void)film.solve();
+  pressure = film.pressure();
+  const thermal::Flow flow = film.flow();
+  double sums[2] = {0, 0};  // kg/s, kg K/s
+  const auto enters = [&](double mass, double of) {
+    if (mass <= 0) return;
+    sums[0] += mass;
+    sums[1] += mass * of;
+  };
+  for (std::size_t cell = 0; cell < flow.inflow.size(); ++cell) enters(flow.inflow[cell], supply_[cell / l]);
+  const std::size_t row = static_cast<std::size_t>(mesh.nodes_around()) * l;
+  for (std::size_t k = 0; k < row; ++k) {
+    if (rows_.begin() == 0) enters(flow.along[k], ambient_);
+    if (rows_.end() == mesh.nodes_along()) enters(-flow.along[flow.along.size() - row + k], ambient_);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, rows_.comm());
+  return {film.pressure(), film.report(flow), sums[0], sums[0] > 0 ? sums[1] / sums[0] : ambient_};
 }
 
 }  // namespace whirl::study

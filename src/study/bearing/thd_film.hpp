@@ -2,6 +2,7 @@
 // One bearing with heat as a deck describes it, on the ranks of a communicator.
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -21,23 +22,37 @@ public:
   [[nodiscard]] const std::vector<double>& thickness() const { return thd_->thickness(); }
   /// m, of the journal's middle from the bearing's.
   [[nodiscard]] const std::array<double, 2>& place() const { return place_; }
+  /// In clearances; rad, from +x.
+  [[nodiscard]] double eccentricity() const { return std::hypot(place_[0], place_[1]) / clearance_; }
+  [[nodiscard]] double attitude() const { return std::atan2(place_[1], place_[0]); }
   [[nodiscard]] thermal::Thd& thd() { return *thd_; }
   /// Whether the temperatures settled. Collective.
   bool solve() { return (cost_ = thd_->solve()).converged; }
   [[nodiscard]] const thermal::ThdSolve& cost() const { return cost_; }
   [[nodiscard]] bool is_gas() const { return flow_.fluid.gas; }
-  /// Pressure Pa [r, n] and what it does with the temperature of the ambient everywhere.
+  [[nodiscard]] const thermal::Fluid& fluid() const { return flow_.fluid; }
+  /// Pressure Pa [r, n] and what it does with one temperature everywhere.
   struct Isothermal {
     std::vector<double> pressure;
     thermal::FlowReport report;
+    double drawn = 0;  ///< kg/s, of all that comes in
+    double inlet = 0;  ///< K, mean temperature of that
   };
+  /// Before solids grow, at the temperature of the ambient / at another, K: `pressure` is as in force_beside().
+  /// Collective.
   [[nodiscard]] Isothermal isothermal() const;
+  [[nodiscard]] Isothermal isothermal(double temperature, std::vector<double>& pressure) const;
+  /// N, on the journal `move` m from where it is, with the temperatures that the film has. `pressure` Pa [r, n] is
+  /// where the search for it begins, empty: from none, and what it finds. Collective. Throws core::NotConverged.
+  [[nodiscard]] std::array<double, 2> force_beside(const std::array<double, 2>& move,
+                                                   std::vector<double>& pressure) const;
 
 private:
   thermal::Rows rows_;
   std::vector<double> thickness_;
   thermal::FilmFlowOptions flow_;
-  double ambient_;
+  std::vector<double> supply_;  // K [r, n]
+  double ambient_, clearance_;
   std::array<double, 2> place_;
   std::unique_ptr<thermal::Thd> thd_;
   thermal::ThdSolve cost_;

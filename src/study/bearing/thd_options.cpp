@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,6 +28,9 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
         "distance of the journal from the bearing centre, in clearances");
   d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");
+  d.add("load", &O::load, "N", deck::any,
+        "on the journal, instead of its place: one number, positive down, or [x, y]; the journal is where the force of "
+        "the film balances it");
   d.add("cells", &O::cells, deck::in(2, 1e5), "intervals around and along the film, layers across it");
   d.add("cavitation", &O::cavitation, "what an oil film does where it would be under tension");
   d.add("second_order", &O::second_order,
@@ -45,6 +49,14 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add("meshes", &O::meshes, deck::in(1, 10),
         "meshes of the film that the error bars stand on, that of 'cells' and coarser ones, each with half of the "
         "cells of the one before in every direction; 1: no bars");
+  d.check([](const O& o, const deck::Report& r) {
+    if (o.load.values.empty()) return;
+    for (const auto& [key, given] :
+         {std::pair{"eccentricity", o.eccentricity.has_value()}, std::pair{"attitude", o.attitude.has_value()}})
+      if (given) r.fail(key, fmt::format("the journal is where the film carries its 'load': leave '{}' out", key));
+    if (o.load.values.size() > 2) return r.fail("load", "'load' must be one number, positive down, or [x, y]");
+    if (std::ranges::all_of(o.load.values, [](double f) { return f == 0; })) r.fail("load", "'load' must not be zero");
+  });
 }
 
 double Thd::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
@@ -69,6 +81,9 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
   if (g.type != film::Geometry::Bore::cylindrical)
     report.fail(options.bearing.empty() ? "" : "bearing", "a film with heat needs a cylindrical bore");
   if (options.speeds.empty()) report.fail("speeds", "the list is empty");
+  if (!gas && !options.load.values.empty() &&
+      std::ranges::any_of(options.speeds, [](const deck::Quantity& speed) { return speed.value == 0; }))
+    report.fail("speeds", "the film of a liquid at rest carries no load");
   if (gas && !options.grooves.empty()) report.fail("grooves", "grooves feed a liquid: give a gas 'orifices'");
   if (!gas && !options.orifices.empty()) report.fail("orifices", "orifices feed a gas: give a liquid 'grooves'");
   if (gas && options.cavitation != ThdOptions::Cavitation::none)

@@ -1,5 +1,7 @@
 #include "study/bearing/thd_values.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +52,9 @@ std::span<const ThdColumn> thd_columns() {
       {"mass_flow", "kg/s", "of orifices and grooves"},
       {"load_x", "N", "force of the journal on the film"},
       {"load_y", "N", "force of the journal on the film"},
-      {"iterations", "1", "rounds of flow and heat"}};
+      {"iterations", "1", "rounds of flow and heat"},
+      {"eccentricity", "1", "of the journal, in clearances"},
+      {"attitude", "rad", "direction of the journal from the bearing's middle, from +x"}};
   return table;
 }
 
@@ -75,7 +79,9 @@ std::vector<double> thd_row(ThdFilm& film, double speed) {
           report.inflow,
           -report.force[0],
           -report.force[1],
-          static_cast<double>(film.cost().iterations)};
+          static_cast<double>(film.cost().iterations),
+          film.eccentricity(),
+          film.attitude()};
 }
 
 void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options) {
@@ -112,6 +118,13 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
   summary.set("temperature.bush.maximum", at_bush.maximum, "K");
   summary.set("temperature.journal.mean", at_journal.mean, "K");
   summary.set("temperature.journal.maximum", at_journal.maximum, "K");
+  const std::vector<double> mixed = thd.mixed();
+  for (std::size_t k = 0, m = 0; k < options.grooves.size(); ++k)
+    if (options.grooves[k].mixing) summary.set(fmt::format("temperature.groove.{}", k + 1), mixed.at(m++), "K");
+  if (!options.load.values.empty()) {
+    summary.set("eccentricity", film.eccentricity(), "1");
+    summary.set("attitude", film.attitude(), "rad");
+  }
   if (options.bush.growth || options.journal.growth)
     summary.set("clearance", surface_numbers(film, film.thickness()).mean, "m");
 }

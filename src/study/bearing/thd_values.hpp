@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/bearing/thd_film.hpp"
+#include "study/bearing/thd_load.hpp"
 #include "study/pieces.hpp"
 #include "whirl/io/summary.hpp"
 
@@ -30,6 +30,6 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
 /// Solves the film on the coarser meshes at one speed, puts the error bars beside the values that `context` has in its
 /// summary, and all values over the mesh into its results. Collective.
 void put_thd_bars(Context& context, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                  double energy_residual, Pieces& pieces);
+                  const FilmStart& start, double energy_residual, Pieces& pieces);
 
 }  // namespace whirl::study

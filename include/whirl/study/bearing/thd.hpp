@@ -1,11 +1,12 @@
 #pragma once
 // Thermo-hydrodynamics of one bearing: pressure, temperature in film and solids, heat and power at a given place of its
-// journal, over the speed.
+// journal or under a given load, over the speed.
 
 #include <array>
 #include <optional>
 #include <vector>
 
+#include "whirl/deck/one_or_more.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/thermal/options.hpp"
 
@@ -15,8 +16,9 @@ struct ThdOptions {
   std::string name;
   std::string bearing;                  ///< its name; the first of the deck if empty
   std::vector<deck::Quantity> speeds;   ///< [rad/s]; fields are those at the last
-  double eccentricity = 0;              ///< of the journal, in clearances
-  double attitude = 0;                  ///< of the journal, from +x counter-clockwise [rad]
+  std::optional<double> eccentricity;   ///< of the journal, in clearances; 0 if neither it nor a load is given
+  std::optional<double> attitude;       ///< of the journal, from +x counter-clockwise [rad]; 0 likewise
+  deck::OneOrMore load;                 ///< on the journal [N]: one number downwards, or x and y; empty: a given place
   std::array<int, 3> cells{96, 32, 8};  ///< around, along, across the film
   enum class Cavitation { none, half_sommerfeld, reynolds };
   Cavitation cavitation = Cavitation::none;
