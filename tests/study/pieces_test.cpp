@@ -108,7 +108,7 @@ TEST_F(Interrupted, AnswersKeepTheirVectors) {
   for (const bool by_rows : {false, true}) {
     using solve::Journal;
     Pieces& first = begin(false);
-    first.journal()->by_rows = by_rows;
+    first.journal()->by_rows = by_rows ? core::size_of(PETSC_COMM_WORLD) : 0;
     const auto answer = [&](const Journal* journal) {
       return Journal::Answer{
           {3, 4}, "found", {Journal::keep(journal, kept.get()), Journal::keep(journal, short_one.get())}};

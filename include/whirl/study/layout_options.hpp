@@ -12,11 +12,11 @@ namespace whirl::study {
 struct LayoutOptions {
   enum class Machine { automatic, one_rank, all_ranks };
   Machine machine = Machine::automatic;
-  int shaft_freedoms = 20000;  ///< of the shaft before its reduction; other systems: half their states
-  int film_states = 3000;      ///< of all films together
+  int shaft_freedoms = 20000;      ///< of the shaft before its reduction; other systems: half their states
+  int film_states = 3000;          ///< of all films together
   std::optional<int> time_groups;  ///< of ranks that share the intervals of a cycle whose states are spread
-  double cycle_memory = 4e9;   ///< of a cycle's intervals, up to which films that fill and empty are whole [byte]
-  int refined_states = 4000;   ///< of all films together, up to which bars are computed on finer meshes too
+  double cycle_memory = 4e9;       ///< of a cycle's intervals, up to which films that fill and empty are whole [byte]
+  int refined_states = 4000;       ///< of all films together, up to which bars are computed on finer meshes too
 };
 [[nodiscard]] std::span<const deck::Name<LayoutOptions::Machine>> names(LayoutOptions::Machine);
 void describe(deck::Description<LayoutOptions>& d);
