@@ -131,7 +131,11 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
         "the meshes do not show yet how the error falls of {}: its bar may be too small", fmt::join(steady, ", ")));
   const double left = options.tolerance * options.ambient.temperature;
   bars.write([&](const std::string& name, double value) {
-    return name.starts_with("temperature.") ? left : options.tolerance * std::abs(value);
+    if (name.starts_with("temperature.")) return left;
+    if (options.load.values.empty()) return options.tolerance * std::abs(value);
+    // Under a load the place is found as far as the force shows it.
+    const auto [x, y] = load_of(options);
+    return load_tolerance * (name == "load.x" || name == "load.y" ? std::hypot(x, y) : std::abs(value));
   });
 }
 

@@ -18,7 +18,6 @@ namespace {
 using Pair = std::array<double, 2>;
 using Matrix = std::array<Pair, 2>;  // [row][column]
 
-constexpr double tolerance = 1e-6;  // of the load
 constexpr int most_films = 40;
 constexpr int most_halvings = 6;
 
@@ -225,7 +224,7 @@ SolvedFilm solve_film(MPI_Comm comm, const ThdOptions& options, const film::Geom
     place = search.find({0.5 * std::cos(angle), 0.5 * std::sin(angle)}, 1e-2, speed);
   }
   WithHeat search(comm, options, geometry, speed, load, start.state);
-  (void)search.find(place, tolerance, speed);
+  (void)search.find(place, load_tolerance, speed);
   return search.result();
 }
 

@@ -10,6 +10,9 @@
 
 namespace whirl::study {
 
+/// Of the load, the force that may be left where the journal is.
+inline constexpr double load_tolerance = 1e-6;
+
 /// A film that is solved, and how many were to find the place of its journal.
 struct SolvedFilm {
   std::unique_ptr<ThdFilm> film;
