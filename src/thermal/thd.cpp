@@ -132,9 +132,19 @@ struct Thd::Work {
   void round(Vec at, Vec out) {
     const core::ReadArray old(at);
     take(old.data());
+    double clock = MPI_Wtime();
+    const auto lap = [&clock](double& seconds) {
+      const double now = MPI_Wtime();
+      seconds += now - clock;
+      clock = now;
+    };
     film.set_temperature(temperature);
+    lap(cost.seconds.flow);
     cost.pressure += film.solve();
+    lap(cost.seconds.pressure);
+    flow = {};  // two at a time would be most of the memory
     flow = film.flow();
+    lap(cost.seconds.flow);
     if (!energy)
       energy = std::make_unique<Energy>(
           rows, flow, EnergyModel{setup.flow.fluid.heat_capacity, setup.flow.fluid.conductivity, setup.order},
@@ -152,8 +162,10 @@ struct Thd::Work {
       const core::ReadArray t(film_temperature.get());
       std::copy_n(t.data(), cells, temperature.begin());
     }
+    lap(cost.seconds.energy);
     conduct(bush);
     conduct(journal);
+    lap(cost.seconds.solids);
     const core::WriteArray change(out);
     double largest = 0;
     PetscInt at_row = 0;

@@ -26,6 +26,9 @@ struct ThdSetup {
 struct ThdSolve {
   int iterations = 0, pressure = 0, energy_newton = 0, energy_krylov = 0, solid = 0;
   std::vector<double> largest;
+  struct Seconds {  // wall time; of the flow also properties and profiles
+    double pressure = 0, flow = 0, energy = 0, solids = 0;
+  } seconds;
   bool converged = false;
 };
 
