@@ -132,8 +132,8 @@ void row(double wanted, const Case& c, double stream) {
     const bench::Timing warm = bench::least(PETSC_COMM_WORLD, 1, [&] { newton[1] = film.solve(); });
     const double most = memory();
     if (prints)
-      fmt::print("{:9.0f} nodes: {} Newton {:7.2f} s, from 5 K away {} Newton {:7.2f} s, {:6.0f} MB\n",
-                 n / mesh.across, newton[0], cold.wall, newton[1], warm.wall, most);
+      fmt::print("{:9.0f} nodes: {} Newton {:7.2f} s, from 5 K away {} Newton {:7.2f} s, {:6.0f} MB\n", n / mesh.across,
+                 newton[0], cold.wall, newton[1], warm.wall, most);
     return;
   }
   auto thd = std::make_unique<thermal::Thd>(rows, setup, h);
@@ -157,12 +157,13 @@ void row(double wanted, const Case& c, double stream) {
   const bench::Timing one = bench::least(PETSC_COMM_WORLD, 1, [&] { linear = energy.solve(t.get()); });
   if (!prints) return;
   fmt::print(
-      "{:9.0f} {:>4} {:4.2f} {:3} {:6.1f} {:6} {:6} {:6} {:6} {:6} {:8.2f} {:8.2f} {:7.2f} {:7.2f} {:7.2f} {:6.2f} {:3} "
+      "{:9.0f} {:>4} {:4.2f} {:3} {:6.1f} {:6} {:6} {:6} {:6} {:6} {:8.2f} {:8.2f} {:7.2f} {:7.2f} {:7.2f} {:6.2f} "
+      "{:3} "
       "{:6.1f} {:7.0f} {:6.0f} {:8.1e} {:6.1f} {}\n",
       n, c.gas ? "gas" : "oil", c.eccentricity, c.order, 100 * reversed[1] / n, solved.iterations, solved.pressure,
       solved.energy_newton, solved.energy_krylov, solved.solid, time.wall, solved.seconds.pressure, solved.seconds.flow,
-      solved.seconds.energy, solved.seconds.solids, one.wall, linear.krylov, time.wall / one.wall, most,
-      1e6 * most / n, budget.residual() / budget.heat, stream, solved.converged ? "" : "not converged");
+      solved.seconds.energy, solved.seconds.solids, one.wall, linear.krylov, time.wall / one.wall, most, 1e6 * most / n,
+      budget.residual() / budget.heat, stream, solved.converged ? "" : "not converged");
   std::fflush(stdout);
 }
 
@@ -198,7 +199,8 @@ int main(int argc, char** argv) {
   const double stream = triad();
   if (core::rank_of(PETSC_COMM_WORLD) == 0 && !c.pressure_only)
     fmt::print(
-        "{:>9} {:>4} {:>4} {:>3} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>3} {:>6} {:>7} "
+        "{:>9} {:>4} {:>4} {:>3} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>3} {:>6} "
+        "{:>7} "
         "{:>6} {:>8} {:>6}\n",
         "bricks", "", "ecc", "ord", "rev. %", "rounds", "press.", "newton", "krylov", "solid", "s", "pressure", "flow",
         "energy", "solids", "linear", "its", "ratio", "MB", "B/c", "balance", "triad");

@@ -65,9 +65,10 @@ public:
 
   /// K [r, n, l] of the cells: viscosities and densities from now on. Collective.
   void set_temperature(const std::vector<double>& cells);
-  /// The pressure at these, by Newton's method from the last one. Returns its iterations. Throws core::NotConverged on
-  /// all ranks. Collective.
-  int solve();
+  /// The pressure at these, by Newton's method from the last one, until what is out of balance is `tolerance` times
+  /// what is at the ambient's pressure. Returns its iterations. MUMPS up to 100,000 nodes
+  /// (`-film_pressure_direct_nodes`), BoomerAMG beyond. Throws core::NotConverged on all ranks. Collective.
+  int solve(double tolerance = 1e-13);
   /// Pa [r, n].
   [[nodiscard]] const std::vector<double>& pressure() const;
   /// Mass flows and heat at this pressure. What orifices and grooves give enters layer 0; at the ends each layer leaves
