@@ -32,18 +32,25 @@ def panel(figure, axis, theta, z, values, cmap, label, ink):
 def draw(study):
     files = []
     for bearing, pads in pads_of(study).items():
-        figure, axes = plt.subplots(len(pads), 2, figsize=(11.2, 2.9 * len(pads) + 1.0), squeeze=False)
+        warm = all(study.has(f"{path}/temperature") for _, path in pads)
+        columns = 3 if warm else 2
+        figure, axes = plt.subplots(len(pads), columns, figsize=(5.6 * columns, 2.9 * len(pads) + 1.0), squeeze=False)
         known = [study.get(f"{path}/thickness").ravel() for _, path in pads if study.has(f"{path}/thickness")]
         scale, unit = length_unit(np.concatenate(known or [np.zeros(1)]))
         for row, (name, path) in enumerate(pads):
             theta, z = np.degrees(study.get(f"{path}/theta")), study.get(f"{path}/z") * 1e3
             pressure = study.get(f"{path}/pressure") / 1e6
-            left, right = axes[row]
+            left, right = axes[row][:2]
             panel(figure, left, theta, z, pressure, "YlOrRd", "pressure [MPa]", "#5a1a00")
             i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
             if pressure[i, j] > 0:
                 left.plot(theta[i], z[j], "+", color="black", markersize=8)
             left.set_title(f"{name}: pressure, largest {pressure.max():.4g} MPa at {theta[i]:.1f} deg")
+            if warm:
+                celsius, last = study.get(f"{path}/temperature") - 273.15, axes[row][2]
+                panel(figure, last, theta, z, celsius, "inferno", "mean temperature [\u00b0C]", "white")
+                i, j = np.unravel_index(np.argmax(celsius), celsius.shape)
+                last.set_title(f"{name}: temperature, highest {celsius.max():.4g} \u00b0C at {theta[i]:.1f} deg")
             if not study.has(f"{path}/thickness"):
                 right.set_visible(False)
                 continue

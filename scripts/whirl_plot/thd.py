@@ -74,9 +74,16 @@ def draw_maps(study):
 
 def streams(axis, film, around, along):
     """Lines of mass flow over a map, from kg/(m s) at nodes: in degrees and millimetres."""
-    theta = np.degrees(np.linspace(film.theta[0], film.theta[-1], len(film.theta)))
+    # Flows around are those between a node and the next one.
+    around = (around + np.roll(around, 1, axis=1)) / 2 if closes(film.theta) else around
+    theta, around = ring(film.theta, around, closes(film.theta))
+    _, along = ring(film.theta, along, closes(film.theta))
+    theta = np.degrees(np.linspace(theta[0], theta[-1], len(theta)))
     z = np.linspace(film.z[0], film.z[-1], len(film.z)) * 1e3
+    limits = axis.get_xlim(), axis.get_ylim()
     axis.streamplot(theta, z, np.degrees(around / film.radius), along * 1e3, color=GREY, linewidth=0.6, density=0.8, arrowsize=0.6)
+    axis.set_xlim(limits[0])
+    axis.set_ylim(limits[1])
 
 
 def draw_profiles(study):
@@ -86,7 +93,7 @@ def draw_profiles(study):
     film = Film(study)
     row = len(film.z) // 2
     figure, axis = plt.subplots(figsize=(10.5, 4.6))
-    columns = np.unique(np.linspace(0, len(film.theta) - 1, 7).astype(int))[:6]
+    columns = np.unique(np.round(np.arange(6) * len(film.theta) / 6).astype(int))
     for n, i in enumerate(columns):
         axis.plot(film.temperature[row, i], film.zeta, "-o", markersize=3, color=plt.get_cmap("viridis")(n / max(1, len(columns) - 1)),
                   label=f"{np.degrees(film.theta[i]):.0f} deg")
@@ -106,6 +113,14 @@ def parts(study):
     if film and bush and "bush" in film.walls and bush["temperature"].shape[:2] == film.walls["bush"].shape:
         bush["r"] = np.insert(bush["r"], 0, film.radius)
         bush["temperature"] = np.insert(bush["temperature"], 0, film.walls["bush"], axis=2)
+    for part, side in ((bush, -1), (journal, 0)):
+        faces = study.get("bush/r_faces" if side else "journal/r_faces", None) if part else None
+        if faces is not None and faces[side] != part["r"][side]:  # to its free surface, on the line through the last two cells
+            at, next_one = (len(part["r"]), -2) if side else (0, 1)
+            slope = (part["temperature"][..., side] - part["temperature"][..., next_one]) / (part["r"][side] - part["r"][next_one])
+            surface = part["temperature"][..., side] + slope * (faces[side] - part["r"][side])
+            part["temperature"] = np.insert(part["temperature"], at, surface, axis=-1)
+            part["r"] = np.insert(part["r"], at, faces[side])
     known = [p["temperature"] for p in (bush, journal) if p] + ([film.temperature] if film else [])
     limits = (min(v.min() for v in known), max(v.max() for v in known)) if known else (0, 1)
     return film, bush, journal, limits
@@ -114,8 +129,10 @@ def parts(study):
 def fill(axis, x, y, values, limits):
     low, high = limits
     mesh = axis.pcolormesh(x, y, values, cmap=HEAT, vmin=low, vmax=high, shading="gouraud", rasterized=True)
-    if np.ptp(values) > 1e-3 * (high - low):
-        axis.contour(x, y, values, np.linspace(low, high, 18), colors="white", linewidths=0.5, alpha=0.7)
+    levels = np.linspace(low, high, 18)
+    levels = levels[(levels > values.min()) & (levels < values.max())]
+    if len(levels):
+        axis.contour(x, y, values, levels, colors="white", linewidths=0.5, alpha=0.7)
     return mesh
 
 
@@ -141,6 +158,9 @@ def draw_radial(study):
     row = int(np.argmin(np.abs(film.z - (0.75 * film.z[0] + 0.25 * film.z[-1]))))
     wall = film.radius
     factor, clearance, x0, y0 = magnified(film, wall)
+    at = int(np.argmin(np.abs(journal["z"] - film.z[row])))
+    here = [bush["temperature"][row], film.temperature[row], journal["temperature"][at]]
+    limits = min(v.min() for v in here), max(v.max() for v in here)
     figure, axis = plt.subplots(figsize=(9.6, 8.0))
     theta, values = ring(bush["theta"], bush["temperature"][row].T, closes(bush["theta"]))
     r = 1e3 * (bush["r"] + clearance)[:, None]
@@ -151,7 +171,6 @@ def draw_radial(study):
     mesh = fill(axis, r * np.cos(theta), r * np.sin(theta), values, limits)
     for side in (0, -1):
         edge(axis, r[side] * np.cos(theta), r[side] * np.sin(theta))
-    at = int(np.argmin(np.abs(journal["z"] - film.z[row])))
     turn = np.linspace(0, 2 * np.pi, 181)
     inside = journal["temperature"][at]
     if inside.ndim == 2:
@@ -206,7 +225,7 @@ def draw_axial(study):
 
 
 def draw_iterations(study):
-    """The largest of the residuals of each field over the iterations of the coupled problem."""
+    """The greatest change of a temperature in each round of flow and heat."""
     if not study.has("iterations/residual"):
         return []
     residual = np.atleast_2d(np.transpose(study.get("iterations/residual")))
@@ -215,44 +234,67 @@ def draw_iterations(study):
     for name, values in zip(names, residual):
         axis.semilogy(np.arange(len(values)), np.where(values > 0, values, np.nan), "-o", markersize=4, label=name)
     axis.set_xlabel("iteration")
-    axis.set_ylabel("residual over the first one")
+    axis.set_ylabel("greatest change in a round [K]")
     return save(figure, study, "thd-iterations", handles=axis.get_legend_handles_labels()[0])
+
+
+def decades(axis, values):
+    """Whole decades around the positive values."""
+    known = values[values > 0]
+    if len(known):
+        axis.set_ylim(10 ** np.floor(np.log10(known.min())), 10 ** (np.floor(np.log10(known.max())) + 1))
 
 
 def draw_meshes(study):
     """Least, mean and largest temperature and what the enthalpy budget leaves, over the number of cells."""
-    if not study.has("meshes/cells", "meshes/mean"):
+    if not study.has("meshes/cells", "meshes/temperature.mean") or len(study.get("meshes/cells")) < 3:
         return []
     cells = study.get("meshes/cells")
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.2, 4.4))
-    for name, colour in (("minimum", "#3b6fb6"), ("mean", INK), ("maximum", "#c0392b")):
-        if study.has(f"meshes/{name}"):
-            left.semilogx(cells, study.get(f"meshes/{name}"), "-o", markersize=4, color=colour, label=name)
-    left.set_ylabel(LABEL)
-    if study.has("meshes/residual"):
-        left_over = np.abs(study.get("meshes/residual"))
-        right.loglog(cells, np.where(left_over > 0, left_over, np.nan), "-o", markersize=4, color=INK)
-        right.set_ylabel("residual of the enthalpy budget [W]")
+    figure, axes = plt.subplots(1, 3, figsize=(11.2, 4.0))
+    shown = [("least and largest", [("minimum", "#3b6fb6"), ("maximum", "#c0392b")]), ("mean by volume", [("mean", INK)])]
+    for axis, (title, curves) in zip(axes, shown):
+        for name, colour in curves:
+            axis.semilogx(cells, study.get(f"meshes/temperature.{name}"), "-o", markersize=4, color=colour, label=name)
+        axis.set_title(title)
+        axis.set_ylabel(LABEL)
+        axis.ticklabel_format(axis="y", useOffset=False)
+    if study.has("meshes/energy_residual"):
+        left_over = np.abs(study.get("meshes/energy_residual"))
+        axes[2].loglog(cells, np.where(left_over > 0, left_over, np.nan), "-o", markersize=4, color=INK)
+        decades(axes[2], left_over)
+        axes[2].set_title("residual of the enthalpy budget")
+        axes[2].set_ylabel("[W]")
     else:
-        right.set_visible(False)
-    for axis in (left, right):
+        axes[2].set_visible(False)
+    for axis in axes:
         axis.set_xlabel("cells of the film")
-    return save(figure, study, "thd-meshes", handles=left.get_legend_handles_labels()[0])
+    return save(figure, study, "thd-meshes", handles=axes[0].get_legend_handles_labels()[0])
 
 
-BUDGET = {"power_loss": "power loss", "dissipation": "dissipation", "expansion": "work of pressure", "heat_bush": "heat to the bush", "heat_journal": "heat to the journal",
-          "enthalpy": "enthalpy carried off", "residual": "residual"}
+# What heats the film, and where the heat goes. The power loss is the sum of the first two.
+BUDGET = {"dissipation": ("dissipation", "#c0392b", "-"), "expansion": ("work of pressure", "#3b6fb6", "-"), "power_loss": ("power loss, what both leave", INK, "-"),
+          "heat_bush": ("heat to the bush", "#8a5a2b", "--"), "heat_journal": ("heat to the journal", "#7b3fa0", "--"),
+          "enthalpy": ("enthalpy carried off", "#12868f", "--")}
 
 
 def draw_budget(study):
-    """The terms of the enthalpy budget over the parameter."""
+    """The terms of the enthalpy budget over the parameter, and what they leave."""
     found = [k for k in BUDGET if study.has(f"budget/{k}")]
     if not found or not study.has("budget/parameter") or len(study.get("budget/parameter")) < 2:
         return []
-    figure, axis = plt.subplots(figsize=(10.5, 4.8))
-    for n, name in enumerate(found):
-        axis.plot(study.get("budget/parameter"), study.get(f"budget/{name}"), "-o", markersize=3.5, color=plt.get_cmap("tab10")(n), label=BUDGET[name])
+    over = study.get("budget/parameter")
+    figure, (axis, below) = plt.subplots(2, 1, figsize=(10.5, 6.4), sharex=True, gridspec_kw={"height_ratios": (3, 1)})
+    for name in found:
+        label, colour, line = BUDGET[name]
+        axis.plot(over, study.get(f"budget/{name}"), line, marker="o", markersize=3.5, color=colour, label=label)
     axis.axhline(0, color=GREY, linewidth=0.7)
-    axis.set_xlabel(parameter_label(study))
     axis.set_ylabel("heat flow [W]")
+    if study.has("budget/residual"):
+        left = np.abs(study.get("budget/residual"))
+        below.semilogy(over, np.where(left > 0, left, np.nan), "-o", markersize=3.5, color=INK)
+        decades(below, left)
+        below.set_ylabel("residual [W]")
+    else:
+        below.set_visible(False)
+    below.set_xlabel(parameter_label(study))
     return save(figure, study, "thd-budget", handles=axis.get_legend_handles_labels()[0])

@@ -87,7 +87,7 @@ Node quantity_schema(const Spec& spec) {
     type.push(Node::scalar("string", true));
     type.push(Node::scalar("number", true));
   }
-  n.set("pattern", Node::scalar("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)? *[^0-9 ].*$", true));
+  n.set("pattern", Node::scalar("^[-+]?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?( *[^0-9 ].*| +1/.+)$", true));
   return n;
 }
 

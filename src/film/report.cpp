@@ -31,7 +31,6 @@ FilmReport summarise(const std::vector<Pad>& pads, const Reynolds& options, cons
   result.inlet_flow = 0.0;
   result.min_thickness = std::numeric_limits<double>::infinity();
   const Resistance along = resistance_along(options.turbulence), around = resistance_around(options.turbulence);
-  const bool laminar = options.turbulence == Turbulence::laminar;
   const double mu = lubricant.viscosity;
   for (std::size_t n = 0; n < pads.size(); ++n) {
     const Pad& pad = pads[n];
@@ -65,7 +64,7 @@ FilmReport summarise(const std::vector<Pad>& pads, const Reynolds& options, cons
                                (0.5 * std::abs(U) * h - h * h * h / (mu * film::evaluate(around, Re)) * rise);
         }
         const double area = share * grid.dz * (side ? 0.5 : 1.0);
-        const double couette = laminar ? 1.0 : 1.0 + 0.0012 * std::pow(Re, 0.94);
+        const double couette = couette_factor(options.turbulence, Re);
         double slope = 0.0;
         if (pad.closed || (i > 0 && i < grid.n_theta)) {
           const auto at = [&](int line) {

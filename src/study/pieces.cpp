@@ -139,10 +139,14 @@ void Pieces::complete(const std::string& name, io::Bifurcation& b, const std::fu
   b = one.bifurcations.front();
 }
 
+double Pieces::between() const {
+  return std::max(least_seconds, 25 * cost());
+}
+
 // Saving takes no more than a twentieth of the time. States come first, or work between them would leave them no time;
 // but not before all is repeated that is known of the work behind them.
 bool Pieces::due() const {
-  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= std::max(least_seconds, 25 * cost()));
+  return saves_ && findings_.agreed(findings_.seconds() - last_saved_ >= between());
 }
 
 bool Pieces::state_due() const {
@@ -171,6 +175,7 @@ void Pieces::write() {
   write_journal(all.child("journal"), journal_);
   all.set("layout", layout_);
   all.set("seconds", findings_.seconds());
+  all.set("seconds_between_files", between());
   findings_.save_checkpoint(all);
   last_saved_ = findings_.seconds();
   costs_ = {last_saved_ - begin, costs_[0]};

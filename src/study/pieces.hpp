@@ -61,6 +61,7 @@ public:
 private:
   void write();
   // One of the last files may have had to wait for other work on the machine.
+  [[nodiscard]] double between() const;  // [s] between two files
   [[nodiscard]] double cost() const { return std::min(costs_[0], costs_[1]); }
 
   Findings& findings_;

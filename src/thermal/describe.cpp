@@ -9,7 +9,7 @@ using deck::positive;
 std::span<const deck::Name<FluidOptions::Type>> names(FluidOptions::Type) {
   static constexpr deck::Name<FluidOptions::Type> table[] = {
       {FluidOptions::Type::gas, "gas", "ideal: density p/(r T)"},
-      {FluidOptions::Type::liquid, "liquid", "of constant density"}};
+      {FluidOptions::Type::liquid, "liquid", "of a density that does not know the pressure"}};
   return table;
 }
 
@@ -69,6 +69,44 @@ void describe(deck::Description<ViscosityOptions>& d) {
   d.kinds("type", &ViscosityOptions::law, "law of the viscosity over the temperature");
 }
 
+void describe(deck::Description<ConstantLaw>& /*d*/) {}
+
+void describe(deck::Description<LinearLaw>& d) {
+  d.add("temperature", &LinearLaw::temperature, "K", positive, "where the property has the value that is given");
+  d.add("slope", &LinearLaw::slope, "1/K", deck::any, "relative change with each kelvin").required();
+}
+
+void describe(deck::Description<PolynomialLaw>& d) {
+  d.add("temperature", &PolynomialLaw::temperature, "K", positive, "temperature T_0 of the polynomial");
+  d.add("coefficients", &PolynomialLaw::coefficients, deck::any,
+        "the value that is given times c_0 + c_1 x + ... + c_4 x^4 with x = T/T_0",
+        "of air Moran and Shapiro 2000, table A-21")
+      .required();
+}
+
+void describe(deck::Description<PowerLaw>& d) {
+  d.add("temperature", &PowerLaw::temperature, "K", positive, "T_0, where the property has the value that is given");
+  d.add("exponent", &PowerLaw::exponent, deck::any, "the value that is given times (T/T_0)^n").required();
+}
+
+void describe(deck::Description<PropertyOptions>& d) {
+  d.kinds("type", &PropertyOptions::law, "factor of the property over the temperature");
+}
+
+Fluid make_fluid(const FluidOptions& o) {
+  Fluid out;
+  out.viscosity = o.viscosity.law;
+  out.gas = o.type == FluidOptions::Type::gas;
+  out.gas_constant = o.gas_constant;
+  out.density = o.density;
+  out.heat_capacity = o.heat_capacity;
+  out.conductivity = o.conductivity;
+  out.density_law = o.density_law.law;
+  out.heat_capacity_law = o.heat_capacity_law.law;
+  out.conductivity_law = o.conductivity_law.law;
+  return out;
+}
+
 void describe(deck::Description<FluidOptions>& d) {
   using F = FluidOptions;
   using enum F::Type;
@@ -81,6 +119,9 @@ void describe(deck::Description<FluidOptions>& d) {
   d.add("heat_capacity", &F::heat_capacity, "J/(kg K)", positive, "specific heat, of a gas at constant pressure")
       .required();
   d.add("conductivity", &F::conductivity, "W/(m K)", positive, "conductivity").required();
+  d.add("density_law", &F::density_law, "density of the liquid over the temperature").only(&F::type, {liquid});
+  d.add("heat_capacity_law", &F::heat_capacity_law, "specific heat over the temperature");
+  d.add("conductivity_law", &F::conductivity_law, "conductivity over the temperature");
 }
 
 void describe(deck::Description<OrificeRing>& d) {
@@ -127,6 +168,14 @@ void describe(deck::Description<WallOptions>& d) {
   d.add("shaft_length", &W::shaft_length, "m", deck::non_negative, "length of a journal, from end to end")
       .only(&W::type, {solid});
   d.add("shaft_before", &W::shaft_before, "m", deck::non_negative, "of this, what lies before the film (at smaller z)")
+      .only(&W::type, {solid});
+  d.add("growth", &W::growth, "its thermal expansion changes the clearance: each section grows as a ring free of load")
+      .only(&W::type, {solid});
+  d.add("expansion", &W::expansion, "1/K", deck::non_negative, "linear expansion of the solid, for 'growth'",
+        "Timoshenko and Goodier 1951, section 135")
+      .only(&W::type, {solid});
+  d.add("reference", &W::reference, "K", positive,
+        "temperature at which the clearance is that of the bearing, for 'growth'; 'ambient' if not given")
       .only(&W::type, {solid});
 }
 

@@ -51,7 +51,7 @@ void Energy::make_solver() {
   check(SNESSetOptionsPrefix(snes, prefix));
   check(SNESSetFunction(snes, residual_.get(), form_residual, this));
   check(SNESSetJacobian(snes, jacobian_.get(), jacobian_.get(), form_jacobian, this));
-  const bool linear = terms_->model().order == 1;
+  const bool linear = terms_->model().order == 1 && !terms_->laws().varied();
   // A linear equation is solved once as far as is asked for; steps of Newton's method need not be.
   check(SNESKSPSetUseEW(snes, linear ? PETSC_FALSE : PETSC_TRUE));
   KSP ksp = nullptr;
@@ -95,13 +95,14 @@ void Energy::set_surroundings(Surroundings surroundings) {
   lines_->update();
 }
 
-PetscErrorCode Energy::form_residual(SNES, Vec x, Vec f, void* self) {
+PetscErrorCode Energy::form_residual(SNES snes, Vec x, Vec f, void* self) {
   Energy& e = *static_cast<Energy*>(self);
-  return e.gate_.run([&] {
+  const PetscErrorCode code = e.gate_.run([&] {
     const ReadArray in(x);
     const WriteArray out(f);
     e.terms_->residual(in.data(), out.data());
   });
+  return e.gate_.domain_error() ? SNESSetFunctionDomainError(snes) : code;
 }
 
 PetscErrorCode Energy::form_jacobian(SNES, Vec x, Mat, Mat, void* self) {
@@ -121,7 +122,11 @@ EnergySolve Energy::solve(Vec temperature, double tolerance) {
   const double ambient = terms_->surroundings().ambient;
   Vec x = rise_.get();
   const auto norm_at = [&] {
-    gate_.rethrow(form_residual(snes_.get(), x, residual_.get(), this));
+    {
+      const ReadArray in(x);
+      const WriteArray out(residual_.get());
+      terms_->residual(in.data(), out.data());
+    }
     return core::norm(residual_.get());
   };
   check(VecSet(x, 0));
@@ -137,8 +142,8 @@ EnergySolve Energy::solve(Vec temperature, double tolerance) {
   // No step is solved further than the whole equation has to be; one of first order all the way at once.
   KSP ksp = nullptr;
   check(SNESGetKSP(snes_.get(), &ksp));
-  check(KSPSetTolerances(ksp, terms_->model().order == 1 ? 1e-14 : PETSC_DEFAULT, 0.5 * target, PETSC_DEFAULT,
-                         PETSC_DEFAULT));
+  check(KSPSetTolerances(ksp, terms_->model().order == 1 && !terms_->laws().varied() ? 1e-14 : PETSC_DEFAULT,
+                         0.5 * target, PETSC_DEFAULT, PETSC_DEFAULT));
   gate_.rethrow(SNESSolve(snes_.get(), nullptr, x));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt newton = 0, krylov = 0;
@@ -157,7 +162,9 @@ EnergySolve Energy::solve(Vec temperature, double tolerance) {
 void Energy::residual(Vec temperature, Vec out) {
   check(VecCopy(temperature, rise_.get()));
   check(VecShift(rise_.get(), -terms_->surroundings().ambient));
-  gate_.rethrow(form_residual(snes_.get(), rise_.get(), out, this));
+  const ReadArray in(rise_.get());
+  const WriteArray into(out);
+  terms_->residual(in.data(), into.data());
 }
 
 void Energy::linearise(Vec temperature) {
@@ -189,6 +196,19 @@ EnergyBudget Energy::budget(Vec temperature) {
   check(VecShift(rise_.get(), -terms_->surroundings().ambient));
   const ReadArray in(rise_.get());
   return terms_->budget(in.data());
+}
+
+std::vector<double> Energy::wall_factors(Vec temperature, bool journal) {
+  check(VecCopy(temperature, rise_.get()));
+  check(VecShift(rise_.get(), -terms_->surroundings().ambient));
+  const ReadArray in(rise_.get());
+  const int l = rows_.mesh().across;
+  std::vector<double> out(at(rows_.count()) * at(rows_.mesh().nodes_around()));
+  for (std::size_t node = 0; node < out.size(); ++node) {
+    const PetscInt cell = static_cast<PetscInt>(node) * l + (journal ? l - 1 : 0);
+    out[node] = terms_->wall_factor(journal, static_cast<PetscInt>(node), in[cell]).value;
+  }
+  return out;
 }
 
 }  // namespace whirl::thermal

@@ -21,7 +21,10 @@ inline Steps steps(const Faces& f, int k) {
 /// Conduction is added to the carried `flux` W [count], which then leaves the left cells for the right ones.
 inline void scatter(const Faces& f, double* __restrict flux) {
   const double g = f.conductance;
-  for (int k = 0; k < f.count; ++k) flux[k] -= g * (f.right[k] - f.left[k]);
+  if (f.mixing)
+    for (int k = 0; k < f.count; ++k) flux[k] -= g * f.mixing[k] * (f.right[k] - f.left[k]);
+  else
+    for (int k = 0; k < f.count; ++k) flux[k] -= g * (f.right[k] - f.left[k]);
   if (f.out_left)
     for (int k = 0; k < f.count; ++k) f.out_left[k] += flux[k];
   if (f.out_right)
@@ -51,8 +54,9 @@ void EnergyTerms::each_faces(double given, double* out, const Visit& visit) {
             before ? before + here : beyond(Direction::along, false, i, j - 1, left + here, given, before_);
         const double* far_right =
             behind ? behind + here : beyond(Direction::along, true, i, j, row + here, given, behind_);
-        visit(Faces{Direction::along, i, j, l, first, flow_.along.data() + first, along_[first / core::at(l)], far_left,
-                    left + here, row + here, far_right, y_left ? y_left + here : nullptr, y ? y + here : nullptr});
+        visit(Faces{Direction::along, i, j, l, first, flow_.along.data() + first, along_[first / core::at(l)], nullptr,
+                    far_left, left + here, row + here, far_right, y_left ? y_left + here : nullptr,
+                    y ? y + here : nullptr});
       }
     }
     if (j == rows_.end()) break;
@@ -64,7 +68,7 @@ void EnergyTerms::each_faces(double given, double* out, const Visit& visit) {
           mesh.closed || i > 1 ? column(before) : beyond(Direction::around, false, 0, j, column(left), given, before_);
       const double* far_right =
           mesh.closed || i + 1 < n ? column(behind) : beyond(Direction::around, true, i, j, column(i), given, behind_);
-      visit(Faces{Direction::around, i, j, l, first, flow_.around.data() + first, around_[first / core::at(l)],
+      visit(Faces{Direction::around, i, j, l, first, flow_.around.data() + first, around_[first / core::at(l)], nullptr,
                   far_left, column(left), column(i), far_right, y ? y + core::at(left) * core::at(l) : nullptr,
                   y ? y + core::at(i) * core::at(l) : nullptr});
     }
@@ -79,8 +83,9 @@ void EnergyTerms::each_faces(double given, double* out, const Visit& visit) {
       line[l + 1] = (1 - 2 * journal) * column[l - 1] + 2 * journal * given * rise_of_wall(s.journal, node);
       const std::size_t first = core::at(node) * core::at(l + 1) + 1;
       double* here = y ? y + core::at(i) * core::at(l) : nullptr;
-      visit(Faces{Direction::across, i, j, l - 1, first, flow_.across.data() + first, across_[core::at(node)], line,
-                  line + 1, line + 2, line + 3, here, here ? here + 1 : nullptr});
+      visit(Faces{Direction::across, i, j, l - 1, first, flow_.across.data() + first, across_[core::at(node)],
+                  mixing(node) ? mixing(node) + 1 : nullptr, line, line + 1, line + 2, line + 3, here,
+                  here ? here + 1 : nullptr});
     }
   }
 }

@@ -46,7 +46,7 @@ void EnergyLines::factor(int i, int j) {
   const Mesh& mesh = rows.mesh();
   const Flow& flow = terms_.flow();
   const int n = mesh.nodes_around(), l = mesh.across;
-  const double c = terms_.model().heat_capacity;
+  const double c = terms_.laws().heat_capacity();
   const PetscInt node = rows.node(i, j), first = node * l;
   const int left = (i + n - 1) % n;
   const bool entry = !mesh.closed && i == 0;
@@ -58,18 +58,20 @@ void EnergyLines::factor(int i, int j) {
   const double *across = flow.across.data() + node * (l + 1), *inflow = flow.inflow.data() + first;
   const double around = terms_.around(node) + (entry ? 0.0 : terms_.around(node_left));
   const double sides = around + terms_.along(node) + terms_.along(node_above), layer = terms_.across(node);
+  const double* mix = terms_.mixing(node);
+  const auto conduct = [&](int k) { return mix ? layer * mix[k] : layer; };  // from layer k - 1 to k
   double* inverse = inverse_.data() + first;
   double upper = 0;  // over the pivot, of the layer below
   for (int k = 0; k < l; ++k) {
     double diagonal = sides + c * (carried(to_right[k]) + carried(-from_left[k]) + carried(above[k]) +
                                    carried(-along[k]) + carried(-inflow[k]));
-    if (k == 0) diagonal += terms_.surroundings().bush.conductance[at(node)];
-    if (k + 1 == l) diagonal += terms_.surroundings().journal.conductance[at(node)];
-    if (k > 0) diagonal += c * carried(-across[k]) + layer;
-    if (k + 1 < l) diagonal += c * carried(across[k + 1]) + layer;
-    if (k > 0) diagonal -= (c * carried(across[k]) + layer) * upper;
+    if (k == 0) diagonal += terms_.wall_heat(false, node, 0).slope;
+    if (k + 1 == l) diagonal += terms_.wall_heat(true, node, 0).slope;
+    if (k > 0) diagonal += c * carried(-across[k]) + conduct(k);
+    if (k + 1 < l) diagonal += c * carried(across[k + 1]) + conduct(k + 1);
+    if (k > 0) diagonal -= (c * carried(across[k]) + conduct(k)) * upper;
     inverse[k] = 1 / diagonal;
-    if (k + 1 < l) upper = (c * carried(-across[k + 1]) + layer) * inverse[k];
+    if (k + 1 < l) upper = (c * carried(-across[k + 1]) + conduct(k + 1)) * inverse[k];
   }
 }
 
@@ -78,7 +80,7 @@ void EnergyLines::column(int i, int j, const double* r, double* x) {
   const Mesh& mesh = rows.mesh();
   const Flow& flow = terms_.flow();
   const int n = mesh.nodes_around(), l = mesh.across;
-  const double c = terms_.model().heat_capacity;
+  const double c = terms_.laws().heat_capacity();
   const PetscInt node = rows.node(i, j), first = node * l;
   double* __restrict rhs = rhs_.data(), * __restrict lower = lower_.data(), * __restrict upper = upper_.data();
   std::copy_n(r + first, l, rhs);
@@ -102,10 +104,11 @@ void EnergyLines::column(int i, int j, const double* r, double* x) {
   }
   const double *across = flow.across.data() + node * (l + 1), *inverse = inverse_.data() + first;
   const double layer = terms_.across(node);
+  const double* mix = terms_.mixing(node);
   for (int k = 0; k < l; ++k) {
     rhs[k] *= inverse[k];
-    lower[k] = (carried(c * across[k]) + layer) * inverse[k];
-    upper[k] = (carried(-c * across[k + 1]) + layer) * inverse[k];
+    lower[k] = (carried(c * across[k]) + (mix ? layer * mix[k] : layer)) * inverse[k];
+    upper[k] = (carried(-c * across[k + 1]) + (mix ? layer * mix[k + 1] : layer)) * inverse[k];
   }
   for (int k = 1; k < l; ++k) rhs[k] += lower[k] * rhs[k - 1];
   double* y = x + first;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "thermal/energy_laws.hpp"
 #include "thermal/halo.hpp"
 #include "whirl/thermal/energy.hpp"
 
@@ -21,6 +22,7 @@ struct Faces {
   std::size_t first;                                  // place of the first one among all of this direction
   const double* flow;                                 // kg/s [count]
   double conductance;                                 // W/K, of one
+  const double* mixing;                               // - [count], times this; null: 1
   const double *far_left, *left, *right, *far_right;  // K [count], of the cells before and behind the faces
   double *out_left, *out_right;  // W [count], of the cells on either side; null where another rank's
 };
@@ -38,6 +40,12 @@ public:
   [[nodiscard]] const Flow& flow() const { return flow_; }
   [[nodiscard]] const EnergyModel& model() const { return model_; }
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
+  [[nodiscard]] const EnergyLaws& laws() const { return laws_; }
+  /// [l + 1] of a column, null where the flow is laminar.
+  [[nodiscard]] const double* mixing(PetscInt node) const {
+    const auto layers = static_cast<std::size_t>(rows_.mesh().across) + 1;
+    return flow_.mixing.empty() ? nullptr : flow_.mixing.data() + static_cast<std::size_t>(node) * layers;
+  }
 
   /// W [r, n, l]: out less in, of rises [r, n, l]. Collective.
   void residual(const double* rise, double* out);
@@ -59,6 +67,10 @@ public:
   /// (1 - 2 share) T + 2 share T_s, where T_s is that of the surface or of what flows in. The share of a wall is that
   /// of the half layer in the resistance up to where T_s is given; of an end it is one where flow enters and else zero.
   [[nodiscard]] double wall_share(const Wall& wall, PetscInt node) const;
+  /// How much better the half layer at a wall conducts at the rise of its cell, and the derivative, 1/K.
+  [[nodiscard]] LawValue wall_factor(bool journal, PetscInt node, double rise) const;
+  /// W that a wall takes from its cell, and the derivative, W/K.
+  [[nodiscard]] LawValue wall_heat(bool journal, PetscInt node, double rise) const;
   /// kg/s, what enters the cell of an end from outside.
   [[nodiscard]] double entering(Direction direction, bool last, int k, int i, int j) const;
 
@@ -66,6 +78,7 @@ private:
   template <class Visit>
   void each_faces(double given, double* out, const Visit& visit);
   void boundaries(const double* rise, double given, double* out) const;
+  void check_laws(const double* rise) const;
   [[nodiscard]] double rise_of_wall(const Wall& wall, PetscInt node) const;
   [[nodiscard]] double rise_of_entry(PetscInt cell) const;
   [[nodiscard]] double rise_of_supply(PetscInt node) const;
@@ -75,12 +88,17 @@ private:
   const Rows& rows_;
   const Flow& flow_;
   EnergyModel model_;
+  EnergyLaws laws_;
   Surroundings surroundings_;
   std::vector<double> around_, along_, across_;  // W/K [r, n], [r + 1, n], [r, n], of one face
   std::vector<char> fed_;                        // [r, n]
   Halo halo_;
   // Of each face, the derivatives of the limited slope; single precision is enough for a Jacobian.
   std::array<std::vector<float>, 3> upstream_, downstream_;
+  // Of properties over the temperature: heat capacity and conductivity of each face over those at the ambient's
+  // temperature, half the derivative of the latter times the step, and where the derivative is.
+  std::array<std::vector<float>, 3> capacity_, conduct_, tilt_;
+  std::vector<double> at_;
   std::vector<double> flux_, line_, before_, behind_;
 };
 

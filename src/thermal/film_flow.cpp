@@ -19,6 +19,13 @@ FilmFlow::~FilmFlow() = default;
 void FilmFlow::set_temperature(const std::vector<double>& cells) {
   w_->set_temperature(cells);
 }
+void FilmFlow::set_thickness(const std::vector<double>& thickness) {
+  w_->h = with_halo(w_->rows, thickness, Work::at(w_->n));
+}
+void FilmFlow::start(const std::vector<double>& pressure) {
+  core::require(pressure.size() == w_->pressure.size(), "a pressure for each node of this rank");
+  w_->pressure = pressure;
+}
 int FilmFlow::solve(double tolerance) {
   return w_->solve(tolerance);
 }
@@ -106,6 +113,12 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
   mu.resize(temperature.size());
   for (std::size_t k = 0; k < mu.size(); ++k)
     mu[k] = temperature[k] > 0 ? viscosity(options.fluid.viscosity, temperature[k]).value : 0;
+  core::agree(rows.comm(), [&] {
+    if (options.fluid.gas || is_constant(options.fluid.density_law)) return;
+    for (const double t : cells)
+      if (!(options.fluid.rho(0, t) > 0))
+        throw core::DomainError("the law of the density of the lubricant has left what is positive");
+  });
   around.assign(at(n * rows.count()), {});
   along.assign(at(n * (rows.count() + 1)), {});
   const double surface = options.speed * mesh.radius;
@@ -147,8 +160,11 @@ void FilmFlow::Work::face(std::size_t a, std::size_t b, Profile& profile) {
 
 // kg/m^3, of a gas that per pressure.
 double FilmFlow::Work::density(std::size_t a, std::size_t b, std::size_t k) const {
-  if (!options.fluid.gas) return options.fluid.density;
   const auto l = at(mesh.across);
+  if (!options.fluid.gas)
+    return is_constant(options.fluid.density_law)
+               ? options.fluid.density
+               : 0.5 * (options.fluid.rho(0, temperature[a * l + k]) + options.fluid.rho(0, temperature[b * l + k]));
   return 2 / (options.fluid.gas_constant * (temperature[a * l + k] + temperature[b * l + k]));
 }
 

@@ -139,7 +139,15 @@ FlowReport FilmFlow::report(const Flow& flow) const {
   const auto at = [](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
   const std::vector<double> p = with_halo(w.rows, w.pressure, at(n));
   Profile profile(l);
-  double sums[6] = {}, most[2] = {};  // force x, y, friction, heat, inflow, outflow; defect, highest pressure
+  // Force x, y, friction, heat, inflow, outflow, expansion; defect, highest pressure.
+  double sums[7] = {}, most[2] = {};
+  // Volume flow times the difference of pressure, of one face.
+  const auto expansion = [&](std::size_t a, std::size_t b, const double* mass) {
+    const double dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
+    double out = 0;
+    for (int k = 0; k < l; ++k) out += mass[k] / (w.density(a, b, at(k)) * dense);
+    return out * (p[b] - p[a]);
+  };
   for (int q = w.rows.begin(); q < w.rows.end(); ++q)
     for (int i = 0; i < n; ++i) {
       const auto node = at(w.rows.node(i, q));
@@ -156,9 +164,13 @@ FlowReport FilmFlow::report(const Flow& flow) const {
         if (q == 0) sums[5] -= flow.along[at(i * l + k)];
         if (q == mesh.along) sums[5] += flow.along[at(((q - w.rows.begin() + 1) * n + i) * l + k)];
       }
+      if (q > 0)
+        sums[6] += expansion(w.halo(i, q - 1), w.halo(i, q),
+                             flow.along.data() + (static_cast<std::ptrdiff_t>(q - w.rows.begin()) * n + i) * l);
       if (!mesh.closed && i == n - 1) continue;
       const std::size_t a = w.halo(i, q), b = w.halo((i + 1) % n, q);
       w.face(a, b, profile);
+      sums[6] += expansion(a, b, flow.around.data() + w.rows.cell(0, i, q));
       const double tau = (p[b] - p[a]) / mesh.dx() * (0.5 * (w.h[a] + w.h[b]) - profile.neutral) +
                          w.options.speed * mesh.radius * profile.pull;
       sums[2] += tau * mesh.dx() * mesh.depth(q) * mesh.radius;
@@ -168,14 +180,15 @@ FlowReport FilmFlow::report(const Flow& flow) const {
       if (q == 0 || q == mesh.along) continue;
       sums[5] += flow.around[at(w.rows.cell(k, n - 1, q))] - flow.entry[at((q - w.rows.begin()) * l + k)];
     }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, w.rows.comm());
+  MPI_Allreduce(MPI_IN_PLACE, sums, 7, MPI_DOUBLE, MPI_SUM, w.rows.comm());
   MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, w.rows.comm());
   FlowReport out;
   out.force[0] = sums[0];
   out.force[1] = sums[1];
   out.friction = sums[2];
-  out.power = sums[2] * w.options.speed;
+  out.power = sums[2] * w.options.speed + 0.0;  // no -0
   out.heat = sums[3];
+  out.expansion = sums[6];
   out.inflow = sums[4];
   out.outflow = sums[5];
   out.defect = most[0];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/gate.hpp"
 #include "whirl/thermal/bush.hpp"
 #include "whirl/thermal/journal.hpp"
@@ -14,6 +15,8 @@ using core::check;
 
 namespace {
 
+constexpr double least_film = 0.1;
+
 Surface convection(double coefficient, double temperature) {
   return {Surface::Kind::convection, coefficient, temperature};
 }
@@ -21,6 +24,7 @@ Surface convection(double coefficient, double temperature) {
 Solid bush_of(const Rows& rows, const WallOptions& o) {
   Bush bush;
   bush.material.conductivity = o.conductivity;
+  bush.material.expansion = o.expansion;
   bush.outer_radius = o.radius;
   bush.layers = o.layers;
   const Surface free = convection(o.convection, o.ambient);
@@ -31,6 +35,7 @@ Solid bush_of(const Rows& rows, const WallOptions& o) {
 Solid journal_of(const Rows& rows, const WallOptions& o) {
   Journal journal;
   journal.material.conductivity = o.conductivity;
+  journal.material.expansion = o.expansion;
   journal.bore_radius = o.radius;
   journal.length = o.shaft_length > 0 ? o.shaft_length : rows.mesh().length;
   journal.before = o.shaft_before;
@@ -51,12 +56,20 @@ struct Thd::Work {
     core::Vector temperature, rhs;
     std::vector<double> conductance;  // W/K [r, n], between the film's cell and what stands behind
     std::vector<double> behind;       // K [r, n]
+    std::vector<double> rise;         // K [r], growth over expansion times radius; empty: it does not grow
+    double grows = 0;                 // m/K, of the clearance
+    std::vector<double> factor;       // - [r, n], of the film's half layer; empty: 1
   };
 
   Work(const Rows& r, ThdSetup s, std::vector<double> h)
-      : rows(r), setup(std::move(s)), thickness(std::move(h)), film(rows, setup.flow, thickness), gate(rows.comm()) {
+      : rows(r),
+        setup(std::move(s)),
+        cold(std::move(h)),
+        thickness(cold),
+        film(rows, setup.flow, thickness),
+        gate(rows.comm()) {
     const Mesh& mesh = rows.mesh();
-    half = Energy::half_layer(rows, setup.flow.fluid.conductivity, thickness);
+    half = Energy::half_layer(rows, setup.flow.fluid.k(setup.ambient), thickness);
     bush.options = &setup.bush;
     journal.options = &setup.journal;
     journal.layer = mesh.across - 1;
@@ -68,18 +81,64 @@ struct Thd::Work {
       if (side->options->type != WallOptions::Type::solid) continue;
       side->solid.emplace(at_bush ? bush_of(rows, setup.bush) : journal_of(rows, setup.journal));
       side->solid->join(half);
-      side->conductance = side->solid->joined();
+      side->conductance = side->solid->joined();  // at the ambient's temperature
       side->temperature = side->solid->temperature(side->options->ambient);
       side->rhs = core::duplicate(side->temperature.get());
       side->behind.assign(half.size(), side->options->ambient);
+      if (!side->options->growth || side->options->expansion <= 0) continue;
+      side->rise.assign(static_cast<std::size_t>(rows.count()), 0.0);
+      side->grows = (at_bush ? 1 : -1) * side->options->expansion * side->solid->shape().wall_radius();
+      growing = true;
     }
     cells = half.size() * static_cast<std::size_t>(mesh.across);
     temperature.assign(cells, setup.ambient);
     check(DMCreateGlobalVector(rows.cells(), film_temperature.put()));
-    const std::size_t walls = (bush.solid ? half.size() : 0) + (journal.solid ? half.size() : 0);
+    const std::size_t walls =
+        (bush.solid ? half.size() : 0) + (journal.solid ? half.size() : 0) + bush.rise.size() + journal.rise.size();
     x = core::make_vector(rows.comm(), static_cast<PetscInt>(cells + walls), PETSC_DETERMINE);
     f = core::duplicate(x.get());
-    check(VecSet(x.get(), setup.ambient));
+    put_state();
+  }
+
+  // What the iteration changes, in the order of x.
+  template <class Visit>
+  void each_part(const Visit& visit) {
+    visit(temperature);
+    for (Side* side : {&bush, &journal})
+      if (side->solid) {
+        visit(side->behind);
+        visit(side->rise);
+      }
+  }
+
+  void put_state() {
+    const core::WriteArray to(x.get());
+    double* at = to.data();
+    each_part([&](const std::vector<double>& part) { at = std::copy(part.begin(), part.end(), at); });
+  }
+
+  // The thickness that the solids leave, and how well heat passes through it. Rounds on the way may overshoot: there
+  // a tenth of the film stays, and where that is so at the end it touches.
+  void grow() {
+    if (!growing) return;
+    const auto n = static_cast<std::size_t>(rows.mesh().nodes_around());
+    closed = 0;
+    for (std::size_t c = 0; c < thickness.size(); ++c) {
+      thickness[c] = cold[c];
+      for (const Side* side : {&bush, &journal})
+        if (!side->rise.empty()) thickness[c] += side->grows * side->rise[c / n];
+      if (thickness[c] >= least_film * cold[c]) continue;
+      thickness[c] = least_film * cold[c];
+      closed = 1;
+    }
+    film.set_thickness(thickness);
+    half = Energy::half_layer(rows, setup.flow.fluid.k(setup.ambient), thickness);
+    for (Side* side : {&bush, &journal}) {
+      if (side->options->type == WallOptions::Type::adiabatic) continue;
+      if (side->solid) side->solid->join(half);
+      side->conductance = side->solid ? side->solid->joined() : half;
+      join(*side);
+    }
   }
 
   // Behind the film's wall, what a cell of the film and one of the solid have between them.
@@ -88,7 +147,8 @@ struct Thd::Work {
         temperature[c * static_cast<std::size_t>(rows.mesh().across) + static_cast<std::size_t>(side.layer)];
     if (side.options->type == WallOptions::Type::adiabatic) return own;  // no gradient
     if (!side.solid) return side.behind[c];
-    return own + side.conductance[c] / half[c] * (side.behind[c] - own);
+    const double conductance = side.factor.empty() ? side.conductance[c] : side.solid->joined()[c];
+    return own + conductance / (half[c] * (side.factor.empty() ? 1.0 : side.factor[c])) * (side.behind[c] - own);
   }
 
   [[nodiscard]] Surroundings surroundings() const {
@@ -104,6 +164,22 @@ struct Thd::Work {
     return out;
   }
 
+  // Where the film's conductance at a wall changes with the temperature or by turbulence, the solid has the same.
+  void rejoin() {
+    if (is_constant(setup.flow.fluid.conductivity_law) && flow.mixing.empty()) return;
+    for (Side* side : {&bush, &journal}) {
+      side->factor = energy->wall_factors(film_temperature.get(), side == &journal);
+      join(*side);
+    }
+  }
+
+  void join(Side& side) const {
+    if (!side.solid || side.factor.empty()) return;
+    std::vector<double> now = half;
+    for (std::size_t c = 0; c < now.size(); ++c) now[c] *= side.factor[c];
+    side.solid->join(now);
+  }
+
   // Heat of the film to a solid, and its temperature behind the wall.
   void conduct(Side& side) {
     if (!side.solid) return;
@@ -116,16 +192,16 @@ struct Thd::Work {
     check(VecGetOwnershipRange(side.temperature.get(), &first, nullptr));
     const core::ReadArray t(side.temperature.get());
     for (std::size_t c = 0; c < own.size(); ++c) side.behind[c] = t[side.solid->wall()[c] - first];
+    if (side.rise.empty()) return;
+    side.rise = side.solid->growth(side.temperature.get(), side.options->reference.value_or(side.options->ambient));
+    for (double& rise : side.rise) rise /= std::abs(side.grows);
   }
 
   void take(const double* from) {
-    std::copy_n(from, cells, temperature.begin());
-    from += cells;
-    for (Side* side : {&bush, &journal})
-      if (side->solid) {
-        std::copy_n(from, half.size(), side->behind.begin());
-        from += half.size();
-      }
+    each_part([&](std::vector<double>& part) {
+      std::copy_n(from, part.size(), part.begin());
+      from += part.size();
+    });
   }
 
   // One round from the temperatures of x; what it changes of them is `out`.
@@ -138,6 +214,7 @@ struct Thd::Work {
       seconds += now - clock;
       clock = now;
     };
+    grow();
     film.set_temperature(temperature);
     lap(cost.seconds.flow);
     cost.pressure += film.solve();
@@ -147,7 +224,9 @@ struct Thd::Work {
     lap(cost.seconds.flow);
     if (!energy)
       energy = std::make_unique<Energy>(
-          rows, flow, EnergyModel{setup.flow.fluid.heat_capacity, setup.flow.fluid.conductivity, setup.order},
+          rows, flow,
+          EnergyModel{setup.flow.fluid.heat_capacity, setup.flow.fluid.conductivity, setup.order,
+                      setup.flow.fluid.heat_capacity_law, setup.flow.fluid.conductivity_law},
           thickness, surroundings());
     else
       energy->update(thickness, surroundings());
@@ -162,6 +241,7 @@ struct Thd::Work {
       const core::ReadArray t(film_temperature.get());
       std::copy_n(t.data(), cells, temperature.begin());
     }
+    rejoin();
     lap(cost.seconds.energy);
     conduct(bush);
     conduct(journal);
@@ -169,16 +249,13 @@ struct Thd::Work {
     const core::WriteArray change(out);
     double largest = 0;
     PetscInt at_row = 0;
-    const auto put = [&](const std::vector<double>& now) {
+    each_part([&](const std::vector<double>& now) {
       for (const double value : now) {
         change[at_row] = old[at_row] - value;
         largest = std::max(largest, std::abs(change[at_row]));
         ++at_row;
       }
-    };
-    put(temperature);
-    for (const Side* side : {&bush, &journal})
-      if (side->solid) put(side->behind);
+    });
     MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, rows.comm());
     cost.largest.push_back(largest);
   }
@@ -191,7 +268,10 @@ struct Thd::Work {
 
   const Rows& rows;
   const ThdSetup setup;
-  const std::vector<double> thickness;
+  const std::vector<double> cold;  // m [r, n], before the solids grow
+  std::vector<double> thickness;
+  bool growing = false;
+  int closed = 0;            // some film is thinner than least_film of what it was cold
   std::vector<double> half;  // W/K [r, n]
   FilmFlow film;
   Flow flow;
@@ -230,9 +310,51 @@ ThdSolve Thd::solve() {
   check(SNESGetIterationNumber(w.snes.get(), &iterations));
   w.cost.iterations = static_cast<int>(iterations);
   w.cost.converged = reason > 0;
+  MPI_Allreduce(MPI_IN_PLACE, &w.closed, 1, MPI_INT, MPI_MAX, w.rows.comm());
+  core::agree(w.rows.comm(), [&] {
+    if (w.closed != 0) throw core::NotConverged("bush and journal grow until the film is closed");
+  });
   return w.cost;
 }
 
+std::vector<double> Thd::state() const {
+  const Work& w = *w_;
+  const auto l = static_cast<std::size_t>(w.rows.mesh().across),
+             n = static_cast<std::size_t>(w.rows.mesh().nodes_around());
+  std::vector<double> out;
+  for (std::size_t c = 0; c < w.half.size(); ++c) {
+    for (std::size_t k = 0; k < l; ++k) out.push_back(w.temperature[c * l + k]);
+    for (const Work::Side* side : {&w.bush, &w.journal}) out.push_back(side->behind[c]);
+    for (const Work::Side* side : {&w.bush, &w.journal}) out.push_back(side->rise.empty() ? 0 : side->rise[c / n]);
+    out.push_back(w.film.pressure()[c]);
+  }
+  return out;
+}
+void Thd::start(const std::vector<double>& state) {
+  Work& w = *w_;
+  const auto l = static_cast<std::size_t>(w.rows.mesh().across),
+             n = static_cast<std::size_t>(w.rows.mesh().nodes_around());
+  core::require(state.size() == w.half.size() * (l + 5), "a state of a film on this mesh");
+  std::vector<double> pressure;
+  auto from = state.begin();
+  for (std::size_t c = 0; c < w.half.size(); ++c) {
+    for (std::size_t k = 0; k < l; ++k) w.temperature[c * l + k] = *from++;
+    for (Work::Side* side : {&w.bush, &w.journal}) {
+      if (side->solid) side->behind[c] = *from;
+      ++from;
+    }
+    for (Work::Side* side : {&w.bush, &w.journal}) {
+      if (!side->rise.empty()) side->rise[c / n] = *from;
+      ++from;
+    }
+    pressure.push_back(*from++);
+  }
+  w.film.start(pressure);
+  w.put_state();
+}
+const std::vector<double>& Thd::thickness() const {
+  return w_->thickness;
+}
 const FilmFlow& Thd::flow() const {
   return w_->film;
 }

@@ -215,8 +215,25 @@ TEST(Turbulence, ShortForm) {  // the printed factors have three digits
     EXPECT_NEAR(evaluate(resistance_around(T::constantinescu), row[0]), row[1], 1.5e-3 * row[1]);
     EXPECT_NEAR(evaluate(resistance_along(T::constantinescu), row[0]), row[2], 1.5e-3 * row[2]);
   }
+  EXPECT_EQ(couette_factor(T::constantinescu, 5000.0), couette_factor(T::ng_pan, 5000.0));
+  EXPECT_EQ(couette_factor(T::laminar, 5000.0), 1.0);
   EXPECT_EQ(evaluate(resistance_around(T::laminar), 5000.0), 12.0);
   EXPECT_EQ(evaluate(resistance_along(T::laminar), 5000.0), 12.0);
+}
+
+// Ng and Pan's fit, with the shear of Couette flow; without speed the flow is laminar.
+TEST(Turbulence, NgAndPansFit) {
+  const double table[][4] = {{500, 15.65, 13.68, 1.413},     {1000, 18.82, 15.26, 1.793},
+                             {2000, 24.72, 18.35, 2.521},    {5000, 41.01, 27.29, 4.599},
+                             {10000, 66.14, 41.75, 7.905},   {20000, 113.03, 69.87, 14.248},
+                             {50000, 242.47, 151.47, 32.348}};
+  for (const auto& row : table) {
+    EXPECT_NEAR(evaluate(resistance_around(T::ng_pan), row[0]), row[1], 0.0051);
+    EXPECT_NEAR(evaluate(resistance_along(T::ng_pan), row[0]), row[2], 0.0051);
+    EXPECT_NEAR(couette_factor(T::ng_pan, row[0]), row[3], 0.00051);
+  }
+  EXPECT_EQ(evaluate(resistance_around(T::ng_pan), 0.0), 12.0);
+  EXPECT_EQ(couette_factor(T::ng_pan, 0.0), 1.0);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "film/compliant_cases.hpp"
 #include "film/content_cases.hpp"
+#include "film/thd_cases.hpp"
 
 namespace whirl::film::testing {
 namespace {
@@ -61,6 +62,26 @@ std::vector<Case> cases() {
                      }
                    },
                    2e-3});
+  // Around a film at rest in its states, each field by its own measure.
+  for (const HeatedCase& c : heated_films()) {
+    const auto waves = [](const Film& film, double size, double phase, std::vector<double>& to) {
+      for (const StateField& f : film.state_fields())
+        f.each([&](int k) { to[static_cast<std::size_t>(k)] = size * f.scale * std::sin(phase + 2.3 * k); });
+    };
+    all.push_back({c.name, c.geometry, c.options, [c] { return motion(c.geometry, c.position, c.velocity, kSpeed); },
+                   [c, waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
+                     waves(film, 0.3, 1.0, s);
+                     std::vector<double> rest(s.size());
+                     film.unloaded({}, rest);
+                     for (std::size_t k = 0; k < s.size(); ++k) s[k] += rest[k];
+                     waves(film, 100.0, 2.0, rates);
+                   },
+                   [waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
+                     waves(film, 1.0, 0.3, s);
+                     waves(film, 100.0, 0.7, rates);
+                   },
+                   1e-6});
+  }
   return all;
 }
 

@@ -354,6 +354,7 @@ def sections(folder):
     radius = lambda corners, centre=0: np.hypot(corners[..., 0] - centre, corners[..., 1])  # noqa: E731
     assert np.allclose(radius(bush)[0], 17), "the bush begins at its wall and stands off by the clearance"
     assert np.allclose(radius(film)[0], 17), "the film begins there"
+    assert np.allclose(radius(bush)[-1], 27) and np.allclose(radius(journal, 1)[0], 5), "both solids reach their free surfaces"
     gap = radius(film)[0] - radius(film)[-1]
     assert np.isclose(gap.min(), 1) and np.isclose(gap.max(), 3)
     assert np.allclose(radius(journal, 1)[-1], 15), "the journal lies 1 mm to the right"

@@ -53,11 +53,13 @@ def thd(root):
     z_journal = np.concatenate((np.linspace(-0.035, -0.016, 9), z, np.linspace(0.018, 0.065, 20)))
     put(g.create_group("film"), theta=theta, z=z, radius=0.015, thickness=thickness, pressure=pressure, bush_wall=300 + warm, journal_wall=358 * np.ones((17, 48)),
         temperature=300 + warm[..., None] + 10 * (zeta * (1 - zeta)), flow_around=1e-3 * np.ones((17, 48)), flow_along=1e-2 * z[:, None] * np.ones(48))
-    put(g.create_group("bush"), theta=theta, z=z, r=r_bush, temperature=300 + warm[..., None] * (1 - 10 * (r_bush - 0.015)))
-    put(g.create_group("journal"), z=z_journal, r=r_journal, temperature=300 + 58 * np.exp(-np.abs(z_journal / 0.03))[:, None] * (1 + 0 * r_journal))
-    put(g.create_group("iterations"), field=["pressure", "temperature", "solids"], residual=10.0 ** -np.arange(7)[:, None] * [1, 0.5, 0.1])
-    put(g.create_group("meshes"), cells=[1e4, 8e4, 6.4e5], minimum=[291, 293, 294], mean=[301.3, 301.25, 301.23], maximum=[306, 305.4, 305.2], residual=[1e-9, 0, 3e-10])
-    put(g.create_group("budget"), parameter=[0, 2000, 10000], power_loss=[0, 3, 69.7], heat_bush=[0, 1.5, 33.9], heat_journal=[0, 1.5, 35.7], residual=[0, 1e-9, 1e-9])
+    put(g.create_group("bush"), theta=theta, z=z, r=r_bush, r_faces=np.linspace(0.015, 0.025, 7), temperature=300 + warm[..., None] * (1 - 10 * (r_bush - 0.015)))
+    put(g.create_group("journal"), z=z_journal, r=r_journal, r_faces=np.append(np.linspace(0.005, 0.015, 7), 0.015), temperature=300 + 58 * np.exp(-np.abs(z_journal / 0.03))[:, None] * (1 + 0 * r_journal))
+    put(g.create_group("iterations"), field=["temperature"], residual=10.0 ** -np.arange(7)[:, None])
+    put(g.create_group("meshes"), cells=[1e4, 8e4, 6.4e5], energy_residual=[1e-9, 0, 3e-10],
+        **{"temperature.minimum": [294, 293, 291], "temperature.mean": [301.3, 301.25, 301.23], "temperature.maximum": [305.2, 305.4, 306]})
+    put(g.create_group("budget"), parameter=[0, 2000, 10000], power_loss=[0, 3, 69.7], dissipation=[10.5, 13.4, 79.8], expansion=[-10.5, -10.4, -10.1],
+        heat_bush=[0, 1.5, 33.9], heat_journal=[0, 1.5, 35.7], enthalpy=[0, 0, 0.1], residual=[0, 1e-9, 1e-9])
 
 
 def modes(root):

@@ -163,7 +163,31 @@ def liners(h):
     h.close("largest x, worst difference [m]", abs(cycles[0][1] - cycles[1][1]).max(), 0, 1e-8)
 
 
+def heat(h):
+    """On coarse films: temperatures and threshold near our own values on 60 x 16 cells, and one temperature where nothing warms."""
+    coarse = "bearings.*.film.cells=[24, 6]"
+    studies = ("studies=[{static: {name: at service speed, speed: 3600 rpm}}, {equilibrium_branch: {name: balanced, parameter: speed,"
+               " range: {from: 2400 rpm, to: 2800 rpm}, step: {initial: 200 rpm, min: 0.1 rpm, max: 200 rpm}, detect: [hopf]}}]")
+    found = h.run("thd.yaml", "heat", [coarse, studies])
+    at_rest = found["at service speed"]
+    for name, load, mean, highest in (("B1", 12305, 329.0, 338.0), ("B3", 213819, 328.4, 340.1), ("B4", 128686, 327.6, 340.2)):
+        h.close(f"load of {name} [N]", value(at_rest, f"load.{name}"), load, 0.01 * load)
+        h.close(f"mean temperature of {name} [K]", value(at_rest, f"bearing.{name}.mean_temperature"), mean, 1.0)
+        h.close(f"highest temperature of {name} [K]", value(at_rest, f"bearing.{name}.max_temperature"), highest, 2.0)
+    h.close("power loss [W]", value(at_rest, "power_loss"), 375846, 0.02 * 375846)
+    late = hopf(found["balanced"])
+    h.true("one Hopf bifurcation", len(late) == 1)
+    h.close("threshold [rpm]", late[0]["value"], 2685, 0.05 * 2685)
+    h.true("before which it is stable", late[0]["others_unstable"] == 0)
+    # Oil of a heat capacity beyond all oils stays as cold as it comes, 25 mPa s, and is a film of one temperature.
+    cold = h.run("thd.yaml", "cold", [coarse, "bearings.*.film.heat_capacity=2e12 J/(kg K)",
+                                      "studies=[{static: {name: cold, speed: 3600 rpm}}]"])["cold"]
+    h.close("nothing warms [K]", value(cold, "bearing.B3.mean_temperature"), 323.15, 1e-3)
+    h.true("colder oil carries at a thicker film",
+           value(cold, "bearing.B3.min_thickness") > value(at_rest, "bearing.B3.min_thickness"))
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"static": static, "modes": modes, "response": response, "balanced": balanced, "liners": liners}[sys.argv[3]](harness)
+    {"static": static, "modes": modes, "response": response, "balanced": balanced, "liners": liners, "heat": heat}[sys.argv[3]](harness)
     harness.finish()

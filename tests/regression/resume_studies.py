@@ -14,6 +14,8 @@ import subprocess
 import sys
 import time
 
+import h5py
+
 from branches import SHORT
 from compare import same_results
 from harness import Harness
@@ -63,6 +65,16 @@ def cpu(pid):
     return None if words[0] == "Z" else (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def between(out):
+    """Seconds of work between the files that a killed run left behind: more where the disk is slow, so that saving takes no
+    more than a twentieth of the time. Half a second before the first file."""
+    found = [0.5]
+    for path in out.glob("*.checkpoint.h5"):
+        with h5py.File(path) as f:
+            f.visititems(lambda _, x: found.append(float(x.attrs.get("seconds_between_files", 0))))
+    return max(found)
+
+
 def run(out, flags=(), limit=None):
     """Work of a run (instructions, or processor time where they are not counted), its processor time, and whether it was
     killed, which happens when its work has come to `limit`."""
@@ -85,24 +97,29 @@ def run(out, flags=(), limit=None):
 
 whole, seconds, _ = run(h.work / "undisturbed")
 start, _, _ = run(h.work / "undisturbed", ["--resume"])  # nothing left to do: what starting and ending takes
-lost = []
+lost, allowed = [], []
+# The work under way, and the start of a resumed study.
+work = 0.5 if case in ("compliant", "figure", "cycles", "convergence") else 1.5
 moments = sorted(start + (whole - start) * random.uniform(0.15, 0.95) for _ in range(kills))
 for k, moment in enumerate(moments):
     # Each kill is that of a run of its own, so that what each of them costs can be told.
     out = h.work / f"killed {k}"
     before, _, killed = run(out, limit=moment)
+    waited = between(out)
     after, _, _ = run(out, ["--resume"])
     share = moment / whole
     if killed:
         lost.append((before + after - whole - start) / whole * seconds)
-        print(f"killed at {share:.0%}: {lost[-1]:.2f} s lost", flush=True)
+        # The file written last may have taken longer than those that its interval was chosen from.
+        allowed.append(work + 2 * waited)
+        print(f"killed at {share:.0%}: {lost[-1]:.2f} s lost, {waited:.2f} s between files", flush=True)
     for what, d, within in same_results(h.work / "undisturbed", out):
         h.close(f"kill {k} at {share:.0%}: {what}", d, 0, within)
     h.true(f"kill {k}: nothing is left behind", sorted(p.name for p in out.iterdir()) == sorted(p.name for p in (h.work / "undisturbed").iterdir()))
 h.true("it was killed", lost)
 print(f"{case}: undisturbed {seconds:.2f} s, start and end {start / whole * seconds:.2f} s, lost at {len(lost)} kills: largest "
       f"{max(lost):.2f}, mean {sum(lost) / len(lost):.2f} s of processor time")
-# Half a second between checkpoints, the work under way, and the start of a resumed study.
-allowed = 1.0 if case in ("compliant", "figure", "cycles", "convergence") else 2.0
-h.true(f"at most {allowed:.1f} s of work are lost", max(lost) < allowed, f"{max(lost):.2f} s")
+worst = max(range(len(lost)), key=lambda k: lost[k] - allowed[k], default=None)
+if worst is not None:
+    h.true(f"at most {allowed[worst]:.1f} s of work are lost", lost[worst] < allowed[worst], f"{lost[worst]:.2f} s")
 h.finish()

@@ -4,10 +4,13 @@
 thd.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
 import json
+import subprocess
 import sys
+from xml.etree import ElementTree
 
 import h5py
 import numpy
+from compare import same_results
 from harness import Harness, value
 
 SUPPLY, BUSH = "cool gas", "preheated gas"
@@ -26,8 +29,7 @@ def walls(h):
     h.close("power loss [W]", value(found, "power_loss"), fast["Ploss"], 0.05)
     h.close("consumption [kg/s]", value(found, "mass_flow"), fast["mdot"], 0.001 * fast["mdot"])
     h.close("load [N]", numpy.hypot(value(found, "load.x"), value(found, "load.y")), fast["W"], 0.002 * fast["W"])
-    # The reference's is 0.413 %, this one 0.368 % (0.435 and 0.391 % on 288 x 96 x 8 cells): it lies beside an orifice, where
-    # temperatures do not converge with the mesh.
+    # The reference's is 0.413 %, this one 0.368 %: its numbers are those of a viscosity that is uniform across the film (docs/validation.md).
     h.close("change of the pressure against isothermal", value(found, "pressure_change"), fast["dp_max_rel"], 0.0006)
     h.close("what heats the film is what the shaft loses [W]", value(found, "heat.film"), value(found, "power_loss"), 1e-9 * fast["Ploss"])
     h.close("balance of the energy [W]", value(found, "energy_residual"), 0, 1e-8 * fast["Ploss"])
@@ -43,10 +45,176 @@ def walls(h):
         h.true("field of temperature", shape == (33, 96, 8), f"{shape}")
 
 
+def budget(h):
+    """What heats the film over the speed, and where the heat goes."""
+    reference = json.loads((h.source / "tests/reference/thd/bearing_a.json").read_text())
+    h.run("../thd/speed_sweep.yaml", "budget", ["studies.1.thd.meshes=1"])
+    with h5py.File(h.work / "budget/results.h5") as f:
+        terms = {k: v[:] for k, v in f["studies/enthalpy budget/budget"].items()}
+    for row in reference["speed_sweep"]:
+        found = numpy.flatnonzero(terms["parameter"] == row["omega"])
+        if len(found) == 0:
+            continue
+        at = f"{row['omega']:.0f} rad/s: "
+        # Both parts grow with the logarithm of the mesh beside the orifices, so that the same mesh is compared.
+        h.close(at + "work of pressure [W]", terms["expansion"][found[0]], row["I_exp"], 0.01 * abs(row["I_exp"]))
+        h.close(at + "dissipation [W]", terms["dissipation"][found[0]], row["I_dis"], 0.01 * row["I_dis"])
+    power = terms["power_loss"]
+    h.close("both are what the shaft loses [W]", numpy.abs(terms["dissipation"] + terms["expansion"] - power).max(), 0, 1e-9 * power.max())
+    gone = terms["heat_bush"] + terms["heat_journal"] + terms["enthalpy"]
+    h.close("all of it leaves [W]", numpy.abs(gone - power).max(), 0, 1e-8 * power.max())
+    h.close("residual [W]", numpy.abs(terms["residual"]).max(), 0, 1e-8 * power.max())
+    # Each speed starts from the one before: the last one alone comes to the same.
+    alone = h.run("../thd/speed_sweep.yaml", "alone", ["studies.1.thd.meshes=1", "studies.1.thd.speeds=[10000 rad/s]"])["enthalpy budget"]
+    h.close("mean temperature alone [K]", value(alone, "temperature.mean"), terms["mean_temperature"][-1], 1e-6)
+    h.close("power loss alone [W]", value(alone, "power_loss"), power[-1], 1e-7 * power[-1])
+
+
+def growth(h):
+    """A clearance that bush and shaft change by what they grow."""
+    found = h.run("../thd/growth.yaml", "growth")
+    grown, machined = found["growing"], found["as machined"]
+    with h5py.File(h.work / "growth/results.h5") as f:
+        part = f["studies/growing"]
+        depth = numpy.full(17, 30e-3 / 16)
+        depth[[0, -1]] /= 2
+        wanted = 20e-6
+        for name, sign in (("bush", 1), ("journal", -1)):
+            t, z, r = (part[f"{name}/{k}"][:] for k in ("temperature", "z", "r_faces"))
+            t = t[numpy.abs(z) < 15.001e-3]
+            if t.ndim == 3:
+                t = t.mean(axis=1)
+            section = t @ numpy.diff(r**2) / (r[-1] ** 2 - r[0] ** 2) - 300
+            wanted += sign * 1.15e-5 * 15e-3 * (section @ depth) / depth.sum()
+    h.close("mean clearance by the temperatures of the solids [m]", value(grown, "clearance"), wanted, 1e-4 * 20e-6)
+    h.true("it has grown", value(grown, "clearance") > 20.5e-6, f"{value(grown, 'clearance')} m")
+    h.true("the shaft loses less", value(grown, "power_loss") < value(machined, "power_loss"))
+    h.true("the film is cooler", value(grown, "temperature.mean") < value(machined, "temperature.mean") - 2)
+    h.close("balance of the energy [W]", value(grown, "energy_residual"), 0, 1e-8 * value(grown, "power_loss"))
+    none = h.run("../thd/growth.yaml", "none", ["studies.1.thd.bush.expansion=1e-12 1/K", "studies.1.thd.journal.expansion=1e-12 1/K"])["growing"]
+    h.close("without expansion as machined [K]", value(none, "temperature.mean"), value(machined, "temperature.mean"), 1e-4)
+    refused = subprocess.run(h.command("../thd/growth.yaml", h.work / "refused", ["studies.1.thd.bush.expansion=0 1/K"]), capture_output=True, text=True)
+    h.true("growth without expansion is refused", refused.returncode == 2 and "expansion" in refused.stdout + refused.stderr, refused.stderr[-200:])
+
+
+def bars(h):
+    """Error bars of coarse meshes hold the values of a fine one."""
+    for deck, name, cells, fine in (("bearing_a.yaml", "bearing A", "[48, 16, 8]", "[144, 48, 24]"), ("solids.yaml", "cool gas", "[48, 16, 8]", "[96, 32, 16]"),
+                                    ("oil_groove.yaml", "bronze bush", "[80, 16, 8]", "[160, 32, 16]")):
+        speed = "[4000 rpm]" if "oil" in deck else "[10000 rad/s]"
+        words = [f"studies.*.thd.speeds={speed}"]
+        coarse = h.run(f"../thd/{deck}", f"coarse {name}", [*words, f"studies.*.thd.cells={cells}"])[name]
+        exact = h.run(f"../thd/{deck}", f"fine {name}", [*words, f"studies.*.thd.cells={fine}", "studies.*.thd.meshes=1"])[name]
+        doubtful = " ".join(coarse.get("warnings", []))
+        held, among = 0, 0
+        for key, entry in coarse["values"].items():
+            if "uncertainty" not in entry or f" {key}" in doubtful:
+                continue
+            among += 1
+            off = abs(entry["value"] - value(exact, key))
+            held += off <= entry["uncertainty"]
+            h.true(f"{name}: {key}", True, f"off by {off:.3g}, bar {entry['uncertainty']:.3g}{'' if off <= entry['uncertainty'] else ' NOT HELD'}")
+        h.true(f"{name}: bars hold", held >= 0.9 * among and among > 12, f"{held} of {among}")
+
+
+def shown(h):
+    """Meshes for ParaView: what the XML says is in the file, and encloses the volume that is there."""
+    for n in (1, 2):
+        h.run("../thd/solids.yaml", f"shown_{n}", ["studies.*.thd.cells=[48, 16, 8]", "studies.*.thd.meshes=1"], launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])
+        grids = {g.get("Name"): g for g in ElementTree.parse(h.work / f"shown_{n}/preheated gas.xdmf").iter("Grid") if g.get("GridType") == "Uniform"}
+        wanted = ["bush", "film", "film surface", "film surface unwrapped", "film unwrapped", "journal"]
+        h.true(f"{n} ranks: grids", sorted(grids) == wanted, f"{sorted(grids)}")
+        volumes = {"film": 2 * numpy.pi * 15.01e-3 * 20e-6 * 30e-3, "film unwrapped": 2 * numpy.pi * 15e-3 * 20e-4 * 30e-3,
+                   "bush": numpy.pi * (25e-3**2 - 15e-3**2) * 30e-3, "film surface": 2 * numpy.pi * 15.02e-3 * 30e-3,
+                   "film surface unwrapped": 2 * numpy.pi * 15e-3 * 30e-3, "journal": 10e-3 * 100e-3}
+        for name, grid in grids.items():
+            topology, geometry = grid.find("Topology"), grid.find("Geometry")
+            nodes = [int(x) for x in topology.get("Dimensions").split()]
+            h.true(f"{name}: topology", topology.get("TopologyType") == f"{len(nodes)}DSMesh" and geometry.get("GeometryType") == "XYZ")
+            corners = read_item(h, n, geometry.find("DataItem"))
+            h.true(f"{name}: corners", corners is not None and list(corners.shape) == [*nodes, 3])
+            for attribute in grid.findall("Attribute"):
+                values = read_item(h, n, attribute.find("DataItem"))
+                good = attribute.get("Center") == "Cell" and values is not None and list(values.shape) == [k - 1 for k in nodes]
+                h.true(f"{name}: {attribute.get('Name')}", good and numpy.isfinite(values).all())
+            names = [a.get("Name") for a in grid.findall("Attribute")]
+            h.true(f"{name}: fields", ("pressure [Pa]" if "surface" in name else "temperature [K]") in names, f"{names}")
+            # The polygon within a circle is smaller by (2 pi/n)^2/6.
+            h.close(f"{name}: extent [m^2, m^3]", extent(corners), volumes[name], 0.005 * volumes[name])
+
+
+def read_item(h, n, item):
+    """The dataset that a DataItem names, None where it is not there or has another shape."""
+    name, path = item.text.split(":")
+    with h5py.File(h.work / f"shown_{n}" / name) as f:
+        values = f[path][:] if path in f else None
+    return values if values is not None and list(values.shape) == [int(x) for x in item.get("Dimensions").split()] else None
+
+
+def extent(x):
+    """Area of a mesh of quadrilaterals, volume of one of hexahedra: by their diagonals, by their middle edges."""
+    if x.ndim == 3:
+        one, other = x[1:, 1:] - x[:-1, :-1], x[1:, :-1] - x[:-1, 1:]
+        return numpy.linalg.norm(numpy.cross(one, other), axis=-1).sum() / 2
+    def middle(values, axis):
+        for k in range(3):
+            lower, upper = (numpy.take(values, range(s, values.shape[k] - 1 + s), axis=k) for s in (0, 1))
+            values = upper - lower if k == axis else (upper + lower) / 2
+        return values
+    a, b, c = (middle(x, k) for k in range(3))
+    return numpy.abs((numpy.cross(a, b) * c).sum(axis=-1)).sum()
+
+
+def resume(h):
+    """A sweep that is killed goes on from the last speed it had, on as many ranks or others."""
+    words = ["studies.*.thd.cells=[48, 16, 8]", "studies.1.thd.speeds=[" + ", ".join(f"{k}000 rad/s" for k in range(1, 11)) + "]"]
+    deck = "../thd/solids.yaml"
+    h.run(deck, "undisturbed", words, launcher=[])
+    with h5py.File(h.work / "undisturbed/results.h5") as f:
+        count = f["studies/preheated gas/budget/iterations"][:]
+    h.true("each speed starts from the one before", count[1:].max() <= count[0] + 3, f"{count}")
+    on = lambda n: [*h.launcher, "-n", str(n)] if n > 1 else []  # noqa: E731
+    for before, ranks in ((1, 1), (1, 2), (2, 1)):
+        out = h.work / f"killed {before} {ranks}"
+        h.kill_at_checkpoint(deck, out, words, launcher=on(before))
+        with h5py.File(next(out.glob("*.checkpoint.h5"))) as f:
+            kept = [len(item) for path, item in everything(f) if path.endswith("state/rows")]
+        h.true(f"{before} ranks, then {ranks}: speeds kept", len(kept) == 1 and 1 <= kept[0] < 10, f"{kept}")
+        h.run(deck, out.name, words, ["--resume"], on(ranks))
+        if before == ranks:
+            for what, off, within in same_results(h.work / "undisturbed", out, 0):
+                h.close(what, off, 0, within)
+        else:
+            one, other = ({s: v["values"] for s, v in h.studies(name).items()} for name in ("undisturbed", out.name))
+            for study in one:
+                same_values(h, f"{before} ranks, then {ranks}, {study}", one[study], other[study])
+        h.true(f"{before} ranks, then {ranks}: nothing is left behind", not list(out.glob("*.checkpoint.h5")))
+
+
+def mesh(h):
+    """A series of meshes."""
+    reference = json.loads((h.source / "tests/reference/thd/bearing_a.json").read_text())["walls_300K"]
+    few = ["studies.*.thd.cells=[96, 32, 16]", "studies.*.thd.meshes=3"]
+    found = h.run("../thd/mesh.yaml", "mesh", few)
+    with h5py.File(h.work / "mesh/results.h5") as f:
+        for name, study in found.items():
+            series = {k: v[:] for k, v in f[f"studies/{name}/meshes"].items()}
+            h.true(f"{name}: meshes", list(series["cells"]) == [24 * 8 * 4, 48 * 16 * 8, 96 * 32 * 16], f"{series['cells']}")
+            h.close(f"{name}: the last one is the deck's [K]", series["temperature.mean"][-1], value(study, "temperature.mean"), 0)
+            h.true(f"{name}: the mean settles", abs(numpy.diff(series["temperature.mean"])[1]) < abs(numpy.diff(series["temperature.mean"])[0]))
+            h.true(f"{name}: the least temperature falls", all(numpy.diff(series["temperature.minimum"]) < 0), f"{series['temperature.minimum']}")
+            h.close(f"{name}: residuals [W]", numpy.abs(series["energy_residual"]).max(), 0, 1e-9)
+            warned = " ".join(study.get("warnings", []))
+            h.true(f"{name}: what does not converge is said", "temperature.minimum" in warned and "temperature.mean," not in warned, warned)
+    fast = found["10,000 rad per second"]
+    row = next(r for r in reference if (r["N"], r["nz"]) == (96, 16))
+    h.close("mean temperature [K]", value(fast, "temperature.mean"), row["T_mean"], 0.03)
+
+
 def solids(h):
     """Shaft and bush that carry the heat away."""
     rows = json.loads((h.source / "tests/reference/thd/bearing_a.json").read_text())["solids"]
-    found = h.run("../thd/solids.yaml", "solids")
+    found = h.run("../thd/solids.yaml", "solids", ["studies.*.thd.cells=[48, 16, 8]"])
     cases = {BUSH: ("base", "bush"), SUPPLY: ("base", "ambient"), "adiabatic bore": ("no convection in bore", "bush"), "standstill": ("standstill", "bush")}
     for name, (case, inlet) in cases.items():
         row = next(r for r in rows if r["case"] == case and r["inlet"] == inlet)
@@ -78,21 +246,36 @@ def oil(h):
     h.close("peak of the bush on a finer mesh [K]", value(fine["bronze bush"], "temperature.bush.maximum"), at_bush[1], 1)
 
 
+def same_values(h, what, one, other):
+    """All values but counts and rounding within 1e-7."""
+    for key, entry in one.items():
+        # What the balance leaves is rounding; small heats at standstill are those of ends of 0.1 mg/s.
+        size = 1e-3 if key.startswith(("heat", "energy")) else 0
+        if not key.startswith(("iterations", "energy_residual")):
+            h.close(f"{what}: {key}", other[key]["value"], entry["value"], 1e-7 * max(abs(entry["value"]), size))
+
+
+def everything(group, path=""):
+    """All datasets of a file with their paths."""
+    for name, item in group.items():
+        if isinstance(item, h5py.Dataset):
+            yield f"{path}/{name}", item
+        else:
+            yield from everything(item, f"{path}/{name}")
+
+
 def ranks(h):
     """The same on 1, 2 and 3 ranks."""
     few = ["studies.*.thd.cells=[24, 12, 4]"]
     for n in (1, 2, 3):
         h.run("../thd/solids.yaml", f"ranks_{n}", few, launcher=[*h.launcher, "-n", str(n)])
+        h.run("../thd/growth.yaml", f"growth_{n}", few, launcher=[*h.launcher, "-n", str(n)])
         if n == 1:
             continue
+        same_values(h, f"{n} ranks, growing", *(h.studies(f"growth_{k}")["growing"]["values"] for k in (1, n)))
         alone, shared = ({s: v["values"] for s, v in h.studies(f"ranks_{k}").items()} for k in (1, n))
         for study, values in alone.items():
-            for key, entry in values.items():
-                # What the balance leaves is rounding; small heats at standstill are those of ends of 0.1 mg/s.
-                size = 1e-3 if key.startswith(("heat", "energy")) else 0
-                if key.startswith(("iterations", "energy_residual")):
-                    continue
-                h.close(f"{n} ranks, {study}: {key}", shared[study][key]["value"], entry["value"], 1e-7 * max(abs(entry["value"]), size))
+            same_values(h, f"{n} ranks, {study}", values, shared[study])
         with h5py.File(h.work / "ranks_1/results.h5") as one, h5py.File(h.work / f"ranks_{n}/results.h5") as other:
             for path in ("film/temperature", "film/pressure", "bush/temperature", "journal/temperature"):
                 a, b = (f[f"studies/preheated gas/{path}"][:] for f in (one, other))
@@ -101,5 +284,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "solids": solids, "oil": oil, "ranks": ranks}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "ranks": ranks, "resume": resume}[sys.argv[3]](harness)
     harness.finish()

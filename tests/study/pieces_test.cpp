@@ -45,6 +45,12 @@ protected:
     });
     return answer.numbers.front();
   }
+  /// As if the program that wrote the checkpoint had been an older one.
+  void age() {
+    io::Group all = findings_->load_checkpoint();
+    all.child("journal").set("format", 1);
+    findings_->save_checkpoint(all);
+  }
   int works_ = 0;
 
   void remove() const {
@@ -81,6 +87,13 @@ TEST_F(Interrupted, AnotherOrderOfUnknownsLeavesTheJournal) {
 }
 
 // Vectors that ranks share are written by rows, others as a whole; each comes back in whatever layout.
+TEST_F(Interrupted, AJournalOfAnotherVersionIsRefused) {
+  (void)ask(begin(false), "part", 2);
+  (void)begin(true);
+  age();
+  EXPECT_THROW((void)begin(true), core::InputError);
+}
+
 TEST_F(Interrupted, AnswersKeepTheirVectors) {
   const int rank = core::rank_of(PETSC_COMM_WORLD);
   const auto numbered = [](PetscInt local) {

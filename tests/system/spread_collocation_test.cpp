@@ -146,6 +146,21 @@ TEST(SpreadCollocation, IsCollocationOnContents) {
   compare(c, 2, solve::uniform_mesh(5), o);
 }
 
+// The radius of the search for multipliers stands in checkpoints: another object looks for the same ones.
+TEST(SpreadCollocation, GoesOnWithItsRadius) {
+  const Case c = liner();
+  system::RotorSystem s(MPI_COMM_WORLD, c.train, c.speed);
+  auto o = options(2);
+  o.radius = 0.05;
+  solve::SpreadCollocation first(s, o, solve::uniform_mesh(5));
+  o.radius = 0.2;
+  solve::SpreadCollocation second(s, o, solve::uniform_mesh(5));
+  second.take_warm_start(std::vector<double>(9, 0.7));  // of a cycle that one rank held
+  EXPECT_EQ(second.warm_start(), std::vector<double>{0.2});
+  second.take_warm_start(first.warm_start());
+  EXPECT_EQ(second.warm_start(), std::vector<double>{0.05});
+}
+
 // Whatever the films hold at first, the motion of the hub decides what becomes of them.
 TEST(SpreadCollocation, SettlesFilmsWithTheHubHeld) {
   for (const Case& c : {liner(), content()}) {

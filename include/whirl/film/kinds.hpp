@@ -17,12 +17,14 @@
 #include "whirl/film/elastic.hpp"
 #include "whirl/film/linear.hpp"
 #include "whirl/film/reynolds.hpp"
+#include "whirl/film/thd.hpp"
 
 namespace whirl::film {
 
 // clang-format off
 using Kinds = std::variant<
     Reynolds,
+    Thd,
     Linear,
     Short,
     Long,

@@ -63,7 +63,10 @@ struct StateResponse {
 struct FilmReport {
   double min_thickness = 0.0;  // m
   double max_pressure = 0.0;   // Pa
-  double side_flow = 0.0;      // m^3/s, out of both sides of all pads
+  // K, of a film with heat: highest anywhere, and mean over its volume
+  double max_temperature = std::numeric_limits<double>::quiet_NaN();
+  double mean_temperature = std::numeric_limits<double>::quiet_NaN();
+  double side_flow = 0.0;  // m^3/s, out of both sides of all pads
   // W, friction torque on the journal times Omega; full film everywhere unless it knows its fill
   double power_loss = 0.0;
   double inlet_flow = std::numeric_limits<double>::quiet_NaN();   // m^3/s, around into all pads where their films start

@@ -1,7 +1,7 @@
 #pragma once
 // The energy equation of a film, in film-fitted finite volumes:
 //
-//   sum over the faces of a cell of (c m T_f - k A dT/dn) = heat + c inflow T_inflow + g (T_wall - T)
+//   sum over the faces of a cell of (m i(T_f) - k A dT/dn) = heat + inflow i(T_inflow) + g (T_wall - T),   di = c dT
 //
 // with the mass flows m of the pressure equation. Net outflow of mass equals the inflow in every cell, so that a
 // constant temperature needs no source. Temperatures of faces are those upstream, first order, or with a limited slope,
@@ -15,14 +15,16 @@
 #include "whirl/core/gate.hpp"
 #include "whirl/core/petsc.hpp"
 #include "whirl/thermal/flow.hpp"
+#include "whirl/thermal/property.hpp"
 #include "whirl/thermal/rows.hpp"
 
 namespace whirl::thermal {
 
 /// What lies beyond the layer of cells at a wall: [r, n] each, r rows of this rank, n nodes around.
 struct Wall {
-  std::vector<double> conductance;  // W/K, from the cell's centre to where the temperature is given; 0 of an adiabatic
-                                    // wall; Energy::half_layer() of one whose surface has that temperature
+  std::vector<double> conductance;  // W/K, from the cell's centre to where the temperature is given, through a film of
+                                    // the conductivity at the ambient's temperature without turbulence; 0 of an
+                                    // adiabatic wall; Energy::half_layer() of one whose surface has that temperature
   std::vector<double> temperature;  // K
 };
 
@@ -34,11 +36,13 @@ struct Surroundings {
   std::vector<double> entering;  // K [r, l], of what flows into cells i = 0 of a pad; empty: ambient
 };
 
-/// Constants of the lubricant and the order of the scheme.
+/// The lubricant and the order of the scheme. Where a law falls to zero or below, DomainError ends the solution.
 struct EnergyModel {
-  double heat_capacity = 0;  // J/(kg K)
-  double conductivity = 0;   // W/(m K)
-  int order = 2;             // of convection: 1 or 2
+  double heat_capacity = 0;         // J/(kg K), times its law
+  double conductivity = 0;          // W/(m K), times its law
+  int order = 2;                    // of convection: 1 or 2
+  PropertyLaw heat_capacity_law{};  // over the temperature
+  PropertyLaw conductivity_law{};
 };
 
 /// W, what crosses the control volume of the whole film, as enthalpy above that at the ambient's temperature.
@@ -77,7 +81,7 @@ public:
   Energy(const Energy&) = delete;
   Energy& operator=(const Energy&) = delete;
 
-  /// W/K [r, n] from the centre of a cell at a wall to the wall, k A/(h/(2 l)).
+  /// W/K [r, n] from the centre of a cell at a wall to the wall, k A/(h/(2 l)), k that at the ambient's temperature.
   [[nodiscard]] static std::vector<double> half_layer(const Rows& rows, double conductivity,
                                                       const std::vector<double>& thickness);
   /// After the flow, which it reads anew, the thickness or the surroundings have changed. Collective.
@@ -103,6 +107,9 @@ public:
   /// Sweeps of each application.
   [[nodiscard]] int sweeps() const;
   [[nodiscard]] EnergyBudget budget(Vec temperature);
+  /// - [r, n]: how much better than half_layer() says the half layer at a wall conducts, by the conductivity there over
+  /// that at the ambient's temperature and by turbulence.
+  [[nodiscard]] std::vector<double> wall_factors(Vec temperature, bool journal);
 
 private:
   static PetscErrorCode form_residual(SNES, Vec x, Vec f, void* self);

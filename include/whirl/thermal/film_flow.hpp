@@ -42,6 +42,7 @@ struct FlowReport {
   double friction = 0;       // N m, against the rotation
   double power = 0;          // W, friction times speed
   double heat = 0;           // W, that the motion leaves in the film
+  double expansion = 0;      // W, work of pressure, v grad p over the film: of a gas that expands negative
   double inflow = 0;         // kg/s, of orifices and grooves
   double outflow = 0;        // kg/s, through the ends
   double defect = 0;         // kg/s, greatest flow through the journal's wall, which should be none
@@ -65,6 +66,10 @@ public:
 
   /// K [r, n, l] of the cells: viscosities and densities from now on. Collective.
   void set_temperature(const std::vector<double>& cells);
+  /// Another thickness m [r, n]; it acts from the next set_temperature() on. Collective.
+  void set_thickness(const std::vector<double>& thickness);
+  /// Newton's method starts from this pressure, Pa [r, n].
+  void start(const std::vector<double>& pressure);
   /// The pressure at these, by Newton's method from the last one, until what is out of balance is `tolerance` times
   /// what is at the ambient's pressure. Returns its iterations. MUMPS up to 100,000 nodes
   /// (`-film_pressure_direct_nodes`), BoomerAMG beyond. Throws core::NotConverged on all ranks. Collective.

@@ -20,6 +20,9 @@ struct Flow {
   std::vector<double> across;  // kg/s [r, n, l + 1], from layer k - 1 to k; none through the walls
   std::vector<double>
       inflow;  // kg/s [r, n, l], that comes into cells from orifices and grooves: negative where it leaves
+  std::vector<double> mixing;  // - [r, n, l + 1]: how much better heat is conducted across than by the resting fluid:
+                               // the half layer at the bush, from layer k - 1 to k, the half layer at the journal;
+                               // empty of laminar flow
   std::vector<double> heat;  // W [r, n, l], that the motion leaves in each cell: dissipation, of a gas and the work of
                              // pressure with it
 };

@@ -11,9 +11,9 @@
 
 namespace whirl::thermal {
 
-/// The law of a viscosity, as a choice.
-struct ViscosityOptions {
-  Viscosity law;
+/// The law of another property, as a choice.
+struct PropertyOptions {
+  PropertyLaw law;
 };
 
 struct FluidOptions {
@@ -25,7 +25,11 @@ struct FluidOptions {
   double density = 0;           // kg/m^3, of a liquid
   double heat_capacity = 0;     // J/(kg K)
   double conductivity = 0;      // W/(m K)
+  PropertyOptions density_law, heat_capacity_law, conductivity_law;
 };
+
+/// What the options say of the fluid of a film.
+[[nodiscard]] Fluid make_fluid(const FluidOptions& options);
 
 /// A ring of equal orifices.
 struct OrificeRing {
@@ -61,6 +65,9 @@ struct WallOptions {
   double ambient = 300;                   // K, solid
   double shaft_length = 0;                // m, solid journal
   double shaft_before = 0;                // m, solid journal: from its first end to the film
+  bool growth = false;                    // solid: its growth changes the clearance
+  double expansion = 0;                   // 1/K, solid with growth, linear
+  std::optional<double> reference;        // K, at which the clearance is that of the bearing; `ambient` if absent
 };
 
 struct Ambient {

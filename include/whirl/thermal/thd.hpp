@@ -44,9 +44,16 @@ public:
   Thd(const Thd&) = delete;
   Thd& operator=(const Thd&) = delete;
 
-  /// From the last state on, at first the ambient's temperature. Not converging is no error. Collective. Throws
-  /// core::NotConverged where the pressure is not found.
+  /// From the last state, or from that given to start(), on; at first from the ambient's temperature. Not converging is
+  /// no error. Collective. Throws core::NotConverged where the pressure is not found, or bush and journal grow until
+  /// the film is closed.
   ThdSolve solve();
+  /// What start() of another film on this mesh goes on from, [r, n, l + 5]: temperatures of the film [K], those behind
+  /// bush and journal [K], what bush and journal grow, over expansion times radius [K], and the pressure [Pa].
+  [[nodiscard]] std::vector<double> state() const;
+  void start(const std::vector<double>& state);
+  /// m [r, n], with what the solids have grown.
+  [[nodiscard]] const std::vector<double>& thickness() const;
   [[nodiscard]] const FilmFlow& flow() const;
   [[nodiscard]] const Flow& flows() const;
   /// K [r, n, l].

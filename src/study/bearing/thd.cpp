@@ -2,26 +2,57 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "study/bearing/thd_film.hpp"
 #include "study/bearing/thd_record.hpp"
+#include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
+#include "study/pieces.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
 namespace {
 
-// Greatest difference of two pressures: of a gas over the pressure there, of a liquid over the greatest one.
-double change_of(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b, bool gas) {
-  double most[2] = {};
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    most[0] = std::max(most[0], std::abs(a[k] - b[k]) / (gas ? b[k] : 1));
-    most[1] = std::max(most[1], std::abs(b[k]));
+// What a sweep has done: rows of its table, and the last state to go on from, in rows shared by the ranks.
+struct Sweep {
+  std::vector<std::vector<double>> rows;
+  std::vector<std::string> unsettled;
+
+  [[nodiscard]] io::Group kept(const ThdFilm& film, std::vector<double> state) const {
+    io::Group out;
+    std::vector<double> flat;
+    for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
+    out.put("rows", io::Shape{rows.size(), thd_columns().size()}, std::move(flat), "1", "of the table over the speed");
+    out.put("unsettled", unsettled, "speeds at which the temperatures did not settle");
+    const thermal::Rows& r = film.rows();
+    const auto here = static_cast<std::size_t>(r.count());
+    io::Dataset data{{here, state.size() / here}, std::move(state), "1", "temperatures and pressure at the last speed"};
+    if (core::size_of(r.comm()) > 1)
+      data.share = {static_cast<std::size_t>(r.begin()), static_cast<std::size_t>(r.mesh().nodes_along())};
+    out.put("last", std::move(data));
+    return out;
   }
-  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, comm);
-  return gas ? most[0] : most[1] > 0 ? most[0] / most[1] : 0;
+
+  void read(const io::Group& from) {
+    const std::vector<double>& flat = from.reals("rows");
+    const auto width = static_cast<std::ptrdiff_t>(thd_columns().size());
+    for (auto at = flat.begin(); at != flat.end(); at += width) rows.emplace_back(at, at + width);
+    unsettled = from.strings("unsettled");
+  }
+};
+
+// The state of a checkpoint, on whatever ranks it was written.
+std::vector<double> last_state(const io::Group& from, const thermal::Rows& rows) {
+  const io::Dataset& data = from.dataset("last");
+  const auto& values = std::get<std::vector<double>>(data.values);
+  const std::size_t width = data.shape.at(1), begin = data.share ? data.share->begin : 0;
+  const core::Vector all = core::make_vector(
+      rows.comm(), static_cast<PetscInt>(static_cast<std::size_t>(rows.count()) * width), PETSC_DETERMINE);
+  if (data.share)
+    core::fill(all.get(), begin * width, values);
+  else
+    core::fill(all.get(), values);
+  const core::ReadArray a(all.get());
+  return {a.data(), a.data() + a.size()};
 }
 
 }  // namespace
@@ -36,55 +67,28 @@ StudyResult Thd::run(Context& context) {
   group.set("parameter", "speed");
   group.set("parameter_unit", "rad/s");
 
-  std::vector<double> speeds, losses, dissipation, bush, journal, ends, residuals, means, peaks;
-  std::vector<std::string> unsettled;
-  for (const deck::Quantity& speed : options.speeds) {
-    results.progress(fmt::format("speed {:.6g} rad/s", speed.value));
-    ThdFilm film(context.comm, options, geometry, speed.value);
-    const thermal::ThdSolve cost = film.thd().solve();
-    if (!cost.converged) unsettled.push_back(fmt::format("{:.6g} rad/s", speed.value));
-    const thermal::FlowReport report = film.thd().flow().report(film.thd().flows());
-    const thermal::EnergyBudget budget = film.thd().budget();
-    const TemperatureNumbers t = temperature_numbers(film, film.thd().temperature());
-    speeds.push_back(speed.value);
-    losses.push_back(report.power);
-    dissipation.push_back(report.heat);
-    bush.push_back(budget.bush);
-    journal.push_back(budget.journal);
-    ends.push_back(budget.ends - budget.supply);
-    residuals.push_back(budget.residual());
-    means.push_back(t.mean);
-    const SurfaceNumbers at_bush = surface_numbers(film, film.thd().bush_surface()),
-                         at_journal = surface_numbers(film, film.thd().journal_surface());
-    peaks.push_back(at_bush.maximum);
-    if (&speed != &options.speeds.back()) continue;
-    const ThdFilm::Isothermal isothermal = film.isothermal();
-    summary.set("load.x", -report.force[0], "N");
-    summary.set("load.y", -report.force[1], "N");
-    summary.set("load.isothermal.x", -isothermal.report.force[0], "N");
-    summary.set("load.isothermal.y", -isothermal.report.force[1], "N");
-    summary.set("max_pressure", report.highest, "Pa");
-    const bool gas = options.fluid.type == thermal::FluidOptions::Type::gas;
-    summary.set("pressure_change", change_of(context.comm, film.thd().flow().pressure(), isothermal.pressure, gas),
-                "1");
-    summary.set("mass_flow", report.inflow, "kg/s");
-    summary.set("mass_flow.isothermal", isothermal.report.inflow, "kg/s");
-    summary.set("power_loss", report.power, "W");
-    summary.set("power_loss.isothermal", isothermal.report.power, "W");
-    summary.set("heat.film", report.heat, "W");
-    summary.set("heat.bush", budget.bush, "W");
-    summary.set("heat.journal", budget.journal, "W");
-    summary.set("heat.ends", budget.ends - budget.supply, "W");
-    summary.set("energy_residual", budget.residual(), "W");
-    summary.set("temperature.mean", t.mean, "K");
-    summary.set("temperature.minimum", t.minimum, "K");
-    summary.set("temperature.maximum", t.maximum, "K");
-    summary.set("temperature.percentile_1", t.percentile_1, "K");
-    summary.set("temperature.percentile_99", t.percentile_99, "K");
-    summary.set("temperature.bush.mean", at_bush.mean, "K");
-    summary.set("temperature.bush.maximum", at_bush.maximum, "K");
-    summary.set("temperature.journal.mean", at_journal.mean, "K");
-    summary.set("temperature.journal.maximum", at_journal.maximum, "K");
+  Pieces pieces(results, context.resume, true, core::size_of(context.comm));
+  Sweep sweep;
+  std::vector<double> last;
+  if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
+  for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
+    const double speed = options.speeds[k].value;
+    results.progress(fmt::format("speed {:.6g} rad/s", speed));
+    ThdFilm film(context.comm, options, geometry, speed);
+    if (k > 0 && last.empty()) last = last_state(pieces.state(), film.rows());
+    if (k > 0) film.thd().start(last);
+    if (!film.solve()) sweep.unsettled.push_back(fmt::format("{:.6g} rad/s", speed));
+    sweep.rows.push_back(thd_row(film, speed));
+    if (k + 1 < options.speeds.size()) {
+      last = film.thd().state();
+      if (pieces.state_due()) pieces.save(sweep.kept(film, last));
+      continue;
+    }
+    put_thd_values(summary, film, options);
+    const double residual = film.thd().budget().residual();
+    put_thd_bars(context, options, geometry, speed, residual, pieces);
+    const thermal::ThdSolve& cost = film.cost();
+    summary.set("energy_residual", residual, "W");
     summary.set("iterations", cost.iterations, "1");
     summary.set("iterations.pressure", cost.pressure, "1");
     summary.set("iterations.energy_newton", cost.energy_newton, "1");
@@ -96,19 +100,15 @@ StudyResult Thd::run(Context& context) {
     put_thd_fields(context, film, geometry);
   }
   auto& table = group.child("budget");
-  table.put("parameter", speeds, "rad/s", "shaft speed");
-  table.put("power_loss", losses, "W", "friction torque times speed");
-  table.put("heat", dissipation, "W", "that the motion leaves in the film: of a gas dissipation and work of pressure");
-  table.put("heat_bush", bush, "W", "conducted to the bush");
-  table.put("heat_journal", journal, "W", "conducted to the journal");
-  table.put("enthalpy", ends, "W", "carried away through the ends, less what comes in");
-  table.put("residual", residuals, "W", "what the balance of the whole film leaves");
-  table.put("mean_temperature", means, "K", "of the film, by volume");
-  table.put("peak_bush_temperature", peaks, "K", "greatest temperature of the bush's surface");
-  summary.points = static_cast<long>(speeds.size());
-  if (!unsettled.empty())
+  for (std::size_t c = 0; c < thd_columns().size(); ++c) {
+    std::vector<double> column;
+    for (const auto& row : sweep.rows) column.push_back(row[c]);
+    table.put(thd_columns()[c].name, column, thd_columns()[c].unit, thd_columns()[c].description);
+  }
+  summary.points = static_cast<long>(sweep.rows.size());
+  if (!sweep.unsettled.empty())
     return results.finish(fmt::format("temperatures did not settle within {} iterations at {}", options.most_iterations,
-                                      fmt::join(unsettled, ", ")),
+                                      fmt::join(sweep.unsettled, ", ")),
                           true);
   return results.finish("completed", true);
 }

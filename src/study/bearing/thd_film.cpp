@@ -21,12 +21,7 @@ thermal::FilmFlowOptions flow_of(const ThdOptions& o, const thermal::Mesh& mesh,
   using Cavitation = thermal::FilmFlowOptions::Cavitation;
   const bool gas = o.fluid.type == thermal::FluidOptions::Type::gas;
   thermal::FilmFlowOptions out;
-  out.fluid.viscosity = o.fluid.viscosity.law;
-  out.fluid.gas = gas;
-  out.fluid.gas_constant = o.fluid.gas_constant;
-  out.fluid.density = o.fluid.density;
-  out.fluid.heat_capacity = o.fluid.heat_capacity;
-  out.fluid.conductivity = o.fluid.conductivity;
+  out.fluid = thermal::make_fluid(o.fluid);
   out.heat_ratio = o.fluid.heat_ratio;
   out.ambient = gas ? o.ambient.pressure : 0;
   out.speed = speed;
@@ -71,6 +66,7 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
     : rows_(mesh_of(o, g), comm), flow_(flow_of(o, rows_.mesh(), speed)), ambient_(o.ambient.temperature) {
   const thermal::Mesh& mesh = rows_.mesh();
   const double e = o.eccentricity * g.clearance;
+  place_ = {e * std::cos(o.attitude), e * std::sin(o.attitude)};
   for (int j = rows_.begin(); j < rows_.end(); ++j)
     for (int i = 0; i < mesh.nodes_around(); ++i)
       thickness_.push_back(g.clearance - e * std::cos(mesh.theta(i) - o.attitude));

@@ -42,6 +42,9 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add("most_iterations", &O::most_iterations, deck::in(1, 10000),
         "iterations between flow and heat after which it "
         "gives up");
+  d.add("meshes", &O::meshes, deck::in(1, 10),
+        "meshes of the film that the error bars stand on, that of 'cells' and coarser ones, each with half of the "
+        "cells of the one before in every direction; 1: no bars");
 }
 
 double Thd::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
@@ -77,6 +80,8 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
     if (ring.inlet == thermal::OrificeRing::Inlet::bush && options.bush.type == Wall::Type::adiabatic)
       report.fail("orifices", "an adiabatic bush has no temperature that the gas could enter with");
   }
+  for (const auto& [key, wall] : {std::pair{"bush", &options.bush}, {"journal", &options.journal}})
+    if (wall->growth && wall->expansion <= 0) report.fail(key, "'growth' needs the 'expansion' of the solid");
   if (options.bush.type == Wall::Type::solid && options.bush.radius <= g.radius + g.clearance)
     report.fail("bush", "the outer 'radius' of the bush must lie beyond the film");
   if (options.journal.type == Wall::Type::solid) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/bearing/thd_shown.hpp"
 #include "study/findings.hpp"
-#include "whirl/thermal/cylinder.hpp"
 
 namespace whirl::study {
 namespace {
@@ -30,26 +30,6 @@ io::Dataset by_rows(const Rows& rows, io::Shape shape, std::vector<double> value
   if (core::size_of(rows.comm()) > 1)
     out.share = {static_cast<std::size_t>(rows.begin()), static_cast<std::size_t>(rows.mesh().nodes_along())};
   return out;
-}
-
-// Of a solid: its rows are the film's, and of a journal those beyond it.
-void put_solid(Context& context, const thermal::Solid& solid, Vec temperature, const std::string& name) {
-  io::Group& group = context.results.group().child(name);
-  const thermal::Cylinder& shape = solid.shape();
-  group.put("z", shape.z, "m", "of the nodes along the shaft, from the mid-plane of the bearing");
-  std::vector<double> middles;
-  for (int k = 0; k < shape.layers(); ++k) middles.push_back(shape.centre(k));
-  group.put("r", middles, "m", "of the middles of the cells");
-  const bool round = shape.columns() > 1;
-  if (round) group.put("theta", shape.theta, "rad", "of the nodes around, from +x");
-  const core::ReadArray t(temperature);
-  io::Shape extents{static_cast<std::size_t>(solid.end() - solid.begin())};
-  if (round) extents.push_back(static_cast<std::size_t>(shape.columns()));
-  extents.push_back(static_cast<std::size_t>(shape.layers()));
-  io::Dataset data{extents, std::vector<double>(t.data(), t.data() + t.size()), "K",
-                   "temperature of the cells [along][around][r], of a turning journal [along][r]"};
-  if (core::size_of(solid.comm()) > 1) data.share = {static_cast<std::size_t>(solid.begin()), shape.z.size()};
-  group.put("temperature", std::move(data));
 }
 
 }  // namespace
@@ -126,27 +106,9 @@ void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geome
     }
   group.put("flow_around", by_rows(rows, {r, n}, around, "kg/(m s)", "mass flow around, to the next node"));
   group.put("flow_along", by_rows(rows, {r, n}, along, "kg/(m s)", "mass flow along, from the node before"));
-  // Cells between the bush and the journal, as they lie and with their thickness a hundredfold, unwrapped.
-  const std::vector<double> ends = thermal::cell_ends(theta, 2 * std::numbers::pi), rims = thermal::cell_ends(z);
-  const auto gap = [&](std::size_t j, std::size_t i) {
-    const std::size_t row =
-        std::clamp<std::size_t>(j, static_cast<std::size_t>(rows.begin()), static_cast<std::size_t>(rows.end()) - 1) -
-        static_cast<std::size_t>(rows.begin());
-    return 0.5 * (film.thickness()[row * n + i % n] + film.thickness()[row * n + (i + n - 1) % n]);
-  };
-  const io::Shape cells{static_cast<std::size_t>(mesh.nodes_along()), n, l};
-  context.results.show(io::cell_grid(group, "film", "film", "corners", cells, [&](const io::Shape& c) {
-    const double radius =
-        geometry.radius + geometry.clearance - gap(c[0], c[1]) * static_cast<double>(c[2]) / static_cast<double>(l);
-    return std::array{radius * std::cos(ends[c[1]]), radius * std::sin(ends[c[1]]), rims[c[0]]};
-  }));
-  context.results.show(
-      io::cell_grid(group, "film", "film unwrapped", "corners_unwrapped", cells, [&](const io::Shape& c) {
-        return std::array{geometry.radius * ends[c[1]], rims[c[0]],
-                          -100 * gap(c[0], c[1]) * static_cast<double>(c[2]) / static_cast<double>(l)};
-      }));
-  if (thd.bush()) put_solid(context, *thd.bush(), thd.bush_temperature(), "bush");
-  if (thd.journal()) put_solid(context, *thd.journal(), thd.journal_temperature(), "journal");
+  show_film(context, film, geometry);
+  if (thd.bush()) put_solid(context, film, *thd.bush(), thd.bush_temperature(), "bush", geometry);
+  if (thd.journal()) put_solid(context, film, *thd.journal(), thd.journal_temperature(), "journal", geometry);
 }
 
 }  // namespace whirl::study

@@ -108,6 +108,10 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
       summary.set(head + "min_thickness_ratio", thinnest / support.geometry.clearance, "1");
       summary.set(head + "minimum_film", support.minimum_film, "m");
       summary.set(head + "max_pressure", report.max_pressure, "Pa");
+      if (std::isfinite(report.max_temperature)) {
+        summary.set(head + "max_temperature", report.max_temperature, "K");
+        summary.set(head + "mean_temperature", report.mean_temperature, "K");
+      }
       summary.set(head + "side_flow", report.side_flow, "m^3/s");
       // Only pads with a start know it; a film that reforms freely has no inlet.
       if (std::isfinite(report.inlet_flow)) summary.set(head + "inlet_flow", report.inlet_flow, "m^3/s");

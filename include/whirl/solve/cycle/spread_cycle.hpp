@@ -66,6 +66,11 @@ public:
   /// All multipliers above the radius, and at least one below, or the largest if there are more than the options say;
   /// renews the subspace. Where a dense band of them lies above the radius, this is 0.5 from here on.
   [[nodiscard]] std::vector<std::complex<double>> multipliers() override;
+  /// The radius, so that a branch that goes on later looks for the same multipliers.
+  [[nodiscard]] std::vector<double> warm_start() override { return {radius_}; }
+  void take_warm_start(const std::vector<double>& warm) override {
+    if (warm.size() == 1) radius_ = warm.front();  // longer ones are those of cycles that one rank holds
+  }
   /// `mu` is above the radius.
   [[nodiscard]] Eigen::MatrixXd critical_motion(double mu) override;
   /// Size of the subspace, and products of the monodromy matrix with a vector since the start.

@@ -1,0 +1,530 @@
+// Rows and derivatives of one pad with heat, face by face and node by node.
+#include "film/thd_pad.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/truncation.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::film {
+namespace {
+
+// Conduction across a film of L layers, in lambda/h: out of layer k flows (K T - b)_k. One layer is a parabola, which a
+// wall of given temperature takes 6 T - 4 T_wall - 2 T_other from between two such walls, 3 (T - T_wall) beside an
+// adiabatic one.
+void conduction(const Thd& o, Eigen::MatrixXd& k, Eigen::VectorXd& b) {
+  const int n = o.layers;
+  k.setZero(n, n);
+  b.setZero(n);
+  const std::array<const HeatedWall*, 2> walls = {&o.bush, &o.journal};
+  const auto held = [&](std::size_t w) { return walls[w]->type == HeatedWall::Type::isothermal; };
+  if (n == 1) {
+    const double each = held(0) && held(1) ? 6.0 : 3.0;
+    for (std::size_t w = 0; w < 2; ++w)
+      if (held(w)) {
+        k(0, 0) += each;
+        b(0) += each * walls[w]->temperature;
+      }
+    return;
+  }
+  for (int i = 0; i + 1 < n; ++i) {
+    k(i, i) += n;
+    k(i + 1, i + 1) += n;
+    k(i, i + 1) -= n;
+    k(i + 1, i) -= n;
+  }
+  for (std::size_t w = 0; w < 2; ++w) {
+    if (!held(w)) continue;
+    const int i = w == 0 ? 0 : n - 1;
+    k(i, i) += 2.0 * n;
+    b(i) += 2.0 * n * walls[w]->temperature;
+  }
+}
+
+}  // namespace
+
+ThdPad::ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant)
+    : pad_(pad),
+      options_(options),
+      grid_(pad, options.cells),
+      least_(pad),
+      lubricant_(lubricant),
+      whole_(options.tilt),
+      layers_(options.layers),
+      columns_(grid_.n_theta + 1),
+      rows_(whole_ ? grid_.n_z + 1 : grid_.n_z / 2 + 1),
+      resistance_around_(resistance_around(options.turbulence)),
+      resistance_along_(resistance_along(options.turbulence)),
+      profile_(options.layers),
+      mean_(options.layers) {
+  conduction(options, conduction_, walls_);
+  const double step = pad.radius * grid_.dtheta;
+  hold_ = pad.clearance * pad.clearance * pad.clearance / (12.0 * lubricant.viscosity * step * step);
+  lay_out();
+}
+
+void ThdPad::lay_out() {
+  const double step = pad_.radius * grid_.dtheta;
+  nodes_.resize(static_cast<std::size_t>(nodes()));
+  sides_.assign(nodes_.size(), {{{-1, -1}, {-1, 1}, {-1, -1}, {-1, 1}}});
+  for (int i = 0; i < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      Node& n = nodes_[node(i, j)];
+      const bool first = i == 0 || i + 1 == columns_, side = j == 0 || (whole_ && j + 1 == rows_);
+      const bool halved = side || (!whole_ && grid_.n_z % 2 == 0 && j + 1 == rows_);
+      n.edge = first || side;
+      n.along = grid_.dz * (halved ? 0.5 : 1.0);
+      n.area = n.along * step * (first ? 0.5 : 1.0);
+      n.z = j * grid_.dz - 0.5 * pad_.length;
+      const auto k = static_cast<std::size_t>(i);
+      const double mean = first ? 1.0 : grid_.mean;
+      n.cosine = mean * grid_.node_cos[k];
+      n.sine = mean * grid_.node_sin[k];
+      n.mu.resize(layers_);
+      n.mu_t.resize(layers_);
+    }
+  const auto add = [&](int i, int j, bool around) {
+    Face f;
+    const std::size_t from = node(i, j), to = around ? node(i + 1, j) : node(i, j + 1);
+    const auto k = static_cast<std::size_t>(i);
+    f.from = static_cast<int>(from);
+    f.to = static_cast<int>(to);
+    f.around = around;
+    f.step = around ? step : grid_.dz;
+    f.width = around ? nodes_[from].along : step * (i == 0 || i + 1 == columns_ ? 0.5 : 1.0);
+    f.cosine = around ? grid_.face_cos[k] : grid_.node_cos[k];
+    f.sine = around ? grid_.face_sin[k] : grid_.node_sin[k];
+    f.z = nodes_[from].z + (around ? 0.0 : 0.5 * grid_.dz);
+    for (Vector* v : {&f.q, &f.d, &f.q_g, &f.q_h, &f.q_u, &f.d_g, &f.d_h, &f.d_u}) v->resize(layers_);
+    for (Matrix* m : {&f.q_mu, &f.d_mu}) m->resize(layers_, layers_);
+    const int number = static_cast<int>(faces_.size());
+    sides_[from][around ? 1 : 3].face = number;
+    sides_[to][around ? 0 : 2].face = number;
+    faces_.push_back(std::move(f));
+  };
+  for (int i = 0; i < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      if (i + 1 < columns_) add(i, j, true);
+      if (j + 1 < rows_) add(i, j, false);
+    }
+}
+
+void ThdPad::add_places(int first, Places& states, Places& rates) const {
+  const int b = block();
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int row = first + static_cast<int>(n) * b;
+    const auto square = [&](int other) {
+      for (int r = 0; r < b; ++r)
+        for (int c = 0; c < b; ++c) states.add(row + r, first + other * b + c);
+    };
+    square(static_cast<int>(n));
+    for (const Side& s : sides_[n])
+      if (s.face >= 0) {
+        const Face& f = faces_[static_cast<std::size_t>(s.face)];
+        square(s.sign > 0 ? f.to : f.from);
+      }
+    for (int r = 1; r < b; ++r) rates.add(row + r, row + r);
+  }
+}
+
+void ThdPad::read(const JournalMotion& motion, std::span<const double> states) {
+  const bool tilt = options_.tilt;
+  const double X = motion.position[0] - pad_.centre_x, Y = motion.position[1] - pad_.centre_y;
+  const double tx = tilt ? motion.position[2] : 0.0, ty = tilt ? motion.position[3] : 0.0;
+  const double vtx = tilt ? motion.velocity[2] : 0.0, vty = tilt ? motion.velocity[3] : 0.0;
+  speed_ = motion.speed;
+  h_min_ = least_(X, Y, tx, ty);
+  require_thickness(h_min_);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    Node& here = nodes_[n];
+    here.value = &states[n * static_cast<std::size_t>(block())];
+    here.h = pad_.clearance - (X + here.z * tx) * here.cosine - (Y + here.z * ty) * here.sine;
+    here.rate = -(motion.velocity[0] + here.z * vtx) * here.cosine - (motion.velocity[1] + here.z * vty) * here.sine;
+    for (int k = 0; k < layers_; ++k) {
+      const double t = here.value[1 + k];
+      // Beyond these no law holds, and Newton's method is to come back.
+      if (!(t > 200.0 && t < 1000.0)) throw core::DomainError("a temperature of the film is not that of an oil");
+      thermal::Valued mu{lubricant_.viscosity, 0.0};
+      if (options_.viscosity) mu = thermal::viscosity(options_.viscosity->law, t);
+      if (!(mu.value > 0.0 && std::isfinite(mu.value)))
+        throw core::DomainError("the viscosity has no value at a temperature of the film");
+      here.mu(k) = mu.value;
+      here.mu_t(k) = mu.slope;
+    }
+  }
+  for (Face& f : faces_) f.h = pad_.clearance - (X + f.z * tx) * f.cosine - (Y + f.z * ty) * f.sine;
+}
+
+// In turbulence the flow by pressure has the share c = 12/k(Re) of the laminar one, and so has its dissipation; the
+// shear of the Couette flow grows by s. Re is that of the mean viscosity at the face.
+void ThdPad::flow(Face& f, bool tangents) {
+  const Node &a = nodes_[static_cast<std::size_t>(f.from)], &b = nodes_[static_cast<std::size_t>(f.to)];
+  mean_ = 0.5 * (a.mu + b.mu);
+  profile_.set(mean_);
+  const Layers& p = profile_;
+  const double u = f.around ? speed_ * pad_.radius : 0.0, h = f.h, g = (b.value[0] - a.value[0]) / f.step;
+  double c = 1.0, c_re = 0.0, s = 1.0, s_re = 0.0, re = 0.0;
+  const double mu = mean_.mean(), surface = std::abs(speed_) * pad_.radius;
+  if (options_.turbulence != Turbulence::laminar && surface > 0.0) {
+    const Resistance& r = f.around ? resistance_around_ : resistance_along_;
+    re = lubricant_.density * surface * h / mu;
+    const double k = film::evaluate(r, re);
+    c = 12.0 / k;
+    c_re = -c / k * r.exponent * (k - 12.0);  // by ln Re
+    s = 1.0 + 0.0012 * std::pow(re, 0.94);
+    s_re = 0.94 * (s - 1.0);
+  }
+  const double h3 = h * h * h;
+  f.q = u * h * p.drag + (c * h3 * g) * p.pressure;
+  f.d = (s * u * u / h) * p.couette + (c * u * h * g) * p.cross + (c * h3 * g * g) * p.poiseuille;
+  f.shear = s * u / h * p.pull + g * h * (1.0 - p.neutral);
+  if (!tangents) return;
+  f.q_g = (c * h3) * p.pressure;
+  f.d_g = (c * u * h) * p.cross + (2.0 * c * h3 * g) * p.poiseuille;
+  f.q_h = u * p.drag + (3.0 * c * h * h * g) * p.pressure;
+  f.d_h = (-s * u * u / (h * h)) * p.couette + (c * u * g) * p.cross + (3.0 * c * h * h * g * g) * p.poiseuille;
+  f.q_u.setZero();
+  f.d_u.setZero();
+  if (f.around) {
+    f.q_u = h * p.drag;
+    f.d_u = (2.0 * s * u / h) * p.couette + (c * h * g) * p.cross;
+  }
+  f.q_mu = (u * h) * p.d_drag + (c * h3 * g) * p.d_pressure;
+  f.d_mu = (s * u * u / h) * p.d_couette + (c * u * h * g) * p.d_cross + (c * h3 * g * g) * p.d_poiseuille;
+  if (re == 0.0) return;
+  const Vector q_re = (c_re * h3 * g) * p.pressure;
+  const Vector d_re =
+      (s_re * u * u / h) * p.couette + (c_re * u * h * g) * p.cross + (c_re * h3 * g * g) * p.poiseuille;
+  f.q_h += q_re / h;
+  f.d_h += d_re / h;
+  const double signed_surface = speed_ * pad_.radius;
+  f.q_u += q_re / signed_surface;
+  f.d_u += d_re / signed_surface;
+  f.q_mu.colwise() -= q_re / (mu * layers_);
+  f.d_mu.colwise() -= d_re / (mu * layers_);
+}
+
+double ThdPad::left_over(std::size_t n, int layer) const {
+  double out = nodes_[n].area * nodes_[n].rate / layers_;
+  for (const Side& s : sides_[n])
+    if (s.face >= 0) {
+      const Face& f = faces_[static_cast<std::size_t>(s.face)];
+      out += s.sign * f.width * f.q(layer);
+    }
+  return -out;
+}
+
+void ThdPad::row(int number, std::span<const double> rates, Need need, std::size_t first, std::size_t at,
+                 std::size_t at_rates, StateResponse& response) {
+  const auto n = static_cast<std::size_t>(number);
+  const Node& here = nodes_[n];
+  const int L = layers_, b = block();
+  const double* T = here.value + 1;
+  const double over_volume = L / (here.area * here.h), rho_c = lubricant_.density * options_.heat_capacity;
+  // M: what rows, without the heat, change by with the flows out of the layers through any side (common), and through
+  // each side beside that. Row 0 is the pressure's.
+  Matrix common = Matrix::Zero(b, L);
+  std::array<Vector, 4> own;
+  Vector advected = Vector::Zero(L), heat = Vector::Zero(L);
+  double all = here.area * here.rate;
+  for (std::size_t side = 0; side < 4; ++side) {
+    const Side& s = sides_[n][side];
+    if (s.face < 0) continue;
+    const Face& f = faces_[static_cast<std::size_t>(s.face)];
+    const double* other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)].value + 1;
+    own[side].setZero(L);
+    for (int k = 0; k < L; ++k) {
+      const double out = s.sign * f.width * f.q(k);
+      all += out;
+      if (out < 0.0) {
+        own[side](k) = other[k] - T[k];
+        advected(k) += out * own[side](k);
+      }
+    }
+    heat += (0.5 * f.step * f.width) * f.d;
+  }
+  if (here.edge) {
+    for (int k = 0; k < L; ++k) {
+      const double out = left_over(n, k);
+      if (out >= 0.0) continue;
+      advected(k) += out * (options_.feed - T[k]);
+      common(1 + k, k) -= options_.feed - T[k];
+    }
+  } else {
+    double upwards = 0.0;
+    common.row(0).setConstant(1.0 / here.area);
+    for (int k = 0; k + 1 < L; ++k) {
+      upwards += left_over(n, k);
+      const int into = upwards > 0.0 ? k + 1 : k, from = upwards > 0.0 ? k : k + 1;
+      const double jump = T[from] - T[into], size = upwards > 0.0 ? -1.0 : 1.0;  // out of `into` flows size upwards
+      advected(into) += size * upwards * jump;
+      for (int m = 0; m <= k; ++m) common(1 + into, m) -= size * jump;
+    }
+  }
+  common.bottomRows(L) *= over_volume;
+  const Eigen::Map<const Vector> t(T, L);
+  const double conduct = L * options_.conductivity / (rho_c * here.h * here.h);
+  const Vector conducted = conduct * (conduction_ * t - walls_);
+  const std::size_t r = first + n * static_cast<std::size_t>(b);
+  response.residual[r] = here.edge ? hold_ * here.value[0] : all / here.area;
+  for (int k = 0; k < L; ++k)
+    response.residual[r + 1 + static_cast<std::size_t>(k)] =
+        rates[n * static_cast<std::size_t>(b) + 1 + static_cast<std::size_t>(k)] +
+        over_volume * (advected(k) - heat(k) / rho_c) + conducted(k);
+  if (need == Need::force) return;
+
+  // By this block and those of the neighbours, in the order of the places.
+  std::array<Matrix, 5> by;
+  by[0].setZero(b, b);
+  if (here.edge) by[0](0, 0) = hold_;
+  by[0].bottomRightCorner(L, L) += conduct * conduction_;
+  Vector by_thickness = Vector::Zero(b), by_rate = common.rowwise().sum() * (here.area / L), by_speed = Vector::Zero(b);
+  by_thickness.tail(L) = -(over_volume / here.h) * (advected - heat / rho_c) - (2.0 / here.h) * conducted;
+  Matrix by_position = Matrix::Zero(b, 4);
+  const auto thickness = [&](const Vector& rows, double cosine, double sine, double z) {
+    by_position.col(0) -= cosine * rows;
+    by_position.col(1) -= sine * rows;
+    by_position.col(2) -= z * cosine * rows;
+    by_position.col(3) -= z * sine * rows;
+  };
+  for (std::size_t side = 0; side < 4; ++side) {
+    const Side& s = sides_[n][side];
+    if (s.face < 0) continue;
+    const Face& f = faces_[static_cast<std::size_t>(s.face)];
+    const Node& other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)];
+    Matrix flows = common;
+    flows.bottomRows(L).diagonal() += over_volume * own[side];
+    flows *= s.sign * f.width;
+    const double warm = -0.5 * f.step * f.width * over_volume / rho_c;
+    const auto rows = [&](const Vector& q, const Vector& d) {
+      Vector out = flows * q;
+      out.tail(L) += warm * d;
+      return out;
+    };
+    Matrix by_mu = flows * f.q_mu;
+    by_mu.bottomRows(L) += warm * f.d_mu;
+    const Vector by_g = rows(f.q_g, f.d_g) * (s.sign / f.step);
+    Matrix& there = by[side + 1];
+    there.resize(b, b);
+    there.col(0) = by_g;
+    by[0].col(0) -= by_g;
+    there.rightCols(L) = by_mu * (0.5 * other.mu_t).asDiagonal();
+    by[0].rightCols(L) += by_mu * (0.5 * here.mu_t).asDiagonal();
+    for (int k = 0; k < L; ++k) {
+      const double out = s.sign * f.width * f.q(k);
+      if (out >= 0.0) continue;
+      there(1 + k, 1 + k) += over_volume * out;
+      by[0](1 + k, 1 + k) -= over_volume * out;
+    }
+    thickness(rows(f.q_h, f.d_h), f.cosine, f.sine, f.z);
+    by_speed += pad_.radius * rows(f.q_u, f.d_u);
+  }
+  if (here.edge) {
+    for (int k = 0; k < L; ++k) {
+      const double out = left_over(n, k);
+      if (out < 0.0) by[0](1 + k, 1 + k) -= over_volume * out;
+    }
+  } else {
+    double upwards = 0.0;
+    for (int k = 0; k + 1 < L; ++k) {
+      upwards += left_over(n, k);
+      const int into = upwards > 0.0 ? k + 1 : k, from = upwards > 0.0 ? k : k + 1;
+      const double flow = -over_volume * std::abs(upwards);
+      by[0](1 + into, 1 + from) += flow;
+      by[0](1 + into, 1 + into) -= flow;
+    }
+  }
+  thickness(by_thickness, here.cosine, here.sine, here.z);
+  const auto put = [&](const Matrix& m) {
+    for (int i = 0; i < b; ++i)
+      for (int j = 0; j < b; ++j) response.d_states[at++] = m(i, j);
+  };
+  put(by[0]);
+  for (std::size_t side = 0; side < 4; ++side)
+    if (sides_[n][side].face >= 0) put(by[side + 1]);
+  for (int k = 0; k < L; ++k) response.d_rates[at_rates++] = 1.0;
+  const std::array<double, 4> velocity = {-here.cosine, -here.sine, -here.z * here.cosine, -here.z * here.sine};
+  for (std::size_t port = 0; port < response.d_position.size(); ++port)
+    for (int k = 0; k < b; ++k) {
+      const std::size_t to = r + static_cast<std::size_t>(k);
+      response.d_position[port][to] = by_position(k, static_cast<Eigen::Index>(port));
+      response.d_velocity[port][to] = velocity[port] * by_rate(k);
+    }
+  for (int k = 0; k < b; ++k) response.d_speed[r + static_cast<std::size_t>(k)] = by_speed(k);
+}
+
+// As that of the film of one temperature: exact means of cos and sin between two columns, the positive part of the
+// pressure within cells.
+void ThdPad::integrate(Need need, std::size_t first, StateResponse& response) const {
+  const bool truncated = options_.cavitation == Thd::Cavitation::half_sommerfeld;
+  const double area = pad_.radius * grid_.dtheta * grid_.mean;
+  for (int strip = 0; strip + 1 < columns_; ++strip) {
+    const auto face = static_cast<std::size_t>(strip);
+    const double x = -area * grid_.face_cos[face], y = -area * grid_.face_sin[face];
+    const bool begins = strip == 0, edge = begins || strip + 2 == columns_;
+    const int near = begins ? 1 : strip, far = begins ? 2 : edge ? strip - 1 : strip + 1;
+    for (int j = 0; j < rows_; ++j) {
+      const double times = nodes_[node(strip, j)].along * (whole_ ? 1.0 : 2.0), z = nodes_[node(strip, j)].z;
+      const std::array<double, 4> weight = {times * x, times * y, times * z * x, times * z * y};
+      const double p = pressure(near, j), q = pressure(far, j);
+      double d_p = 0.5, d_q = edge ? 0.0 : 0.5, integral = d_p * p + d_q * q;
+      if (truncated && edge) {
+        const EdgeInterval part = truncated_edge(p, q);
+        integral = part.integral, d_p = part.d_near, d_q = part.d_far;
+      } else if (truncated && std::min(p, q) < 0.0) {
+        const Interval<double> part = truncated_linear(p, q);
+        integral = part.integral, d_p = part.d_left, d_q = part.d_right;
+      }
+      for (std::size_t c = 0; c < (options_.tilt ? 4U : 2U); ++c) {
+        response.journal.force[c] += weight[c] * integral;
+        if (need == Need::force) continue;
+        const auto b = static_cast<std::size_t>(block());
+        response.force_d_states[c][first + node(near, j) * b] += weight[c] * d_p;
+        response.force_d_states[c][first + node(far, j) * b] += weight[c] * d_q;
+      }
+    }
+  }
+}
+
+void ThdPad::evaluate(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates,
+                      Need need, std::size_t first, std::size_t& at, std::size_t& at_rates, StateResponse& response) {
+  read(motion, states);
+  response.journal.min_thickness = std::min(response.journal.min_thickness, h_min_);
+  for (Face& f : faces_) flow(f, need == Need::tangents);
+  if (entries_.empty()) {
+    std::size_t before = 0;
+    for (const auto& sides : sides_) {
+      entries_.push_back(before);
+      const auto beside = std::count_if(sides.begin(), sides.end(), [](const Side& s) { return s.face >= 0; });
+      before += static_cast<std::size_t>((1 + beside) * block() * block());
+    }
+    entries_.push_back(before);
+  }
+  for (int n = 0; n < nodes(); ++n)
+    row(n, rates, need, first, at + entries_[static_cast<std::size_t>(n)],
+        at_rates + static_cast<std::size_t>(n * layers_), response);
+  at += entries_.back();
+  at_rates += static_cast<std::size_t>(nodes() * layers_);
+  integrate(need, first, response);
+}
+
+HeatBalance ThdPad::heat() const {
+  HeatBalance out;
+  const double times = whole_ ? 1.0 : 2.0, rho_c = lubricant_.density * options_.heat_capacity;
+  for (const Face& f : faces_) out.dissipation += times * f.step * f.width * f.d.sum();
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Node& here = nodes_[n];
+    const Eigen::Map<const Vector> t(here.value + 1, layers_);
+    for (int k = 0; here.edge && k < layers_; ++k) {
+      const double flow = left_over(n, k);
+      out.carried += times * rho_c * flow * ((flow < 0.0 ? options_.feed : t(k)) - options_.feed);
+    }
+    const double walls = times * here.area * options_.conductivity / here.h;
+    const auto through = [&](const HeatedWall& w, const HeatedWall& other, int k) {
+      if (w.type != HeatedWall::Type::isothermal) return 0.0;
+      if (layers_ > 1) return walls * 2.0 * layers_ * (t(k) - w.temperature);
+      if (other.type != HeatedWall::Type::isothermal) return walls * 3.0 * (t(0) - w.temperature);
+      return walls * (6.0 * t(0) - 4.0 * w.temperature - 2.0 * other.temperature);
+    };
+    out.bush += through(options_.bush, options_.journal, 0);
+    out.journal += through(options_.journal, options_.bush, layers_ - 1);
+    out.stored += times * rho_c * here.area * here.rate / layers_ * (t.array() - options_.feed).sum();
+  }
+  return out;
+}
+
+Flows ThdPad::flows() const {
+  Flows out;
+  const double times = whole_ ? 1.0 : 2.0;
+  for (int i = 0; i < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      const std::size_t n = node(i, j);
+      double flow = 0.0;
+      for (int k = 0; k < layers_; ++k) flow += times * left_over(n, k);
+      out.squeezed += times * nodes_[n].area * nodes_[n].rate;
+      if (!nodes_[n].edge) continue;
+      if (i == 0)
+        out.enters -= flow;
+      else if (i + 1 == columns_)
+        out.leaves += flow;
+      else
+        out.sides += flow;
+    }
+  return out;
+}
+
+double ThdPad::side_outflow() const {
+  double out = 0.0;
+  for (int i = 1; i + 1 < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      if (!nodes_[node(i, j)].edge) continue;
+      double flow = 0.0;
+      for (int k = 0; k < layers_; ++k) flow += left_over(node(i, j), k);
+      out += (whole_ ? 1.0 : 2.0) * std::max(flow, 0.0);
+    }
+  return out;
+}
+
+double ThdPad::friction() const {
+  double out = 0.0;
+  for (const Face& f : faces_)
+    if (f.around) out += (whole_ ? 1.0 : 2.0) * f.step * f.width * f.shear * pad_.radius;
+  return out;
+}
+
+ThdPad::Warmth ThdPad::warmth() const {
+  Warmth out;
+  for (const Node& n : nodes_) {
+    const Eigen::Map<const Vector> t(n.value + 1, layers_);
+    const double volume = (whole_ ? 1.0 : 2.0) * n.area * n.h;
+    out.volume += volume;
+    out.integral += volume * t.mean();
+    out.highest = std::max(out.highest, t.maxCoeff());
+  }
+  return out;
+}
+
+std::vector<double> ThdPad::nodal(Of what) const {
+  std::vector<double> out;
+  for (int i = 0; i < columns_; ++i)
+    for (int j = 0; j <= grid_.n_z; ++j) {
+      const double* v = nodes_[node(i, j < rows_ ? j : grid_.n_z - j)].value;
+      switch (what) {
+        case Of::pressure:
+          out.push_back(options_.cavitation == Thd::Cavitation::none ? v[0] : std::max(v[0], 0.0));
+          break;
+        case Of::mean:
+          out.push_back(Eigen::Map<const Vector>(v + 1, layers_).mean());
+          break;
+        case Of::bush:
+          out.push_back(v[1]);
+          break;
+        case Of::journal:
+          out.push_back(v[layers_]);
+          break;
+      }
+    }
+  return out;
+}
+
+void ThdPad::resample(const ThdPad& other, std::span<const double> from, std::span<double> to) const {
+  core::require(other.layers_ == layers_ && other.whole_ == whole_, "a film of the same layers");
+  const auto place = [](double x, int cells, int last) {
+    const int cell = std::clamp(static_cast<int>(x * cells), 0, last - 1);
+    return std::pair{cell, std::min(x * cells - cell, 1.0)};
+  };
+  const auto b = static_cast<std::size_t>(block());
+  for (int i = 0; i < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) {
+      const auto [c, s] = place(static_cast<double>(i) / grid_.n_theta, other.grid_.n_theta, other.columns_ - 1);
+      const auto [d, t] = place(static_cast<double>(j) / grid_.n_z, other.grid_.n_z, other.rows_ - 1);
+      for (std::size_t v = 0; v < b; ++v) {
+        const auto value = [&](int x, int y) { return from[other.node(x, y) * b + v]; };
+        to[node(i, j) * b + v] = (1.0 - s) * ((1.0 - t) * value(c, d) + t * value(c, d + 1)) +
+                                 s * ((1.0 - t) * value(c + 1, d) + t * value(c + 1, d + 1));
+      }
+    }
+}
+
+}  // namespace whirl::film

@@ -1,0 +1,122 @@
+#pragma once
+// One pad of a film with heat: a pressure and the temperatures of the layers at every node.
+//
+// Finite volumes about the nodes i = 0..n around and j along, edges included (half volumes). With V = A h/L the volume
+// of a layer, out its flows out of the volume, and H the dissipation:
+//
+//     inner nodes  sum of out/A + dh/dt = 0;   edges  p = 0
+//     dT_k/dt + [sum over inflows of min(out, 0) (T_upstream - T_k) - H_k/(rho c)]/V + L lambda/(rho c h^2) (K T - b)_k
+//     = 0
+//
+// Flows across the layers follow from those along them, from the bush upwards; at an edge each layer leaves the pad, or
+// enters it with the temperature of the feed. So a constant temperature without sources is kept exactly, and so is the
+// heat of the whole pad where the mass of every layer is.
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "film/layers.hpp"
+#include "film/pad.hpp"
+#include "whirl/film/film.hpp"
+#include "whirl/film/thd.hpp"
+
+namespace whirl::film {
+
+/// Heat of a pad, W: dissipation, and where it goes. At rest they balance to what Newton's method leaves.
+struct HeatBalance {
+  double dissipation = 0, carried = 0, bush = 0, journal = 0, stored = 0;
+};
+
+class ThdPad {
+public:
+  ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant);
+  [[nodiscard]] int nodes() const { return columns_ * rows_; }
+  [[nodiscard]] int block() const { return 1 + layers_; }
+  [[nodiscard]] int states() const { return nodes() * block(); }
+  /// Adds where dg/ds and dg/ds' have entries; the pad's states and rows begin at `first`.
+  void add_places(int first, Places& states, Places& rates) const;
+  /// Adds the force to `response.journal`, lowers its min_thickness and fills the rows [first, first + states()); the
+  /// derivatives by states from `at` on, which becomes the place behind them, those by rates likewise.
+  void evaluate(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates, Need need,
+                std::size_t first, std::size_t& at, std::size_t& at_rates, StateResponse& response);
+
+  // Of the last evaluate().
+  [[nodiscard]] HeatBalance heat() const;
+  [[nodiscard]] Flows flows() const;
+  /// m^3/s out of both sides, without what comes in where the pressure is below the ambient's.
+  [[nodiscard]] double side_outflow() const;
+  /// N m, of the shear at the journal.
+  [[nodiscard]] double friction() const;
+  /// m^3, and K m^3 of the temperature over it; K.
+  struct Warmth {
+    double volume = 0, integral = 0, highest = 0;
+  };
+  [[nodiscard]] Warmth warmth() const;
+  [[nodiscard]] const Grid& grid() const { return grid_; }
+  /// m, at a node of the whole length.
+  [[nodiscard]] double thickness(int i, int j) const { return nodes_[node(i, j < rows_ ? j : grid_.n_z - j)].h; }
+  /// Pressure as it acts, and temperatures, at the nodes [n_theta + 1][n_z + 1] of the pad; the mean over the layers,
+  /// or of one layer.
+  enum class Of { pressure, mean, bush, journal };
+  [[nodiscard]] std::vector<double> nodal(Of what) const;
+  /// States `to` at the nodes of this mesh from those of `other`, linearly.
+  void resample(const ThdPad& other, std::span<const double> from, std::span<double> to) const;
+
+private:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+  struct Node {
+    double h = 0, rate = 0;              // m, m/s
+    double cosine = 0, sine = 0, z = 0;  // h falls with the position of the journal along these
+    double along = 0, area = 0;          // m, m^2, of its volume
+    bool edge = false;
+    const double* value = nullptr;  // its block of states
+    Vector mu, mu_t;                // Pa s and its slope
+  };
+  // Between two nodes, towards larger i or j: flows q per width, dissipation d per area, and shear at the journal.
+  struct Face {
+    int from = 0, to = 0;
+    double step = 0, width = 0;  // m
+    double h = 0, cosine = 0, sine = 0, z = 0;
+    bool around = true;
+    double shear = 0;
+    Vector q, d;
+    Vector q_g, q_h, q_u, d_g, d_h, d_u;  // by pressure gradient, thickness, speed of the surface
+    Matrix q_mu, d_mu;
+  };
+  struct Side {
+    int face, sign;  // -1: none; +1: q leaves the volume
+  };
+  void lay_out();
+  void read(const JournalMotion& motion, std::span<const double> states);
+  void flow(Face& face, bool tangents);
+  void row(int node, std::span<const double> rates, Need need, std::size_t first, std::size_t at, std::size_t at_rates,
+           StateResponse& response);
+  void integrate(Need need, std::size_t first, StateResponse& response) const;
+  [[nodiscard]] double pressure(int i, int j) const { return nodes_[node(i, j)].value[0]; }
+  [[nodiscard]] std::size_t node(int i, int j) const { return static_cast<std::size_t>(i * rows_ + j); }
+  // -q_k of all sides and of the growth of the volume: what is left to leave layer k.
+  [[nodiscard]] double left_over(std::size_t node, int layer) const;
+
+  Pad pad_;
+  Thd options_;
+  Grid grid_;
+  LeastThickness least_;
+  Lubricant lubricant_;
+  bool whole_;
+  int layers_, columns_, rows_;
+  Resistance resistance_around_, resistance_along_;
+  Matrix conduction_;  // K and b of conduction across the film, in lambda/h
+  Vector walls_;
+  double hold_;  // m/(s Pa): what a pressure at an edge weighs
+  double h_min_ = 0, speed_ = 0;
+  std::vector<Node> nodes_;
+  std::vector<Face> faces_;
+  std::vector<std::array<Side, 4>> sides_;
+  std::vector<std::size_t> entries_;  // of each node: entries of dg/ds before its own
+  Layers profile_;
+  Vector mean_;
+};
+
+}  // namespace whirl::film

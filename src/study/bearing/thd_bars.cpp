@@ -1,0 +1,137 @@
+// Error bars of a film with heat, by coarser meshes.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "study/bars/summary_bars.hpp"
+#include "study/bearing/thd_record.hpp"
+#include "study/bearing/thd_values.hpp"
+#include "study/findings.hpp"
+#include "whirl/core/agree.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr std::array<int, 3> least{8, 4, 2};
+
+// How far an orifice is moved to a node, around [rad] and along [of the length]: greatest over all.
+std::array<double, 2> displacement(const ThdOptions& o, const std::array<int, 3>& cells, double length) {
+  const auto off = [](double at) { return std::abs(at - std::round(at)); };
+  const double step = 2 * std::numbers::pi / cells[0];
+  std::array<double, 2> most{};
+  for (const thermal::OrificeRing& ring : o.orifices) {
+    for (int k = 0; k < ring.count; ++k)
+      most[0] = std::max(most[0], step * off((ring.angle + 2 * std::numbers::pi * k / ring.count) / step));
+    most[1] = std::max(most[1], off((ring.z / length + 0.5) * cells[1]) / cells[1]);
+  }
+  return most;
+}
+
+// Values on another mesh with the residual of the energy behind them; not a number where there is no answer.
+std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed,
+                              std::size_t count) {
+  std::vector<double> out(count + 1, io::no_value);
+  // A mesh of few rows is solved by each rank for itself.
+  const bool shared = options.cells[1] + 1 >= 2 * core::size_of(comm);
+  const bool answered = has_answer([&] {
+    ThdFilm film(shared ? comm : MPI_COMM_SELF, options, geometry, speed);
+    if (!film.solve()) throw core::NotConverged("temperatures did not settle");
+    io::StudySummary there;
+    put_thd_values(there, film, options);
+    core::require(there.values.size() == count, "the same values on all meshes");
+    for (std::size_t k = 0; k < count; ++k) out[k] = there.values[k].second.value;
+    out[count] = film.thd().budget().residual();
+  });
+  if (!answered) out.assign(count + 1, io::no_value);
+  core::share(comm, out.data(), out.size());
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double length) {
+  std::vector<std::array<int, 3>> out{options.cells};
+  const std::array<double, 2> own = displacement(options, options.cells, length);
+  for (int k = 1; k < options.meshes; ++k) {
+    std::array<int, 3> cells = out.back();
+    for (std::size_t d = 0; d < 3; ++d) cells[d] = (cells[d] + 1) / 2;
+    if (cells[0] < least[0] || cells[1] < least[1] || cells[2] < least[2]) break;
+    const std::array<double, 2> moved = displacement(options, cells, length);
+    if (moved[0] > own[0] + 1e-9 || moved[1] > own[1] + 1e-9) break;
+    out.push_back(cells);
+  }
+  return out;
+}
+
+void put_thd_bars(Context& context, const ThdOptions& options, const film::Geometry& geometry, double speed,
+                  double energy_residual, Pieces& pieces) {
+  const std::vector<std::array<int, 3>> meshes = thd_meshes(options, geometry.length);
+  io::StudySummary& summary = context.results.summary();
+  const auto total = [](const std::array<int, 3>& c) { return static_cast<double>(c[0]) * c[1] * c[2]; };
+  // What feeds a film is a point or an edge that moves to the nearest node: errors of first order.
+  const bool fed = !options.orifices.empty() || !options.grooves.empty();
+  SummaryBars bars(summary, {.film_order = fed ? 1.0 : 2.0});
+  const std::size_t count = summary.values.size();
+  std::vector<std::vector<double>> found(1);  // of each mesh
+  for (const auto& [name, q] : summary.values) found[0].push_back(q.value);
+  found[0].push_back(energy_residual);
+  for (std::size_t m = 1; m < meshes.size(); ++m) {
+    found.push_back(pieces.numbers(fmt::format("mesh {}", m), [&] {
+      context.results.progress(fmt::format("{} cells for the error bars", fmt::join(meshes[m], " x ")));
+      ThdOptions there = options;
+      there.cells = meshes[m];
+      for (thermal::WallOptions* wall : {&there.bush, &there.journal}) wall->layers = std::max(2, wall->layers >> m);
+      return values_on(context.comm, there, geometry, speed, count);
+    }));
+    io::StudySummary there;
+    for (std::size_t k = 0; k < count; ++k)
+      if (std::isfinite(found[m][k])) there.set(summary.values[k].first, found[m][k], summary.values[k].second.unit);
+    bars.add(Axis::around, std::cbrt(total(meshes[0]) / total(meshes[m])), there);
+  }
+  if (meshes.size() > 1) {
+    io::Group& group = context.results.group().child("meshes");
+    // From coarse to fine.
+    const auto column = [&](const auto& of) {
+      std::vector<double> out;
+      for (std::size_t m = meshes.size(); m-- > 0;) out.push_back(of(m));
+      return out;
+    };
+    group.put("cells", column([&](std::size_t m) { return total(meshes[m]); }), "1", "cells of the film");
+    for (std::size_t d = 0; d < 3; ++d) {
+      constexpr const char* names[] = {"around", "along", "across"};
+      group.put(names[d], column([&](std::size_t m) { return static_cast<double>(meshes[m][d]); }), "1",
+                "intervals, or layers");
+    }
+    for (std::size_t k = 0; k < count; ++k)
+      group.put(summary.values[k].first, column([&](std::size_t m) { return found[m][k]; }),
+                summary.values[k].second.unit, "over the mesh");
+    group.put("energy_residual", column([&](std::size_t m) { return found[m][count]; }), "W",
+              "what the balance of the whole film leaves");
+  }
+  // Differences that fall more slowly than with the root of the spacing are no measure of what is left: beside point
+  // sources some grow with its logarithm.
+  std::map<std::string, double> size;  // of a vector or of all heats, of which one may vanish
+  const auto kin = [&](std::size_t k) {
+    const std::string& name = summary.values[k].first;
+    return name.starts_with("heat.") ? "heat" : stem_of(name);
+  };
+  for (std::size_t k = 0; k < count; ++k) size[kin(k)] = std::max(size[kin(k)], std::abs(found[0][k]));
+  std::vector<std::string> steady;
+  for (std::size_t k = 0; k < count && meshes.size() > 2; ++k) {
+    const double fine = std::abs(found[0][k] - found[1][k]), coarse = std::abs(found[1][k] - found[2][k]);
+    if (fine * std::numbers::sqrt2 >= coarse && fine > 1e-6 * size[kin(k)]) steady.push_back(summary.values[k].first);
+  }
+  if (!steady.empty())
+    summary.warnings.push_back(fmt::format(
+        "the meshes do not show yet how the error falls of {}: its bar may be too small", fmt::join(steady, ", ")));
+  const double left = options.tolerance * options.ambient.temperature;
+  bars.write([&](const std::string& name, double value) {
+    return name.starts_with("temperature.") ? left : options.tolerance * std::abs(value);
+  });
+}
+
+}  // namespace whirl::study

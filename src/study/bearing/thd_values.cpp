@@ -1,0 +1,119 @@
+#include "study/bearing/thd_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/bearing/thd_record.hpp"
+#include "study/findings.hpp"
+
+namespace whirl::study {
+namespace {
+
+bool gas(const ThdOptions& options) {
+  return options.fluid.type == thermal::FluidOptions::Type::gas;
+}
+
+// Greatest difference of two pressures: of a gas over the pressure there, of a liquid over the greatest one.
+double change_of(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b, bool relative) {
+  double most[2] = {};
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    most[0] = std::max(most[0], std::abs(a[k] - b[k]) / (relative ? b[k] : 1));
+    most[1] = std::max(most[1], std::abs(b[k]));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, comm);
+  return relative ? most[0] : most[1] > 0 ? most[0] / most[1] : 0;
+}
+
+// Of a gas what its motion leaves is dissipation and the work of pressure; a liquid keeps the dissipation alone.
+double dissipation(const ThdFilm& film, const thermal::FlowReport& report) {
+  return report.heat - (film.is_gas() ? report.expansion : 0);
+}
+
+}  // namespace
+
+std::span<const ThdColumn> thd_columns() {
+  static constexpr ThdColumn table[] = {
+      {"parameter", "rad/s", "shaft speed"},
+      {"power_loss", "W", "friction torque times speed"},
+      {"heat", "W", "that the motion leaves in the film: of a gas dissipation and work of pressure"},
+      {"dissipation", "W", "viscosity times the square of the shear rate, over the film"},
+      {"expansion", "W",
+       "velocity times gradient of pressure, over the film: negative where the pressure falls along the flow"},
+      {"heat_bush", "W", "conducted to the bush"},
+      {"heat_journal", "W", "conducted to the journal"},
+      {"enthalpy", "W", "carried away through the ends, less what comes in"},
+      {"residual", "W", "what the balance of the whole film leaves"},
+      {"mean_temperature", "K", "of the film, by volume"},
+      {"minimum_temperature", "K", "of the cells of the film"},
+      {"maximum_temperature", "K", "of the cells of the film"},
+      {"peak_bush_temperature", "K", "greatest temperature of the bush's surface"},
+      {"mass_flow", "kg/s", "of orifices and grooves"},
+      {"load_x", "N", "force of the journal on the film"},
+      {"load_y", "N", "force of the journal on the film"},
+      {"iterations", "1", "rounds of flow and heat"}};
+  return table;
+}
+
+std::vector<double> thd_row(ThdFilm& film, double speed) {
+  thermal::Thd& thd = film.thd();
+  const thermal::FlowReport report = thd.flow().report(thd.flows());
+  const thermal::EnergyBudget budget = thd.budget();
+  const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
+  return {speed,
+          report.power,
+          report.heat,
+          dissipation(film, report),
+          report.expansion,
+          budget.bush,
+          budget.journal,
+          budget.ends - budget.supply,
+          budget.residual(),
+          t.mean,
+          t.minimum,
+          t.maximum,
+          surface_numbers(film, thd.bush_surface()).maximum,
+          report.inflow,
+          -report.force[0],
+          -report.force[1],
+          static_cast<double>(film.cost().iterations)};
+}
+
+void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options) {
+  thermal::Thd& thd = film.thd();
+  const thermal::FlowReport report = thd.flow().report(thd.flows());
+  const thermal::EnergyBudget budget = thd.budget();
+  const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
+  const SurfaceNumbers at_bush = surface_numbers(film, thd.bush_surface()),
+                       at_journal = surface_numbers(film, thd.journal_surface());
+  const ThdFilm::Isothermal isothermal = film.isothermal();
+  summary.set("load.x", -report.force[0], "N");
+  summary.set("load.y", -report.force[1], "N");
+  summary.set("load.isothermal.x", -isothermal.report.force[0], "N");
+  summary.set("load.isothermal.y", -isothermal.report.force[1], "N");
+  summary.set("max_pressure", report.highest, "Pa");
+  summary.set("pressure_change",
+              change_of(film.rows().comm(), thd.flow().pressure(), isothermal.pressure, gas(options)), "1");
+  summary.set("mass_flow", report.inflow, "kg/s");
+  summary.set("mass_flow.isothermal", isothermal.report.inflow, "kg/s");
+  summary.set("power_loss", report.power, "W");
+  summary.set("power_loss.isothermal", isothermal.report.power, "W");
+  summary.set("heat.film", report.heat, "W");
+  summary.set("heat.dissipation", dissipation(film, report), "W");
+  summary.set("heat.expansion", report.expansion, "W");
+  summary.set("heat.bush", budget.bush, "W");
+  summary.set("heat.journal", budget.journal, "W");
+  summary.set("heat.ends", budget.ends - budget.supply, "W");
+  summary.set("temperature.mean", t.mean, "K");
+  summary.set("temperature.minimum", t.minimum, "K");
+  summary.set("temperature.maximum", t.maximum, "K");
+  summary.set("temperature.percentile_1", t.percentile_1, "K");
+  summary.set("temperature.percentile_99", t.percentile_99, "K");
+  summary.set("temperature.bush.mean", at_bush.mean, "K");
+  summary.set("temperature.bush.maximum", at_bush.maximum, "K");
+  summary.set("temperature.journal.mean", at_journal.mean, "K");
+  summary.set("temperature.journal.maximum", at_journal.maximum, "K");
+  if (options.bush.growth || options.journal.growth)
+    summary.set("clearance", surface_numbers(film, film.thickness()).mean, "m");
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,35 @@
+#pragma once
+// The numbers of a film with heat: those of one speed, those over the speed, and how they change with the mesh.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/bearing/thd_film.hpp"
+#include "study/pieces.hpp"
+#include "whirl/io/summary.hpp"
+
+namespace whirl::study {
+
+/// A column of the table over the speed.
+struct ThdColumn {
+  const char *name, *unit, *description;
+};
+[[nodiscard]] std::span<const ThdColumn> thd_columns();
+/// One number for each column, of a film that is solved. Collective.
+[[nodiscard]] std::vector<double> thd_row(ThdFilm& film, double speed);
+
+/// All named values of a film that is solved, but for what rounding and iterations leave. Collective.
+void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& options);
+
+/// Intervals around and along and layers across of the meshes that the error bars stand on, the deck's first, each with
+/// half of the cells of the one before it in every direction. The list ends before a mesh on which an orifice would
+/// stand further from where it belongs than on the deck's.
+[[nodiscard]] std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double length);
+
+/// Solves the film on the coarser meshes at one speed, puts the error bars beside the values that `context` has in its
+/// summary, and all values over the mesh into its results. Collective.
+void put_thd_bars(Context& context, const ThdOptions& options, const film::Geometry& geometry, double speed,
+                  double energy_residual, Pieces& pieces);
+
+}  // namespace whirl::study
