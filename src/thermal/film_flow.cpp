@@ -26,8 +26,8 @@ void FilmFlow::start(const std::vector<double>& pressure) {
   core::require(pressure.size() == w_->pressure.size(), "a pressure for each node of this rank");
   w_->pressure = pressure;
 }
-int FilmFlow::solve(double tolerance) {
-  return w_->solve(tolerance);
+int FilmFlow::solve(double tolerance, double reduction) {
+  return w_->solve(tolerance, reduction);
 }
 const std::vector<double>& FilmFlow::pressure() const {
   return w_->pressure;
@@ -316,11 +316,12 @@ void FilmFlow::Work::load(const std::vector<double>& p) {
   for (std::size_t k = 0; k < hole.size(); ++k) a[static_cast<PetscInt>(p.size() + k)] = hole[k];
 }
 
-int FilmFlow::Work::solve(double tolerance) {
+int FilmFlow::Work::solve(double tolerance, double reduction) {
   if (!snes) prepare_solver();
   load(pressure);
   finish_linear_solver();
-  check(SNESSetTolerances(snes.get(), tolerance * typical, 1e-30, 1e-14, 60, 10000));
+  check(SNESSetTolerances(snes.get(), tolerance * typical, std::max(reduction, 1e-30), 1e-14, 60, 10000));
+  limit_linear_solver(0.3 * tolerance * typical);
   gate.rethrow(SNESSolve(snes.get(), nullptr, u.get()));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0, krylov = 0;

@@ -13,8 +13,8 @@ namespace {
 
 // MUMPS is quicker below, and on large meshes its factors would be most of the memory: see docs/speed.md.
 constexpr PetscInt direct_nodes = 100000;
-// With factors of an earlier Jacobian; new ones cost as much as many more than these.
-constexpr int most_krylov = 8;
+// Iterations a step with factors of an earlier Jacobian; new ones cost as much as many more than these.
+constexpr int most_krylov = 4;
 
 using Places = core::Handle<IS, ISDestroy>;
 
@@ -48,7 +48,7 @@ void FilmFlow::Work::choose_linear_solver() {
   if (!multigrid && ruptures) return;
   check(KSPSetType(ksp, KSPGMRES));
   check(KSPSetPCSide(ksp, PC_RIGHT));
-  check(KSPSetTolerances(ksp, multigrid ? 1e-5 : 1e-8, 1e-50, PETSC_DEFAULT, 200));
+  check(KSPSetTolerances(ksp, 1e-3, 1e-50, PETSC_DEFAULT, 200));
   if (!ruptures) check(SNESSetLagPreconditionerPersists(snes.get(), PETSC_TRUE));
   if (!multigrid) return;
   if (options.orifices.empty()) {
@@ -83,6 +83,16 @@ void FilmFlow::Work::finish_linear_solver() {
   check(KSPGetPC(parts[1], &part));
   use_multigrid(part);
   check(PetscFree(parts));
+}
+
+// No step is solved further than the whole equation has to be.
+void FilmFlow::Work::limit_linear_solver(double residual) {
+  KSP ksp = nullptr;
+  check(SNESGetKSP(snes.get(), &ksp));
+  PetscReal relative = 0;
+  PetscInt most = 0;
+  check(KSPGetTolerances(ksp, &relative, nullptr, nullptr, &most));
+  check(KSPSetTolerances(ksp, relative, residual, PETSC_DEFAULT, most));
 }
 
 // New factors in every step of the first solution and where those at hand have become poor.

@@ -31,7 +31,7 @@ struct FilmFlow::Work {
   void set_temperature(const std::vector<double>& cells);
   void residual(Vec state, Vec out) const;
   void jacobian(Vec state, Mat matrix) const;
-  int solve(double tolerance);
+  int solve(double tolerance, double reduction);
 
   static std::size_t at(PetscInt k) { return static_cast<std::size_t>(k); }
   /// Place of a node in arrays with a row before and one behind.
@@ -69,6 +69,7 @@ private:
   void choose_linear_solver();
   void split_rims(PC pc) const;
   void finish_linear_solver();
+  void limit_linear_solver(double residual);
   void choose_lag(int newton, int krylov);
   void load(const std::vector<double>& p);
   [[nodiscard]] std::vector<double> nodes_of(const double* state) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "thermal/thd_coarse.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/gate.hpp"
 #include "whirl/thermal/bush.hpp"
@@ -16,6 +17,9 @@ using core::check;
 namespace {
 
 constexpr double least_film = 0.1;
+// Each part of a round is solved until this is left of the residual that the round begins with, as the next round
+// changes it again, and no further than `finest` of what it is at the ambient's temperature and pressure.
+constexpr double reduction = 0.01, finest = 1e-11;
 
 Surface convection(double coefficient, double temperature) {
   return {Surface::Kind::convection, coefficient, temperature};
@@ -187,7 +191,7 @@ struct Thd::Work {
     for (std::size_t c = 0; c < own.size(); ++c)
       own[c] = temperature[c * static_cast<std::size_t>(rows.mesh().across) + static_cast<std::size_t>(side.layer)];
     side.solid->load(own, side.rhs.get());
-    cost.solid += side.solid->solve(side.rhs.get(), side.temperature.get());
+    cost.solid += side.solid->solve(side.rhs.get(), side.temperature.get(), left);
     PetscInt first = 0;
     check(VecGetOwnershipRange(side.temperature.get(), &first, nullptr));
     const core::ReadArray t(side.temperature.get());
@@ -217,7 +221,7 @@ struct Thd::Work {
     grow();
     film.set_temperature(temperature);
     lap(cost.seconds.flow);
-    cost.pressure += film.solve();
+    cost.pressure += film.solve(0.01 * finest, left);
     lap(cost.seconds.pressure);
     flow = {};  // two at a time would be most of the memory
     flow = film.flow();
@@ -234,7 +238,7 @@ struct Thd::Work {
       const core::WriteArray t(film_temperature.get());
       std::copy(temperature.begin(), temperature.end(), t.data());
     }
-    const EnergySolve solved = energy->solve(film_temperature.get(), 1e-11);
+    const EnergySolve solved = energy->solve(film_temperature.get(), finest, left);
     cost.energy_newton += solved.newton;
     cost.energy_krylov += solved.krylov;
     {
@@ -278,6 +282,8 @@ struct Thd::Work {
   std::unique_ptr<Energy> energy;
   Side bush, journal;
   std::size_t cells = 0;
+  double left = reduction;  // of residuals after a round
+  bool begun = false;       // the state is more than the ambient's
   std::vector<double> temperature;
   core::Vector film_temperature, x, f;
   core::NonlinearSolver snes;
@@ -291,6 +297,9 @@ Thd::~Thd() = default;
 
 ThdSolve Thd::solve() {
   Work& w = *w_;
+  if (!w.begun)
+    if (const auto from = coarse_start(w.rows, w.setup, w.cold)) start(*from);
+  w.begun = true;
   if (!w.snes) {
     check(SNESCreate(w.rows.comm(), w.snes.put()));
     check(SNESSetOptionsPrefix(w.snes.get(), "thd_"));
@@ -310,6 +319,11 @@ ThdSolve Thd::solve() {
   check(SNESGetIterationNumber(w.snes.get(), &iterations));
   w.cost.iterations = static_cast<int>(iterations);
   w.cost.converged = reason > 0;
+  // The balances hold to rounding whatever the rounds have reached.
+  w.left = 0;
+  w.round(w.x.get(), w.f.get());
+  w.left = reduction;
+  w.put_state();
   MPI_Allreduce(MPI_IN_PLACE, &w.closed, 1, MPI_INT, MPI_MAX, w.rows.comm());
   core::agree(w.rows.comm(), [&] {
     if (w.closed != 0) throw core::NotConverged("bush and journal grow until the film is closed");
@@ -350,6 +364,7 @@ void Thd::start(const std::vector<double>& state) {
     pressure.push_back(*from++);
   }
   w.film.start(pressure);
+  w.begun = true;
   w.put_state();
 }
 const std::vector<double>& Thd::thickness() const {
