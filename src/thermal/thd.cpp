@@ -291,6 +291,28 @@ struct Thd::Work {
   ThdSolve cost;
 };
 
+namespace {
+
+PetscErrorCode destroy_options(PetscOptions* options) {
+  return PetscOptionsDestroy(options);
+}
+
+// Anderson's method keeps two vectors of each of these rounds: PETSc's 30 would be a third of the memory, for one or
+// two rounds less. It is an option only, in a list of its own so that the user's comes after it.
+void few_vectors(SNES snes) {
+  core::Handle<PetscOptions, destroy_options> own;
+  check(PetscOptionsCreate(own.put()));
+  check(PetscOptionsSetValue(own.get(), "-thd_snes_anderson_m", "10"));
+  PetscObject object = reinterpret_cast<PetscObject>(snes);
+  PetscOptions before = nullptr;
+  check(PetscObjectGetOptions(object, &before));
+  check(PetscObjectSetOptions(object, own.get()));
+  check(SNESSetFromOptions(snes));
+  check(PetscObjectSetOptions(object, before));
+}
+
+}  // namespace
+
 Thd::Thd(const Rows& rows, ThdSetup setup, std::vector<double> thickness)
     : w_(std::make_unique<Work>(rows, std::move(setup), std::move(thickness))) {}
 Thd::~Thd() = default;
@@ -305,6 +327,7 @@ ThdSolve Thd::solve() {
     check(SNESSetOptionsPrefix(w.snes.get(), "thd_"));
     check(SNESSetType(w.snes.get(), SNESANDERSON));
     check(SNESSetFunction(w.snes.get(), w.f.get(), Work::form, &w));
+    few_vectors(w.snes.get());
     check(SNESSetFromOptions(w.snes.get()));
   }
   PetscInt n = 0;
