@@ -191,7 +191,8 @@ struct Thd::Work {
     for (std::size_t c = 0; c < own.size(); ++c)
       own[c] = temperature[c * static_cast<std::size_t>(rows.mesh().across) + static_cast<std::size_t>(side.layer)];
     side.solid->load(own, side.rhs.get());
-    cost.solid += side.solid->solve(side.rhs.get(), side.temperature.get(), left);
+    // A state that is gone on from knows the solid at its wall alone: the first round finds what is behind.
+    cost.solid += side.solid->solve(side.rhs.get(), side.temperature.get(), cost.largest.empty() ? 0 : left);
     PetscInt first = 0;
     check(VecGetOwnershipRange(side.temperature.get(), &first, nullptr));
     const core::ReadArray t(side.temperature.get());
