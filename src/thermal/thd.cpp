@@ -4,11 +4,11 @@
 #include <cmath>
 #include <optional>
 
-#include "thermal/thd_coarse.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/gate.hpp"
 #include "whirl/thermal/bush.hpp"
 #include "whirl/thermal/journal.hpp"
+#include "whirl/thermal/thd_coarse.hpp"
 
 namespace whirl::thermal {
 

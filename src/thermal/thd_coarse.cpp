@@ -1,4 +1,4 @@
-#include "thermal/thd_coarse.hpp"
+#include "whirl/thermal/thd_coarse.hpp"
 
 #include <algorithm>
 #include <cmath>
