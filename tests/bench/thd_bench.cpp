@@ -1,6 +1,8 @@
 // A film with bush and journal over the mesh: rounds, Newton and Krylov iterations, time and memory of the coupled
-// solution, beside one linear energy solve of the same size and a STREAM triad in the same run.
-// bench_thd [--fluid gas|oil] [--order 1|2] [--eccentricity 0.8] [--speed rad/s] [--reynolds] [--walls isothermal]
+// solution, beside one linear energy solve of the same size and a STREAM triad in the same run. Seconds are wall time;
+// "proc. s" and the ratio to the linear solve are processor time of the busiest rank, which a busy machine changes
+// less. bench_thd [--fluid gas|oil] [--order 1|2] [--eccentricity 0.8] [--speed rad/s] [--reynolds] [--walls
+// isothermal]
 // [--layers n] [cells ...], on any number of ranks; 10,000,000 cells want 8 GB. The pressure alone: --pressure.
 #include <fmt/format.h>
 
@@ -157,13 +159,15 @@ void row(double wanted, const Case& c, double stream) {
   const bench::Timing one = bench::least(PETSC_COMM_WORLD, 1, [&] { linear = energy.solve(t.get()); });
   if (!prints) return;
   fmt::print(
-      "{:9.0f} {:>4} {:4.2f} {:3} {:6.1f} {:6} {:6} {:6} {:6} {:6} {:8.2f} {:8.2f} {:7.2f} {:7.2f} {:7.2f} {:6.2f} "
+      "{:9.0f} {:>4} {:4.2f} {:3} {:6.1f} {:6} {:6} {:6} {:6} {:6} {:8.2f} {:8.2f} {:8.2f} {:7.2f} {:7.2f} {:7.2f} "
+      "{:6.2f} "
       "{:3} "
       "{:6.1f} {:7.0f} {:6.0f} {:8.1e} {:6.1f} {}\n",
       n, c.gas ? "gas" : "oil", c.eccentricity, c.order, 100 * reversed[1] / n, solved.iterations, solved.pressure,
-      solved.energy_newton, solved.energy_krylov, solved.solid, time.wall, solved.seconds.pressure, solved.seconds.flow,
-      solved.seconds.energy, solved.seconds.solids, one.wall, linear.krylov, time.wall / one.wall, most, 1e6 * most / n,
-      budget.residual() / budget.heat, stream, solved.converged ? "" : "not converged");
+      solved.energy_newton, solved.energy_krylov, solved.solid, time.wall, time.processor, solved.seconds.pressure,
+      solved.seconds.flow, solved.seconds.energy, solved.seconds.solids, one.wall, linear.krylov,
+      time.processor / one.processor, most, 1e6 * most / n, budget.residual() / budget.heat, stream,
+      solved.converged ? "" : "not converged");
   std::fflush(stdout);
 }
 
@@ -199,10 +203,11 @@ int main(int argc, char** argv) {
   const double stream = triad();
   if (core::rank_of(PETSC_COMM_WORLD) == 0 && !c.pressure_only)
     fmt::print(
-        "{:>9} {:>4} {:>4} {:>3} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>3} {:>6} "
+        "{:>9} {:>4} {:>4} {:>3} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>3} "
+        "{:>6} "
         "{:>7} "
         "{:>6} {:>8} {:>6}\n",
-        "bricks", "", "ecc", "ord", "rev. %", "rounds", "press.", "newton", "krylov", "solid", "s", "pressure", "flow",
-        "energy", "solids", "linear", "its", "ratio", "MB", "B/c", "balance", "triad");
+        "bricks", "", "ecc", "ord", "rev. %", "rounds", "press.", "newton", "krylov", "solid", "s", "proc. s",
+        "pressure", "flow", "energy", "solids", "linear", "its", "ratio", "MB", "B/c", "balance", "triad");
   for (const double cells : meshes) row(cells, c, stream);
 }
