@@ -24,6 +24,7 @@ constexpr double robin_share = 8;
 // Each part of a round is solved until this is left of the residual that the round begins with, as the next round
 // changes it again, and no further than `finest` of what it is at the ambient's temperature and pressure.
 constexpr double reduction = 0.01, finest = 1e-11;
+constexpr double most_exact = 50000;  // cells
 
 Surface convection(double coefficient, double temperature) {
   return {Surface::Kind::convection, coefficient, temperature};
@@ -310,8 +311,8 @@ struct Thd::Work {
   std::unique_ptr<Energy> energy;
   Side bush, journal;
   std::size_t cells = 0;
-  double left = reduction;  // of residuals after a round
-  bool begun = false;       // the state is more than the ambient's
+  double left = 0;     // of residuals after a round
+  bool begun = false;  // the state is more than the ambient's
   std::vector<double> temperature;
   core::Vector film_temperature, x, f;
   core::NonlinearSolver snes;
@@ -325,8 +326,8 @@ PetscErrorCode destroy_options(PetscOptions* options) {
   return PetscOptionsDestroy(options);
 }
 
-// Anderson's method keeps two vectors of each of these rounds: PETSc's 30 would be a third of the memory, for one or
-// two rounds less. It is an option only, in a list of its own so that the user's comes after it.
+// Anderson's method keeps two vectors of each of these rounds: PETSc's 30 would be a third of the memory of a large
+// film, for one or two rounds less. It is an option only, in a list of its own so that the user's comes after it.
 void few_vectors(SNES snes) {
   core::Handle<PetscOptions, destroy_options> own;
   check(PetscOptionsCreate(own.put()));
@@ -350,12 +351,15 @@ ThdSolve Thd::solve() {
   if (!w.begun)
     if (const auto from = coarse_start(w.rows, w.setup, w.cold)) start(*from);
   w.begun = true;
+  // Rounds of a small film cost nothing; solved to rounding they leave less at the end than `tolerance` asks for.
+  const Mesh& mesh = w.rows.mesh();
+  const bool large = static_cast<double>(mesh.nodes_around()) * mesh.nodes_along() * mesh.across > most_exact;
   if (!w.snes) {
     check(SNESCreate(w.rows.comm(), w.snes.put()));
     check(SNESSetOptionsPrefix(w.snes.get(), "thd_"));
     check(SNESSetType(w.snes.get(), SNESANDERSON));
     check(SNESSetFunction(w.snes.get(), w.f.get(), Work::form, &w));
-    few_vectors(w.snes.get());
+    if (large) few_vectors(w.snes.get());
     check(SNESSetFromOptions(w.snes.get()));
   }
   PetscInt n = 0;
@@ -364,6 +368,7 @@ ThdSolve Thd::solve() {
                           0, w.setup.most_iterations, 100000));
   w.cost = {};
   w.join(true);
+  w.left = large ? reduction : 0;
   w.gate.rethrow(SNESSolve(w.snes.get(), nullptr, w.x.get()));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0;
@@ -374,7 +379,6 @@ ThdSolve Thd::solve() {
   // The balances hold to rounding whatever the rounds have reached.
   w.left = 0;
   w.round(w.x.get(), w.f.get());
-  w.left = reduction;
   w.join(false);
   w.put_state();
   MPI_Allreduce(MPI_IN_PLACE, &w.closed, 1, MPI_INT, MPI_MAX, w.rows.comm());
