@@ -1,5 +1,6 @@
 #include "whirl/thermal/energy.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "thermal/energy_lines.hpp"
@@ -118,7 +119,7 @@ PetscErrorCode Energy::form_jacobian(SNES, Vec x, Mat, Mat, void* self) {
   });
 }
 
-EnergySolve Energy::solve(Vec temperature, double tolerance) {
+EnergySolve Energy::solve(Vec temperature, double tolerance, double reduction) {
   const double ambient = terms_->surroundings().ambient;
   Vec x = rise_.get();
   const auto norm_at = [&] {
@@ -133,7 +134,7 @@ EnergySolve Energy::solve(Vec temperature, double tolerance) {
   const double forcing = norm_at();
   check(VecCopy(temperature, x));
   check(VecShift(x, -ambient));
-  const double start = norm_at(), target = tolerance * (forcing > 0 ? forcing : start);
+  const double start = norm_at(), target = std::max(tolerance * (forcing > 0 ? forcing : start), reduction * start);
   EnergySolve out;
   out.residual = start;
   out.converged = start <= target;

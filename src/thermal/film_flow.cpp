@@ -8,7 +8,6 @@
 #include "thermal/profile.hpp"
 #include "thermal/row_halo.hpp"
 #include "whirl/core/agree.hpp"
-#include "whirl/core/direct_solver.hpp"
 
 namespace whirl::thermal {
 
@@ -28,8 +27,8 @@ void FilmFlow::start(const std::vector<double>& pressure) {
   w_->pressure = pressure;
   w_->cold = false;
 }
-int FilmFlow::solve() {
-  return w_->solve();
+int FilmFlow::solve(double tolerance, double reduction) {
+  return w_->solve(tolerance, reduction);
 }
 const std::vector<double>& FilmFlow::pressure() const {
   return w_->pressure;
@@ -293,9 +292,7 @@ void FilmFlow::Work::prepare_solver() {
   check(SNESSetType(snes.get(), ruptures ? SNESVINEWTONRSLS : SNESNEWTONLS));
   check(SNESSetFunction(snes.get(), f.get(), form_residual, this));
   check(SNESSetJacobian(snes.get(), j.get(), j.get(), form_jacobian, this));
-  KSP ksp = nullptr;
-  check(SNESGetKSP(snes.get(), &ksp));
-  core::make_direct(ksp);
+  choose_linear_solver();
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, ruptures ? SNESLINESEARCHBASIC : SNESLINESEARCHBT));
@@ -320,21 +317,25 @@ void FilmFlow::Work::load(const std::vector<double>& p) {
   for (std::size_t k = 0; k < hole.size(); ++k) a[static_cast<PetscInt>(p.size() + k)] = hole[k];
 }
 
-int FilmFlow::Work::solve() {
+int FilmFlow::Work::solve(double tolerance, double reduction) {
   if (!snes) prepare_solver();
   if (cold) begin_on_half();
   cold = false;
   load(pressure);
-  check(SNESSetTolerances(snes.get(), 1e-13 * typical, 1e-30, 1e-14, 60, 10000));
+  finish_linear_solver();
+  check(SNESSetTolerances(snes.get(), tolerance * typical, std::max(reduction, 1e-30), 1e-14, 60, 10000));
+  limit_linear_solver(0.3 * tolerance * typical);
   gate.rethrow(SNESSolve(snes.get(), nullptr, u.get()));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
-  PetscInt iterations = 0;
+  PetscInt iterations = 0, krylov = 0;
   PetscReal left = 0;
   check(SNESGetConvergedReason(snes.get(), &reason));
   check(SNESGetIterationNumber(snes.get(), &iterations));
+  check(SNESGetLinearSolveIterations(snes.get(), &krylov));
+  choose_lag(static_cast<int>(iterations), static_cast<int>(krylov));
   check(SNESGetFunctionNorm(snes.get(), &left));
   // A line search that finds no smaller residual at rounding has arrived.
-  if (reason < 0 && !(left <= 1e-9 * typical)) {
+  if (reason < 0 && !(left <= std::max(tolerance, 1e-9) * typical)) {
     gate.rethrow(0);
     core::agree(rows.comm(), [] { throw core::NotConverged("the pressure of the film was not found"); });
   }

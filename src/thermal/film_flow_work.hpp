@@ -31,7 +31,7 @@ struct FilmFlow::Work {
   void set_temperature(const std::vector<double>& cells);
   void residual(Vec state, Vec out) const;
   void jacobian(Vec state, Mat matrix) const;
-  int solve();
+  int solve(double tolerance, double reduction);
   /// Pressure of every other node around, in between their mean.
   void begin_on_half();
 
@@ -61,6 +61,7 @@ struct FilmFlow::Work {
   PetscInt first = 0, first_before = 0, first_behind = 0;  // numbers: of this rank, of the rows beside
   double typical = 0;
   bool cold = true;  // no pressure was given or found before
+  bool multigrid = false, split_done = false;
   core::Gate gate{rows.comm()};
 
 private:
@@ -68,6 +69,11 @@ private:
   static PetscErrorCode form_jacobian(SNES snes, Vec x, Mat a, Mat matrix, void* context);
   void place();
   void prepare_solver();
+  void choose_linear_solver();
+  void split_rims(PC pc) const;
+  void finish_linear_solver();
+  void limit_linear_solver(double residual);
+  void choose_lag(int newton, int krylov);
   void load(const std::vector<double>& p);
   [[nodiscard]] std::vector<double> nodes_of(const double* state) const;
   /// node(number here, place) of all nodes here, edge(i, j, i', j', flux) of all faces that these have.

@@ -27,7 +27,7 @@ void Solid::prepare_solver() {
   check(KSPSetFromOptions(ksp));
 }
 
-int Solid::solve(Vec rhs, Vec temperature) {
+int Solid::solve(Vec rhs, Vec temperature, double reduction) {
   double film = 0;
   for (const double g : joined_) film += g;
   MPI_Allreduce(MPI_IN_PLACE, &film, 1, MPI_DOUBLE, MPI_SUM, comm_);
@@ -45,9 +45,11 @@ int Solid::solve(Vec rhs, Vec temperature) {
   double rtol = 0, dtol = 0;
   PetscInt most = 0;
   check(KSPGetTolerances(ksp, &rtol, nullptr, &dtol, &most));
-  check(KSPSetTolerances(ksp, rtol, 8 * std::numeric_limits<double>::epsilon() * core::norm(scale.get()), dtol, most));
+  check(KSPSetTolerances(ksp, std::max(rtol, reduction),
+                         8 * std::numeric_limits<double>::epsilon() * core::norm(scale.get()), dtol, most));
   check(KSPConvergedDefaultSetUIRNorm(ksp));
   check(KSPSolve(ksp, rhs, temperature));
+  check(KSPSetTolerances(ksp, rtol, PETSC_DEFAULT, dtol, most));
   KSPConvergedReason why{};
   PetscInt iterations = 0;
   check(KSPGetConvergedReason(ksp, &why));

@@ -92,8 +92,9 @@ public:
   void set_surroundings(Surroundings surroundings);
 
   /// Solves for the temperature, K, from the one given, until the residual's norm is `tolerance` times the norm of the
-  /// residual at the ambient's temperature everywhere. Not converging is no error, the outcome says it. Collective.
-  EnergySolve solve(Vec temperature, double tolerance = 1e-10);
+  /// residual at the ambient's temperature everywhere, or `reduction` times the one it starts with. Not converging is
+  /// no error, the outcome says it. Collective.
+  EnergySolve solve(Vec temperature, double tolerance = 1e-10, double reduction = 0);
 
   // The parts of a coupled system.
   /// W [cells]: what flows out of each cell less what comes in. Collective.

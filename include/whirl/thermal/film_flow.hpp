@@ -70,9 +70,11 @@ public:
   void set_thickness(const std::vector<double>& thickness);
   /// Newton's method starts from this pressure, Pa [r, n].
   void start(const std::vector<double>& pressure);
-  /// The pressure at these, by Newton's method from the last one. Returns its iterations. Throws core::NotConverged on
-  /// all ranks. Collective.
-  int solve();
+  /// The pressure at these, by Newton's method from the last one, until what is out of balance is `tolerance` times
+  /// what is at the ambient's pressure, or `reduction` times what is at first. Returns its iterations. MUMPS up to
+  /// 100,000 nodes
+  /// (`-film_pressure_direct_nodes`), BoomerAMG beyond. Throws core::NotConverged on all ranks. Collective.
+  int solve(double tolerance = 1e-13, double reduction = 0);
   /// Pa [r, n].
   [[nodiscard]] const std::vector<double>& pressure() const;
   /// Mass flows and heat at this pressure. What orifices and grooves give enters layer 0; at the ends each layer leaves

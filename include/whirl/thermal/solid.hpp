@@ -104,8 +104,8 @@ public:
   // The solid by itself, with the film's temperatures given.
   /// Solves matrix() T = rhs from T on; relative to the residual it starts with, to 1e-10 unless options say otherwise,
   /// but not beyond rounding. Returns iterations. Collective. Throws core::NotConverged on all ranks, also if neither a
-  /// film nor a surface holds the temperature.
-  int solve(Vec rhs, Vec temperature);
+  /// film nor a surface holds the temperature. `reduction` replaces a smaller relative tolerance.
+  int solve(Vec rhs, Vec temperature, double reduction = 0);
   /// W [r, n] into the solid / K [r, n] of the wall's surface, with the film's temperatures, K [r, n].
   [[nodiscard]] std::vector<double> wall_heat(Vec temperature, const std::vector<double>& film) const;
   [[nodiscard]] std::vector<double> wall_temperature(Vec temperature, const std::vector<double>& film) const;

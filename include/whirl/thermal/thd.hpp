@@ -21,12 +21,16 @@ struct ThdSetup {
   std::vector<int> mixed{};      // [r, n], the groove of a node that is mixed, from 1, 0 of none; empty: there is none
   double tolerance = 1e-9;       // of temperatures, relative to the ambient's
   int most_iterations = 60;
+  int coarse_start = 50000;  // cells, above which a first solution starts from that of a coarser mesh; 0: never
 };
 
 /// What a solution cost: largest is the greatest change of a temperature in each iteration, K.
 struct ThdSolve {
   int iterations = 0, pressure = 0, energy_newton = 0, energy_krylov = 0, solid = 0;
   std::vector<double> largest;
+  struct Seconds {  // wall time; of the flow also properties and profiles
+    double pressure = 0, flow = 0, energy = 0, solids = 0;
+  } seconds;
   bool converged = false;
 };
 
@@ -42,9 +46,10 @@ public:
   Thd(const Thd&) = delete;
   Thd& operator=(const Thd&) = delete;
 
-  /// From the last state, or from that given to start(), on; at first from the ambient's temperature. Not converging is
-  /// no error. Collective. Throws core::NotConverged where the pressure is not found, or bush and journal grow until
-  /// the film is closed.
+  /// From the last state, or from that given to start(), on; at first from the ambient's temperature, on a large mesh
+  /// (`-thd_coarse_start` cells) from the solution on one of half the intervals. Rounds are solved as far as the last
+  /// one's change is worth it, one more at the end to rounding. Not converging is no error. Collective. Throws
+  /// core::NotConverged where the pressure is not found, or bush and journal grow until the film is closed.
   ThdSolve solve();
   /// What start() of another film on this mesh goes on from, [r, n, l + 5]: temperatures of the film [K], those behind
   /// bush and journal [K], what bush and journal grow, over expansion times radius [K], and the pressure [Pa].
