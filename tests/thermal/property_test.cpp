@@ -79,7 +79,7 @@ TEST(PropertyLaw, KnowsAir) {
 TEST(EnergyLaw, ConductionAcrossIsKirchhoffs) {
   const double h = 1e-4, slope = -3e-3;
   for (const int layers : {2, 7}) {
-    Mesh m = test::heated_bearing(PETSC_COMM_WORLD, 6, 4, layers, 0)->mesh;
+    Mesh m = test::heated_bearing(PETSC_COMM_WORLD, 6, 5, layers, 0)->mesh;
     HeatedFilm film(
         m, PETSC_COMM_WORLD, [=](double, double) { return h; },
         [](double, double, double, double, double) { return 0.0; },
@@ -100,7 +100,7 @@ TEST(EnergyLaw, HeatedFilmConvergesInSecondOrder) {
   const double h = 1e-4, a = 5e-3, q = 2e9;  // W/m^3
   double last = 0;
   for (const int layers : {5, 10, 20}) {
-    Mesh m = test::heated_bearing(PETSC_COMM_WORLD, 6, 4, layers, 0)->mesh;
+    Mesh m = test::heated_bearing(PETSC_COMM_WORLD, 6, 5, layers, 0)->mesh;
     HeatedFilm film(
         m, PETSC_COMM_WORLD, [=](double, double) { return h; },
         [](double, double, double, double, double) { return 0.0; },
