@@ -100,6 +100,8 @@ start, _, _ = run(h.work / "undisturbed", ["--resume"])  # nothing left to do: w
 lost, allowed = [], []
 # The work under way, and the start of a resumed study.
 work = 0.5 if case in ("compliant", "figure", "cycles", "convergence") else 1.5
+# The same work takes more or less processor time, by what else runs on the cores; instructions do not.
+noise = 0 if COUNTER else 0.2
 moments = sorted(start + (whole - start) * random.uniform(0.15, 0.95) for _ in range(kills))
 for k, moment in enumerate(moments):
     # Each kill is that of a run of its own, so that what each of them costs can be told.
@@ -111,7 +113,7 @@ for k, moment in enumerate(moments):
     if killed:
         lost.append((before + after - whole - start) / whole * seconds)
         # The file written last may have taken longer than those that its interval was chosen from.
-        allowed.append(work + 2 * waited)
+        allowed.append(work + 2 * waited + noise * seconds)
         print(f"killed at {share:.0%}: {lost[-1]:.2f} s lost, {waited:.2f} s between files", flush=True)
     for what, d, within in same_results(h.work / "undisturbed", out):
         h.close(f"kill {k} at {share:.0%}: {what}", d, 0, within)
