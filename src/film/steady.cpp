@@ -28,7 +28,10 @@ Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_s
       scale_(k) = f.scale;
       row_weight_(k) = fields.front().row_scale() / f.row_scale();
     });
-  lu_.analyzePattern(matrix_.pattern());
+  if (BandLu::pays(matrix_.pattern()))
+    band_.emplace(matrix_.pattern());
+  else
+    lu_.analyzePattern(matrix_.pattern());
 }
 
 // Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the
@@ -36,8 +39,10 @@ Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_s
 void Steady::factor() {
   if (factored_ == here_.d_states) return;
   factored_.clear();
-  lu_.factorize(matrix_.filled(here_.d_states));
-  if (lu_.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+  const auto& matrix = matrix_.filled(here_.d_states);
+  if (!band_) lu_.factorize(matrix);
+  if (band_ ? !band_->factor(matrix) : lu_.info() != Eigen::Success)
+    throw core::NotConverged("the film by itself is singular");
   factored_ = here_.d_states;
   ++factorisations_;
 }
@@ -68,7 +73,8 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
   before.fill(std::numeric_limits<double>::infinity());
   for (int iteration = 0; iteration < most_steps; ++iteration) {
     factor();
-    const Eigen::VectorXd step = lu_.solve(view(here_.residual));
+    const Eigen::VectorXd step =
+        band_ ? band_->solve(view(here_.residual)) : Eigen::VectorXd(lu_.solve(view(here_.residual)));
     bool last = step.cwiseQuotient(scale_).norm() <= enough * std::sqrt(static_cast<double>(n));
     if (until == Until::same_force && last) {
       // Or until rounding keeps the step from becoming smaller.
@@ -100,6 +106,7 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
 
 Eigen::VectorXd Steady::solve_transposed(const std::vector<double>& b) {
   factor();
+  if (band_) return band_->solve_transposed(view(b));
   return lu_.transpose().solve(view(b));
 }
 

@@ -3,8 +3,10 @@
 
 #include <Eigen/SparseLU>
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "film/band_lu.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/film/film_matrix.hpp"
 
@@ -35,8 +37,10 @@ private:
   StateResponse here_, there_;
   std::vector<double> trial_;
   FilmMatrix<double> matrix_;
+  // One of both.
+  std::optional<BandLu> band_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
-  std::vector<double> factored_;  // dg/ds that lu_ belongs to
+  std::vector<double> factored_;  // dg/ds that the factors belong to
   long factorisations_ = 0;
 };
 

@@ -217,8 +217,18 @@ double ThdPad::left_over(std::size_t n, int layer) const {
   return -out;
 }
 
+// `Count` layers, or Eigen::Dynamic and at most `Most`: a node is a few numbers, for which a heap costs more than they
+// do.
+template <int Count, int Most>
 void ThdPad::row(int number, std::span<const double> rates, Need need, std::size_t first, std::size_t at,
                  std::size_t at_rates, StateResponse& response) {
+  constexpr int Block = Count == Eigen::Dynamic ? Eigen::Dynamic : Count + 1,
+                MostBlock = Most == Eigen::Dynamic ? Eigen::Dynamic : Most + 1;
+  constexpr int by_columns = Eigen::ColMajor;
+  using OfLayers = Eigen::Matrix<double, Count, 1, by_columns, Most, 1>;
+  using OfRows = Eigen::Matrix<double, Block, 1, by_columns, MostBlock, 1>;
+  using RowsByLayers = Eigen::Matrix<double, Block, Count, by_columns, MostBlock, Most>;
+  using Square = Eigen::Matrix<double, Block, Block, by_columns, MostBlock, MostBlock>;
   const auto n = static_cast<std::size_t>(number);
   const Node& here = nodes_[n];
   const int L = layers_, b = block();
@@ -226,9 +236,9 @@ void ThdPad::row(int number, std::span<const double> rates, Need need, std::size
   const double over_volume = L / (here.area * here.h), rho_c = lubricant_.density * options_.heat_capacity;
   // M: what rows, without the heat, change by with the flows out of the layers through any side (common), and through
   // each side beside that. Row 0 is the pressure's.
-  Matrix common = Matrix::Zero(b, L);
-  std::array<Vector, 4> own;
-  Vector advected = Vector::Zero(L), heat = Vector::Zero(L);
+  RowsByLayers common = RowsByLayers::Zero(b, L);
+  std::array<OfLayers, 4> own;
+  OfLayers advected = OfLayers::Zero(L), heat = OfLayers::Zero(L);
   double all = here.area * here.rate;
   for (std::size_t side = 0; side < 4; ++side) {
     const Side& s = sides_[n][side];
@@ -264,10 +274,10 @@ void ThdPad::row(int number, std::span<const double> rates, Need need, std::size
       for (int m = 0; m <= k; ++m) common(1 + into, m) -= size * jump;
     }
   }
-  common.bottomRows(L) *= over_volume;
-  const Eigen::Map<const Vector> t(T, L);
+  common.template bottomRows<Count>(L) *= over_volume;
+  const Eigen::Map<const OfLayers> t(T, L);
   const double conduct = L * options_.conductivity / (rho_c * here.h * here.h);
-  const Vector conducted = conduct * (conduction_ * t - walls_);
+  const OfLayers conducted = conduct * (conduction_.lazyProduct(t) - walls_);
   const std::size_t r = first + n * static_cast<std::size_t>(b);
   response.residual[r] = here.edge ? hold_ * here.value[0] : all / here.area;
   for (int k = 0; k < L; ++k)
@@ -277,14 +287,16 @@ void ThdPad::row(int number, std::span<const double> rates, Need need, std::size
   if (need == Need::force) return;
 
   // By this block and those of the neighbours, in the order of the places.
-  std::array<Matrix, 5> by;
+  std::array<Square, 5> by;
   by[0].setZero(b, b);
   if (here.edge) by[0](0, 0) = hold_;
-  by[0].bottomRightCorner(L, L) += conduct * conduction_;
-  Vector by_thickness = Vector::Zero(b), by_rate = common.rowwise().sum() * (here.area / L), by_speed = Vector::Zero(b);
-  by_thickness.tail(L) = -(over_volume / here.h) * (advected - heat / rho_c) - (2.0 / here.h) * conducted;
-  Matrix by_position = Matrix::Zero(b, 4);
-  const auto thickness = [&](const Vector& rows, double cosine, double sine, double z) {
+  by[0].template bottomRightCorner<Count, Count>(L, L) += conduct * conduction_;
+  OfRows by_thickness = OfRows::Zero(b), by_rate = common.rowwise().sum() * (here.area / L), by_speed = OfRows::Zero(b);
+  by_thickness.template bottomRows<Count>(L) =
+      -(over_volume / here.h) * (advected - heat / rho_c) - (2.0 / here.h) * conducted;
+  Eigen::Matrix<double, Block, 4, by_columns, MostBlock, 4> by_position;
+  by_position.setZero(b, 4);
+  const auto thickness = [&](const OfRows& rows, double cosine, double sine, double z) {
     by_position.col(0) -= cosine * rows;
     by_position.col(1) -= sine * rows;
     by_position.col(2) -= z * cosine * rows;
@@ -295,24 +307,24 @@ void ThdPad::row(int number, std::span<const double> rates, Need need, std::size
     if (s.face < 0) continue;
     const Face& f = faces_[static_cast<std::size_t>(s.face)];
     const Node& other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)];
-    Matrix flows = common;
-    flows.bottomRows(L).diagonal() += over_volume * own[side];
+    RowsByLayers flows = common;
+    flows.template bottomRows<Count>(L).diagonal() += over_volume * own[side];
     flows *= s.sign * f.width;
     const double warm = -0.5 * f.step * f.width * over_volume / rho_c;
     const auto rows = [&](const Vector& q, const Vector& d) {
-      Vector out = flows * q;
-      out.tail(L) += warm * d;
+      OfRows out = flows.lazyProduct(q);
+      out.template bottomRows<Count>(L) += warm * d;
       return out;
     };
-    Matrix by_mu = flows * f.q_mu;
-    by_mu.bottomRows(L) += warm * f.d_mu;
-    const Vector by_g = rows(f.q_g, f.d_g) * (s.sign / f.step);
-    Matrix& there = by[side + 1];
+    RowsByLayers by_mu = flows.lazyProduct(f.q_mu);
+    by_mu.template bottomRows<Count>(L) += warm * f.d_mu;
+    const OfRows by_g = rows(f.q_g, f.d_g) * (s.sign / f.step);
+    Square& there = by[side + 1];
     there.resize(b, b);
     there.col(0) = by_g;
     by[0].col(0) -= by_g;
-    there.rightCols(L) = by_mu * (0.5 * other.mu_t).asDiagonal();
-    by[0].rightCols(L) += by_mu * (0.5 * here.mu_t).asDiagonal();
+    there.template rightCols<Count>(L) = by_mu * (0.5 * other.mu_t).asDiagonal();
+    by[0].template rightCols<Count>(L) += by_mu * (0.5 * here.mu_t).asDiagonal();
     for (int k = 0; k < L; ++k) {
       const double out = s.sign * f.width * f.q(k);
       if (out >= 0.0) continue;
@@ -338,7 +350,7 @@ void ThdPad::row(int number, std::span<const double> rates, Need need, std::size
     }
   }
   thickness(by_thickness, here.cosine, here.sine, here.z);
-  const auto put = [&](const Matrix& m) {
+  const auto put = [&](const Square& m) {
     for (int i = 0; i < b; ++i)
       for (int j = 0; j < b; ++j) response.d_states[at++] = m(i, j);
   };
@@ -403,9 +415,13 @@ void ThdPad::evaluate(const JournalMotion& motion, std::span<const double> state
     }
     entries_.push_back(before);
   }
+  constexpr int few = 8, any = Eigen::Dynamic;
+  const auto rows = layers_ == 1     ? &ThdPad::row<1, 1>
+                    : layers_ <= few ? &ThdPad::row<any, few>
+                                     : &ThdPad::row<any, any>;
   for (int n = 0; n < nodes(); ++n)
-    row(n, rates, need, first, at + entries_[static_cast<std::size_t>(n)],
-        at_rates + static_cast<std::size_t>(n * layers_), response);
+    (this->*rows)(n, rates, need, first, at + entries_[static_cast<std::size_t>(n)],
+                  at_rates + static_cast<std::size_t>(n * layers_), response);
   at += entries_.back();
   at_rates += static_cast<std::size_t>(nodes() * layers_);
   integrate(need, first, response);

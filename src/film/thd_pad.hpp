@@ -91,6 +91,7 @@ private:
   void lay_out();
   void read(const JournalMotion& motion, std::span<const double> states);
   void flow(Face& face, bool tangents);
+  template <int Count, int Most>
   void row(int node, std::span<const double> rates, Need need, std::size_t first, std::size_t at, std::size_t at_rates,
            StateResponse& response);
   void integrate(Need need, std::size_t first, StateResponse& response) const;
