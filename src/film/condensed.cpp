@@ -42,6 +42,11 @@ bool Condensed::follow(const JournalMotion& motion) {
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = motion.position[i] - found_->position[i];
   std::vector<double> states = carried(moved);
   for (std::size_t k = 0; k < states.size(); ++k) states[k] += states_[k];
+  if (carried_rates_.empty()) {
+    std::vector<double> further = states;
+    steady_.follow(*found_, motion, further);
+    if (attempt(motion, std::move(further))) return true;
+  }
   return attempt(motion, std::move(states));
 }
 
@@ -92,11 +97,11 @@ void Condensed::solve(const JournalMotion& motion) {
 void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                          std::span<const double> /*rates*/, Need need, StateResponse& all) {
   solve(motion);
-  const StateResponse& at = steady_.here();
   Response& response = all.without_states();
-  response.force = at.journal.force;
-  response.min_thickness = at.journal.min_thickness;
+  response.force = steady_.here().journal.force;
+  response.min_thickness = steady_.here().journal.min_thickness;
   if (need == Need::force) return;
+  const StateResponse& at = steady_.tangents();
   response = at.journal;
   const auto ports = film_->ports();
   const auto n = static_cast<Eigen::Index>(states_.size());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "whirl/core/error.hpp"
 
@@ -11,6 +10,8 @@ namespace whirl::film {
 using Map = Eigen::Map<const Eigen::VectorXd>;
 
 namespace {
+
+constexpr double enough = 1e-10;
 
 Map view(const std::vector<double>& v) {
   return {v.data(), static_cast<Eigen::Index>(v.size())};
@@ -32,19 +33,34 @@ Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_s
     band_.emplace(matrix_.pattern());
   else
     lu_.analyzePattern(matrix_.pattern());
+  // Measured with bands of 20 and 90.
+  price_ = band_ ? 2.0 + BandLu::bandwidth(matrix_.pattern()) / 8.0 : 12.0;
 }
 
 // Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the
 // set.
 void Steady::factor() {
-  if (factored_ == here_.d_states) return;
+  if (factored_ == linear_.d_states) return;
   factored_.clear();
-  const auto& matrix = matrix_.filled(here_.d_states);
+  const auto& matrix = matrix_.filled(linear_.d_states);
   if (!band_) lu_.factorize(matrix);
   if (band_ ? !band_->factor(matrix) : lu_.info() != Eigen::Success)
     throw core::NotConverged("the film by itself is singular");
-  factored_ = here_.d_states;
+  factored_ = linear_.d_states;
   ++factorisations_;
+}
+
+void Steady::linearise(std::span<const double> states) {
+  film_.evaluate(motion_, states, rates_, Need::tangents, linear_);
+  at_ = &linear_;
+}
+
+Eigen::VectorXd Steady::step(const std::vector<double>& residual) {
+  return band_ ? band_->solve(view(residual)) : Eigen::VectorXd(lu_.solve(view(residual)));
+}
+
+double Steady::size(const Eigen::VectorXd& step) const {
+  return step.cwiseQuotient(scale_).norm() / std::sqrt(static_cast<double>(step.size()));
 }
 
 // Rows of several units in those of the first.
@@ -55,59 +71,148 @@ double Steady::distance(const StateResponse& at) const {
 // What a change of the states does to the forces, without what cancels.
 std::array<double, 4> Steady::effect(const Eigen::VectorXd& step) const {
   std::array<double, 4> out{};
-  for (std::size_t f = 0; f < here_.force_d_states.size(); ++f)
-    out[f] = view(here_.force_d_states[f]).cwiseAbs().dot(step.cwiseAbs());
+  for (std::size_t f = 0; f < linear_.force_d_states.size(); ++f)
+    out[f] = view(linear_.force_d_states[f]).cwiseAbs().dot(step.cwiseAbs());
   return out;
 }
 
+// Whether steps that each leave `contraction` of the one before, the last of `size`, end before Newton's would.
+bool Steady::pays(double contraction, double size) const {
+  constexpr double newton_steps = 1.5;
+  if (!(contraction < 0.5)) return false;
+  return std::log(std::max(size / enough, 10.0)) / -std::log(contraction) <= newton_steps * price_;
+}
+
 // Converged by the step and not by the residual, whose rounding error grows with the square of the mesh. The last step
-// is taken, so that of a smooth film what is left is its square.
+// is taken, so that of a smooth film what is left is its square, or with kept factors the share that they leave.
 void Steady::solve(const JournalMotion& motion, std::span<const double> rates, Until until,
                    std::vector<double>& states) {
   constexpr int most_steps = 60;
-  constexpr double enough = 1e-10, not_felt = 1e-13;
-  const auto n = static_cast<Eigen::Index>(states.size());
-  std::vector<double> now = states;
-  film_.evaluate(motion, now, rates, Need::tangents, here_);
-  std::array<double, 4> before;
-  before.fill(std::numeric_limits<double>::infinity());
-  for (int iteration = 0; iteration < most_steps; ++iteration) {
+  constexpr double not_felt = 1e-13;
+  const bool may_keep = !film_.whole_steps();
+  motion_ = motion;
+  rates_.assign(rates.begin(), rates.end());
+  now_ = states;
+  bool keep = may_keep && !factored_.empty();
+  const auto refresh = [&] {
+    linearise(now_);
     factor();
-    const Eigen::VectorXd step =
-        band_ ? band_->solve(view(here_.residual)) : Eigen::VectorXd(lu_.solve(view(here_.residual)));
-    bool last = step.cwiseQuotient(scale_).norm() <= enough * std::sqrt(static_cast<double>(n));
+    contraction_ = unknown;
+    keep = false;
+  };
+  if (keep) {
+    film_.evaluate(motion_, now_, rates_, Need::force, here_);
+    at_ = &here_;
+  } else {
+    linearise(now_);
+  }
+  double size_before = unknown;
+  bool newton_before = false;  // the step before was one with its own derivatives
+  std::array<double, 4> before;
+  before.fill(unknown);
+  for (int iteration = 0; iteration < most_steps; ++iteration) {
+    if (!keep) factor();
+    Eigen::VectorXd change = step(at_->residual);
+    double moves = size(change);
+    if (keep) {
+      // The first step from another motion shows nothing yet.
+      contraction_ = std::isfinite(size_before) ? moves / size_before : contraction_;
+      if (newton_before && std::isfinite(size_before)) bend_ = contraction_ / size_before;
+      if (std::isfinite(size_before) && moves > enough && !pays(contraction_, moves)) {
+        refresh();
+        change = step(at_->residual);
+        moves = size(change);
+      }
+    }
+    bool last = moves <= enough;
     if (until == Until::same_force && last) {
       // Or until rounding keeps the step from becoming smaller.
-      const std::array<double, 4> moved = effect(step), all = effect(view(now));
+      const std::array<double, 4> moved = effect(change), all = effect(view(now_));
       for (std::size_t f = 0; f < moved.size(); ++f)
         last = last && (moved[f] <= not_felt * all[f] || moved[f] > 0.5 * before[f]);
       before = moved;
     }
-    for (double damping = 1.0;; damping *= 0.5) {
+    const bool keep_next = may_keep && (last || keep || pays(std::min(bend_ * moves, 0.4), moves));
+    for (double damping = 1.0;;) {
       if (!(damping >= 1e-6)) throw core::NotConverged("the film by itself did not relax");
-      trial_ = now;
-      for (Eigen::Index k = 0; k < n; ++k) trial_[static_cast<std::size_t>(k)] -= damping * step[k];
+      trial_ = now_;
+      for (Eigen::Index k = 0; k < change.size(); ++k) trial_[static_cast<std::size_t>(k)] -= damping * change[k];
+      const bool sure = last || film_.whole_steps();
+      bool further = true;
       try {
-        film_.evaluate(motion, trial_, rates, Need::tangents, there_);
+        film_.evaluate(motion_, trial_, rates_, keep_next ? Need::force : Need::tangents, there_);
+        further = !sure && distance(there_) > (1.0 - 1e-4 * damping) * distance(*at_);
       } catch (const core::DomainError&) {
-        continue;
       }
-      if (!last && !film_.whole_steps() && distance(there_) > (1.0 - 1e-4 * damping) * distance(here_)) continue;
-      std::swap(now, trial_);
-      std::swap(here_, there_);
-      break;
+      if (!further) {
+        std::swap(now_, trial_);
+        std::swap(keep_next ? here_ : linear_, there_);
+        at_ = keep_next ? &here_ : &linear_;
+        size_before = damping < 1.0 ? unknown : moves;
+        newton_before = !keep;
+        break;
+      }
+      if (keep) {  // the factors are not good enough
+        refresh();
+        change = step(at_->residual);
+        moves = size(change);
+        last = false;
+      } else {
+        damping *= 0.5;
+      }
     }
+    keep = keep_next;
     if (!last) continue;
-    states = std::move(now);
+    states = now_;
     return;
   }
   throw core::NotConverged("the film by itself did not relax");
 }
 
+const StateResponse& Steady::tangents() {
+  if (at_ != &linear_) linearise(now_);
+  return linear_;
+}
+
+// By the factors of derivatives near by where that is known to cost less.
 Eigen::VectorXd Steady::solve_transposed(const std::vector<double>& b) {
-  factor();
-  if (band_) return band_->solve_transposed(view(b));
-  return lu_.transpose().solve(view(b));
+  constexpr double exact = 1e-14, forces = 2.0;
+  const auto solved = [&](const Eigen::VectorXd& r) {
+    return band_ ? band_->solve_transposed(r) : Eigen::VectorXd(lu_.transpose().solve(r));
+  };
+  if (factored_ != linear_.d_states) {
+    const double left = contraction_;
+    if (!factored_.empty() && left < 0.1 && forces * std::log(exact) / std::log(left) <= price_) {
+      const auto& matrix = matrix_.filled(linear_.d_states);
+      Eigen::VectorXd x = solved(view(b));
+      double before = unknown;
+      for (;;) {
+        const Eigen::VectorXd more = solved(view(b) - matrix.transpose() * x);
+        x += more;
+        const double now = more.norm() / x.norm();
+        if (now <= exact) return x;
+        if (!(now < 0.2 * before)) break;
+        before = now;
+      }
+    }
+    factor();
+  }
+  return solved(view(b));
+}
+
+void Steady::follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states) {
+  constexpr double most = 0.5;
+  if (factored_.empty() || linear_.d_position.empty() || linear_.d_speed.empty()) return;
+  Eigen::VectorXd rows = (to.speed - from.speed) * view(linear_.d_speed);
+  const auto ports = film_.ports();
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    const auto w = static_cast<std::size_t>(ports[p]);
+    rows += (to.position[w] - from.position[w]) * view(linear_.d_position[p]) +
+            (to.velocity[w] - from.velocity[w]) * view(linear_.d_velocity[p]);
+  }
+  const Eigen::VectorXd change = band_ ? band_->solve(rows) : Eigen::VectorXd(lu_.solve(rows));
+  if (!(size(change) <= most)) return;
+  for (Eigen::Index k = 0; k < change.size(); ++k) states[static_cast<std::size_t>(k)] -= change(k);
 }
 
 }  // namespace whirl::film

@@ -1,8 +1,13 @@
 #pragma once
 // The steady equations of a film with states by Newton's method: g(motion, s, s') = 0 in s at given rates s'.
+//
+// Factors are kept from step to step, and from motion to motion, as long as steps with them are expected to cost less
+// than new ones: derivatives and a factorisation cost several residuals. Kept factors change the way to the solution,
+// not what is left at its end.
 
 #include <Eigen/SparseLU>
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,32 +20,50 @@ namespace whirl::film {
 class Steady {
 public:
   explicit Steady(Film& film);
+  Steady(const Steady&) = delete;
+  Steady& operator=(const Steady&) = delete;
   /// How small the last step must be: 1e-10 of the typical state, or so small too that it does not show in the force.
   enum class Until { small_step, same_force };
   /// Finds the states from those given, which it leaves as they were if it throws core::NotConverged or
   /// core::DomainError.
   void solve(const JournalMotion& motion, std::span<const double> rates, Until until, std::vector<double>& states);
-  /// What the film answered at the states found, with tangents; may be taken from.
-  [[nodiscard]] StateResponse& here() { return here_; }
-  /// x = (dg/ds)^-T b at the states found.
+  /// What the film answers at the states found, without tangents.
+  [[nodiscard]] const StateResponse& here() const { return *at_; }
+  /// The same with tangents.
+  [[nodiscard]] const StateResponse& tangents();
+  /// x = (dg/ds)^-T b at the states found, after tangents().
   [[nodiscard]] Eigen::VectorXd solve_transposed(const std::vector<double>& b);
+  /// Adds to `states`, those of a motion that was solved, what the derivatives last taken say that a change of the
+  /// motion does to them; not if that is more than half a typical state, where derivatives say little.
+  void follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states);
   /// Factorisations so far.
   [[nodiscard]] long factorisations() const { return factorisations_; }
 
 private:
+  void linearise(std::span<const double> states);
   void factor();
+  [[nodiscard]] Eigen::VectorXd step(const std::vector<double>& residual);
+  [[nodiscard]] double size(const Eigen::VectorXd& step) const;
   [[nodiscard]] double distance(const StateResponse& at) const;
   [[nodiscard]] std::array<double, 4> effect(const Eigen::VectorXd& step) const;
+  [[nodiscard]] bool pays(double contraction, double size) const;
 
+  static constexpr double unknown = std::numeric_limits<double>::infinity();
   Film& film_;
   Eigen::VectorXd scale_, row_weight_;
-  StateResponse here_, there_;
-  std::vector<double> trial_;
+  // What is being solved, and where it stands.
+  JournalMotion motion_;
+  std::vector<double> rates_, now_, trial_;
+  StateResponse linear_, here_, there_;  // `linear_` with derivatives, of which the factors are or were
+  const StateResponse* at_ = &here_;     // of both, that of now_
   FilmMatrix<double> matrix_;
   // One of both.
   std::optional<BandLu> band_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
-  std::vector<double> factored_;  // dg/ds that the factors belong to
+  std::vector<double> factored_;  // dg/ds that the factors belong to; empty: there are none
+  double price_;                  // of derivatives and factors, in steps with kept ones
+  double contraction_ = unknown;  // of the last step with kept factors
+  double bend_ = unknown;         // contraction over the size of the step from where the factors are
   long factorisations_ = 0;
 };
 
