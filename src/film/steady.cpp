@@ -30,11 +30,11 @@ Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_s
       row_weight_(k) = fields.front().row_scale() / f.row_scale();
     });
   if (BandLu::pays(matrix_.pattern()))
-    band_.emplace(matrix_.pattern());
+    band_.emplace(matrix_.pattern(), scale_);
   else
     lu_.analyzePattern(matrix_.pattern());
   // Measured with bands of 20 and 90.
-  price_ = band_ ? 2.0 + BandLu::bandwidth(matrix_.pattern()) / 8.0 : 12.0;
+  price_ = band_ ? 1.0 + BandLu::bandwidth(matrix_.pattern()) / 16.0 : 12.0;
 }
 
 // Not where dg/ds is what it was: a film that is linear but for the set of its full nodes keeps its factors with the
@@ -76,10 +76,20 @@ std::array<double, 4> Steady::effect(const Eigen::VectorXd& step) const {
   return out;
 }
 
+// With kept factors, whose derivatives may be those of another motion, the last step tells what the next does.
+std::pair<std::array<double, 4>, std::array<double, 4>> Steady::effect_by_steps(
+    const std::array<double, 4>& force_before) const {
+  const std::array<double, 4>& force = at_->journal.force;
+  const double load = std::hypot(force[0], force[1]);
+  std::array<double, 4> moved{}, all = {load, load, std::abs(force[2]), std::abs(force[3])};
+  for (std::size_t f = 0; f < film_.ports().size(); ++f) moved[f] = contraction_ * std::abs(force[f] - force_before[f]);
+  return {moved, all};
+}
+
 // Whether steps that each leave `contraction` of the one before, the last of `size`, end before Newton's would.
 bool Steady::pays(double contraction, double size) const {
   constexpr double newton_steps = 1.5;
-  if (!(contraction < 0.5)) return false;
+  if (!(contraction < 0.3)) return false;
   return std::log(std::max(size / enough, 10.0)) / -std::log(contraction) <= newton_steps * price_;
 }
 
@@ -108,8 +118,9 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
   }
   double size_before = unknown;
   bool newton_before = false;  // the step before was one with its own derivatives
-  std::array<double, 4> before;
+  std::array<double, 4> before, force_before;
   before.fill(unknown);
+  force_before.fill(unknown);
   for (int iteration = 0; iteration < most_steps; ++iteration) {
     if (!keep) factor();
     Eigen::VectorXd change = step(at_->residual);
@@ -125,13 +136,14 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
       }
     }
     bool last = moves <= enough;
-    if (until == Until::same_force && last) {
+    if (until == Until::same_force && last && moves > 0.0) {
       // Or until rounding keeps the step from becoming smaller.
-      const std::array<double, 4> moved = effect(change), all = effect(view(now_));
+      const auto [moved, all] = keep ? effect_by_steps(force_before) : std::pair(effect(change), effect(view(now_)));
       for (std::size_t f = 0; f < moved.size(); ++f)
         last = last && (moved[f] <= not_felt * all[f] || moved[f] > 0.5 * before[f]);
       before = moved;
     }
+    force_before = at_->journal.force;
     const bool keep_next = may_keep && (last || keep || pays(std::min(bend_ * moves, 0.4), moves));
     for (double damping = 1.0;;) {
       if (!(damping >= 1e-6)) throw core::NotConverged("the film by itself did not relax");
@@ -174,30 +186,31 @@ const StateResponse& Steady::tangents() {
   return linear_;
 }
 
-// By the factors of derivatives near by where that is known to cost less.
+// By the factors of derivatives near by where that is known to cost less, and in either case until rounding is all that
+// is left of what the factors lack.
 Eigen::VectorXd Steady::solve_transposed(const std::vector<double>& b) {
-  constexpr double exact = 1e-14, forces = 2.0;
+  constexpr double exact = 1e-12, forces = 2.0, too_slow = 0.2;
   const auto solved = [&](const Eigen::VectorXd& r) {
     return band_ ? band_->solve_transposed(r) : Eigen::VectorXd(lu_.transpose().solve(r));
   };
-  if (factored_ != linear_.d_states) {
-    const double left = contraction_;
-    if (!factored_.empty() && left < 0.1 && forces * std::log(exact) / std::log(left) <= price_) {
-      const auto& matrix = matrix_.filled(linear_.d_states);
-      Eigen::VectorXd x = solved(view(b));
-      double before = unknown;
-      for (;;) {
-        const Eigen::VectorXd more = solved(view(b) - matrix.transpose() * x);
-        x += more;
-        const double now = more.norm() / x.norm();
-        if (now <= exact) return x;
-        if (!(now < 0.2 * before)) break;
-        before = now;
-      }
+  const bool near =
+      !factored_.empty() && contraction_ < 0.1 && forces * std::log(exact) / std::log(contraction_) <= price_;
+  if (!near) factor();
+  for (;;) {
+    const auto& matrix = matrix_.filled(linear_.d_states);
+    const bool own = factored_ == linear_.d_states;
+    Eigen::VectorXd x = solved(view(b));
+    if (own && !band_) return x;
+    for (double before = unknown;;) {
+      const Eigen::VectorXd more = solved(view(b) - matrix.transpose() * x);
+      x += more;
+      const double now = more.norm();
+      if (now <= exact * x.norm() || (own && !(now < too_slow * before))) return x;
+      if (!(now < too_slow * before)) break;
+      before = now;
     }
     factor();
   }
-  return solved(view(b));
 }
 
 void Steady::follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states) {

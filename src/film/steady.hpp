@@ -9,6 +9,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "film/band_lu.hpp"
@@ -46,6 +47,8 @@ private:
   [[nodiscard]] double size(const Eigen::VectorXd& step) const;
   [[nodiscard]] double distance(const StateResponse& at) const;
   [[nodiscard]] std::array<double, 4> effect(const Eigen::VectorXd& step) const;
+  [[nodiscard]] std::pair<std::array<double, 4>, std::array<double, 4>> effect_by_steps(
+      const std::array<double, 4>& force_before) const;
   [[nodiscard]] bool pays(double contraction, double size) const;
 
   static constexpr double unknown = std::numeric_limits<double>::infinity();

@@ -31,13 +31,14 @@ void check(const Geometry& g, const Thd& o, const Lubricant& l) {
   demand(o.heat_capacity > 0.0 && o.conductivity >= 0.0, "heat capacity and conductivity must be positive");
 }
 
+template <class HeatedPad>
 class ThdFilm final : public Film {
 public:
   ThdFilm(const Geometry& geometry, const Thd& options, const Lubricant& lubricant)
       : geometry_(geometry), options_(options), lubricant_(lubricant) {
     for (const Pad& pad : make_pads(geometry)) {
       first_.push_back(states_);
-      pads_.push_back(std::make_unique<ThdPad>(pad, options, lubricant));
+      pads_.push_back(std::make_unique<HeatedPad>(pad, options, lubricant));
       states_ += static_cast<std::size_t>(pads_.back()->states());
     }
   }
@@ -119,14 +120,14 @@ public:
     out.imbalance = 0.0;
     out.max_temperature = 0.0;
     for (const auto& pad : pads_) {
-      for (const double p : pad->nodal(ThdPad::Of::pressure)) out.max_pressure = std::max(out.max_pressure, p);
+      for (const double p : pad->nodal(Nodal::pressure)) out.max_pressure = std::max(out.max_pressure, p);
       const Flows flows = pad->flows();
       out.inlet_flow += flows.enters;
       out.outlet_flow += flows.leaves;
       out.side_flow += pad->side_outflow();
       out.imbalance += flows.enters - flows.leaves - flows.sides - flows.squeezed;
       out.power_loss += pad->friction() * motion.speed;
-      const ThdPad::Warmth warm = pad->warmth();
+      const Warmth warm = pad->warmth();
       volume += warm.volume;
       warmth += warm.integral;
       out.max_temperature = std::max(out.max_temperature, warm.highest);
@@ -139,7 +140,7 @@ public:
     at(motion, states);
     std::vector<NodalField> all;
     for (std::size_t n = 0; n < pads_.size(); ++n) {
-      const ThdPad& pad = *pads_[n];
+      const HeatedPad& pad = *pads_[n];
       const Grid& grid = pad.grid();
       const Pad arc = make_pads(geometry_)[n];
       const auto rows = static_cast<std::size_t>(grid.n_theta + 1), columns = static_cast<std::size_t>(grid.n_z + 1);
@@ -152,12 +153,12 @@ public:
       }
       for (int j = 0; j <= grid.n_z; ++j) z.values.push_back(j * grid.dz - 0.5 * arc.length);
       all.insert(all.end(), {std::move(theta), std::move(z)});
-      all.push_back({index, "pressure", "Pa", {rows, columns}, pad.nodal(ThdPad::Of::pressure)});
+      all.push_back({index, "pressure", "Pa", {rows, columns}, pad.nodal(Nodal::pressure)});
       all.push_back(std::move(h));
-      all.push_back({index, "temperature", "K", {rows, columns}, pad.nodal(ThdPad::Of::mean)});
+      all.push_back({index, "temperature", "K", {rows, columns}, pad.nodal(Nodal::mean)});
       if (options_.layers == 1) continue;
-      all.push_back({index, "temperature_bush", "K", {rows, columns}, pad.nodal(ThdPad::Of::bush)});
-      all.push_back({index, "temperature_journal", "K", {rows, columns}, pad.nodal(ThdPad::Of::journal)});
+      all.push_back({index, "temperature_bush", "K", {rows, columns}, pad.nodal(Nodal::bush)});
+      all.push_back({index, "temperature_journal", "K", {rows, columns}, pad.nodal(Nodal::journal)});
     }
     return all;
   }
@@ -175,7 +176,7 @@ private:
   Geometry geometry_;
   Thd options_;
   Lubricant lubricant_;
-  std::vector<std::unique_ptr<ThdPad>> pads_;
+  std::vector<std::unique_ptr<HeatedPad>> pads_;
   std::vector<std::size_t> first_;  // state of each pad
   std::size_t states_ = 0;
   StateResponse report_;
@@ -246,7 +247,14 @@ Facts facts_of(const Thd& o, const Geometry& geometry) {
 
 std::unique_ptr<Film> make(const Geometry& geometry, const Thd& options, const Lubricant& lubricant) {
   check(geometry, options, lubricant);
-  auto film = std::make_unique<ThdFilm>(geometry, options, lubricant);
+  constexpr int few = 8, any = Eigen::Dynamic;
+  std::unique_ptr<Film> film;
+  if (options.layers == 1)
+    film = std::make_unique<ThdFilm<ThdPad<1, 1>>>(geometry, options, lubricant);
+  else if (options.layers <= few)
+    film = std::make_unique<ThdFilm<ThdPad<any, few>>>(geometry, options, lubricant);
+  else
+    film = std::make_unique<ThdFilm<ThdPad<any, any>>>(geometry, options, lubricant);
   if (options.states == States::dynamic) return film;
   return condense(std::move(film));
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film/thd_pad_report.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/truncation.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 // Conduction across a film of L layers, in lambda/h: out of layer k flows (K T - b)_k. One layer is a parabola, which a
 // wall of given temperature takes 6 T - 4 T_wall - 2 T_other from between two such walls, 3 (T - T_wall) beside an
 // adiabatic one.
-void conduction(const Thd& o, Eigen::MatrixXd& k, Eigen::VectorXd& b) {
+void conduction(const Thd& o, auto& k, auto& b) {
   const int n = o.layers;
   k.setZero(n, n);
   b.setZero(n);
@@ -46,7 +47,8 @@ void conduction(const Thd& o, Eigen::MatrixXd& k, Eigen::VectorXd& b) {
 
 }  // namespace
 
-ThdPad::ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant)
+template <int Count, int Most>
+ThdPad<Count, Most>::ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant)
     : pad_(pad),
       options_(options),
       grid_(pad, options.cells),
@@ -59,14 +61,17 @@ ThdPad::ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant)
       resistance_around_(resistance_around(options.turbulence)),
       resistance_along_(resistance_along(options.turbulence)),
       profile_(options.layers),
-      mean_(options.layers) {
+      viscosity_(options.viscosity ? options.viscosity->law
+                                   : thermal::Viscosity(thermal::ConstantViscosity{lubricant.viscosity})) {
+  mean_.resize(options.layers);
   conduction(options, conduction_, walls_);
   const double step = pad.radius * grid_.dtheta;
   hold_ = pad.clearance * pad.clearance * pad.clearance / (12.0 * lubricant.viscosity * step * step);
   lay_out();
 }
 
-void ThdPad::lay_out() {
+template <int Count, int Most>
+void ThdPad<Count, Most>::lay_out() {
   const double step = pad_.radius * grid_.dtheta;
   nodes_.resize(static_cast<std::size_t>(nodes()));
   sides_.assign(nodes_.size(), {{{-1, -1}, {-1, 1}, {-1, -1}, {-1, 1}}});
@@ -112,7 +117,8 @@ void ThdPad::lay_out() {
     }
 }
 
-void ThdPad::add_places(int first, Places& states, Places& rates) const {
+template <int Count, int Most>
+void ThdPad<Count, Most>::add_places(int first, Places& states, Places& rates) const {
   const int b = block();
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const int row = first + static_cast<int>(n) * b;
@@ -130,7 +136,8 @@ void ThdPad::add_places(int first, Places& states, Places& rates) const {
   }
 }
 
-void ThdPad::read(const JournalMotion& motion, std::span<const double> states) {
+template <int Count, int Most>
+void ThdPad<Count, Most>::read(const JournalMotion& motion, std::span<const double> states) {
   const bool tilt = options_.tilt;
   const double X = motion.position[0] - pad_.centre_x, Y = motion.position[1] - pad_.centre_y;
   const double tx = tilt ? motion.position[2] : 0.0, ty = tilt ? motion.position[3] : 0.0;
@@ -147,8 +154,7 @@ void ThdPad::read(const JournalMotion& motion, std::span<const double> states) {
       const double t = here.value[1 + k];
       // Beyond these no law holds, and Newton's method is to come back.
       if (!(t > 200.0 && t < 1000.0)) throw core::DomainError("a temperature of the film is not that of an oil");
-      thermal::Valued mu{lubricant_.viscosity, 0.0};
-      if (options_.viscosity) mu = thermal::viscosity(options_.viscosity->law, t);
+      const thermal::Valued mu = viscosity_.at(t);
       if (!(mu.value > 0.0 && std::isfinite(mu.value)))
         throw core::DomainError("the viscosity has no value at a temperature of the film");
       here.mu(k) = mu.value;
@@ -160,11 +166,12 @@ void ThdPad::read(const JournalMotion& motion, std::span<const double> states) {
 
 // In turbulence the flow by pressure has the share c = 12/k(Re) of the laminar one, and so has its dissipation; the
 // shear of the Couette flow grows by s. Re is that of the mean viscosity at the face.
-void ThdPad::flow(Face& f, bool tangents) {
+template <int Count, int Most>
+void ThdPad<Count, Most>::flow(Face& f, bool tangents) {
   const Node &a = nodes_[static_cast<std::size_t>(f.from)], &b = nodes_[static_cast<std::size_t>(f.to)];
   mean_ = 0.5 * (a.mu + b.mu);
-  profile_.set(mean_);
-  const Layers& p = profile_;
+  profile_.set(mean_, tangents);
+  const auto& p = profile_;
   const double u = f.around ? speed_ * pad_.radius : 0.0, h = f.h, g = (b.value[0] - a.value[0]) / f.step;
   double c = 1.0, c_re = 0.0, s = 1.0, s_re = 0.0, re = 0.0;
   const double mu = mean_.mean(), surface = std::abs(speed_) * pad_.radius;
@@ -174,7 +181,7 @@ void ThdPad::flow(Face& f, bool tangents) {
     const double k = film::evaluate(r, re);
     c = 12.0 / k;
     c_re = -c / k * r.exponent * (k - 12.0);  // by ln Re
-    s = 1.0 + 0.0012 * std::pow(re, 0.94);
+    if (f.around) s = 1.0 + 0.0012 * std::pow(re, 0.94);
     s_re = 0.94 * (s - 1.0);
   }
   const double h3 = h * h * h;
@@ -207,7 +214,8 @@ void ThdPad::flow(Face& f, bool tangents) {
   f.d_mu.colwise() -= d_re / (mu * layers_);
 }
 
-double ThdPad::left_over(std::size_t n, int layer) const {
+template <int Count, int Most>
+double ThdPad<Count, Most>::left_over(std::size_t n, int layer) const {
   double out = nodes_[n].area * nodes_[n].rate / layers_;
   for (const Side& s : sides_[n])
     if (s.face >= 0) {
@@ -217,15 +225,13 @@ double ThdPad::left_over(std::size_t n, int layer) const {
   return -out;
 }
 
-// `Count` layers, or Eigen::Dynamic and at most `Most`: a node is a few numbers, for which a heap costs more than they
-// do.
 template <int Count, int Most>
-void ThdPad::row(int number, std::span<const double> rates, Need need, std::size_t first, std::size_t at,
-                 std::size_t at_rates, StateResponse& response) {
+void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need need, std::size_t first, std::size_t at,
+                              std::size_t at_rates, StateResponse& response) {
   constexpr int Block = Count == Eigen::Dynamic ? Eigen::Dynamic : Count + 1,
                 MostBlock = Most == Eigen::Dynamic ? Eigen::Dynamic : Most + 1;
   constexpr int by_columns = Eigen::ColMajor;
-  using OfLayers = Eigen::Matrix<double, Count, 1, by_columns, Most, 1>;
+  using OfLayers = Vector;
   using OfRows = Eigen::Matrix<double, Block, 1, by_columns, MostBlock, 1>;
   using RowsByLayers = Eigen::Matrix<double, Block, Count, by_columns, MostBlock, Most>;
   using Square = Eigen::Matrix<double, Block, Block, by_columns, MostBlock, MostBlock>;
@@ -370,7 +376,8 @@ void ThdPad::row(int number, std::span<const double> rates, Need need, std::size
 
 // As that of the film of one temperature: exact means of cos and sin between two columns, the positive part of the
 // pressure within cells.
-void ThdPad::integrate(Need need, std::size_t first, StateResponse& response) const {
+template <int Count, int Most>
+void ThdPad<Count, Most>::integrate(Need need, std::size_t first, StateResponse& response) const {
   const bool truncated = options_.cavitation == Thd::Cavitation::half_sommerfeld;
   const double area = pad_.radius * grid_.dtheta * grid_.mean;
   for (int strip = 0; strip + 1 < columns_; ++strip) {
@@ -401,8 +408,10 @@ void ThdPad::integrate(Need need, std::size_t first, StateResponse& response) co
   }
 }
 
-void ThdPad::evaluate(const JournalMotion& motion, std::span<const double> states, std::span<const double> rates,
-                      Need need, std::size_t first, std::size_t& at, std::size_t& at_rates, StateResponse& response) {
+template <int Count, int Most>
+void ThdPad<Count, Most>::evaluate(const JournalMotion& motion, std::span<const double> states,
+                                   std::span<const double> rates, Need need, std::size_t first, std::size_t& at,
+                                   std::size_t& at_rates, StateResponse& response) {
   read(motion, states);
   response.journal.min_thickness = std::min(response.journal.min_thickness, h_min_);
   for (Face& f : faces_) flow(f, need == Need::tangents);
@@ -415,134 +424,16 @@ void ThdPad::evaluate(const JournalMotion& motion, std::span<const double> state
     }
     entries_.push_back(before);
   }
-  constexpr int few = 8, any = Eigen::Dynamic;
-  const auto rows = layers_ == 1     ? &ThdPad::row<1, 1>
-                    : layers_ <= few ? &ThdPad::row<any, few>
-                                     : &ThdPad::row<any, any>;
   for (int n = 0; n < nodes(); ++n)
-    (this->*rows)(n, rates, need, first, at + entries_[static_cast<std::size_t>(n)],
-                  at_rates + static_cast<std::size_t>(n * layers_), response);
+    row(n, rates, need, first, at + entries_[static_cast<std::size_t>(n)],
+        at_rates + static_cast<std::size_t>(n * layers_), response);
   at += entries_.back();
   at_rates += static_cast<std::size_t>(nodes() * layers_);
   integrate(need, first, response);
 }
 
-HeatBalance ThdPad::heat() const {
-  HeatBalance out;
-  const double times = whole_ ? 1.0 : 2.0, rho_c = lubricant_.density * options_.heat_capacity;
-  for (const Face& f : faces_) out.dissipation += times * f.step * f.width * f.d.sum();
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const Node& here = nodes_[n];
-    const Eigen::Map<const Vector> t(here.value + 1, layers_);
-    for (int k = 0; here.edge && k < layers_; ++k) {
-      const double flow = left_over(n, k);
-      out.carried += times * rho_c * flow * ((flow < 0.0 ? options_.feed : t(k)) - options_.feed);
-    }
-    const double walls = times * here.area * options_.conductivity / here.h;
-    const auto through = [&](const HeatedWall& w, const HeatedWall& other, int k) {
-      if (w.type != HeatedWall::Type::isothermal) return 0.0;
-      if (layers_ > 1) return walls * 2.0 * layers_ * (t(k) - w.temperature);
-      if (other.type != HeatedWall::Type::isothermal) return walls * 3.0 * (t(0) - w.temperature);
-      return walls * (6.0 * t(0) - 4.0 * w.temperature - 2.0 * other.temperature);
-    };
-    out.bush += through(options_.bush, options_.journal, 0);
-    out.journal += through(options_.journal, options_.bush, layers_ - 1);
-    out.stored += times * rho_c * here.area * here.rate / layers_ * (t.array() - options_.feed).sum();
-  }
-  return out;
-}
-
-Flows ThdPad::flows() const {
-  Flows out;
-  const double times = whole_ ? 1.0 : 2.0;
-  for (int i = 0; i < columns_; ++i)
-    for (int j = 0; j < rows_; ++j) {
-      const std::size_t n = node(i, j);
-      double flow = 0.0;
-      for (int k = 0; k < layers_; ++k) flow += times * left_over(n, k);
-      out.squeezed += times * nodes_[n].area * nodes_[n].rate;
-      if (!nodes_[n].edge) continue;
-      if (i == 0)
-        out.enters -= flow;
-      else if (i + 1 == columns_)
-        out.leaves += flow;
-      else
-        out.sides += flow;
-    }
-  return out;
-}
-
-double ThdPad::side_outflow() const {
-  double out = 0.0;
-  for (int i = 1; i + 1 < columns_; ++i)
-    for (int j = 0; j < rows_; ++j) {
-      if (!nodes_[node(i, j)].edge) continue;
-      double flow = 0.0;
-      for (int k = 0; k < layers_; ++k) flow += left_over(node(i, j), k);
-      out += (whole_ ? 1.0 : 2.0) * std::max(flow, 0.0);
-    }
-  return out;
-}
-
-double ThdPad::friction() const {
-  double out = 0.0;
-  for (const Face& f : faces_)
-    if (f.around) out += (whole_ ? 1.0 : 2.0) * f.step * f.width * f.shear * pad_.radius;
-  return out;
-}
-
-ThdPad::Warmth ThdPad::warmth() const {
-  Warmth out;
-  for (const Node& n : nodes_) {
-    const Eigen::Map<const Vector> t(n.value + 1, layers_);
-    const double volume = (whole_ ? 1.0 : 2.0) * n.area * n.h;
-    out.volume += volume;
-    out.integral += volume * t.mean();
-    out.highest = std::max(out.highest, t.maxCoeff());
-  }
-  return out;
-}
-
-std::vector<double> ThdPad::nodal(Of what) const {
-  std::vector<double> out;
-  for (int i = 0; i < columns_; ++i)
-    for (int j = 0; j <= grid_.n_z; ++j) {
-      const double* v = nodes_[node(i, j < rows_ ? j : grid_.n_z - j)].value;
-      switch (what) {
-        case Of::pressure:
-          out.push_back(options_.cavitation == Thd::Cavitation::none ? v[0] : std::max(v[0], 0.0));
-          break;
-        case Of::mean:
-          out.push_back(Eigen::Map<const Vector>(v + 1, layers_).mean());
-          break;
-        case Of::bush:
-          out.push_back(v[1]);
-          break;
-        case Of::journal:
-          out.push_back(v[layers_]);
-          break;
-      }
-    }
-  return out;
-}
-
-void ThdPad::resample(const ThdPad& other, std::span<const double> from, std::span<double> to) const {
-  core::require(other.layers_ == layers_ && other.whole_ == whole_, "a film of the same layers");
-  const auto place = [](double x, int cells, int last) {
-    const int cell = std::clamp(static_cast<int>(x * cells), 0, last - 1);
-    return std::pair{cell, std::min(x * cells - cell, 1.0)};
-  };
-  const auto b = static_cast<std::size_t>(block());
-  for (int i = 0; i < columns_; ++i)
-    for (int j = 0; j < rows_; ++j) {
-      const auto [c, s] = place(static_cast<double>(i) / grid_.n_theta, other.grid_.n_theta, other.columns_ - 1);
-      const auto [d, t] = place(static_cast<double>(j) / grid_.n_z, other.grid_.n_z, other.rows_ - 1);
-      for (std::size_t v = 0; v < b; ++v) {
-        const auto value = [&](int x, int y) { return from[other.node(x, y) * b + v]; };
-        to[node(i, j) * b + v] = (1.0 - s) * ((1.0 - t) * value(c, d) + t * value(c, d + 1)) +
-                                 s * ((1.0 - t) * value(c + 1, d) + t * value(c + 1, d + 1));
-      }
-    }
-}
+template class ThdPad<1, 1>;
+template class ThdPad<Eigen::Dynamic, 8>;
+template class ThdPad<Eigen::Dynamic, Eigen::Dynamic>;
 
 }  // namespace whirl::film

@@ -20,6 +20,7 @@
 #include "film/pad.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/film/thd.hpp"
+#include "whirl/thermal/viscosity_table.hpp"
 
 namespace whirl::film {
 
@@ -28,6 +29,17 @@ struct HeatBalance {
   double dissipation = 0, carried = 0, bush = 0, journal = 0, stored = 0;
 };
 
+/// Volume of a film, m^3, its temperature integrated over that, K m^3, and the highest, K.
+struct Warmth {
+  double volume = 0, integral = 0, highest = 0;
+};
+
+/// What a report of a pad shows at its nodes.
+enum class Nodal { pressure, mean, bush, journal };
+
+/// A pad of `Count` layers, or Eigen::Dynamic and at most `Most`: a node is a few numbers, for which a heap costs more
+/// than they do.
+template <int Count, int Most>
 class ThdPad {
 public:
   ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant);
@@ -48,24 +60,19 @@ public:
   [[nodiscard]] double side_outflow() const;
   /// N m, of the shear at the journal.
   [[nodiscard]] double friction() const;
-  /// m^3, and K m^3 of the temperature over it; K.
-  struct Warmth {
-    double volume = 0, integral = 0, highest = 0;
-  };
   [[nodiscard]] Warmth warmth() const;
   [[nodiscard]] const Grid& grid() const { return grid_; }
   /// m, at a node of the whole length.
   [[nodiscard]] double thickness(int i, int j) const { return nodes_[node(i, j < rows_ ? j : grid_.n_z - j)].h; }
   /// Pressure as it acts, and temperatures, at the nodes [n_theta + 1][n_z + 1] of the pad; the mean over the layers,
   /// or of one layer.
-  enum class Of { pressure, mean, bush, journal };
-  [[nodiscard]] std::vector<double> nodal(Of what) const;
+  [[nodiscard]] std::vector<double> nodal(Nodal what) const;
   /// States `to` at the nodes of this mesh from those of `other`, linearly.
   void resample(const ThdPad& other, std::span<const double> from, std::span<double> to) const;
 
 private:
-  using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::Matrix<double, Count, 1, 0, Most, 1>;
+  using Matrix = Eigen::Matrix<double, Count, Count, 0, Most, Most>;
   struct Node {
     double h = 0, rate = 0;              // m, m/s
     double cosine = 0, sine = 0, z = 0;  // h falls with the position of the journal along these
@@ -91,7 +98,6 @@ private:
   void lay_out();
   void read(const JournalMotion& motion, std::span<const double> states);
   void flow(Face& face, bool tangents);
-  template <int Count, int Most>
   void row(int node, std::span<const double> rates, Need need, std::size_t first, std::size_t at, std::size_t at_rates,
            StateResponse& response);
   void integrate(Need need, std::size_t first, StateResponse& response) const;
@@ -116,8 +122,13 @@ private:
   std::vector<Face> faces_;
   std::vector<std::array<Side, 4>> sides_;
   std::vector<std::size_t> entries_;  // of each node: entries of dg/ds before its own
-  Layers profile_;
+  Layers<Count, Most> profile_;
+  thermal::ViscosityTable viscosity_;
   Vector mean_;
 };
+
+extern template class ThdPad<1, 1>;
+extern template class ThdPad<Eigen::Dynamic, 8>;
+extern template class ThdPad<Eigen::Dynamic, Eigen::Dynamic>;
 
 }  // namespace whirl::film

@@ -146,7 +146,7 @@ TEST(ThdFilm, BalancesItsHeat) {
     double power = 0;
     std::size_t first = 0;
     for (const Pad& pad : make_pads(c.geometry)) {
-      ThdPad alone(pad, c.options, oil());
+      ThdPad<Eigen::Dynamic, Eigen::Dynamic> alone(pad, c.options, oil());
       const auto n = static_cast<std::size_t>(alone.states());
       StateResponse r;
       r.residual.resize(n);

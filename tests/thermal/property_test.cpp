@@ -8,6 +8,7 @@
 #include "whirl/core/error.hpp"
 #include "whirl/thermal/energy.hpp"
 #include "whirl/thermal/fluid.hpp"
+#include "whirl/thermal/viscosity_table.hpp"
 
 namespace whirl::thermal {
 namespace {
@@ -55,6 +56,29 @@ TEST(PropertyLaw, HasExactSlopesAndIntegrals) {
       EXPECT_NEAR(integral(law, 300, t) + integral(law, t, 410), integral(law, 300, 410), 1e-10) << law.index();
       EXPECT_EQ(integral(law, t, t), 0);
     }
+}
+
+// Pieces of a law, but for the kink of a polynomial that is held where it is least, and beyond the pieces.
+TEST(ViscosityTable, IsTheLaw) {
+  const Quadratic ferron{0.0277, 40, {3.287, -3.064, 0.777}};
+  for (const Viscosity& law :
+       {Viscosity(ConstantViscosity{0.02}), Viscosity(Sutherland{}), Viscosity(Vogel{0.04, 313.15, 800, 180}),
+        Viscosity(Walther{{46e-6, 6.8e-6}, {313.15, 373.15}, 860}), Viscosity(ferron)}) {
+    ViscosityTable table(law);
+    for (int turn = 0; turn < 2; ++turn)
+      for (double t = 190; t < 1010; t += turn == 0 ? 7.03 : 0.37) {
+        const Valued found = table.at(t), wanted = viscosity(law, t);
+        EXPECT_NEAR(found.value, wanted.value, 2e-13 * std::abs(wanted.value)) << law.index() << " at " << t;
+        EXPECT_NEAR(found.slope, wanted.slope, 2e-10 * std::abs(wanted.slope) + 1e-12 * std::abs(wanted.value))
+            << law.index() << " at " << t;
+      }
+  }
+  const double kink = 273.15 + 40 * 3.064 / (2 * 0.777);
+  ViscosityTable table{Viscosity(ferron)};
+  for (const double away : {-1e-3, 1e-3}) {
+    EXPECT_EQ(table.at(kink + away).value, viscosity(ferron, kink + away).value);
+    EXPECT_EQ(table.at(kink + away).slope, viscosity(ferron, kink + away).slope);
+  }
 }
 
 TEST(PropertyLaw, KnowsAir) {
