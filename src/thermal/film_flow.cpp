@@ -124,7 +124,7 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
   along.assign(at(n * (rows.count() + 1)), {});
   const double surface = options.speed * mesh.radius;
   Profile profile(mesh.across);
-  const auto conductance = [&](std::size_t a, std::size_t b, double drag) {
+  const auto conductance = [&](std::size_t a, std::size_t b, double drag, const Resistance& law) {
     face(a, b, profile);
     Face out;
     for (std::size_t k = 0; k < l; ++k) {
@@ -132,13 +132,18 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
       out.gradient += dense * profile.by_pressure[k];
       out.drag += dense * profile.by_drag[k] * drag;
     }
+    if (turbulent) {
+      out.reynolds = reynolds(a, b);
+      if (!options.fluid.gas) out.gradient /= resist(law, out.reynolds).value;
+    }
     return out;
   };
   for (int q = rows.begin(); q < rows.end(); ++q)
     for (int i = 0; i < (mesh.closed ? n : n - 1); ++i)
-      around[at(rows.node(i, q))] = conductance(halo(i, q), halo((i + 1) % n, q), surface);
+      around[at(rows.node(i, q))] = conductance(halo(i, q), halo((i + 1) % n, q), surface, law_around);
   for (int q = std::max(rows.begin(), 1); q <= std::min(rows.end(), mesh.along); ++q)
-    for (int i = 0; i < n; ++i) along[at((q - rows.begin()) * n + i)] = conductance(halo(i, q - 1), halo(i, q), 0);
+    for (int i = 0; i < n; ++i)
+      along[at((q - rows.begin()) * n + i)] = conductance(halo(i, q - 1), halo(i, q), 0, law_along);
   // Of a point source: p^2 = -mdot ln(r)/(2 pi g) with the mass flow g d(p^2)/dr per unit of width.
   at_hole.clear();
   for (const std::size_t k : here) {
@@ -149,7 +154,8 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
     for (std::size_t q = 0; q < l; ++q) g -= density(node, node, q) * profile.by_pressure[q] / 2;
     const double r0 = std::exp(-std::numbers::egamma) / 4 * std::hypot(mesh.dx(), mesh.dz());
     const double area = std::numbers::pi / 4 * o.diameter * o.diameter;
-    at_hole.push_back({2 * std::numbers::pi * g, std::log(o.diameter / 2 / r0), area * discharge(h[node], o.diameter)});
+    at_hole.push_back({2 * std::numbers::pi * g, std::log(o.diameter / 2 / r0), area * discharge(h[node], o.diameter),
+                       turbulent ? reynolds(node, node) : 0.0});
   }
 }
 
@@ -176,9 +182,16 @@ MassFlow FilmFlow::Work::through_hole(std::size_t k, double p) const {
 }
 
 // Mass flow through a face of width `width` between nodes `step` apart, and its derivatives.
-Flux FilmFlow::Work::through(const Face& side, double width, double step, double p, double q) const {
+Flux FilmFlow::Work::through(const Face& side, const Resistance& law, double width, double step, double p,
+                             double q) const {
   const double gradient = side.gradient * width / step, drag = side.drag * width;
   if (!options.fluid.gas) return {gradient * (q - p) + drag, -gradient, gradient};
+  if (turbulent) {
+    const Valued more = resist(law, side.reynolds * 0.5 * (p + q));
+    const double now = gradient / more.value, flow = 0.5 * now * (q * q - p * p);
+    const double less = -flow * more.slope / more.value * 0.5 * side.reynolds;
+    return {flow + 0.5 * drag * (p + q), -now * p + less + 0.5 * drag, now * q + less + 0.5 * drag};
+  }
   return {0.5 * gradient * (q * q - p * p) + 0.5 * drag * (p + q), -gradient * p + 0.5 * drag,
           gradient * q + 0.5 * drag};
 }
@@ -191,12 +204,14 @@ void FilmFlow::Work::visit(const std::vector<double>& p, const Node& node, const
   for (int q = rows.begin(); q < rows.end(); ++q)
     for (int i = 0; i < (mesh.closed ? n : n - 1); ++i) {
       const int k = (i + 1) % n;
-      edge(i, q, k, q, through(around[at(rows.node(i, q))], mesh.depth(q), mesh.dx(), p[halo(i, q)], p[halo(k, q)]));
+      edge(i, q, k, q,
+           through(around[at(rows.node(i, q))], law_around, mesh.depth(q), mesh.dx(), p[halo(i, q)], p[halo(k, q)]));
     }
   for (int q = std::max(rows.begin(), 1); q <= std::min(rows.end(), last); ++q)
     for (int i = 0; i < n; ++i)
       edge(i, q - 1, i, q,
-           through(along[at((q - rows.begin()) * n + i)], mesh.width(i), mesh.dz(), p[halo(i, q - 1)], p[halo(i, q)]));
+           through(along[at((q - rows.begin()) * n + i)], law_along, mesh.width(i), mesh.dz(), p[halo(i, q - 1)],
+                   p[halo(i, q)]));
 }
 
 std::vector<double> FilmFlow::Work::nodes_of(const double* state) const {
@@ -227,7 +242,7 @@ void FilmFlow::Work::residual(Vec state, Vec out) const {
     const double ps = x[row], pn = p[halo(o.i, o.j)];
     const double m = through_hole(k, ps).value;
     add(o.i, o.j, -m);
-    r[row] = (ps * ps - pn * pn) * at_hole[k].conductance + at_hole[k].logarithm * m;
+    r[row] = (ps * ps - pn * pn) * at_hole[k].conductance * around_hole(k, pn).value + at_hole[k].logarithm * m;
   }
 }
 
@@ -259,10 +274,13 @@ void FilmFlow::Work::jacobian(Vec state, Mat matrix) const {
     const Orifice& o = options.orifices[here[k]];
     const PetscInt row = first + static_cast<PetscInt>(n * rows.count()) + static_cast<PetscInt>(k),
                    node = number(o.i, o.j);
-    const double ps = x[row - first], slope = through_hole(k, ps).slope;
+    const double ps = x[row - first], pn = p[halo(o.i, o.j)], slope = through_hole(k, ps).slope;
+    const Valued share = around_hole(k, pn);
     check(MatSetValue(matrix, node, row, -slope, ADD_VALUES));
-    check(MatSetValue(matrix, row, row, 2 * ps * at_hole[k].conductance + at_hole[k].logarithm * slope, ADD_VALUES));
-    check(MatSetValue(matrix, row, node, -2 * p[halo(o.i, o.j)] * at_hole[k].conductance, ADD_VALUES));
+    const double conductance = at_hole[k].conductance;
+    check(MatSetValue(matrix, row, row, 2 * ps * conductance * share.value + at_hole[k].logarithm * slope, ADD_VALUES));
+    check(MatSetValue(matrix, row, node, conductance * ((ps * ps - pn * pn) * share.slope - 2 * pn * share.value),
+                      ADD_VALUES));
   }
   check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));

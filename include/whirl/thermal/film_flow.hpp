@@ -7,6 +7,7 @@
 #include "whirl/thermal/flow.hpp"
 #include "whirl/thermal/fluid.hpp"
 #include "whirl/thermal/orifice.hpp"
+#include "whirl/thermal/turbulence.hpp"
 
 namespace whirl::thermal {
 
@@ -32,6 +33,7 @@ struct FilmFlowOptions {
   double speed = 0;         // rad/s
   enum class Cavitation { none, half_sommerfeld, reynolds };
   Cavitation cavitation = Cavitation::none;  // half_sommerfeld: pressure below 0 does not act on the journal
+  Turbulence turbulence = Turbulence::laminar;
   std::vector<Orifice> orifices;
   std::vector<Feed> feeds;
 };
@@ -54,7 +56,9 @@ struct FlowReport {
 /// with u(s) = (dp/dx) (I(s) - (F_1/F_0) J(s)) + U J(s)/F_0, J = int ds/mu, I = int s ds/mu from the bush at rest (s =
 /// 0) to the journal, of surface speed U: exact in layers of constant viscosity. Finite volumes around the nodes; the
 /// properties at a face are the mean of those of both sides. Of a gas rho_k = p/(r T_k).
-/// Source: Dowson (1962); Skarolek (2011) eqs. (4.8)-(4.17) with the errata kept by this project.
+/// In turbulence P_k is divided by k/12 around and along, and the shear U/F_0 of the journal grows by the Couette
+/// factor, at Re = rho |U| h/mu with the means across the film; C_k stays. Source: Dowson (1962); Skarolek (2011) eqs.
+/// (4.8)-(4.17) with the errata kept by this project.
 class FilmFlow {
 public:
   /// `thickness` m [r, n], of the nodes of this rank, i fastest. Options of its solver begin with `film_pressure_`.

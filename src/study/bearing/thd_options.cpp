@@ -33,6 +33,7 @@ void describe(deck::Description<ThdOptions>& d) {
         "the film balances it");
   d.add("cells", &O::cells, deck::in(2, 1e5), "intervals around and along the film, layers across it");
   d.add("cavitation", &O::cavitation, "what an oil film does where it would be under tension");
+  d.add("turbulence", &O::turbulence, "flow resistance, shear and mixing across of a turbulent film");
   d.add("second_order", &O::second_order,
         "convection of heat by limited differences of second order; false: upwind, of first order");
   d.add("fluid", &O::fluid, "what fills the film, with its properties").required();

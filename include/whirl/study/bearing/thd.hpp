@@ -9,6 +9,7 @@
 #include "whirl/deck/one_or_more.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/thermal/options.hpp"
+#include "whirl/thermal/turbulence.hpp"
 
 namespace whirl::study {
 
@@ -22,6 +23,7 @@ struct ThdOptions {
   std::array<int, 3> cells{96, 32, 8};  ///< around, along, across the film
   enum class Cavitation { none, half_sommerfeld, reynolds };
   Cavitation cavitation = Cavitation::none;
+  thermal::Turbulence turbulence = thermal::Turbulence::laminar;
   bool second_order = true;  ///< convection of heat
   thermal::FluidOptions fluid;
   thermal::Ambient ambient;
