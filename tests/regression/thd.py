@@ -361,5 +361,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "turbulent": turbulent, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
     harness.finish()
