@@ -25,7 +25,11 @@ void FilmFlow::set_thickness(const std::vector<double>& thickness) {
 void FilmFlow::start(const std::vector<double>& pressure) {
   core::require(pressure.size() == w_->pressure.size(), "a pressure for each node of this rank");
   w_->pressure = pressure;
+  w_->filled.assign(pressure.size(), 1.0);
   w_->cold = false;
+}
+const std::vector<double>& FilmFlow::fill() const {
+  return w_->filled;
 }
 int FilmFlow::solve(double tolerance, double reduction) {
   return w_->solve(tolerance, reduction);
@@ -67,6 +71,7 @@ FilmFlow::Work::Work(const Rows& r, FilmFlowOptions o, std::vector<double> thick
   double supply = options.ambient;
   for (const Orifice& source : options.orifices) supply = std::max(supply, source.pressure);
   pressure.resize(at(n * rows.count()));
+  filled.assign(pressure.size(), 1.0);
   for (int q = rows.begin(); q < rows.end(); ++q)
     for (int i = 0; i < n; ++i) {
       const double middle = 1 - std::abs(2.0 * q / mesh.along - 1), over = std::pow(0.6 * supply, 2);
@@ -96,6 +101,8 @@ void FilmFlow::Work::place() {
         given[at(rows.node(k, q))] = feed.pressure;
       }
   core::agree(rows.comm(), [&] {
+    if (conserving && (options.fluid.gas || options.speed == 0))
+      throw core::Error("a film conserves the mass of its cavity if it is a liquid in motion");
     for (std::size_t k = 0; k < options.orifices.size(); ++k) {
       const Orifice& o = options.orifices[k];
       if (o.i < 0 || o.i >= n || o.j <= 0 || o.j >= m) throw core::Error("an orifice lies outside the film");
@@ -144,6 +151,7 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
   for (int q = std::max(rows.begin(), 1); q <= std::min(rows.end(), mesh.along); ++q)
     for (int i = 0; i < n; ++i)
       along[at((q - rows.begin()) * n + i)] = conductance(halo(i, q - 1), halo(i, q), 0, law_along);
+  if (conserving) choose_scale();
   // Of a point source: p^2 = -mdot ln(r)/(2 pi g) with the mass flow g d(p^2)/dr per unit of width.
   at_hole.clear();
   for (const std::size_t k : here) {
@@ -185,6 +193,7 @@ MassFlow FilmFlow::Work::through_hole(std::size_t k, double p) const {
 Flux FilmFlow::Work::through(const Face& side, const Resistance& law, double width, double step, double p,
                              double q) const {
   const double gradient = side.gradient * width / step, drag = side.drag * width;
+  if (conserving) return through_partly(gradient, drag, p, q);
   if (!options.fluid.gas) return {gradient * (q - p) + drag, -gradient, gradient};
   if (turbulent) {
     const Valued more = resist(law, side.reynolds * 0.5 * (p + q));
@@ -313,7 +322,7 @@ void FilmFlow::Work::prepare_solver() {
   choose_linear_solver();
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
-  check(SNESLineSearchSetType(search, ruptures ? SNESLINESEARCHBASIC : SNESLINESEARCHBT));
+  check(SNESLineSearchSetType(search, ruptures || conserving ? SNESLINESEARCHBASIC : SNESLINESEARCHBT));
   if (ruptures) {
     low = core::duplicate(u.get());
     high = core::duplicate(u.get());
@@ -331,7 +340,10 @@ void FilmFlow::Work::prepare_solver() {
 
 void FilmFlow::Work::load(const std::vector<double>& p) {
   const core::WriteArray a(u.get());
-  for (std::size_t k = 0; k < p.size(); ++k) a[static_cast<PetscInt>(k)] = fixed[k] ? given[k] : p[k];
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double state = conserving && filled[k] < 1 ? scale * (filled[k] - 1) : p[k];
+    a[static_cast<PetscInt>(k)] = fixed[k] ? given[k] : state;
+  }
   for (std::size_t k = 0; k < hole.size(); ++k) a[static_cast<PetscInt>(p.size() + k)] = hole[k];
 }
 
@@ -359,6 +371,10 @@ int FilmFlow::Work::solve(double tolerance, double reduction) {
   }
   const core::ReadArray a(u.get());
   std::copy_n(a.data(), pressure.size(), pressure.begin());
+  for (std::size_t k = 0; k < pressure.size() && conserving; ++k) {
+    filled[k] = 1 + std::min(0.0, pressure[k]) / scale;
+    pressure[k] = std::max(0.0, pressure[k]);
+  }
   std::copy_n(a.data() + pressure.size(), hole.size(), hole.begin());
   return static_cast<int>(iterations);
 }

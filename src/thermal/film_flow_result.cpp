@@ -26,7 +26,7 @@ Flow FilmFlow::flow() const {
   const int n = w.n, l = mesh.across, begin = rows.begin(), end = rows.end();
   const auto at = [](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
   const auto cells = at(static_cast<std::ptrdiff_t>(rows.count()) * n * l);
-  const std::vector<double> p = with_halo(rows, w.pressure, at(n));
+  const std::vector<double> p = with_halo(rows, w.pressure, at(n)), fill = with_halo(rows, w.filled, at(n));
   Flow out;
   out.around.assign(cells, 0);
   out.along.assign(cells + at(n * l), 0);
@@ -52,10 +52,11 @@ Flow FilmFlow::flow() const {
       less = w.resist(law, reynolds).value;
       more = couette_factor(w.options.turbulence, reynolds);
     }
-    const double slope = gradient / less, steep = gradient / std::sqrt(less), dragged = surface * std::sqrt(more);
+    const double slope = gradient / less, steep = gradient / std::sqrt(less), share = fill[surface > 0 ? a : b],
+                 dragged = surface * std::sqrt(more * share);
     double before = 0;
     for (int k = 0; k < l; ++k) {
-      const double moved = profile.by_pressure[at(k)] * slope + profile.by_drag[at(k)] * surface;
+      const double moved = profile.by_pressure[at(k)] * slope + profile.by_drag[at(k)] * surface * share;
       const double lost = (profile.by_pressure[at(k)] * steep + profile.by_drag[at(k)] * dragged) * steep;
       layers.flow[at(k)] = w.density(a, b, at(k)) * dense * moved * width;
       const double u = profile.pressure[at(k + 1)] * steep + profile.drag[at(k + 1)] * dragged;
@@ -150,7 +151,7 @@ FlowReport FilmFlow::report(const Flow& flow) const {
   const Mesh& mesh = w.mesh;
   const int n = w.n, l = mesh.across;
   const auto at = [](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
-  const std::vector<double> p = with_halo(w.rows, w.pressure, at(n));
+  const std::vector<double> p = with_halo(w.rows, w.pressure, at(n)), fill = with_halo(w.rows, w.filled, at(n));
   Profile profile(l);
   // Force x, y, friction, heat, inflow, outflow, expansion; defect, highest pressure.
   double sums[7] = {}, most[2] = {};
@@ -198,8 +199,10 @@ FlowReport FilmFlow::report(const Flow& flow) const {
       sums[6] += expansion(a, b, flow.around.data() + w.rows.cell(0, i, q));
       const double dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
       const double more = w.turbulent ? couette_factor(w.options.turbulence, w.reynolds(a, b) * dense) : 1.0;
-      const double tau = (p[b] - p[a]) / mesh.dx() * (0.5 * (w.h[a] + w.h[b]) - profile.neutral) +
-                         w.options.speed * mesh.radius * profile.pull * more;
+      // Streamers of the share that is filled cross a gap that is not full.
+      const double share = fill[w.options.speed > 0 ? a : b];
+      const double tau = share * ((p[b] - p[a]) / mesh.dx() * (0.5 * (w.h[a] + w.h[b]) - profile.neutral) +
+                                  w.options.speed * mesh.radius * profile.pull * more);
       sums[2] += tau * mesh.dx() * mesh.depth(q) * mesh.radius;
     }
   for (int q = w.rows.begin(); q < w.rows.end() && !mesh.closed; ++q)

@@ -53,12 +53,17 @@ struct FilmFlow::Work {
   void mix(Flow& flow) const;
   [[nodiscard]] Flux through(const Face& face, const Resistance& law, double width, double step, double p,
                              double q) const;
+  /// The same of a film that conserves its mass, in the states of both nodes.
+  [[nodiscard]] Flux through_partly(double gradient, double drag, double u, double v) const;
+  void choose_scale();
   [[nodiscard]] MassFlow through_hole(std::size_t k, double p) const;
 
   const Rows& rows;
   const Mesh mesh;
   const FilmFlowOptions options;
   const int n;
+  const bool conserving = options.cavitation == FilmFlowOptions::Cavitation::mass_conserving;
+  double scale = 1;  // Pa, of the pressure: an empty share times this is a state below zero
   const bool turbulent = options.turbulence != Turbulence::laminar;
   const Resistance law_around = resistance_around(options.turbulence), law_along = resistance_along(options.turbulence);
   std::vector<double> h, temperature, mu;  // with the rows beside
@@ -68,6 +73,7 @@ struct FilmFlow::Work {
   std::vector<Hole> at_hole;
   std::vector<Face> around, along;
   std::vector<double> pressure, hole;  // Pa [r, n], behind the orifices of this rank
+  std::vector<double> filled;          // - [r, n]
   core::Vector u, f, low, high;
   core::Matrix j;
   core::NonlinearSolver snes;

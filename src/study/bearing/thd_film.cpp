@@ -27,6 +27,7 @@ thermal::FilmFlowOptions flow_of(const ThdOptions& o, const thermal::Mesh& mesh,
   out.speed = speed;
   out.cavitation = o.cavitation == ThdOptions::Cavitation::none              ? Cavitation::none
                    : o.cavitation == ThdOptions::Cavitation::half_sommerfeld ? Cavitation::half_sommerfeld
+                   : o.cavitation == ThdOptions::Cavitation::mass_conserving ? Cavitation::mass_conserving
                                                                              : Cavitation::reynolds;
   out.turbulence = o.turbulence;
   const double step = 2 * std::numbers::pi / mesh.around;

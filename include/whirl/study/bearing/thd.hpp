@@ -21,7 +21,7 @@ struct ThdOptions {
   std::optional<double> attitude;       ///< of the journal, from +x counter-clockwise [rad]; 0 likewise
   deck::OneOrMore load;                 ///< on the journal [N]: one number downwards, or x and y; empty: a given place
   std::array<int, 3> cells{96, 32, 8};  ///< around, along, across the film
-  enum class Cavitation { none, half_sommerfeld, reynolds };
+  enum class Cavitation { none, half_sommerfeld, reynolds, mass_conserving };
   Cavitation cavitation = Cavitation::none;
   thermal::Turbulence turbulence = thermal::Turbulence::laminar;
   bool second_order = true;  ///< convection of heat
