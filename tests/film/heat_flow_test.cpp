@@ -1,4 +1,4 @@
-// The turbulence of films with heat is that of films of one temperature.
+// The flow of films with heat is that of films of one temperature: turbulence and cavities.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -84,6 +84,57 @@ TEST_P(LawsOfBoth, PowerLossOfAConcentricFilmIsTheSame) {
   here.cells = {24, 8};
   const JournalMotion m{{}, {}, 6000};
   EXPECT_NEAR(flow.report(flow.flow()).power / make_film(g, here, oil())->summary(m, {}).power_loss, 1, 1e-12);
+}
+
+// A bearing with a groove at its widest gap, whose cavity keeps its oil: load and power loss of both rooms. Loads meet
+// with the square of the spacing. The power of a cavity is summed over faces in one room and over nodes in the other.
+TEST(CavitiesOfBoth, MeetWithTheMesh) {
+  const Geometry g = cylinder();
+  const double speed = 300, e = 0.7 * g.clearance;
+  double load[3] = {}, power[3] = {};
+  for (const int k : {0, 1, 2}) {
+    const int around = 40 << k, along = 8 << k, half = 2 << k;
+    thermal::Mesh mesh;
+    mesh.around = around;
+    mesh.along = along;
+    mesh.across = 1;
+    mesh.radius = g.radius;
+    mesh.length = g.length;
+    const thermal::Rows rows(mesh, PETSC_COMM_SELF);
+    thermal::FilmFlowOptions o;
+    o.fluid.viscosity = thermal::ConstantViscosity{oil().viscosity};
+    o.fluid.density = oil().density;
+    o.speed = speed;
+    o.cavitation = thermal::FilmFlowOptions::Cavitation::mass_conserving;
+    o.feeds.push_back({around / 2 - half, around / 2 + half, 1, along - 1, 5e4});
+    std::vector<double> h;
+    for (int j = 0; j <= along; ++j)
+      for (int i = 0; i < around; ++i) h.push_back(g.clearance - e * std::cos(mesh.theta(i)));
+    thermal::FilmFlow flow(rows, o, h);
+    flow.set_temperature(std::vector<double>(h.size(), 313));
+    (void)flow.solve();
+    const thermal::FlowReport r = flow.report(flow.flow());
+    double content = 0;
+    for (std::size_t node = 0; node < h.size(); ++node) content += flow.fill()[node] / static_cast<double>(h.size());
+
+    Reynolds here;
+    here.cavitation = Reynolds::Cavitation::mass_conserving;
+    here.cells = {around, along};
+    here.grooves.push_back({std::numbers::pi, 4 * half * std::numbers::pi / around, 5e4});
+    const auto film = make_film(g, here, oil());
+    const JournalMotion m{{e, 0, 0, 0}, {}, speed};
+    const Response found = evaluate(*film, m);
+    load[k] = std::hypot(r.force[0] - found.force[0], r.force[1] - found.force[1]) /
+              std::hypot(found.force[0], found.force[1]);
+    power[k] = std::abs(r.power / film->summary(m, {}).power_loss - 1);
+    EXPECT_LT(content, 0.9);
+  }
+  EXPECT_LT(load[2], 3e-4);
+  EXPECT_LT(power[2], 1e-2);
+  for (const int k : {0, 1}) {
+    EXPECT_GT(std::log2(load[k] / load[k + 1]), 1.8);
+    EXPECT_GT(std::log2(power[k] / power[k + 1]), 0.8);
+  }
 }
 
 }  // namespace
