@@ -42,14 +42,6 @@ std::span<const deck::Name<Inlet::Type>> names(Inlet::Type) {
   return table;
 }
 
-std::span<const deck::Name<Turbulence>> names(Turbulence) {
-  static constexpr deck::Name<Turbulence> table[] = {
-      {Turbulence::laminar, "laminar", "flow coefficients 12"},
-      {Turbulence::constantinescu, "constantinescu", "mixing length; coefficients grow with the local Reynolds number"},
-      {Turbulence::ng_pan, "ng_pan", "fit to the law of the wall (Ng and Pan 1965), for Reynolds numbers to 30000"}};
-  return table;
-}
-
 std::span<const deck::Name<States>> names(States) {
   static constexpr deck::Name<States> table[] = {
       {States::condensed, "condensed",

@@ -4,34 +4,6 @@
 #include <cmath>
 
 namespace whirl::film {
-namespace {
-
-// 0.125^2 Re^1.14 is k^2 Re of the mixing-length form.
-Resistance mixing_length(double factor, double exponent) {
-  return {factor * std::pow(0.125 * 0.125, exponent), 1.14 * exponent};
-}
-
-}  // namespace
-
-Resistance resistance_around(Turbulence turbulence) {
-  if (turbulence == Turbulence::laminar) return {0.0, 1.0};
-  if (turbulence == Turbulence::ng_pan) return {0.0136, 0.90};
-  return mixing_length(0.53, 0.725);
-}
-
-Resistance resistance_along(Turbulence turbulence) {
-  if (turbulence == Turbulence::laminar) return {0.0, 1.0};
-  if (turbulence == Turbulence::ng_pan) return {0.0043, 0.96};
-  return mixing_length(0.296, 0.65);
-}
-
-double evaluate(const Resistance& resistance, double reynolds) {
-  return 12.0 + resistance.factor * std::pow(reynolds, resistance.exponent);
-}
-
-double couette_factor(Turbulence turbulence, double reynolds) {
-  return turbulence == Turbulence::laminar ? 1.0 : 1.0 + 0.0012 * std::pow(reynolds, 0.94);
-}
 
 void mobility(const Resistance& r, const MobilityScale& scale, int n, const double* __restrict h, double* __restrict a,
               double* __restrict a_h, double* __restrict a_speed) {

@@ -29,6 +29,14 @@ std::span<const deck::Name<WallOptions::Type>> names(WallOptions::Type) {
   return table;
 }
 
+std::span<const deck::Name<Turbulence>> names(Turbulence) {
+  static constexpr deck::Name<Turbulence> table[] = {
+      {Turbulence::laminar, "laminar", "flow coefficients 12"},
+      {Turbulence::constantinescu, "constantinescu", "mixing length; coefficients grow with the local Reynolds number"},
+      {Turbulence::ng_pan, "ng_pan", "fit to the law of the wall (Ng and Pan 1965), for Reynolds numbers to 30000"}};
+  return table;
+}
+
 void describe(deck::Description<ConstantViscosity>& d) {
   d.add("value", &ConstantViscosity::value, "Pa s", positive, "dynamic viscosity").required();
 }

@@ -25,7 +25,11 @@ void FilmFlow::set_thickness(const std::vector<double>& thickness) {
 void FilmFlow::start(const std::vector<double>& pressure) {
   core::require(pressure.size() == w_->pressure.size(), "a pressure for each node of this rank");
   w_->pressure = pressure;
+  w_->filled.assign(pressure.size(), 1.0);
   w_->cold = false;
+}
+const std::vector<double>& FilmFlow::fill() const {
+  return w_->filled;
 }
 int FilmFlow::solve(double tolerance, double reduction) {
   return w_->solve(tolerance, reduction);
@@ -67,6 +71,7 @@ FilmFlow::Work::Work(const Rows& r, FilmFlowOptions o, std::vector<double> thick
   double supply = options.ambient;
   for (const Orifice& source : options.orifices) supply = std::max(supply, source.pressure);
   pressure.resize(at(n * rows.count()));
+  filled.assign(pressure.size(), 1.0);
   for (int q = rows.begin(); q < rows.end(); ++q)
     for (int i = 0; i < n; ++i) {
       const double middle = 1 - std::abs(2.0 * q / mesh.along - 1), over = std::pow(0.6 * supply, 2);
@@ -96,6 +101,8 @@ void FilmFlow::Work::place() {
         given[at(rows.node(k, q))] = feed.pressure;
       }
   core::agree(rows.comm(), [&] {
+    if (conserving && (options.fluid.gas || options.speed == 0))
+      throw core::Error("a film conserves the mass of its cavity if it is a liquid in motion");
     for (std::size_t k = 0; k < options.orifices.size(); ++k) {
       const Orifice& o = options.orifices[k];
       if (o.i < 0 || o.i >= n || o.j <= 0 || o.j >= m) throw core::Error("an orifice lies outside the film");
@@ -124,7 +131,7 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
   along.assign(at(n * (rows.count() + 1)), {});
   const double surface = options.speed * mesh.radius;
   Profile profile(mesh.across);
-  const auto conductance = [&](std::size_t a, std::size_t b, double drag) {
+  const auto conductance = [&](std::size_t a, std::size_t b, double drag, const Resistance& law) {
     face(a, b, profile);
     Face out;
     for (std::size_t k = 0; k < l; ++k) {
@@ -132,13 +139,19 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
       out.gradient += dense * profile.by_pressure[k];
       out.drag += dense * profile.by_drag[k] * drag;
     }
+    if (turbulent) {
+      out.reynolds = reynolds(a, b);
+      if (!options.fluid.gas) out.gradient /= resist(law, out.reynolds).value;
+    }
     return out;
   };
   for (int q = rows.begin(); q < rows.end(); ++q)
     for (int i = 0; i < (mesh.closed ? n : n - 1); ++i)
-      around[at(rows.node(i, q))] = conductance(halo(i, q), halo((i + 1) % n, q), surface);
+      around[at(rows.node(i, q))] = conductance(halo(i, q), halo((i + 1) % n, q), surface, law_around);
   for (int q = std::max(rows.begin(), 1); q <= std::min(rows.end(), mesh.along); ++q)
-    for (int i = 0; i < n; ++i) along[at((q - rows.begin()) * n + i)] = conductance(halo(i, q - 1), halo(i, q), 0);
+    for (int i = 0; i < n; ++i)
+      along[at((q - rows.begin()) * n + i)] = conductance(halo(i, q - 1), halo(i, q), 0, law_along);
+  if (conserving) choose_scale();
   // Of a point source: p^2 = -mdot ln(r)/(2 pi g) with the mass flow g d(p^2)/dr per unit of width.
   at_hole.clear();
   for (const std::size_t k : here) {
@@ -149,7 +162,8 @@ void FilmFlow::Work::set_temperature(const std::vector<double>& cells) {
     for (std::size_t q = 0; q < l; ++q) g -= density(node, node, q) * profile.by_pressure[q] / 2;
     const double r0 = std::exp(-std::numbers::egamma) / 4 * std::hypot(mesh.dx(), mesh.dz());
     const double area = std::numbers::pi / 4 * o.diameter * o.diameter;
-    at_hole.push_back({2 * std::numbers::pi * g, std::log(o.diameter / 2 / r0), area * discharge(h[node], o.diameter)});
+    at_hole.push_back({2 * std::numbers::pi * g, std::log(o.diameter / 2 / r0), area * discharge(h[node], o.diameter),
+                       turbulent ? reynolds(node, node) : 0.0});
   }
 }
 
@@ -176,9 +190,17 @@ MassFlow FilmFlow::Work::through_hole(std::size_t k, double p) const {
 }
 
 // Mass flow through a face of width `width` between nodes `step` apart, and its derivatives.
-Flux FilmFlow::Work::through(const Face& side, double width, double step, double p, double q) const {
+Flux FilmFlow::Work::through(const Face& side, const Resistance& law, double width, double step, double p,
+                             double q) const {
   const double gradient = side.gradient * width / step, drag = side.drag * width;
+  if (conserving) return through_partly(gradient, drag, p, q);
   if (!options.fluid.gas) return {gradient * (q - p) + drag, -gradient, gradient};
+  if (turbulent) {
+    const Valued more = resist(law, side.reynolds * 0.5 * (p + q));
+    const double now = gradient / more.value, flow = 0.5 * now * (q * q - p * p);
+    const double less = -flow * more.slope / more.value * 0.5 * side.reynolds;
+    return {flow + 0.5 * drag * (p + q), -now * p + less + 0.5 * drag, now * q + less + 0.5 * drag};
+  }
   return {0.5 * gradient * (q * q - p * p) + 0.5 * drag * (p + q), -gradient * p + 0.5 * drag,
           gradient * q + 0.5 * drag};
 }
@@ -191,12 +213,14 @@ void FilmFlow::Work::visit(const std::vector<double>& p, const Node& node, const
   for (int q = rows.begin(); q < rows.end(); ++q)
     for (int i = 0; i < (mesh.closed ? n : n - 1); ++i) {
       const int k = (i + 1) % n;
-      edge(i, q, k, q, through(around[at(rows.node(i, q))], mesh.depth(q), mesh.dx(), p[halo(i, q)], p[halo(k, q)]));
+      edge(i, q, k, q,
+           through(around[at(rows.node(i, q))], law_around, mesh.depth(q), mesh.dx(), p[halo(i, q)], p[halo(k, q)]));
     }
   for (int q = std::max(rows.begin(), 1); q <= std::min(rows.end(), last); ++q)
     for (int i = 0; i < n; ++i)
       edge(i, q - 1, i, q,
-           through(along[at((q - rows.begin()) * n + i)], mesh.width(i), mesh.dz(), p[halo(i, q - 1)], p[halo(i, q)]));
+           through(along[at((q - rows.begin()) * n + i)], law_along, mesh.width(i), mesh.dz(), p[halo(i, q - 1)],
+                   p[halo(i, q)]));
 }
 
 std::vector<double> FilmFlow::Work::nodes_of(const double* state) const {
@@ -227,7 +251,7 @@ void FilmFlow::Work::residual(Vec state, Vec out) const {
     const double ps = x[row], pn = p[halo(o.i, o.j)];
     const double m = through_hole(k, ps).value;
     add(o.i, o.j, -m);
-    r[row] = (ps * ps - pn * pn) * at_hole[k].conductance + at_hole[k].logarithm * m;
+    r[row] = (ps * ps - pn * pn) * at_hole[k].conductance * around_hole(k, pn).value + at_hole[k].logarithm * m;
   }
 }
 
@@ -259,10 +283,13 @@ void FilmFlow::Work::jacobian(Vec state, Mat matrix) const {
     const Orifice& o = options.orifices[here[k]];
     const PetscInt row = first + static_cast<PetscInt>(n * rows.count()) + static_cast<PetscInt>(k),
                    node = number(o.i, o.j);
-    const double ps = x[row - first], slope = through_hole(k, ps).slope;
+    const double ps = x[row - first], pn = p[halo(o.i, o.j)], slope = through_hole(k, ps).slope;
+    const Valued share = around_hole(k, pn);
     check(MatSetValue(matrix, node, row, -slope, ADD_VALUES));
-    check(MatSetValue(matrix, row, row, 2 * ps * at_hole[k].conductance + at_hole[k].logarithm * slope, ADD_VALUES));
-    check(MatSetValue(matrix, row, node, -2 * p[halo(o.i, o.j)] * at_hole[k].conductance, ADD_VALUES));
+    const double conductance = at_hole[k].conductance;
+    check(MatSetValue(matrix, row, row, 2 * ps * conductance * share.value + at_hole[k].logarithm * slope, ADD_VALUES));
+    check(MatSetValue(matrix, row, node, conductance * ((ps * ps - pn * pn) * share.slope - 2 * pn * share.value),
+                      ADD_VALUES));
   }
   check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
@@ -295,7 +322,7 @@ void FilmFlow::Work::prepare_solver() {
   choose_linear_solver();
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
-  check(SNESLineSearchSetType(search, ruptures ? SNESLINESEARCHBASIC : SNESLINESEARCHBT));
+  check(SNESLineSearchSetType(search, ruptures || conserving ? SNESLINESEARCHBASIC : SNESLINESEARCHBT));
   if (ruptures) {
     low = core::duplicate(u.get());
     high = core::duplicate(u.get());
@@ -313,7 +340,10 @@ void FilmFlow::Work::prepare_solver() {
 
 void FilmFlow::Work::load(const std::vector<double>& p) {
   const core::WriteArray a(u.get());
-  for (std::size_t k = 0; k < p.size(); ++k) a[static_cast<PetscInt>(k)] = fixed[k] ? given[k] : p[k];
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    const double state = conserving && filled[k] < 1 ? scale * (filled[k] - 1) : p[k];
+    a[static_cast<PetscInt>(k)] = fixed[k] ? given[k] : state;
+  }
   for (std::size_t k = 0; k < hole.size(); ++k) a[static_cast<PetscInt>(p.size() + k)] = hole[k];
 }
 
@@ -341,6 +371,10 @@ int FilmFlow::Work::solve(double tolerance, double reduction) {
   }
   const core::ReadArray a(u.get());
   std::copy_n(a.data(), pressure.size(), pressure.begin());
+  for (std::size_t k = 0; k < pressure.size() && conserving; ++k) {
+    filled[k] = 1 + std::min(0.0, pressure[k]) / scale;
+    pressure[k] = std::max(0.0, pressure[k]);
+  }
   std::copy_n(a.data() + pressure.size(), hole.size(), hole.begin());
   return static_cast<int>(iterations);
 }

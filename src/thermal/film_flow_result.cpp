@@ -26,7 +26,7 @@ Flow FilmFlow::flow() const {
   const int n = w.n, l = mesh.across, begin = rows.begin(), end = rows.end();
   const auto at = [](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
   const auto cells = at(static_cast<std::ptrdiff_t>(rows.count()) * n * l);
-  const std::vector<double> p = with_halo(rows, w.pressure, at(n));
+  const std::vector<double> p = with_halo(rows, w.pressure, at(n)), fill = with_halo(rows, w.filled, at(n));
   Flow out;
   out.around.assign(cells, 0);
   out.along.assign(cells + at(n * l), 0);
@@ -39,17 +39,29 @@ Flow FilmFlow::flow() const {
   Layers layers(l);
   // tau u at the borders of the layers, from one to the next: of a gas that is dissipation and the work of pressure. A
   // liquid turns what pressure does into motion and back, and keeps the dissipation.
-  const auto through = [&](std::size_t a, std::size_t b, double step, double width, double surface) {
+  // In turbulence each part of the velocity has a resistance of its own. The column's dissipation G^2/k + s U^2 is that
+  // of G/sqrt(k) and U sqrt(s) in laminar flow, which no layer has below zero.
+  const auto through = [&](std::size_t a, std::size_t b, double step, double width, double surface,
+                           const Resistance& law) {
     w.face(a, b, profile);
     const double gradient = (p[b] - p[a]) / step, dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
     const double d = 0.5 * (w.h[a] + w.h[b]) / l;
+    double less = 1, more = 1;
+    if (w.turbulent) {
+      const double reynolds = w.reynolds(a, b) * dense;
+      less = w.resist(law, reynolds).value;
+      more = couette_factor(w.options.turbulence, reynolds);
+    }
+    const double slope = gradient / less, steep = gradient / std::sqrt(less), share = fill[surface > 0 ? a : b],
+                 dragged = surface * std::sqrt(more * share);
     double before = 0;
     for (int k = 0; k < l; ++k) {
-      const double moved = profile.by_pressure[at(k)] * gradient + profile.by_drag[at(k)] * surface;
+      const double moved = profile.by_pressure[at(k)] * slope + profile.by_drag[at(k)] * surface * share;
+      const double lost = (profile.by_pressure[at(k)] * steep + profile.by_drag[at(k)] * dragged) * steep;
       layers.flow[at(k)] = w.density(a, b, at(k)) * dense * moved * width;
-      const double u = profile.pressure[at(k + 1)] * gradient + profile.drag[at(k + 1)] * surface;
-      const double tau = gradient * (d * (k + 1) - profile.neutral) + surface * profile.pull;
-      layers.heat[at(k)] = tau * u - before - (w.options.fluid.gas ? 0 : moved * gradient);
+      const double u = profile.pressure[at(k + 1)] * steep + profile.drag[at(k + 1)] * dragged;
+      const double tau = steep * (d * (k + 1) - profile.neutral) + dragged * profile.pull;
+      layers.heat[at(k)] = tau * u - before - (w.options.fluid.gas ? lost - moved * gradient : lost);
       before = tau * u;
     }
   };
@@ -60,7 +72,7 @@ Flow FilmFlow::flow() const {
   for (int q = begin; q < end; ++q)
     for (int i = 0; i < (mesh.closed ? n : n - 1); ++i) {
       const int next = (i + 1) % n;
-      through(w.halo(i, q), w.halo(next, q), mesh.dx(), mesh.depth(q), surface);
+      through(w.halo(i, q), w.halo(next, q), mesh.dx(), mesh.depth(q), surface, w.law_around);
       for (int k = 0; k < l; ++k) {
         out.around[at(rows.cell(k, i, q))] = layers.flow[at(k)];
         heat(i, q, k, mesh.dx() * mesh.depth(q));
@@ -69,7 +81,7 @@ Flow FilmFlow::flow() const {
     }
   for (int q = std::max(begin, 1); q <= std::min(end, mesh.along); ++q)
     for (int i = 0; i < n; ++i) {
-      through(w.halo(i, q - 1), w.halo(i, q), mesh.dz(), mesh.width(i), 0);
+      through(w.halo(i, q - 1), w.halo(i, q), mesh.dz(), mesh.width(i), 0, w.law_along);
       for (int k = 0; k < l; ++k) {
         out.along[at(((static_cast<std::ptrdiff_t>(q) - begin) * n + i) * l + k)] = layers.flow[at(k)];
         heat(i, q - 1, k, mesh.dz() * mesh.width(i));
@@ -123,6 +135,7 @@ Flow FilmFlow::flow() const {
         out.across[node * at(l + 1) + at(k + 1)] = left;
       }
     }
+  w.mix(out);
   return out;
 }
 
@@ -138,7 +151,7 @@ FlowReport FilmFlow::report(const Flow& flow) const {
   const Mesh& mesh = w.mesh;
   const int n = w.n, l = mesh.across;
   const auto at = [](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
-  const std::vector<double> p = with_halo(w.rows, w.pressure, at(n));
+  const std::vector<double> p = with_halo(w.rows, w.pressure, at(n)), fill = with_halo(w.rows, w.filled, at(n));
   Profile profile(l);
   // Force x, y, friction, heat, inflow, outflow, expansion; defect, highest pressure.
   double sums[7] = {}, most[2] = {};
@@ -184,8 +197,12 @@ FlowReport FilmFlow::report(const Flow& flow) const {
             mesh.dx() * mesh.depth(q));
       w.face(a, b, profile);
       sums[6] += expansion(a, b, flow.around.data() + w.rows.cell(0, i, q));
-      const double tau = (p[b] - p[a]) / mesh.dx() * (0.5 * (w.h[a] + w.h[b]) - profile.neutral) +
-                         w.options.speed * mesh.radius * profile.pull;
+      const double dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
+      const double more = w.turbulent ? couette_factor(w.options.turbulence, w.reynolds(a, b) * dense) : 1.0;
+      // Streamers of the share that is filled cross a gap that is not full.
+      const double share = fill[w.options.speed > 0 ? a : b];
+      const double tau = share * ((p[b] - p[a]) / mesh.dx() * (0.5 * (w.h[a] + w.h[b]) - profile.neutral) +
+                                  w.options.speed * mesh.radius * profile.pull * more);
       sums[2] += tau * mesh.dx() * mesh.depth(q) * mesh.radius;
     }
   for (int q = w.rows.begin(); q < w.rows.end() && !mesh.closed; ++q)

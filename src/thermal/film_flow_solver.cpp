@@ -35,14 +35,15 @@ void FilmFlow::Work::split_rims(PC pc) const {
 }
 
 void FilmFlow::Work::choose_linear_solver() {
-  const bool ruptures = options.cavitation == FilmFlowOptions::Cavitation::reynolds;
+  const bool ruptures = conserving || options.cavitation == FilmFlowOptions::Cavitation::reynolds;
   PetscInt direct = direct_nodes;
   check(PetscOptionsGetInt(nullptr, "film_pressure_", "-direct_nodes", &direct, nullptr));
   KSP ksp = nullptr;
   PC pc = nullptr;
   check(SNESGetKSP(snes.get(), &ksp));
   check(KSPGetPC(ksp, &pc));
-  multigrid = static_cast<PetscInt>(mesh.nodes_around()) * mesh.nodes_along() > direct;
+  // What a cavity carries downstream is no elliptic equation: multigrid would not smooth it.
+  multigrid = !conserving && static_cast<PetscInt>(mesh.nodes_around()) * mesh.nodes_along() > direct;
   if (!multigrid) core::make_direct(ksp);
   // The set of unknowns that an active set leaves changes from step to step.
   if (!multigrid && ruptures) return;
@@ -98,7 +99,7 @@ void FilmFlow::Work::limit_linear_solver(double residual) {
 
 // New factors in every step of the first solution and where those at hand have become poor.
 void FilmFlow::Work::choose_lag(int newton, int krylov) {
-  if (options.cavitation == FilmFlowOptions::Cavitation::reynolds) return;
+  if (conserving || options.cavitation == FilmFlowOptions::Cavitation::reynolds) return;
   const bool poor = newton > 0 && krylov > most_krylov * newton * (multigrid ? 3 : 1);
   check(SNESSetLagPreconditioner(snes.get(), poor ? -2 : -1));
 }

@@ -20,11 +20,13 @@ struct FilmFlow::Work {
   struct Face {           // of a gas per pressure
     double gradient = 0;  // kg/s per m of width and Pa/m: negative
     double drag = 0;      // kg/s per m of width
+    double reynolds = 0;  // -, of turbulence
   };
   struct Hole {
     double conductance;  // kg/(s Pa^2) of the film around it
     double logarithm;    // of the rim over the radius at which a node stands for its source
     double area;         // m^2, with the discharge coefficient
+    double reynolds;     // 1/Pa
   };
 
   Work(const Rows& rows, FilmFlowOptions options, std::vector<double> thickness);
@@ -41,13 +43,29 @@ struct FilmFlow::Work {
   /// The profile at the face between two nodes, by their places.
   void face(std::size_t a, std::size_t b, Profile& profile);
   [[nodiscard]] double density(std::size_t a, std::size_t b, std::size_t k) const;
-  [[nodiscard]] Flux through(const Face& face, double width, double step, double p, double q) const;
+  /// rho |U| h/mu at the face that face() was called for last; of a gas per pressure.
+  [[nodiscard]] double reynolds(std::size_t a, std::size_t b) const;
+  /// k/12 of the pressure's flow, and its derivative in the Reynolds number.
+  [[nodiscard]] Valued resist(const Resistance& law, double reynolds) const;
+  /// Conductance of the film around an orifice, over the one that is laminar, at a node's pressure.
+  [[nodiscard]] Valued around_hole(std::size_t k, double p) const;
+  /// How eddies help to conduct heat across.
+  void mix(Flow& flow) const;
+  [[nodiscard]] Flux through(const Face& face, const Resistance& law, double width, double step, double p,
+                             double q) const;
+  /// The same of a film that conserves its mass, in the states of both nodes.
+  [[nodiscard]] Flux through_partly(double gradient, double drag, double u, double v) const;
+  void choose_scale();
   [[nodiscard]] MassFlow through_hole(std::size_t k, double p) const;
 
   const Rows& rows;
   const Mesh mesh;
   const FilmFlowOptions options;
   const int n;
+  const bool conserving = options.cavitation == FilmFlowOptions::Cavitation::mass_conserving;
+  double scale = 1;  // Pa, of the pressure: an empty share times this is a state below zero
+  const bool turbulent = options.turbulence != Turbulence::laminar;
+  const Resistance law_around = resistance_around(options.turbulence), law_along = resistance_along(options.turbulence);
   std::vector<double> h, temperature, mu;  // with the rows beside
   std::vector<bool> fixed;                 // nodes whose pressure is given
   std::vector<double> given;
@@ -55,6 +73,7 @@ struct FilmFlow::Work {
   std::vector<Hole> at_hole;
   std::vector<Face> around, along;
   std::vector<double> pressure, hole;  // Pa [r, n], behind the orifices of this rank
+  std::vector<double> filled;          // - [r, n]
   core::Vector u, f, low, high;
   core::Matrix j;
   core::NonlinearSolver snes;

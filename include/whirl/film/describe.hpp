@@ -3,12 +3,12 @@
 
 #include "whirl/deck/description.hpp"
 #include "whirl/film/options.hpp"
+#include "whirl/thermal/describe.hpp"  // names of Turbulence
 
 namespace whirl::film {
 
 [[nodiscard]] std::span<const deck::Name<Geometry::Bore>> names(Geometry::Bore);
 [[nodiscard]] std::span<const deck::Name<Inlet::Type>> names(Inlet::Type);
-[[nodiscard]] std::span<const deck::Name<Turbulence>> names(Turbulence);
 [[nodiscard]] std::span<const deck::Name<States>> names(States);
 
 void describe(deck::Description<Geometry>& d);

@@ -2,12 +2,14 @@
 // Descriptions of the options of a film with heat.
 
 #include "whirl/thermal/options.hpp"
+#include "whirl/thermal/turbulence.hpp"
 
 namespace whirl::thermal {
 
 [[nodiscard]] std::span<const deck::Name<FluidOptions::Type>> names(FluidOptions::Type);
 [[nodiscard]] std::span<const deck::Name<OrificeRing::Inlet>> names(OrificeRing::Inlet);
 [[nodiscard]] std::span<const deck::Name<WallOptions::Type>> names(WallOptions::Type);
+[[nodiscard]] std::span<const deck::Name<Turbulence>> names(Turbulence);
 void describe(deck::Description<ConstantViscosity>& d);
 void describe(deck::Description<Sutherland>& d);
 void describe(deck::Description<Vogel>& d);

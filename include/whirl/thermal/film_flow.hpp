@@ -7,6 +7,7 @@
 #include "whirl/thermal/flow.hpp"
 #include "whirl/thermal/fluid.hpp"
 #include "whirl/thermal/orifice.hpp"
+#include "whirl/thermal/turbulence.hpp"
 
 namespace whirl::thermal {
 
@@ -30,8 +31,9 @@ struct FilmFlowOptions {
   double heat_ratio = 1.4;  // -, of a gas
   double ambient = 0;       // Pa, at the ends of the film and of a pad: absolute of a gas, 0 of a liquid
   double speed = 0;         // rad/s
-  enum class Cavitation { none, half_sommerfeld, reynolds };
+  enum class Cavitation { none, half_sommerfeld, reynolds, mass_conserving };
   Cavitation cavitation = Cavitation::none;  // half_sommerfeld: pressure below 0 does not act on the journal
+  Turbulence turbulence = Turbulence::laminar;
   std::vector<Orifice> orifices;
   std::vector<Feed> feeds;
 };
@@ -54,11 +56,17 @@ struct FlowReport {
 /// with u(s) = (dp/dx) (I(s) - (F_1/F_0) J(s)) + U J(s)/F_0, J = int ds/mu, I = int s ds/mu from the bush at rest (s =
 /// 0) to the journal, of surface speed U: exact in layers of constant viscosity. Finite volumes around the nodes; the
 /// properties at a face are the mean of those of both sides. Of a gas rho_k = p/(r T_k).
-/// Source: Dowson (1962); Skarolek (2011) eqs. (4.8)-(4.17) with the errata kept by this project.
+/// In turbulence P_k is divided by k/12 around and along, and the shear U/F_0 of the journal grows by the Couette
+/// factor, at Re = rho |U| h/mu with the means across the film; C_k stays. Source: Dowson (1962); Skarolek (2011) eqs.
+/// (4.8)-(4.17) with the errata kept by this project.
+/// A film that conserves its mass fills the gap to the share theta where p = 0: C_k has the share of the node upstream.
+/// One state u of a node stands for both: p = u where u >= 0, 1 - theta = -u/p_s below, p_s a scale of the pressure
+/// (Jakobsson and Floberg 1957; Olsson 1965; Elrod and Adams 1974).
 class FilmFlow {
 public:
   /// `thickness` m [r, n], of the nodes of this rank, i fastest. Options of its solver begin with `film_pressure_`.
-  /// Collective. Throws core::Error, on all ranks, where two orifices share a node or one has no place in the mesh.
+  /// Collective. Throws core::Error, on all ranks, where two orifices share a node or one has no place in the mesh,
+  /// and where a film is to conserve the mass of its cavity that is a gas or at rest.
   FilmFlow(const Rows& rows, FilmFlowOptions options, std::vector<double> thickness);
   ~FilmFlow();
   FilmFlow(const FilmFlow&) = delete;
@@ -77,6 +85,8 @@ public:
   int solve(double tolerance = 1e-13, double reduction = 0);
   /// Pa [r, n].
   [[nodiscard]] const std::vector<double>& pressure() const;
+  /// - [r, n], share of the gap that is full of liquid: 1 but in the cavity of a film that conserves its mass.
+  [[nodiscard]] const std::vector<double>& fill() const;
   /// Mass flows and heat at this pressure. What orifices and grooves give enters layer 0; at the ends each layer leaves
   /// the film by itself. Collective.
   [[nodiscard]] Flow flow() const;

@@ -27,7 +27,9 @@ thermal::FilmFlowOptions flow_of(const ThdOptions& o, const thermal::Mesh& mesh,
   out.speed = speed;
   out.cavitation = o.cavitation == ThdOptions::Cavitation::none              ? Cavitation::none
                    : o.cavitation == ThdOptions::Cavitation::half_sommerfeld ? Cavitation::half_sommerfeld
+                   : o.cavitation == ThdOptions::Cavitation::mass_conserving ? Cavitation::mass_conserving
                                                                              : Cavitation::reynolds;
+  out.turbulence = o.turbulence;
   const double step = 2 * std::numbers::pi / mesh.around;
   const auto node_around = [&](double angle) { return static_cast<int>(std::lround(angle / step)); };
   const auto node_along = [&](double z) { return static_cast<int>(std::lround((z / mesh.length + 0.5) * mesh.along)); };

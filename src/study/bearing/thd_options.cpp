@@ -14,7 +14,9 @@ std::span<const deck::Name<ThdOptions::Cavitation>> names(ThdOptions::Cavitation
   static constexpr deck::Name<ThdOptions::Cavitation> table[] = {
       {none, "none", "the film holds together; what a gas film is"},
       {half_sommerfeld, "half_sommerfeld", "as none, but pressure below the ambient's does not act on the journal"},
-      {reynolds, "reynolds", "no pressure below the ambient's, zero slope where the film ruptures"}};
+      {reynolds, "reynolds", "no pressure below the ambient's, zero slope where the film ruptures"},
+      {mass_conserving, "mass_conserving",
+       "the cavity keeps its oil: it is partly filled until the film is full again"}};
   return table;
 }
 
@@ -33,6 +35,7 @@ void describe(deck::Description<ThdOptions>& d) {
         "the film balances it");
   d.add("cells", &O::cells, deck::in(2, 1e5), "intervals around and along the film, layers across it");
   d.add("cavitation", &O::cavitation, "what an oil film does where it would be under tension");
+  d.add("turbulence", &O::turbulence, "flow resistance, shear and mixing across of a turbulent film");
   d.add("second_order", &O::second_order,
         "convection of heat by limited differences of second order; false: upwind, of first order");
   d.add("fluid", &O::fluid, "what fills the film, with its properties").required();
@@ -88,6 +91,9 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
   if (!gas && !options.orifices.empty()) report.fail("orifices", "orifices feed a gas: give a liquid 'grooves'");
   if (gas && options.cavitation != ThdOptions::Cavitation::none)
     report.fail("cavitation", "a gas does not cavitate: leave 'cavitation' out");
+  if (options.cavitation == ThdOptions::Cavitation::mass_conserving &&
+      std::ranges::any_of(options.speeds, [](const deck::Quantity& speed) { return speed.value == 0; }))
+    report.fail("speeds", "at rest nothing moves what the cavity of a film that conserves its mass holds");
   for (const thermal::OrificeRing& ring : options.orifices) {
     if (std::abs(ring.z) >= g.length / 2) report.fail("orifices", "an orifice lies beyond the ends of the film");
     if (ring.pressure <= options.ambient.pressure)

@@ -9,6 +9,7 @@
 #include "whirl/deck/one_or_more.hpp"
 #include "whirl/study/study.hpp"
 #include "whirl/thermal/options.hpp"
+#include "whirl/thermal/turbulence.hpp"
 
 namespace whirl::study {
 
@@ -20,8 +21,9 @@ struct ThdOptions {
   std::optional<double> attitude;       ///< of the journal, from +x counter-clockwise [rad]; 0 likewise
   deck::OneOrMore load;                 ///< on the journal [N]: one number downwards, or x and y; empty: a given place
   std::array<int, 3> cells{96, 32, 8};  ///< around, along, across the film
-  enum class Cavitation { none, half_sommerfeld, reynolds };
+  enum class Cavitation { none, half_sommerfeld, reynolds, mass_conserving };
   Cavitation cavitation = Cavitation::none;
+  thermal::Turbulence turbulence = thermal::Turbulence::laminar;
   bool second_order = true;  ///< convection of heat
   thermal::FluidOptions fluid;
   thermal::Ambient ambient;
