@@ -2,9 +2,10 @@
 and what a series of meshes or speeds shows."""
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import ListedColormap
 
 from .film import panel
-from .style import GREY, INK, length_unit, parameter_label, save
+from .style import GREY, INK, LIGHT, length_unit, parameter_label, save
 
 HEAT = "inferno"
 LABEL = "temperature [K]"
@@ -45,6 +46,13 @@ class Film:
         """[along, around] between the walls."""
         return np.array([[np.interp(0.5, self.zeta, column) for column in row] for row in self.temperature])
 
+    @property
+    def cavity(self):
+        """[along, around] where the film is ruptured: within its ends no pressure at all above the ambient's, as of liquids alone."""
+        none = self.pressure == 0
+        none[[0, -1]] = none[[1, -2]]
+        return none if self.pressure.max() > 0 else np.zeros_like(none)
+
     def place(self):
         """Clearance and eccentricity [m] of the circle that the thickness is the gap of: h = c - x cos - y sin."""
         h = self.thickness.mean(axis=0)
@@ -67,9 +75,31 @@ def draw_maps(study):
         axis.set_title(f"{title}: {values.min():.5g} to {values.max():.5g} {label.split('[')[1][:-1]}")
         if title == "pressure" and study.has("film/flow_around", "film/flow_along"):
             streams(axis, film, study.get("film/flow_around"), study.get("film/flow_along"))
+        mark_cavity(axis, film)
     for axis in axes.flat[len(maps):]:
         axis.set_visible(False)
-    return save(figure, study, "thd-maps", "film unwrapped" + (", with lines of mass flow" if film.radius and study.has("film/flow_around") else ""))
+    return save(figure, study, "thd-maps", "film unwrapped" + (", with lines of mass flow" if film.radius and study.has("film/flow_around") else "")
+                + ("; hatched: the film is ruptured, and what is drawn there is not of a full film" if film.cavity.any() else ""))
+
+
+def mark_cavity(axis, film):
+    """Hatches the cells around the nodes where the film is ruptured, cell by cell: nothing is drawn between them and the film."""
+    if not film.cavity.any():
+        return
+    step = np.diff(film.theta).max()
+    edges = np.degrees(np.append(film.theta - step / 2, film.theta[-1] + step / 2))
+    z = film.z * 1e3
+    rows = np.concatenate((z[:1], (z[1:] + z[:-1]) / 2, z[-1:]))
+    limits = axis.get_xlim(), axis.get_ylim()
+    shown = np.ma.masked_where(~film.cavity, np.ones(film.cavity.shape))
+    pieces = [(edges, shown)]
+    if closes(film.theta):  # half of the first node's cell lies at the other end of the map
+        pieces.append((edges[:2] + 360, shown[:, :1]))
+    for at, values in pieces:
+        cells = axis.pcolor(at, rows, values, hatch="////", edgecolor=LIGHT, linewidth=0, cmap=ListedColormap(["none"]))
+        cells.set_facecolor("none")
+    axis.set_xlim(limits[0])
+    axis.set_ylim(limits[1])
 
 
 def streams(axis, film, around, along):

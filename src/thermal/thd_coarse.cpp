@@ -78,6 +78,8 @@ ThdSetup coarser(const ThdSetup& setup, const Rows& fine, const Rows& coarse) {
   for (WallOptions* wall : {&out.bush, &out.journal})
     wall->layers = std::max(wall->layers / 2, std::min(wall->layers, 4));
   if (!setup.supply.empty()) out.supply = interpolate(fine, coarse, setup.supply, 1);
+  // A coarse mesh is no more than a start: its grooves, of fewer nodes than those that are mixed, stay as they are fed.
+  out.mixed.clear();
   for (Orifice& o : out.flow.orifices) {
     o.i = coarse_node(o.i) % coarse.mesh().nodes_around();
     o.j = coarse_node(o.j);

@@ -12,7 +12,7 @@ from matplotlib.collections import QuadMesh
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep, thd  # noqa: E402
+from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep, thd, thd_compare  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -371,6 +371,43 @@ def sections(folder):
     assert titles[1] == "pressure: 0.1 to 0.4 MPa"
 
 
+def beside(folder):
+    """Films of one temperature beside a film with heat: what is held has no bar, and properties are over those at the least temperature."""
+    plt.close("all")
+    with results_with(folder, lambda root: None) as results:
+        figures = Figures()
+        for function in (thd_compare.draw_effective, thd_compare.draw_properties):
+            figures.draw(thd_compare, function, results["hot"])
+    bars = [[bar.get_height() for bar in group] for group in figures["thd-effective"].axes[1].containers]
+    assert np.allclose(bars, [[np.nan, 1.2], [-3, np.nan], [0.4, -0.2]], equal_nan=True), bars
+    curves = [line.get_ydata() for line in figures["thd-properties"].axes[0].lines if len(line.get_xdata()) == 6]
+    assert len(curves) == 3 and all(values[0] == 1 for values in curves)
+    assert np.allclose(curves[0], (1 + 6.5e-3 * (np.linspace(250, 500, 6) - 275)) / (1 - 6.5e-3 * 25)) and np.isclose(curves[2][-1], 0.5)
+
+
+def ruptured(folder):
+    """Cells around nodes without pressure are hatched one by one, also across the seam; a film without any has none."""
+    plt.close("all")
+
+    def oil(root):
+        values = root["studies/hot/film/pressure"]
+        theta, z = root["studies/hot/film/theta"][:], root["studies/hot/film/z"][:]
+        p = 1e6 * np.maximum(np.cos(theta - 3), 0)[None, :] * (1 - (z / 0.015)**2)[:, None]
+        p[[0, -1]] = 0
+        values[...] = p
+
+    for change, wanted in ((lambda root: None, 0), (oil, 1)):
+        with results_with(folder, change) as results:
+            figures = Figures()
+            figures.draw(thd, thd.draw_maps, results["hot"])
+        hatched = [c for c in figures["thd-maps"].axes[0].collections if c.get_hatch()]
+        assert bool(hatched) == bool(wanted), f"{len(hatched)} hatched"
+    cells = sum(int((~np.ma.getmaskarray(c.get_array())).sum()) for c in hatched)
+    theta = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    none = np.cos(theta - 3) <= 0
+    assert cells == 17 * (none.sum() + none[0]), f"{cells} cells"
+
+
 def legends():
     """As many columns as fit: a long label takes only its own."""
     assert style.columns_of(["a", "b", "c"], 8, 6) == 3 and style.columns_of([], 8, 6) == 1
@@ -382,7 +419,7 @@ beams()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci, sections):
+              coefficients, loci, sections, beside, ruptured):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")

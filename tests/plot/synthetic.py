@@ -56,6 +56,9 @@ def thd(root):
     put(g.create_group("bush"), theta=theta, z=z, r=r_bush, r_faces=np.linspace(0.015, 0.025, 7), temperature=300 + warm[..., None] * (1 - 10 * (r_bush - 0.015)))
     put(g.create_group("journal"), z=z_journal, r=r_journal, r_faces=np.append(np.linspace(0.005, 0.015, 7), 0.015), temperature=300 + 58 * np.exp(-np.abs(z_journal / 0.03))[:, None] * (1 + 0 * r_journal))
     put(g.create_group("iterations"), field=["temperature"], residual=10.0 ** -np.arange(7)[:, None])
+    put(g.create_group("effective"), same=["load", "power_loss"], temperature=[355.0, 361.0], load_error=[0, 0.012], power_loss_error=[-0.03, 0], mass_flow_error=[0.004, -0.002])
+    t = np.linspace(250, 500, 6)
+    put(g.create_group("properties"), temperature=t, clearance=1.5e-5 * (1 + 6.5e-3 * (t - 275)), viscosity=1.8e-5 * (t / 300)**0.7, density=353 / t)
     put(g.create_group("meshes"), cells=[1e4, 8e4, 6.4e5], energy_residual=[1e-9, 0, 3e-10],
         **{"temperature.minimum": [294, 293, 291], "temperature.mean": [301.3, 301.25, 301.23], "temperature.maximum": [305.2, 305.4, 306]})
     put(g.create_group("budget"), parameter=[0, 2000, 10000], power_loss=[0, 3, 69.7], dissipation=[10.5, 13.4, 79.8], expansion=[-10.5, -10.4, -10.1],

@@ -97,6 +97,52 @@ def growth(h):
     h.true("growth without expansion is refused", refused.returncode == 2 and "expansion" in refused.stdout + refused.stderr, refused.stderr[-200:])
 
 
+def properties(h):
+    """Clearance and properties over the temperature, beside tables of air and the growth of two rings."""
+    h.run("../thd/properties.yaml", "properties")
+    with h5py.File(h.work / "properties/results.h5") as f:
+        table = {k: v[:] for k, v in f["studies/steel in bronze/properties"].items()}
+    t = table["temperature"]
+    h.close("temperatures [K]", numpy.abs(t - numpy.arange(250, 501, 25)).max(), 0, 1e-9)
+    grown = 15e-6 + 15e-3 * (1.8e-5 - 1.15e-5) * (t - 275)
+    h.close("clearance [m]", numpy.abs(table["clearance"] - grown).max(), 0, 1e-15)
+    # Incropera and DeWitt (2002), table A.4, air at 1 bar: uPa s, kg/m^3, W/(m K), J/(kg K), Pr.
+    known = {250: (15.96, 1.3947, 0.0223, 1006, 0.720), 300: (18.46, 1.1614, 0.0263, 1007, 0.707), 350: (20.82, 0.9950, 0.0300, 1009, 0.700),
+             400: (23.01, 0.8711, 0.0338, 1014, 0.690), 450: (25.07, 0.7740, 0.0373, 1021, 0.686), 500: (27.01, 0.6964, 0.0407, 1030, 0.684)}
+    for at, (viscosity, density, conductivity, capacity, prandtl) in known.items():
+        k = int(numpy.flatnonzero(numpy.abs(t - at) < 1e-6)[0])
+        h.close(f"viscosity at {at} K [Pa s]", table["viscosity"][k], 1e-6 * viscosity, 0.015e-6 * viscosity)
+        h.close(f"density at {at} K [kg/m^3]", table["density"][k], 1.01325 * density, 0.002 * density)
+        h.close(f"conductivity at {at} K [W/(m K)]", table["conductivity"][k], conductivity, 0.03 * conductivity)
+        h.close(f"heat capacity at {at} K [J/(kg K)]", table["heat_capacity"][k], capacity, 0.005 * capacity)
+        h.close(f"Prandtl number at {at} K", table["prandtl"][k], prandtl, 0.04 * prandtl)
+        h.close(f"ratio of specific heats at {at} K", table["heat_ratio"][k], capacity / (capacity - 286.7), 0.003)
+
+
+def effective(h):
+    """A film of the effective temperature has what it is said to have: it is computed once more with walls and gas of that temperature."""
+    coarse = ["studies.*.thd.cells=[48, 16, 8]", "studies.*.thd.meshes=1", "studies.*.thd.speeds=[10000 rad/s]"]
+    warm = h.run("../thd/bearing_a.yaml", "warm", coarse)["bearing A"]
+    for same in ("load", "power_loss", "mass_flow"):
+        t = value(warm, f"temperature.effective.{same}")
+        # The film without heat of the same deck, its ambient as warm: another way to the same flow.
+        walls = f"type: isothermal, temperature: {t:.9f} K"
+        alone = h.run("../thd/bearing_a.yaml", f"alone {same}",
+                      [*coarse, f"studies.*.thd.ambient={{temperature: {t:.9f} K}}", f"studies.*.thd.bush={{{walls}}}", f"studies.*.thd.journal={{{walls}}}"])["bearing A"]
+        wanted = {"load": numpy.hypot(value(warm, "load.x"), value(warm, "load.y")), "power_loss": value(warm, "power_loss"), "mass_flow": value(warm, "mass_flow")}
+        found = {"load": numpy.hypot(value(alone, "load.isothermal.x"), value(alone, "load.isothermal.y")), "power_loss": value(alone, "power_loss.isothermal"),
+                 "mass_flow": value(alone, "mass_flow.isothermal")}
+        h.close(f"same {same}", found[same] / wanted[same] - 1, 0, 1e-6)
+        if same == "load":
+            for other in ("power_loss", "mass_flow"):
+                h.close(f"error of the {other}", value(warm, f"effective.{other}_error"), found[other] / wanted[other] - 1, 2e-6)
+    # The friction is that of the mean viscosity; warmer than the coldest and colder than the warmest gas.
+    h.close("by the power loss: the mean of the gas [K]", value(warm, "temperature.effective.power_loss"), value(warm, "temperature.mean"), 0.3)
+    # At rest nothing is lost, so no temperature has the same loss.
+    rest = h.run("../thd/bearing_a.yaml", "rest", [*coarse[:2], "studies.*.thd.speeds=[0 rad/s]"])["bearing A"]
+    h.true("no power loss at rest", "temperature.effective.power_loss" not in rest["values"])
+
+
 def bars(h):
     """Error bars of coarse meshes hold the values of a fine one."""
     for deck, name, cells, fine in (("bearing_a.yaml", "bearing A", "[48, 16, 8]", "[144, 48, 24]"), ("solids.yaml", "cool gas", "[48, 16, 8]", "[96, 32, 16]"),
@@ -248,6 +294,10 @@ def oil(h):
     walls = ("cold bush", "bronze bush", "bush without heat")
     few = ["studies.*.thd.cells=[40, 16, 6]", "studies.*.thd.meshes=1"]
     found = h.run("../thd/oil_groove.yaml", "oil", few)
+    # A start from a coarser mesh, as of large films, whose grooves mix too: the same film.
+    one = [*few, "studies.*.thd.speeds=[4000 rpm]"]
+    alone, begun = (h.run("../thd/oil_groove.yaml", f"start {most}", one, flags=["--", "-thd_coarse_start", most])["bronze bush"] for most in ("0", "500"))
+    h.close("from a coarser mesh: peak of the bush [K]", value(begun, "temperature.bush.maximum"), value(alone, "temperature.bush.maximum"), 1e-4)
     with h5py.File(h.work / "oil/results.h5") as f:
         tables = {name: {k: v[:] for k, v in f[f"studies/{name}/budget"].items()} for name in walls}
     peaks = numpy.array([tables[name]["peak_bush_temperature"] for name in walls])
@@ -382,5 +432,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "bars": bars, "shown": shown, "oil": oil, "turbulent": turbulent, "conserving": conserving, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "properties": properties, "effective": effective, "bars": bars, "shown": shown, "oil": oil, "turbulent": turbulent, "conserving": conserving, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
     harness.finish()

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <string_view>
 
+#include "study/bearing/thd_effective.hpp"
 #include "study/bearing/thd_load.hpp"
 #include "study/bearing/thd_lumped.hpp"
+#include "study/bearing/thd_properties.hpp"
 #include "study/bearing/thd_record.hpp"
 #include "study/bearing/thd_values.hpp"
 #include "study/findings.hpp"
@@ -107,6 +109,8 @@ StudyResult Thd::run(Context& context) {
     const double residual = film.thd().budget().residual();
     put_thd_bars(context, options, geometry, speed, {sweep.place(), {}}, residual, pieces);
     put_lumped(summary, film, options, geometry);
+    put_effective(group, summary, film, options.ambient.temperature);
+    put_properties(group, options, film.fluid(), geometry);
     const thermal::ThdSolve& cost = film.cost();
     summary.set("energy_residual", residual, "W");
     summary.set("iterations", cost.iterations, "1");

@@ -128,10 +128,10 @@ ThdFilm::Isothermal ThdFilm::isothermal() const {
   return isothermal(ambient_, pressure);
 }
 
-ThdFilm::Isothermal ThdFilm::isothermal(double temperature, std::vector<double>& pressure) const {
+ThdFilm::Isothermal ThdFilm::isothermal(double temperature, std::vector<double>& pressure, bool grown) const {
   const thermal::Mesh& mesh = rows_.mesh();
   const auto l = static_cast<std::size_t>(mesh.across);
-  thermal::FilmFlow film(rows_, flow_, thickness_);
+  thermal::FilmFlow film(rows_, flow_, grown ? thickness() : thickness_);
   film.set_temperature(std::vector<double>(thickness_.size() * l, temperature));
   if (!pressure.empty()) film.start(pressure);
   (void)film.solve();

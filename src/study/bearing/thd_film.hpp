@@ -38,10 +38,10 @@ public:
     double drawn = 0;  ///< kg/s, of all that comes in
     double inlet = 0;  ///< K, mean temperature of that
   };
-  /// Before solids grow, at the temperature of the ambient / at another, K: `pressure` is as in force_beside().
-  /// Collective.
+  /// Before solids grow, at the temperature of the ambient / at another, K, also between solids as they have grown:
+  /// `pressure` is as in force_beside(). Collective.
   [[nodiscard]] Isothermal isothermal() const;
-  [[nodiscard]] Isothermal isothermal(double temperature, std::vector<double>& pressure) const;
+  [[nodiscard]] Isothermal isothermal(double temperature, std::vector<double>& pressure, bool grown = false) const;
   /// N, on the journal `move` m from where it is, with the temperatures that the film has. `pressure` Pa [r, n] is
   /// where the search for it begins, empty: from none, and what it finds. Collective. Throws core::NotConverged.
   [[nodiscard]] std::array<double, 2> force_beside(const std::array<double, 2>& move,

@@ -52,6 +52,9 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add("meshes", &O::meshes, deck::in(1, 10),
         "meshes of the film that the error bars stand on, that of 'cells' and coarser ones, each with half of the "
         "cells of the one before in every direction; 1: no bars");
+  d.add(
+      "temperatures", &O::temperatures, "K", deck::positive,
+      "temperatures of a table of the properties of the fluid and of the clearance, both solids as warm as the fluid");
   d.check([](const O& o, const deck::Report& r) {
     if (o.load.values.empty()) return;
     for (const auto& [key, given] :

@@ -32,7 +32,8 @@ struct ThdOptions {
   thermal::WallOptions bush, journal;
   double tolerance = 1e-9;  ///< of temperatures, relative to the absolute temperature
   int most_iterations = 60;
-  int meshes = 3;  ///< that the error bars stand on, the deck's included
+  std::vector<deck::Quantity> temperatures;  ///< of the table of properties [K]; empty: none
+  int meshes = 3;                            ///< that the error bars stand on, the deck's included
 };
 [[nodiscard]] std::span<const deck::Name<ThdOptions::Cavitation>> names(ThdOptions::Cavitation);
 void describe(deck::Description<ThdOptions>& d);

@@ -1,0 +1,109 @@
+#include "study/bearing/thd_effective.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "study/bearing/thd_record.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+struct Quantity {
+  const char *key, *text;
+};
+constexpr std::array<Quantity, 3> held{{{"load", "load"}, {"power_loss", "power loss"}, {"mass_flow", "flow"}}};
+using Values = std::array<double, held.size()>;
+
+// N, W, kg/s.
+Values values_of(const thermal::FlowReport& report) {
+  return {std::hypot(report.force[0], report.force[1]), report.power, report.inflow};
+}
+
+// Angle from one force to another, rad.
+double turn(const double (&from)[2], const double (&to)[2]) {
+  return std::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+}
+
+// Where f changes its sign between a and b, to 1e-6 K, by the method of false position with Illinois' weights
+// (Dowell and Jarratt 1971); nothing where it has one sign at both.
+std::optional<double> zero(const std::function<double(double)>& f, double a, double b) {
+  double fa = f(a), fb = f(b);
+  if (fa * fb > 0 || fa == fb) return {};
+  double x = fa == 0 ? a : b;
+  for (int k = 0; k < 60 && fa != 0 && fb != 0; ++k) {
+    const double before = x;
+    x = (a * fb - b * fa) / (fb - fa);
+    const double fx = f(x);
+    if (fx * fb < 0) {
+      a = b;
+      fa = fb;
+    } else {
+      fa /= 2;
+    }
+    b = x;
+    fb = fx;
+    if (fx == 0 || std::abs(x - before) < 1e-6) return x;
+  }
+  return x;
+}
+
+}  // namespace
+
+void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, double ambient) {
+  thermal::Thd& thd = film.thd();
+  const thermal::FlowReport wanted_report = thd.flow().report(thd.flows());
+  const Values wanted = values_of(wanted_report);
+  const TemperatureNumbers t = temperature_numbers(film, thd.temperature());
+  std::vector<double> pressure;
+  const auto at = [&](double temperature) { return film.isothermal(temperature, pressure, true).report; };
+  const double span = std::max({t.maximum - t.minimum, std::abs(t.mean - ambient), 1.0});
+  const double low = t.minimum - std::min(span, t.minimum / 4), high = t.maximum + span;
+
+  std::vector<std::string> names;
+  std::vector<double> temperatures, angles;
+  std::array<std::vector<double>, held.size()> errors;
+  for (std::size_t q = 0; q < held.size(); ++q) {
+    if (wanted[q] <= 0) continue;
+    try {
+      const auto off = [&](double temperature) { return values_of(at(temperature))[q] / wanted[q] - 1; };
+      const std::optional<double> found = zero(off, low, high);
+      if (!found) {
+        summary.warnings.push_back(
+            fmt::format("no film of one temperature between {:.5g} and {:.5g} K has the {} of the film with heat", low,
+                        high, held[q].text));
+        continue;
+      }
+      const thermal::FlowReport report = at(*found);
+      const Values values = values_of(report);
+      summary.set(fmt::format("temperature.effective.{}", held[q].key), *found, "K");
+      names.emplace_back(held[q].key);
+      temperatures.push_back(*found);
+      angles.push_back(turn(wanted_report.force, report.force));
+      for (std::size_t k = 0; k < held.size(); ++k)
+        errors[k].push_back(wanted[k] > 0 ? values[k] / wanted[k] - 1 : std::numeric_limits<double>::quiet_NaN());
+      if (q != 0) continue;
+      summary.set("effective.load_angle_error", angles.back(), "rad");
+      for (std::size_t k = 1; k < held.size(); ++k)
+        if (wanted[k] > 0) summary.set(fmt::format("effective.{}_error", held[k].key), errors[k].back(), "1");
+    } catch (const core::NotConverged& error) {
+      summary.warnings.push_back(error.what());
+    }
+  }
+  if (names.empty()) return;
+  io::Group& table = group.child("effective");
+  table.put("same", names, "what the film of one temperature has in common with the film with heat");
+  table.put("temperature", temperatures, "K", "of that film");
+  table.put("load_angle_error", angles, "rad", "from the force of the film with heat to that film's");
+  for (std::size_t k = 0; k < held.size(); ++k)
+    table.put(fmt::format("{}_error", held[k].key), errors[k], "1",
+              fmt::format("relative error of its {}", held[k].text));
+}
+
+}  // namespace whirl::study
