@@ -28,4 +28,8 @@ void mobility(const Resistance& r, const MobilityScale& scale, int n, const doub
   }
 }
 
+void powers(double factor, double exponent, int n, const double* __restrict x, double* __restrict y) {
+  for (int i = 0; i < n; ++i) y[i] = factor * std::exp(exponent * std::log(x[i]));
+}
+
 }  // namespace whirl::film

@@ -15,4 +15,7 @@ struct MobilityScale {
 void mobility(const Resistance& resistance, const MobilityScale& scale, int n, const double* h, double* a, double* a_h,
               double* a_speed);
 
+/// y = factor x^exponent of `n` positive numbers.
+void powers(double factor, double exponent, int n, const double* x, double* y);
+
 }  // namespace whirl::film

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film/mobility.hpp"
 #include "film/thd_pad_report.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/truncation.hpp"
@@ -60,6 +61,7 @@ ThdPad<Count, Most>::ThdPad(const Pad& pad, const Thd& options, const Lubricant&
       rows_(whole_ ? grid_.n_z + 1 : grid_.n_z / 2 + 1),
       resistance_around_(resistance_around(options.turbulence)),
       resistance_along_(resistance_along(options.turbulence)),
+      couette_(couette_excess(options.turbulence)),
       profile_(options.layers),
       viscosity_(options.viscosity ? options.viscosity->law
                                    : thermal::Viscosity(thermal::ConstantViscosity{lubricant.viscosity})) {
@@ -110,11 +112,12 @@ void ThdPad<Count, Most>::lay_out() {
     sides_[to][around ? 0 : 2].face = number;
     faces_.push_back(std::move(f));
   };
+  for (int i = 0; i + 1 < columns_; ++i)
+    for (int j = 0; j < rows_; ++j) add(i, j, true);
+  around_ = static_cast<int>(faces_.size());
   for (int i = 0; i < columns_; ++i)
-    for (int j = 0; j < rows_; ++j) {
-      if (i + 1 < columns_) add(i, j, true);
-      if (j + 1 < rows_) add(i, j, false);
-    }
+    for (int j = 0; j + 1 < rows_; ++j) add(i, j, false);
+  for (std::vector<double>* v : {&reynolds_, &resisting_, &sheared_}) v->assign(faces_.size(), 0.0);
 }
 
 template <int Count, int Most>
@@ -164,25 +167,42 @@ void ThdPad<Count, Most>::read(const JournalMotion& motion, std::span<const doub
   for (Face& f : faces_) f.h = pad_.clearance - (X + f.z * tx) * f.cosine - (Y + f.z * ty) * f.sine;
 }
 
+template <int Count, int Most>
+void ThdPad<Count, Most>::turbulence() {
+  const double surface = std::abs(speed_) * pad_.radius;
+  turbulent_ = options_.turbulence != Turbulence::laminar && surface > 0.0;
+  if (!turbulent_) return;
+  for (std::size_t k = 0; k < faces_.size(); ++k) {
+    const Face& f = faces_[k];
+    const Node &a = nodes_[static_cast<std::size_t>(f.from)], &b = nodes_[static_cast<std::size_t>(f.to)];
+    reynolds_[k] = lubricant_.density * surface * f.h / (0.5 * (a.mu + b.mu).mean());
+  }
+  const int along = static_cast<int>(faces_.size()) - around_;
+  const double* re = reynolds_.data();
+  powers(resistance_around_.factor, resistance_around_.exponent, around_, re, resisting_.data());
+  powers(resistance_along_.factor, resistance_along_.exponent, along, re + around_, resisting_.data() + around_);
+  powers(couette_.factor, couette_.exponent, around_, re, sheared_.data());
+}
+
 // In turbulence the flow by pressure has the share c = 12/k(Re) of the laminar one, and so has its dissipation; the
 // shear of the Couette flow grows by s. Re is that of the mean viscosity at the face.
 template <int Count, int Most>
-void ThdPad<Count, Most>::flow(Face& f, bool tangents) {
+void ThdPad<Count, Most>::flow(int face, bool tangents) {
+  const auto number = static_cast<std::size_t>(face);
+  Face& f = faces_[number];
   const Node &a = nodes_[static_cast<std::size_t>(f.from)], &b = nodes_[static_cast<std::size_t>(f.to)];
   mean_ = 0.5 * (a.mu + b.mu);
   profile_.set(mean_, tangents);
   const auto& p = profile_;
   const double u = f.around ? speed_ * pad_.radius : 0.0, h = f.h, g = (b.value[0] - a.value[0]) / f.step;
-  double c = 1.0, c_re = 0.0, s = 1.0, s_re = 0.0, re = 0.0;
-  const double mu = mean_.mean(), surface = std::abs(speed_) * pad_.radius;
-  if (options_.turbulence != Turbulence::laminar && surface > 0.0) {
+  double c = 1.0, c_re = 0.0, s = 1.0, s_re = 0.0;
+  if (turbulent_) {
     const Resistance& r = f.around ? resistance_around_ : resistance_along_;
-    re = lubricant_.density * surface * h / mu;
-    const double k = film::evaluate(r, re);
+    const double k = 12.0 + resisting_[number];
     c = 12.0 / k;
-    c_re = -c / k * r.exponent * (k - 12.0);  // by ln Re
-    if (f.around) s = 1.0 + 0.0012 * std::pow(re, 0.94);
-    s_re = 0.94 * (s - 1.0);
+    c_re = -c / k * r.exponent * resisting_[number];  // by ln Re
+    s = 1.0 + sheared_[number];
+    s_re = couette_.exponent * sheared_[number];
   }
   const double h3 = h * h * h;
   f.q = u * h * p.drag + (c * h3 * g) * p.pressure;
@@ -201,7 +221,8 @@ void ThdPad<Count, Most>::flow(Face& f, bool tangents) {
   }
   f.q_mu = (u * h) * p.d_drag + (c * h3 * g) * p.d_pressure;
   f.d_mu = (s * u * u / h) * p.d_couette + (c * u * h * g) * p.d_cross + (c * h3 * g * g) * p.d_poiseuille;
-  if (re == 0.0) return;
+  if (!turbulent_) return;
+  const double mu = mean_.mean();
   const Vector q_re = (c_re * h3 * g) * p.pressure;
   const Vector d_re =
       (s_re * u * u / h) * p.couette + (c_re * u * h * g) * p.cross + (c_re * h3 * g * g) * p.poiseuille;
@@ -414,7 +435,8 @@ void ThdPad<Count, Most>::evaluate(const JournalMotion& motion, std::span<const 
                                    std::size_t& at_rates, StateResponse& response) {
   read(motion, states);
   response.journal.min_thickness = std::min(response.journal.min_thickness, h_min_);
-  for (Face& f : faces_) flow(f, need == Need::tangents);
+  turbulence();
+  for (std::size_t f = 0; f < faces_.size(); ++f) flow(static_cast<int>(f), need == Need::tangents);
   if (entries_.empty()) {
     std::size_t before = 0;
     for (const auto& sides : sides_) {

@@ -97,7 +97,9 @@ private:
   };
   void lay_out();
   void read(const JournalMotion& motion, std::span<const double> states);
-  void flow(Face& face, bool tangents);
+  // Re, k - 12 and s - 1 of all faces; see flow().
+  void turbulence();
+  void flow(int face, bool tangents);
   void row(int node, std::span<const double> rates, Need need, std::size_t first, std::size_t at, std::size_t at_rates,
            StateResponse& response);
   void integrate(Need need, std::size_t first, StateResponse& response) const;
@@ -113,13 +115,16 @@ private:
   Lubricant lubricant_;
   bool whole_;
   int layers_, columns_, rows_;
-  Resistance resistance_around_, resistance_along_;
-  Matrix conduction_;  // K and b of conduction across the film, in lambda/h
+  Resistance resistance_around_, resistance_along_, couette_;
+  bool turbulent_ = false;  // in the last evaluate()
+  Matrix conduction_;       // K and b of conduction across the film, in lambda/h
   Vector walls_;
   double hold_;  // m/(s Pa): what a pressure at an edge weighs
   double h_min_ = 0, speed_ = 0;
   std::vector<Node> nodes_;
-  std::vector<Face> faces_;
+  std::vector<Face> faces_;  // those around, then those along
+  int around_ = 0;
+  std::vector<double> reynolds_, resisting_, sheared_;  // of the faces, in turbulence
   std::vector<std::array<Side, 4>> sides_;
   std::vector<std::size_t> entries_;  // of each node: entries of dg/ds before its own
   Layers<Count, Most> profile_;

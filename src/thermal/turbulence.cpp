@@ -42,7 +42,13 @@ double evaluate(const Resistance& resistance, double reynolds) {
 }
 
 double couette_factor(Turbulence turbulence, double reynolds) {
-  return turbulence == Turbulence::laminar ? 1.0 : 1.0 + 0.0012 * std::pow(reynolds, 0.94);
+  const Resistance excess = couette_excess(turbulence);
+  return excess.factor == 0.0 ? 1.0 : 1.0 + excess.factor * std::pow(reynolds, excess.exponent);
+}
+
+Resistance couette_excess(Turbulence turbulence) {
+  if (turbulence == Turbulence::laminar) return {0.0, 1.0};
+  return {0.0012, 0.94};
 }
 
 double eddy_viscosity(double distance) {

@@ -5,6 +5,7 @@
 
 namespace whirl::film {
 
+using thermal::couette_excess;
 using thermal::couette_factor;
 using thermal::evaluate;
 using thermal::Resistance;

@@ -23,6 +23,8 @@ struct Resistance {
 
 /// Shear of a turbulent film that is dragged along, over mu U/h: 1 + 0.0012 Re^0.94, Constantinescu's; laminar: 1.
 [[nodiscard]] double couette_factor(Turbulence turbulence, double reynolds);
+/// What it has above one, as factor Re^exponent.
+[[nodiscard]] Resistance couette_excess(Turbulence turbulence);
 
 /// Turbulent Prandtl number, eddy viscosity over the eddies' diffusivity of heat; Kays (1994), at a wall far from it.
 inline constexpr double turbulent_prandtl = 0.9;
