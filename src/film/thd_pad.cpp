@@ -105,8 +105,12 @@ void ThdPad<Count, Most>::lay_out() {
     f.cosine = around ? grid_.face_cos[k] : grid_.node_cos[k];
     f.sine = around ? grid_.face_sin[k] : grid_.node_sin[k];
     f.z = nodes_[from].z + (around ? 0.0 : 0.5 * grid_.dz);
-    for (Vector* v : {&f.q, &f.d, &f.q_g, &f.q_h, &f.q_u, &f.d_g, &f.d_h, &f.d_u}) v->resize(layers_);
-    for (Matrix* m : {&f.q_mu, &f.d_mu}) m->resize(layers_, layers_);
+    f.q.resize(layers_);
+    f.d.resize(layers_);
+    Slopes s;
+    for (Vector* v : {&s.q_g, &s.q_h, &s.q_u, &s.d_g, &s.d_h, &s.d_u}) v->resize(layers_);
+    for (Matrix* m : {&s.q_mu, &s.d_mu}) m->resize(layers_, layers_);
+    slopes_.push_back(std::move(s));
     const int number = static_cast<int>(faces_.size());
     sides_[from][around ? 1 : 3].face = number;
     sides_[to][around ? 0 : 2].face = number;
@@ -153,7 +157,7 @@ void ThdPad<Count, Most>::read(const JournalMotion& motion, std::span<const doub
     here.value = &states[n * static_cast<std::size_t>(block())];
     here.h = pad_.clearance - (X + here.z * tx) * here.cosine - (Y + here.z * ty) * here.sine;
     here.rate = -(motion.velocity[0] + here.z * vtx) * here.cosine - (motion.velocity[1] + here.z * vty) * here.sine;
-    for (int k = 0; k < layers_; ++k) {
+    for (int k = 0; k < layers(); ++k) {
       const double t = here.value[1 + k];
       // Beyond these no law holds, and Newton's method is to come back.
       if (!(t > 200.0 && t < 1000.0)) throw core::DomainError("a temperature of the film is not that of an oil");
@@ -209,41 +213,72 @@ void ThdPad<Count, Most>::flow(int face, bool tangents) {
   f.d = (s * u * u / h) * p.couette + (c * u * h * g) * p.cross + (c * h3 * g * g) * p.poiseuille;
   f.shear = s * u / h * p.pull + g * h * (1.0 - p.neutral);
   if (!tangents) return;
-  f.q_g = (c * h3) * p.pressure;
-  f.d_g = (c * u * h) * p.cross + (2.0 * c * h3 * g) * p.poiseuille;
-  f.q_h = u * p.drag + (3.0 * c * h * h * g) * p.pressure;
-  f.d_h = (-s * u * u / (h * h)) * p.couette + (c * u * g) * p.cross + (3.0 * c * h * h * g * g) * p.poiseuille;
-  f.q_u.setZero();
-  f.d_u.setZero();
+  Slopes& by = slopes_[number];
+  by.q_g = (c * h3) * p.pressure;
+  by.d_g = (c * u * h) * p.cross + (2.0 * c * h3 * g) * p.poiseuille;
+  by.q_h = u * p.drag + (3.0 * c * h * h * g) * p.pressure;
+  by.d_h = (-s * u * u / (h * h)) * p.couette + (c * u * g) * p.cross + (3.0 * c * h * h * g * g) * p.poiseuille;
+  by.q_u.setZero();
+  by.d_u.setZero();
   if (f.around) {
-    f.q_u = h * p.drag;
-    f.d_u = (2.0 * s * u / h) * p.couette + (c * h * g) * p.cross;
+    by.q_u = h * p.drag;
+    by.d_u = (2.0 * s * u / h) * p.couette + (c * h * g) * p.cross;
   }
-  f.q_mu = (u * h) * p.d_drag + (c * h3 * g) * p.d_pressure;
-  f.d_mu = (s * u * u / h) * p.d_couette + (c * u * h * g) * p.d_cross + (c * h3 * g * g) * p.d_poiseuille;
+  by.q_mu = (u * h) * p.d_drag + (c * h3 * g) * p.d_pressure;
+  by.d_mu = (s * u * u / h) * p.d_couette + (c * u * h * g) * p.d_cross + (c * h3 * g * g) * p.d_poiseuille;
   if (!turbulent_) return;
   const double mu = mean_.mean();
   const Vector q_re = (c_re * h3 * g) * p.pressure;
   const Vector d_re =
       (s_re * u * u / h) * p.couette + (c_re * u * h * g) * p.cross + (c_re * h3 * g * g) * p.poiseuille;
-  f.q_h += q_re / h;
-  f.d_h += d_re / h;
+  by.q_h += q_re / h;
+  by.d_h += d_re / h;
   const double signed_surface = speed_ * pad_.radius;
-  f.q_u += q_re / signed_surface;
-  f.d_u += d_re / signed_surface;
-  f.q_mu.colwise() -= q_re / (mu * layers_);
-  f.d_mu.colwise() -= d_re / (mu * layers_);
+  by.q_u += q_re / signed_surface;
+  by.d_u += d_re / signed_surface;
+  by.q_mu.colwise() -= q_re / (mu * layers_);
+  by.d_mu.colwise() -= d_re / (mu * layers_);
 }
 
 template <int Count, int Most>
 double ThdPad<Count, Most>::left_over(std::size_t n, int layer) const {
-  double out = nodes_[n].area * nodes_[n].rate / layers_;
+  double out = nodes_[n].area * nodes_[n].rate / layers();
   for (const Side& s : sides_[n])
     if (s.face >= 0) {
       const Face& f = faces_[static_cast<std::size_t>(s.face)];
       out += s.sign * f.width * f.q(layer);
     }
   return -out;
+}
+
+template <int Count, int Most>
+typename ThdPad<Count, Most>::Balance ThdPad<Count, Most>::balance(std::size_t n) const {
+  const Node& here = nodes_[n];
+  const int L = layers();
+  const double* T = here.value + 1;
+  Balance b{here.area * here.rate, Vector::Zero(L), Vector::Zero(L)};
+  for (const Side& s : sides_[n]) {
+    if (s.face < 0) continue;
+    const Face& f = faces_[static_cast<std::size_t>(s.face)];
+    const double* other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)].value + 1;
+    for (int k = 0; k < L; ++k) {
+      const double out = s.sign * f.width * f.q(k);
+      b.out += out;
+      b.advected(k) += std::min(out, 0.0) * (other[k] - T[k]);
+    }
+    b.dissipated += (0.5 * f.step * f.width) * f.d;
+  }
+  if (here.edge) {
+    for (int k = 0; k < L; ++k) b.advected(k) += std::min(left_over(n, k), 0.0) * (options_.feed - T[k]);
+    return b;
+  }
+  double upwards = 0.0;
+  for (int k = 0; k + 1 < L; ++k) {
+    upwards += left_over(n, k);
+    const int into = upwards > 0.0 ? k + 1 : k, from = upwards > 0.0 ? k : k + 1;
+    b.advected(into) -= std::abs(upwards) * (T[from] - T[into]);
+  }
+  return b;
 }
 
 template <int Count, int Most>
@@ -258,50 +293,10 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
   using Square = Eigen::Matrix<double, Block, Block, by_columns, MostBlock, MostBlock>;
   const auto n = static_cast<std::size_t>(number);
   const Node& here = nodes_[n];
-  const int L = layers_, b = block();
+  const int L = layers(), b = block();
   const double* T = here.value + 1;
   const double over_volume = L / (here.area * here.h), rho_c = lubricant_.density * options_.heat_capacity;
-  // M: what rows, without the heat, change by with the flows out of the layers through any side (common), and through
-  // each side beside that. Row 0 is the pressure's.
-  RowsByLayers common = RowsByLayers::Zero(b, L);
-  std::array<OfLayers, 4> own;
-  OfLayers advected = OfLayers::Zero(L), heat = OfLayers::Zero(L);
-  double all = here.area * here.rate;
-  for (std::size_t side = 0; side < 4; ++side) {
-    const Side& s = sides_[n][side];
-    if (s.face < 0) continue;
-    const Face& f = faces_[static_cast<std::size_t>(s.face)];
-    const double* other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)].value + 1;
-    own[side].setZero(L);
-    for (int k = 0; k < L; ++k) {
-      const double out = s.sign * f.width * f.q(k);
-      all += out;
-      if (out < 0.0) {
-        own[side](k) = other[k] - T[k];
-        advected(k) += out * own[side](k);
-      }
-    }
-    heat += (0.5 * f.step * f.width) * f.d;
-  }
-  if (here.edge) {
-    for (int k = 0; k < L; ++k) {
-      const double out = left_over(n, k);
-      if (out >= 0.0) continue;
-      advected(k) += out * (options_.feed - T[k]);
-      common(1 + k, k) -= options_.feed - T[k];
-    }
-  } else {
-    double upwards = 0.0;
-    common.row(0).setConstant(1.0 / here.area);
-    for (int k = 0; k + 1 < L; ++k) {
-      upwards += left_over(n, k);
-      const int into = upwards > 0.0 ? k + 1 : k, from = upwards > 0.0 ? k : k + 1;
-      const double jump = T[from] - T[into], size = upwards > 0.0 ? -1.0 : 1.0;  // out of `into` flows size upwards
-      advected(into) += size * upwards * jump;
-      for (int m = 0; m <= k; ++m) common(1 + into, m) -= size * jump;
-    }
-  }
-  common.template bottomRows<Count>(L) *= over_volume;
+  const auto [all, advected, heat] = balance(n);
   const Eigen::Map<const OfLayers> t(T, L);
   const double conduct = L * options_.conductivity / (rho_c * here.h * here.h);
   const OfLayers conducted = conduct * (conduction_.lazyProduct(t) - walls_);
@@ -312,6 +307,33 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
         rates[n * static_cast<std::size_t>(b) + 1 + static_cast<std::size_t>(k)] +
         over_volume * (advected(k) - heat(k) / rho_c) + conducted(k);
   if (need == Need::force) return;
+  // M: what rows, without the heat, change by with the flows out of the layers through any side (common), and through
+  // each side beside that. Row 0 is the pressure's.
+  RowsByLayers common = RowsByLayers::Zero(b, L);
+  std::array<OfLayers, 4> own;
+  for (std::size_t side = 0; side < 4; ++side) {
+    const Side& s = sides_[n][side];
+    if (s.face < 0) continue;
+    const Face& f = faces_[static_cast<std::size_t>(s.face)];
+    const double* other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)].value + 1;
+    own[side].setZero(L);
+    for (int k = 0; k < L; ++k)
+      if (s.sign * f.q(k) < 0.0) own[side](k) = other[k] - T[k];
+  }
+  if (here.edge) {
+    for (int k = 0; k < L; ++k)
+      if (left_over(n, k) < 0.0) common(1 + k, k) -= options_.feed - T[k];
+  } else {
+    double upwards = 0.0;
+    common.row(0).setConstant(1.0 / here.area);
+    for (int k = 0; k + 1 < L; ++k) {
+      upwards += left_over(n, k);
+      const int into = upwards > 0.0 ? k + 1 : k, from = upwards > 0.0 ? k : k + 1;
+      const double jump = T[from] - T[into], size = upwards > 0.0 ? -1.0 : 1.0;  // out of `into` flows size upwards
+      for (int m = 0; m <= k; ++m) common(1 + into, m) -= size * jump;
+    }
+  }
+  common.template bottomRows<Count>(L) *= over_volume;
 
   // By this block and those of the neighbours, in the order of the places.
   std::array<Square, 5> by;
@@ -334,18 +356,19 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
     if (s.face < 0) continue;
     const Face& f = faces_[static_cast<std::size_t>(s.face)];
     const Node& other = nodes_[static_cast<std::size_t>(s.sign > 0 ? f.to : f.from)];
+    const Slopes& d = slopes_[static_cast<std::size_t>(s.face)];
     RowsByLayers flows = common;
     flows.template bottomRows<Count>(L).diagonal() += over_volume * own[side];
     flows *= s.sign * f.width;
     const double warm = -0.5 * f.step * f.width * over_volume / rho_c;
-    const auto rows = [&](const Vector& q, const Vector& d) {
+    const auto rows = [&](const Vector& q, const Vector& heat_d) {
       OfRows out = flows.lazyProduct(q);
-      out.template bottomRows<Count>(L) += warm * d;
+      out.template bottomRows<Count>(L) += warm * heat_d;
       return out;
     };
-    RowsByLayers by_mu = flows.lazyProduct(f.q_mu);
-    by_mu.template bottomRows<Count>(L) += warm * f.d_mu;
-    const OfRows by_g = rows(f.q_g, f.d_g) * (s.sign / f.step);
+    RowsByLayers by_mu = flows.lazyProduct(d.q_mu);
+    by_mu.template bottomRows<Count>(L) += warm * d.d_mu;
+    const OfRows by_g = rows(d.q_g, d.d_g) * (s.sign / f.step);
     Square& there = by[side + 1];
     there.resize(b, b);
     there.col(0) = by_g;
@@ -358,8 +381,8 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
       there(1 + k, 1 + k) += over_volume * out;
       by[0](1 + k, 1 + k) -= over_volume * out;
     }
-    thickness(rows(f.q_h, f.d_h), f.cosine, f.sine, f.z);
-    by_speed += pad_.radius * rows(f.q_u, f.d_u);
+    thickness(rows(d.q_h, d.d_h), f.cosine, f.sine, f.z);
+    by_speed += pad_.radius * rows(d.q_u, d.d_u);
   }
   if (here.edge) {
     for (int k = 0; k < L; ++k) {

@@ -44,7 +44,7 @@ class ThdPad {
 public:
   ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant);
   [[nodiscard]] int nodes() const { return columns_ * rows_; }
-  [[nodiscard]] int block() const { return 1 + layers_; }
+  [[nodiscard]] int block() const { return 1 + layers(); }
   [[nodiscard]] int states() const { return nodes() * block(); }
   /// Adds where dg/ds and dg/ds' have entries; the pad's states and rows begin at `first`.
   void add_places(int first, Places& states, Places& rates) const;
@@ -89,17 +89,27 @@ private:
     bool around = true;
     double shear = 0;
     Vector q, d;
+  };
+  // Their derivatives, apart: residuals are asked for more often, and then only faces go through the cache.
+  struct Slopes {
     Vector q_g, q_h, q_u, d_g, d_h, d_u;  // by pressure gradient, thickness, speed of the surface
     Matrix q_mu, d_mu;
   };
   struct Side {
     int face, sign;  // -1: none; +1: q leaves the volume
   };
+  [[nodiscard]] int layers() const { return Count == Eigen::Dynamic ? layers_ : Count; }  // a constant if it can be
   void lay_out();
   void read(const JournalMotion& motion, std::span<const double> states);
   // Re, k - 12 and s - 1 of all faces; see flow().
   void turbulence();
   void flow(int face, bool tangents);
+  // What a volume takes up: mass, m^3/s, and, layer by layer, heat with the flow, K m^3/s, and dissipation, W.
+  struct Balance {
+    double out = 0;
+    Vector advected, dissipated;
+  };
+  [[nodiscard]] Balance balance(std::size_t node) const;
   void row(int node, std::span<const double> rates, Need need, std::size_t first, std::size_t at, std::size_t at_rates,
            StateResponse& response);
   void integrate(Need need, std::size_t first, StateResponse& response) const;
@@ -123,6 +133,7 @@ private:
   double h_min_ = 0, speed_ = 0;
   std::vector<Node> nodes_;
   std::vector<Face> faces_;  // those around, then those along
+  std::vector<Slopes> slopes_;
   int around_ = 0;
   std::vector<double> reynolds_, resisting_, sheared_;  // of the faces, in turbulence
   std::vector<std::array<Side, 4>> sides_;
