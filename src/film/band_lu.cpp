@@ -139,17 +139,37 @@ Eigen::VectorXd BandLu::solve(const Eigen::VectorXd& b) const {
   Eigen::VectorXd padded = Eigen::VectorXd::Zero(size_ + 2 * width_);
   double* const x = padded.data() + width_;
   for (int k = 0; k < size_; ++k) x[k] = scale_(k) * b(k);
-  for (int k = 0; k < size_; ++k) {
-    const double* const l = column(k) + k + 1;
-    double* const below = x + k + 1;
-    const double times = x[k];
-    for (int r = 0; r < width_; ++r) below[r] -= l[r] * times;
+  // Four columns at a time: what is written is not read again at once, which would wait for it.
+  const int w = width_, blocks = w >= at_once ? size_ - size_ % at_once : 0;
+  for (int k = 0; k < blocks; k += at_once) {
+    const double *const l0 = column(k), *const l1 = column(k + 1), *const l2 = column(k + 2), *const l3 = column(k + 3);
+    const double x0 = x[k], x1 = x[k + 1] -= l0[k + 1] * x0, x2 = x[k + 2] -= l0[k + 2] * x0 + l1[k + 2] * x1,
+                 x3 = x[k + 3] -= l0[k + 3] * x0 + l1[k + 3] * x1 + l2[k + 3] * x2;
+    const int end = k + w + 1;
+    for (int r = k + at_once; r < end; ++r) x[r] -= l0[r] * x0 + l1[r] * x1 + l2[r] * x2 + l3[r] * x3;
+    x[end] -= l1[end] * x1 + l2[end] * x2 + l3[end] * x3;
+    x[end + 1] -= l2[end + 1] * x2 + l3[end + 1] * x3;
+    x[end + 2] -= l3[end + 2] * x3;
   }
-  for (int k = size_ - 1; k >= 0; --k) {
-    const double* const u = column(k) + k - width_;
-    double* const above = x + k - width_;
-    const double times = x[k] /= column(k)[k];
-    for (int r = 0; r < width_; ++r) above[r] -= u[r] * times;
+  for (int k = blocks; k < size_; ++k) {
+    const double* const l = column(k);
+    for (int r = k + 1; r <= k + w; ++r) x[r] -= l[r] * x[k];
+  }
+  for (int k = size_ - 1; k >= blocks; --k) {
+    const double* const u = column(k);
+    const double times = x[k] /= u[k];
+    for (int r = k - w; r < k; ++r) x[r] -= u[r] * times;
+  }
+  for (int k = blocks - at_once; k >= 0; k -= at_once) {
+    const double *const u0 = column(k), *const u1 = column(k + 1), *const u2 = column(k + 2), *const u3 = column(k + 3);
+    const double x3 = x[k + 3] /= u3[k + 3], x2 = x[k + 2] = (x[k + 2] - u3[k + 2] * x3) / u2[k + 2],
+                 x1 = x[k + 1] = (x[k + 1] - u3[k + 1] * x3 - u2[k + 1] * x2) / u1[k + 1],
+                 x0 = x[k] = (x[k] - u3[k] * x3 - u2[k] * x2 - u1[k] * x1) / u0[k];
+    const int from = k + 3 - w;
+    x[from - 3] -= u0[from - 3] * x0;
+    x[from - 2] -= u0[from - 2] * x0 + u1[from - 2] * x1;
+    x[from - 1] -= u0[from - 1] * x0 + u1[from - 1] * x1 + u2[from - 1] * x2;
+    for (int r = from; r < k; ++r) x[r] -= u0[r] * x0 + u1[r] * x1 + u2[r] * x2 + u3[r] * x3;
   }
   return units_.cwiseProduct(padded.segment(width_, size_));
 }
@@ -158,10 +178,26 @@ Eigen::VectorXd BandLu::solve_transposed(const Eigen::VectorXd& b) const {
   if (exchanged_) return scale_.cwiseProduct(solved('T', units_.cwiseProduct(b)));
   Eigen::VectorXd padded = Eigen::VectorXd::Zero(size_ + 2 * width_);
   double* const x = padded.data() + width_;
-  using Map = Eigen::Map<const Eigen::VectorXd>;
-  for (int k = 0; k < size_; ++k)
-    x[k] = (units_(k) * b(k) - Map(column(k) + k - width_, width_).dot(Map(x + k - width_, width_))) / column(k)[k];
-  for (int k = size_ - 1; k >= 0; --k) x[k] -= Map(column(k) + k + 1, width_).dot(Map(x + k + 1, width_));
+  const int w = width_;
+  const auto dot = [&](const double* entries, int from, int end) {
+    using Map = Eigen::Map<const Eigen::VectorXd>;
+    return Map(entries + from, end - from).dot(Map(x + from, end - from));
+  };
+  // Four columns at a time, first with what the ones before left.
+  for (int k = 0; k < size_; k += at_once) {
+    const int end = std::min(k + at_once, size_);
+    for (int c = k; c < end; ++c) x[c] = units_(c) * b(c) - dot(column(c), c - w, std::max(k, c - w));
+    for (int c = k; c < end; ++c) {
+      for (int r = std::max(k, c - w); r < c; ++r) x[c] -= column(c)[r] * x[r];
+      x[c] /= column(c)[c];
+    }
+  }
+  for (int k = size_; k > 0; k -= at_once) {
+    const int from = std::max(k - at_once, 0);
+    for (int c = from; c < k; ++c) x[c] -= dot(column(c), std::min(k, c + w + 1), c + w + 1);
+    for (int c = k - 1; c >= from; --c)
+      for (int r = c + 1; r < std::min(k, c + w + 1); ++r) x[c] -= column(c)[r] * x[r];
+  }
   return scale_.cwiseProduct(padded.segment(width_, size_));
 }
 
