@@ -152,6 +152,9 @@ public:
     if (!same_kind(range.unit, to_unit))
       return r.problems.add(to->place, fmt::format("'{}' and '{}' are not of the same kind", from->text, to->text));
     if (range.unit.empty()) range.unit = "1";
+    // Results divide by the unit of the range and take steps in it, which a unit that has its zero elsewhere does not
+    // let.
+    if (range.unit == "degC") range.unit = "K";
     if (range.from == range.to) r.problems.add(to->place, fmt::format("{} is empty", name_of_value(node)));
   }
   Node write(const void* value) const override {

@@ -202,6 +202,7 @@ std::span<const deck::Name<Thd::Cavitation>> names(Thd::Cavitation) {
 void describe(deck::Description<HeatedWall>& d) {
   d.add("type", &HeatedWall::type, "what the wall does with heat");
   d.add("temperature", &HeatedWall::temperature, "K", deck::positive, "temperature of the wall")
+      .continuable()
       .only(&HeatedWall::type, {HeatedWall::Type::isothermal});
 }
 
@@ -217,11 +218,13 @@ void describe(deck::Description<Thd>& d) {
   d.add("layers", &Thd::layers, deck::in(1, 64),
         "layers of the energy equation across the film; 1: the mean temperature, with a parabola across the film");
   d.add("tilt", &Thd::tilt, "follow the slope of the journal, and turn it by moments");
-  d.add("feed_temperature", &Thd::feed, "K", deck::positive, "temperature of the oil that enters a pad");
+  d.add("feed_temperature", &Thd::feed, "K", deck::positive, "temperature of the oil that enters a pad").continuable();
+  // All numbers of a law: here, because the law of the study of one bearing is none of a branch.
   d.add("viscosity", &Thd::viscosity,
-        "dynamic viscosity over the temperature; constant, that of the lubricant, if not given");
-  d.add("heat_capacity", &Thd::heat_capacity, "J/(kg K)", deck::positive, "specific heat of the oil");
-  d.add("conductivity", &Thd::conductivity, "W/(m K)", deck::non_negative, "conductivity of the oil");
+        "dynamic viscosity over the temperature; constant, that of the lubricant, if not given")
+      .continuable();
+  d.add("heat_capacity", &Thd::heat_capacity, "J/(kg K)", deck::positive, "specific heat of the oil").continuable();
+  d.add("conductivity", &Thd::conductivity, "W/(m K)", deck::non_negative, "conductivity of the oil").continuable();
   d.add("bush", &Thd::bush, "the wall at the bush");
   d.add("journal", &Thd::journal, "the wall at the journal");
 }

@@ -322,6 +322,48 @@ def oil(h):
     h.true("less viscous oil carries the load in a thinner film", (tables[walls[2]]["eccentricity"] > tables[walls[0]]["eccentricity"]).all())
 
 
+def peak(h):
+    """The peak of the bush settles over three meshes whose nodes hold the ends of the groove: within 1 K, by ever smaller steps."""
+    cells, walls = ("[40, 16, 4]", "[80, 32, 8]", "[120, 48, 12]"), ("bronze bush", "bush without heat")
+    found = {name: [] for name in walls}
+    for k, mesh_ in enumerate(cells):
+        words = [f"studies.*.thd.cells={mesh_}", "studies.*.thd.meshes=1", "studies.*.thd.speeds=[4000 rpm]"]
+        studies = h.run("../thd/oil_groove.yaml", f"peak {k}", words)
+        for name in walls:
+            found[name].append(value(studies[name], "temperature.bush.maximum"))
+    for name, peaks in found.items():
+        steps = numpy.abs(numpy.diff(peaks))
+        h.true(f"{name}: all meshes within 1 K", numpy.ptp(peaks) < 1, f"{peaks} K")
+        h.true(f"{name}: steps fall", steps[1] < steps[0], f"{steps} K")
+
+
+def feed(h):
+    """A branch over the temperature of the feed: its points are those of decks that say this temperature, the same on any ranks."""
+    path = "bearings.bearing.film.feed_temperature"
+    ranks = {n: [*h.launcher, "-n", str(n)] if n > 1 else [] for n in (1, 2)}
+    tables = {}
+    for n, launcher in ranks.items():
+        h.run("../thd/feed.yaml", f"feed {n}", launcher=launcher)
+        with h5py.File(h.work / f"feed {n}/results.h5") as f:
+            branch = f["studies/feed/branch"]
+            tables[n] = {k: branch[k][:].ravel() for k in ("x", "y", "film")}
+            tables[n]["parameter"] = branch["parameter"][:]
+            ends = [f["studies/position/nodes"][k][0] for k in ("x", "y")]
+    one = tables[1]
+    h.true("the whole range", len(one["parameter"]) > 3 and (numpy.diff(one["parameter"]) > 0).all(), f"{one['parameter']}")
+    h.close("from 40 degC [K]", one["parameter"][0], 313.15, 1e-9)
+    h.close("to 60 degC [K]", one["parameter"][-1], 333.15, 1e-9)
+    h.true("warmer oil carries in a thinner film", (numpy.diff(one["film"]) < 0).all(), f"{one['film']} m")
+    warm = h.run("../thd/feed.yaml", "warm", [f"{path}=60 degC"], launcher=[])["position"]
+    with h5py.File(h.work / "warm/results.h5") as f:
+        there = [f["studies/position/nodes"][k][0] for k in ("x", "y")]
+    for k, name in enumerate(("x", "y")):
+        h.close(f"{name} at 40 degC [m]", one[name][0], ends[k], 1e-10)
+        h.close(f"{name} at 60 degC [m]", one[name][-1], there[k], 1e-10)
+        h.close(f"{name} on two ranks [m]", tables[2][name][-1], one[name][-1], 1e-10)
+    h.true("it is warmer", value(warm, "bearing.bearing.max_temperature") > 333.15)
+
+
 def turbulent(h):
     """An oil film at a Reynolds number of some thousands: balances hold, it loses more, and eddies even its temperature out."""
     few = ["studies.*.thd.cells=[40, 16, 6]", "studies.*.thd.meshes=1", "studies.*.thd.speeds=[15000 rpm]", "studies.*.thd.cavitation=half_sommerfeld"]
@@ -432,5 +474,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "properties": properties, "effective": effective, "bars": bars, "shown": shown, "oil": oil, "turbulent": turbulent, "conserving": conserving, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "properties": properties, "effective": effective, "bars": bars, "shown": shown, "oil": oil, "peak": peak, "feed": feed, "turbulent": turbulent, "conserving": conserving, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
     harness.finish()

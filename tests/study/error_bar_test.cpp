@@ -60,6 +60,18 @@ TEST(ErrorBar, DoesNotVanishWhereTwoMeshesAgreeByChance) {
   }
 }
 
+// On coarser meshes a feed stands elsewhere, which takes away what the spacing does.
+TEST(ErrorBar, HoldsWhereAFeedThatMovesCancelsTheSpacing) {
+  const auto value = [](double h, double moved) { return 3 + 0.2 * h - 0.2 * moved; };
+  const std::vector<Sample> samples{{Axis::around, 2, value(2, 1)}, {Axis::around, 4, value(4, 2)}};
+  MeshLaw law{.film_order = 1};
+  EXPECT_LT(error_bar(value(1, 0), samples, law).total(), 0.2);
+  law.feeds_move = true;
+  EXPECT_GE(error_bar(value(1, 0), samples, law).total(), 0.2);
+  // Numbers that no mesh changes are exact.
+  EXPECT_EQ(error_bar(3, {{Axis::around, 2, 3.0}, {Axis::around, 4, 3.0}}, law).total(), 0);
+}
+
 TEST(ErrorBar, SeesALowerOrderThanThatOfTheory) {
   const Law law = [](double h, double k) { return 0.3 * h + 0.1 * std::sqrt(k); };
   EXPECT_GE(bar_of(law).total(), error_of(law));

@@ -34,13 +34,24 @@ inline system::Bearing bearing(const std::string& name, int node, const film::Op
   return b;
 }
 
-// Reduced shaft; a pedestal, films of several kinds without states, of which two tilt; unbalance by amount and by
-// grade.
+// A film whose oil warms up, between walls of given temperatures.
+inline film::Thd warm_film() {
+  film::Thd o;
+  o.cells = {12, 4};
+  o.feed = 318;
+  o.viscosity = thermal::ViscosityOptions{thermal::Vogel{0.02, 323, 900, 170}};
+  o.bush = {film::HeatedWall::Type::isothermal, 325};
+  o.journal = {film::HeatedWall::Type::isothermal, 330};
+  return o;
+}
+
+// Reduced shaft; a pedestal, films of several kinds without states, of which two tilt and one is warm; unbalance by
+// amount and by grade.
 inline system::Machine reduced_machine() {
   using enum film::Geometry::Bore;
   system::Machine m;
   m.rotor = four_segments();
-  m.rotor.reduction = {rotor::Reduction::Type::craig_bampton, {1, 3, 5}, 2};
+  m.rotor.reduction = {rotor::Reduction::Type::craig_bampton, {1, 2, 3, 5}, 2};
   m.lubricants["oil"] = {0.02, 870};
   film::Reynolds turbulent;
   turbulent.cells = {24, 6};
@@ -61,6 +72,8 @@ inline system::Machine reduced_machine() {
   m.bearings.push_back(bearing("B3", 5, film::Linear{{1e8, 2e6, -3e6, 2e8}, {1e5, 2e3, 4e3, 2e5}}, cylindrical));
   m.bearings[2].geometry.reset();
   m.bearings[2].lubricant = "";
+  m.bearings.push_back(bearing("B4", 2, warm_film(), lemon_bore));
+  m.bearings[3].geometry->preload = 0.3;
   m.unbalance.push_back({"two", {}, {}, "", {{2, {}, 1e-3, {}, 0.4}, {4, {}, 2e-3, {}, 0}}});
   m.unbalance.push_back({"grade", system::BalanceGrade{2.5e-3}, 377, "R", {{3, 1.0, {}, {}, 1}}});
   return m;
@@ -95,6 +108,11 @@ inline system::Machine whole_machine() {
   m.bearings[2].pedestal = system::Pedestal{{50, 50}, {4e8, 4e8}, {3e4, 3e4}};
   // Without states, behind films that have some and depend on the same oil.
   m.bearings.push_back(bearing("B4", 4, film::Short{}, cylindrical));
+  film::Thd following = warm_film();
+  following.states = film::States::dynamic;
+  following.layers = 2;
+  m.bearings.push_back(bearing("B5", 2, following, partial_arc));
+  m.bearings[4].lubricant = film::Lubricant{0.02, 880};
   return m;
 }
 

@@ -150,6 +150,10 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
     }
     const Estimate e = estimate(value, own, axis == Axis::time ? law.time_order : law.film_order);
     (axis == Axis::time ? bar.time_mesh : bar.film_mesh) += std::abs(e.error) + e.doubt;
+    if (axis == Axis::time || !law.feeds_move) continue;
+    double low = value, high = value;
+    for (const Sample& s : own) low = std::min(low, s.value), high = std::max(high, s.value);
+    bar.film_mesh += high - low;
   }
   if (unknown_squares > 0) {
     const double freedoms = unknown_squares * unknown_squares / by_freedom;

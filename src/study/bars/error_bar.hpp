@@ -33,6 +33,9 @@ struct MeshLaw {
   bool kinks = false;
   /// The force of a film is smooth between places where a derivative jumps: normal forms of it are those of its mesh.
   bool piecewise = false;
+  /// What feeds a film stands elsewhere on some of the meshes, as only nodes can hold it: two of them may agree by
+  /// chance.
+  bool feeds_move = false;
 };
 
 /// An error bar by its parts; NaN: unknown.
@@ -57,6 +60,9 @@ struct Bar {
 /// film directions may cancel, and do so differently on each mesh: absolute values are added, bar = sum |e| + sum
 /// doubt, which is zero only where all meshes agree. A direction with one sample cannot show its order: its bar is
 /// three times |e| (Roache 1994).
+///
+/// Where feeds move from mesh to mesh, each number has the error of another place in it, which may cancel what the
+/// spacing does: the spread of all meshes is added, which is zero only where they all agree.
 ///
 /// Film directions of a force with kinks: where a kink stands among the nodes is chance, on each mesh anew, so that no
 /// two meshes show how the error falls. The numbers on all meshes of a direction, this one included, scatter by s h

@@ -31,6 +31,27 @@ std::array<double, 2> displacement(const ThdOptions& o, const std::array<int, 3>
   return most;
 }
 
+// How far the ends of a groove are moved to nodes, around [rad] and along [of the length]: greatest over all.
+std::array<double, 2> displacement_of_grooves(const ThdOptions& o, const std::array<int, 3>& cells, double length) {
+  const auto off = [](double at) { return std::abs(at - std::round(at)); };
+  const double step = 2 * std::numbers::pi / cells[0];
+  std::array<double, 2> most{};
+  for (const thermal::SupplyGroove& groove : o.grooves)
+    for (const double side : {-0.5, 0.5}) {
+      most[0] = std::max(most[0], step * off((groove.angle + side * groove.width) / step));
+      const double along = std::min(groove.length.value_or(length), length) / length;
+      most[1] = std::max(most[1], off((0.5 + side * along) * cells[1]) / cells[1]);
+    }
+  return most;
+}
+
+bool grooves_move(const ThdOptions& o, const std::vector<std::array<int, 3>>& meshes, double length) {
+  return std::ranges::any_of(meshes, [&](const std::array<int, 3>& cells) {
+    const std::array<double, 2> moved = displacement_of_grooves(o, cells, length);
+    return moved[0] > 1e-9 || moved[1] > 1e-9;
+  });
+}
+
 // Values on another mesh with the residual of the energy behind them; not a number where there is no answer.
 std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed,
                               const FilmStart& start, std::size_t count) {
@@ -75,7 +96,8 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
   const auto total = [](const std::array<int, 3>& c) { return static_cast<double>(c[0]) * c[1] * c[2]; };
   // What feeds a film is a point or an edge that moves to the nearest node: errors of first order.
   const bool fed = !options.orifices.empty() || !options.grooves.empty();
-  SummaryBars bars(summary, {.film_order = fed ? 1.0 : 2.0});
+  SummaryBars bars(summary,
+                   {.film_order = fed ? 1.0 : 2.0, .feeds_move = grooves_move(options, meshes, geometry.length)});
   const std::size_t count = summary.values.size();
   std::vector<std::vector<double>> found(1);  // of each mesh
   for (const auto& [name, q] : summary.values) found[0].push_back(q.value);
