@@ -1,6 +1,7 @@
 #include "film/band_lu.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -33,17 +34,35 @@ bool BandLu::pays(const Sparse& pattern) {
 namespace {
 
 constexpr int at_once = 4;  // columns that are taken off the rest together: it is read and written once for them
+constexpr int lanes = 8;    // rows of these side by side, in an Eight
 constexpr double lost = 1e-7;
+
+using Eight = Eigen::Array<double, lanes, 1>;
+
+int whole(int n, int of) {
+  return (n + of - 1) / of * of;
+}
+
+auto at(double* from) {
+  return Eigen::Map<Eight>(from);
+}
+auto at(const double* from) {
+  return Eigen::Map<const Eight>(from);
+}
 
 }  // namespace
 
 BandLu::BandLu(const Sparse& pattern, Eigen::VectorXd units)
     : size_(static_cast<int>(pattern.rows())),
-      width_(bandwidth(pattern)),
-      band_(static_cast<std::size_t>(2 * width_ + 1) * static_cast<std::size_t>(size_ + width_ + 2 * at_once)),
-      panel_(static_cast<std::size_t>(at_once) * static_cast<std::size_t>(width_)),
+      width_(std::max(bandwidth(pattern), at_once)),
+      height_(whole(width_, lanes)),
+      stride_(whole(2 * width_ + 1 + lanes, lanes)),
       units_(units.size() == 0 ? Eigen::VectorXd::Ones(size_) : std::move(units)),
-      scale_(size_) {}
+      scale_(size_) {
+  // Zeros before the first column and behind those that the last of them reach.
+  band_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(size_ + width_ + 2 * at_once) + lanes);
+  panel_.resize(static_cast<std::size_t>(at_once * height_));
+}
 
 bool BandLu::scale_rows(const Sparse& a) {
   scale_.setZero();
@@ -58,58 +77,57 @@ bool BandLu::scale_rows(const Sparse& a) {
 bool BandLu::factor(const Sparse& a) {
   if (!scale_rows(a)) return false;
   exchanged_ = false;
-  if (factor_as_it_stands(a)) {
-    const Eigen::VectorXd image = a * units_;
-    if ((solve(image) - units_).cwiseQuotient(units_).lpNorm<Eigen::Infinity>() <= lost) return true;
-  }
+  factor_as_it_stands(a);
+  const Eigen::VectorXd image = a * units_;
+  loss_ = (solve(image) - units_).cwiseQuotient(units_).lpNorm<Eigen::Infinity>();
+  if (loss_ <= lost) return true;
   exchanged_ = true;
+  loss_ = lost;
   return factor_with_exchanges(a);
 }
 
-// Right-looking, four columns at a time. False if a pivot is zero.
-bool BandLu::factor_as_it_stands(const Sparse& a) {
+// Right-looking, four columns at a time: the square of their rows by itself, then what lies below it, then the columns
+// behind. A pivot of zero shows in what is tried afterwards. The diagonal holds the reciprocals of the pivots.
+void BandLu::factor_as_it_stands(const Sparse& a) {
   std::fill(band_.begin(), band_.end(), 0.0);
   for (int k = 0; k < size_; ++k) {
     double* const to = column(k);
     for (Sparse::InnerIterator it(a, k); it; ++it) to[it.row()] = scale_(it.row()) * it.value() * units_(k);
   }
-  const int w = width_;
-  double* const l0 = panel_.data();
-  double *const l1 = l0 + w, *const l2 = l1 + w, *const l3 = l2 + w;
-  for (int k = 0; k < size_; k += at_once) {
-    const int columns = std::min(at_once, size_ - k), next = k + columns;
-    std::fill(panel_.begin(), panel_.end(), 0.0);
-    for (int c = 0; c < columns; ++c) {
-      const int pivot = k + c, last = std::min(pivot + w, size_ - 1);
-      double* const own = column(pivot);
-      const double over = 1.0 / own[pivot];
-      if (!std::isfinite(over)) return false;
-      for (int r = pivot + 1; r <= last; ++r) own[r] *= over;
-      for (int d = c + 1; d < columns; ++d) {
-        double* const other = column(k + d);
-        const double times = k + d <= pivot + w ? other[pivot] : 0.0;
-        for (int r = pivot + 1; r <= last; ++r) other[r] -= own[r] * times;
-      }
-      double* const l = l0 + static_cast<std::ptrdiff_t>(c) * w;
-      for (int r = next; r <= last; ++r) l[r - next] = own[r];
+  const int end = whole(size_, at_once), h = height_;
+  for (int k = size_; k < end; ++k) column(k)[k] = 1.0;  // nothing lies beside them
+  double* const l = panel_.data();
+  for (int k = 0; k < end; k += at_once) {
+    double *const c0 = column(k), *const c1 = column(k + 1), *const c2 = column(k + 2), *const c3 = column(k + 3);
+    const double p0 = c0[k] = 1.0 / c0[k];
+    const double l10 = c0[k + 1] *= p0, l20 = c0[k + 2] *= p0, l30 = c0[k + 3] *= p0;
+    const double u01 = c1[k], p1 = c1[k + 1] = 1.0 / (c1[k + 1] - l10 * u01);
+    const double l21 = c1[k + 2] = (c1[k + 2] - l20 * u01) * p1, l31 = c1[k + 3] = (c1[k + 3] - l30 * u01) * p1;
+    const double u02 = c2[k], u12 = c2[k + 1] -= l10 * u02;
+    const double p2 = c2[k + 2] = 1.0 / (c2[k + 2] - l20 * u02 - l21 * u12);
+    const double l32 = c2[k + 3] = (c2[k + 3] - l30 * u02 - l31 * u12) * p2;
+    const double u03 = c3[k], u13 = c3[k + 1] -= l10 * u03, u23 = c3[k + 2] -= l20 * u03 + l21 * u13;
+    const double p3 = c3[k + 3] = 1.0 / (c3[k + 3] - l30 * u03 - l31 * u13 - l32 * u23);
+    const int below = k + at_once;
+    for (int r = 0; r < h; r += lanes) {
+      const Eight x0 = at(c0 + below + r) * p0, x1 = (at(c1 + below + r) - x0 * u01) * p1,
+                  x2 = (at(c2 + below + r) - x0 * u02 - x1 * u12) * p2,
+                  x3 = (at(c3 + below + r) - x0 * u03 - x1 * u13 - x2 * u23) * p3;
+      at(c0 + below + r) = at(l + r) = x0;
+      at(c1 + below + r) = at(l + h + r) = x1;
+      at(c2 + below + r) = at(l + 2 * h + r) = x2;
+      at(c3 + below + r) = at(l + 3 * h + r) = x3;
     }
-    const int end = std::min(next + w, size_);
-    for (int j = next; j < end; ++j) {
+    const int last = std::min(below + width_, size_);
+    for (int j = below; j < last; ++j) {
       double* const own = column(j);
-      // Its rows of the panel; those above its band are zero, and so is what they do.
-      double u[at_once] = {};
-      for (int c = 0; c < columns; ++c) {
-        if (k + c < j - w) continue;
-        double value = own[k + c];
-        for (int b = 0; b < c; ++b) value -= column(k + b)[k + c] * u[b];
-        own[k + c] = u[c] = value;
-      }
-      double* const rest = own + next;
-      const double u0 = u[0], u1 = u[1], u2 = u[2], u3 = u[3];
-      for (int r = 0; r < w; ++r) rest[r] -= l0[r] * u0 + l1[r] * u1 + l2[r] * u2 + l3[r] * u3;
+      const double u0 = own[k], u1 = own[k + 1] -= l10 * u0, u2 = own[k + 2] -= l20 * u0 + l21 * u1,
+                   u3 = own[k + 3] -= l30 * u0 + l31 * u1 + l32 * u2;
+      double* const rest = own + below;
+      for (int r = 0; r < h; r += lanes)
+        at(rest + r) -= at(l + r) * u0 + at(l + h + r) * u1 + at(l + 2 * h + r) * u2 + at(l + 3 * h + r) * u3;
     }
   }
-  return true;
 }
 
 bool BandLu::factor_with_exchanges(const Sparse& a) {
@@ -133,72 +151,102 @@ Eigen::VectorXd BandLu::solved(char which, Eigen::VectorXd b) const {
   return b;
 }
 
+// Four columns at a time: what is written is not read again at once, which would wait for it.
 Eigen::VectorXd BandLu::solve(const Eigen::VectorXd& b) const {
   if (exchanged_) return units_.cwiseProduct(solved('N', scale_.cwiseProduct(b)));
-  // Room for the rows of the band that are none of the matrix.
-  Eigen::VectorXd padded = Eigen::VectorXd::Zero(size_ + 2 * width_);
-  double* const x = padded.data() + width_;
+  const int end = whole(size_, at_once), h = height_;
+  // Room for the rows of columns that are none of the matrix.
+  Eigen::VectorXd padded = Eigen::VectorXd::Zero(end + 2 * h);
+  double* const x = padded.data() + h;
   for (int k = 0; k < size_; ++k) x[k] = scale_(k) * b(k);
-  // Four columns at a time: what is written is not read again at once, which would wait for it.
-  const int w = width_, blocks = w >= at_once ? size_ - size_ % at_once : 0;
-  for (int k = 0; k < blocks; k += at_once) {
+  for (int k = 0; k < end; k += at_once) {
     const double *const l0 = column(k), *const l1 = column(k + 1), *const l2 = column(k + 2), *const l3 = column(k + 3);
     const double x0 = x[k], x1 = x[k + 1] -= l0[k + 1] * x0, x2 = x[k + 2] -= l0[k + 2] * x0 + l1[k + 2] * x1,
                  x3 = x[k + 3] -= l0[k + 3] * x0 + l1[k + 3] * x1 + l2[k + 3] * x2;
-    const int end = k + w + 1;
-    for (int r = k + at_once; r < end; ++r) x[r] -= l0[r] * x0 + l1[r] * x1 + l2[r] * x2 + l3[r] * x3;
-    x[end] -= l1[end] * x1 + l2[end] * x2 + l3[end] * x3;
-    x[end + 1] -= l2[end + 1] * x2 + l3[end + 1] * x3;
-    x[end + 2] -= l3[end + 2] * x3;
+    for (int r = k + at_once; r < k + at_once + h; r += lanes)
+      at(x + r) -= at(l0 + r) * x0 + at(l1 + r) * x1 + at(l2 + r) * x2 + at(l3 + r) * x3;
   }
-  for (int k = blocks; k < size_; ++k) {
-    const double* const l = column(k);
-    for (int r = k + 1; r <= k + w; ++r) x[r] -= l[r] * x[k];
-  }
-  for (int k = size_ - 1; k >= blocks; --k) {
-    const double* const u = column(k);
-    const double times = x[k] /= u[k];
-    for (int r = k - w; r < k; ++r) x[r] -= u[r] * times;
-  }
-  for (int k = blocks - at_once; k >= 0; k -= at_once) {
+  for (int k = end - at_once; k >= 0; k -= at_once) {
     const double *const u0 = column(k), *const u1 = column(k + 1), *const u2 = column(k + 2), *const u3 = column(k + 3);
-    const double x3 = x[k + 3] /= u3[k + 3], x2 = x[k + 2] = (x[k + 2] - u3[k + 2] * x3) / u2[k + 2],
-                 x1 = x[k + 1] = (x[k + 1] - u3[k + 1] * x3 - u2[k + 1] * x2) / u1[k + 1],
-                 x0 = x[k] = (x[k] - u3[k] * x3 - u2[k] * x2 - u1[k] * x1) / u0[k];
-    const int from = k + 3 - w;
-    x[from - 3] -= u0[from - 3] * x0;
-    x[from - 2] -= u0[from - 2] * x0 + u1[from - 2] * x1;
-    x[from - 1] -= u0[from - 1] * x0 + u1[from - 1] * x1 + u2[from - 1] * x2;
-    for (int r = from; r < k; ++r) x[r] -= u0[r] * x0 + u1[r] * x1 + u2[r] * x2 + u3[r] * x3;
+    const double x3 = x[k + 3] *= u3[k + 3], x2 = x[k + 2] = (x[k + 2] - u3[k + 2] * x3) * u2[k + 2],
+                 x1 = x[k + 1] = (x[k + 1] - u3[k + 1] * x3 - u2[k + 1] * x2) * u1[k + 1],
+                 x0 = x[k] = (x[k] - u3[k] * x3 - u2[k] * x2 - u1[k] * x1) * u0[k];
+    for (int r = k - h; r < k; r += lanes)
+      at(x + r) -= at(u0 + r) * x0 + at(u1 + r) * x1 + at(u2 + r) * x2 + at(u3 + r) * x3;
   }
-  return units_.cwiseProduct(padded.segment(width_, size_));
+  return units_.cwiseProduct(padded.segment(h, size_));
 }
 
-Eigen::VectorXd BandLu::solve_transposed(const Eigen::VectorXd& b) const {
-  if (exchanged_) return scale_.cwiseProduct(solved('T', units_.cwiseProduct(b)));
-  Eigen::VectorXd padded = Eigen::VectorXd::Zero(size_ + 2 * width_);
-  double* const x = padded.data() + width_;
-  const int w = width_;
-  const auto dot = [&](const double* entries, int from, int end) {
-    using Map = Eigen::Map<const Eigen::VectorXd>;
-    return Map(entries + from, end - from).dot(Map(x + from, end - from));
+template <int Sides>
+void BandLu::transposed(const double* b, double* to) const {
+  const int end = whole(size_, at_once), h = height_;
+  const auto columns = [](double* first, int stride) {
+    std::array<double*, Sides> out;
+    for (std::size_t s = 0; s < Sides; ++s) out[s] = first + static_cast<std::ptrdiff_t>(s) * stride;
+    return out;
   };
-  // Four columns at a time, first with what the ones before left.
-  for (int k = 0; k < size_; k += at_once) {
-    const int end = std::min(k + at_once, size_);
-    for (int c = k; c < end; ++c) x[c] = units_(c) * b(c) - dot(column(c), c - w, std::max(k, c - w));
-    for (int c = k; c < end; ++c) {
-      for (int r = std::max(k, c - w); r < c; ++r) x[c] -= column(c)[r] * x[r];
-      x[c] /= column(c)[c];
+  std::vector<double> padded(static_cast<std::size_t>(Sides * (end + 2 * h)), 0.0);
+  const auto x = columns(padded.data() + h, end + 2 * h);
+  for (std::size_t s = 0; s < Sides; ++s)
+    for (int k = 0; k < size_; ++k) x[s][k] = units_(k) * b[static_cast<std::ptrdiff_t>(s) * size_ + k];
+  // What four columns take from the rows [from, from + h), for each side.
+  std::array<std::array<double, at_once>, Sides> taken;
+  const auto take = [&](int k, int from) {
+    const std::array<const double*, at_once> c = {column(k), column(k + 1), column(k + 2), column(k + 3)};
+    std::array<std::array<Eight, at_once>, Sides> sum;
+    for (auto& side : sum)
+      for (Eight& lane : side) lane.setZero();
+    for (int r = from; r < from + h; r += lanes)
+      for (std::size_t s = 0; s < Sides; ++s) {
+        const Eight here = at(x[s] + r);
+        for (std::size_t i = 0; i < at_once; ++i) sum[s][i] += at(c[i] + r) * here;
+      }
+    for (std::size_t s = 0; s < Sides; ++s)
+      for (std::size_t i = 0; i < at_once; ++i) taken[s][i] = sum[s][i].sum();
+  };
+  for (int k = 0; k < end; k += at_once) {
+    const double *const u0 = column(k), *const u1 = column(k + 1), *const u2 = column(k + 2), *const u3 = column(k + 3);
+    take(k, k - h);
+    for (std::size_t s = 0; s < Sides; ++s) {
+      double* const y = x[s] + k;
+      const auto& t = taken[s];
+      y[0] = (y[0] - t[0]) * u0[k];
+      y[1] = (y[1] - t[1] - u1[k] * y[0]) * u1[k + 1];
+      y[2] = (y[2] - t[2] - u2[k] * y[0] - u2[k + 1] * y[1]) * u2[k + 2];
+      y[3] = (y[3] - t[3] - u3[k] * y[0] - u3[k + 1] * y[1] - u3[k + 2] * y[2]) * u3[k + 3];
     }
   }
-  for (int k = size_; k > 0; k -= at_once) {
-    const int from = std::max(k - at_once, 0);
-    for (int c = from; c < k; ++c) x[c] -= dot(column(c), std::min(k, c + w + 1), c + w + 1);
-    for (int c = k - 1; c >= from; --c)
-      for (int r = c + 1; r < std::min(k, c + w + 1); ++r) x[c] -= column(c)[r] * x[r];
+  for (int k = end - at_once; k >= 0; k -= at_once) {
+    const double *const l0 = column(k), *const l1 = column(k + 1), *const l2 = column(k + 2);
+    take(k, k + at_once);
+    for (std::size_t s = 0; s < Sides; ++s) {
+      double* const y = x[s] + k;
+      const auto& t = taken[s];
+      y[3] -= t[3];
+      y[2] -= t[2] + l2[k + 3] * y[3];
+      y[1] -= t[1] + l1[k + 2] * y[2] + l1[k + 3] * y[3];
+      y[0] -= t[0] + l0[k + 1] * y[1] + l0[k + 2] * y[2] + l0[k + 3] * y[3];
+    }
   }
-  return scale_.cwiseProduct(padded.segment(width_, size_));
+  for (std::size_t s = 0; s < Sides; ++s)
+    for (int k = 0; k < size_; ++k) to[static_cast<std::ptrdiff_t>(s) * size_ + k] = scale_(k) * x[s][k];
+}
+
+Eigen::MatrixXd BandLu::solve_transposed(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd x(b.rows(), b.cols());
+  for (Eigen::Index c = 0; c < b.cols();) {
+    if (exchanged_) {
+      x.col(c) = scale_.cwiseProduct(solved('T', units_.cwiseProduct(b.col(c))));
+      ++c;
+    } else if (c + 1 < b.cols()) {
+      transposed<2>(b.col(c).data(), x.col(c).data());
+      c += 2;
+    } else {
+      transposed<1>(b.col(c).data(), x.col(c).data());
+      ++c;
+    }
+  }
+  return x;
 }
 
 }  // namespace whirl::film

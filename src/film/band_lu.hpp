@@ -24,28 +24,32 @@ public:
   /// Of a matrix with that pattern; false if it is singular.
   [[nodiscard]] bool factor(const Sparse& a);
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
-  [[nodiscard]] Eigen::VectorXd solve_transposed(const Eigen::VectorXd& b) const;
+  /// Of each column of b [n x any]; two at a time cost little more than one.
+  [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const;
+  /// The largest relative error of the solution that was tried.
+  [[nodiscard]] double loss() const { return loss_; }
   /// Whether the last factors needed exchanges of rows.
   [[nodiscard]] bool exchanged() const { return exchanged_; }
 
 private:
   [[nodiscard]] bool scale_rows(const Sparse& a);
-  [[nodiscard]] bool factor_as_it_stands(const Sparse& a);
+  void factor_as_it_stands(const Sparse& a);
   [[nodiscard]] bool factor_with_exchanges(const Sparse& a);
   [[nodiscard]] Eigen::VectorXd solved(char which, Eigen::VectorXd b) const;
-  [[nodiscard]] double* column(int k) {
-    return band_.data() + static_cast<std::ptrdiff_t>(k) * (2 * width_ + 1) + width_ - k;
-  }
-  [[nodiscard]] const double* column(int k) const {
-    return band_.data() + static_cast<std::ptrdiff_t>(k) * (2 * width_ + 1) + width_ - k;
-  }
+  template <int Sides>
+  void transposed(const double* b, double* to) const;
+  [[nodiscard]] double* column(int k) { return band_.data() + first(k); }
+  [[nodiscard]] const double* column(int k) const { return band_.data() + first(k); }
+  [[nodiscard]] std::ptrdiff_t first(int k) const { return static_cast<std::ptrdiff_t>(k) * stride_ + 8 + width_ - k; }
 
-  int size_, width_;
-  // Of column k the rows k - width to k + width, as they stand: row r at column(k)[r]. Some more columns and rows
-  // behind the last, zero.
+  // width_ in whole vectors of eight rows, and how far columns lie apart.
+  int size_, width_, height_, stride_;
+  // Of column k the rows k - width to k + width, as they stand: row r at column(k)[r]. Between columns there are zeros,
+  // eight or more, so that whole vectors may be taken above and below each; some columns more behind the last.
   std::vector<double> band_;
   std::vector<double> panel_;  // L of four columns at once
   bool exchanged_ = false;
+  double loss_ = 0;
   std::vector<double> lapack_;     // with exchanges
   std::vector<int> rows_;          // exchanged
   Eigen::VectorXd units_, scale_;  // D

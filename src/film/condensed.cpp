@@ -20,10 +20,10 @@ std::vector<double> Condensed::carried(const std::array<double, 4>& by) const {
   return out;
 }
 
-bool Condensed::attempt(const JournalMotion& motion, std::vector<double> states) {
+bool Condensed::attempt(const JournalMotion& motion, Need need, std::vector<double> states) {
   there_ = false;
   try {
-    steady_.solve(motion, carried(motion.velocity), Steady::Until::same_force, states);
+    steady_.solve(motion, carried(motion.velocity), Steady::Until::same_force, need, states);
   } catch (const core::DomainError&) {
     reason_ = std::current_exception();
     return false;
@@ -37,7 +37,7 @@ bool Condensed::attempt(const JournalMotion& motion, std::vector<double> states)
 }
 
 // From the last states, with what the film remembers carried along.
-bool Condensed::follow(const JournalMotion& motion) {
+bool Condensed::follow(const JournalMotion& motion, Need need) {
   std::array<double, 4> moved{};
   for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = motion.position[i] - found_->position[i];
   std::vector<double> states = carried(moved);
@@ -45,28 +45,28 @@ bool Condensed::follow(const JournalMotion& motion) {
   if (carried_rates_.empty()) {
     std::vector<double> further = states;
     steady_.follow(*found_, motion, further);
-    if (attempt(motion, std::move(further))) return true;
+    if (attempt(motion, need, std::move(further))) return true;
   }
-  return attempt(motion, std::move(states));
+  return attempt(motion, need, std::move(states));
 }
 
-bool Condensed::start_anew(const JournalMotion& motion) {
+bool Condensed::start_anew(const JournalMotion& motion, Need need) {
   std::vector<double> states(film_->states());
   film_->unloaded(motion, states);
-  return attempt(motion, std::move(states));
+  return attempt(motion, need, std::move(states));
 }
 
 // A journal that has gone deep into a liner is reached from the centre of the bearing by steps; the same steps from the
 // same centre, so that the way there does not show.
-void Condensed::solve(const JournalMotion& motion) {
+void Condensed::solve(const JournalMotion& motion, Need need) {
   if (there_ && *found_ == motion) return;
-  if ((found_ && follow(motion)) || start_anew(motion)) return;
+  if ((found_ && follow(motion, need)) || start_anew(motion, need)) return;
   const std::exception_ptr reason = reason_;
   const std::optional<JournalMotion> before = found_;
   const std::vector<double> states = states_;
   JournalMotion centred;
   centred.speed = motion.speed;
-  if (!carried_rates_.empty() && start_anew(centred)) {
+  if (!carried_rates_.empty() && start_anew(centred, Need::force)) {
     constexpr double shortest = 1.0 / 64;
     double reached = 0.0;
     for (double step = 0.5; reached < 1.0 && step >= shortest;) {
@@ -76,7 +76,7 @@ void Condensed::solve(const JournalMotion& motion) {
         way.position[i] *= next;
         way.velocity[i] *= next;
       }
-      if (follow(way))
+      if (follow(way, next < 1.0 ? Need::force : need))
         reached = next;
       else
         step *= 0.5;
@@ -96,7 +96,7 @@ void Condensed::solve(const JournalMotion& motion) {
 
 void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                          std::span<const double> /*rates*/, Need need, StateResponse& all) {
-  solve(motion);
+  solve(motion, need);
   Response& response = all.without_states();
   response.force = steady_.here().journal.force;
   response.min_thickness = steady_.here().journal.min_thickness;
@@ -107,9 +107,13 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
   const auto n = static_cast<Eigen::Index>(states_.size());
   const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };
   const Share& whole = film_->whole();
+  Eigen::MatrixXd by_states(n, static_cast<Eigen::Index>(ports.size()));
+  for (std::size_t f = 0; f < ports.size(); ++f)
+    by_states.col(static_cast<Eigen::Index>(f)) = thin(at.force_d_states[f]);
+  const Eigen::MatrixXd lambdas = steady_.solve_transposed(by_states);
   for (std::size_t f = 0; f < ports.size(); ++f) {
     const auto i = static_cast<std::size_t>(ports[f]);
-    const Eigen::VectorXd lambda = steady_.solve_transposed(at.force_d_states[f]);
+    const auto lambda = lambdas.col(static_cast<Eigen::Index>(f));
     // What a rate of each state does to the force, all in all.
     Eigen::VectorXd by_rates = Eigen::VectorXd::Zero(carried_rates_.empty() ? 0 : n);
     if (!carried_rates_.empty()) {
@@ -128,19 +132,19 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
 }
 
 FilmReport Condensed::summary(const JournalMotion& motion, std::span<const double> /*states*/) {
-  solve(motion);
+  solve(motion, Need::force);
   there_ = false;  // the film is asked on its own from here on
   return film_->summary(motion, states_);
 }
 
 std::vector<NodalField> Condensed::fields(const JournalMotion& motion, std::span<const double> /*states*/) {
-  solve(motion);
+  solve(motion, Need::force);
   there_ = false;
   return film_->fields(motion, states_);
 }
 
 double Condensed::least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) {
-  solve(motion);
+  solve(motion, Need::force);
   return film_->least_thickness(motion, states_);
 }
 

@@ -33,10 +33,10 @@ public:
   [[nodiscard]] long factorisations() const { return steady_.factorisations(); }
 
 private:
-  void solve(const JournalMotion& motion);
-  [[nodiscard]] bool follow(const JournalMotion& motion);
-  [[nodiscard]] bool start_anew(const JournalMotion& motion);
-  [[nodiscard]] bool attempt(const JournalMotion& motion, std::vector<double> states);
+  void solve(const JournalMotion& motion, Need need);
+  [[nodiscard]] bool follow(const JournalMotion& motion, Need need);
+  [[nodiscard]] bool start_anew(const JournalMotion& motion, Need need);
+  [[nodiscard]] bool attempt(const JournalMotion& motion, Need need, std::vector<double> states);
   [[nodiscard]] std::vector<double> carried(const std::array<double, 4>& by) const;
 
   std::unique_ptr<Film> film_;

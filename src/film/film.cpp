@@ -51,7 +51,7 @@ void Film::evaluate(const JournalMotion& motion, Need need, Response& response) 
 void relax(Film& film, const JournalMotion& motion, std::vector<double>& states) {
   if (film.states() == 0) return;
   const std::vector<double> rest(states.size(), 0.0);
-  Steady(film).solve(motion, rest, Steady::Until::small_step, states);
+  Steady(film).solve(motion, rest, Steady::Until::small_step, Need::force, states);
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.

@@ -40,6 +40,21 @@ private:
 // f_0, f_1 and the integrals of J and I are linear in phi; all else follows from them.
 template <int Count, int Most>
 void Layers<Count, Most>::set(const Vector& mu, bool derivatives) {
+  if constexpr (Count == 1) {  // the same, written out
+    const double fluidity = 1.0 / mu(0), twelfth = fluidity / 12.0;
+    pull = mu(0);
+    neutral = 0.5;
+    drag(0) = 0.5;
+    pressure(0) = -twelfth;
+    couette(0) = mu(0);
+    cross(0) = 0.0;
+    poiseuille(0) = twelfth;
+    d_drag(0, 0) = d_cross(0, 0) = 0.0;
+    d_couette(0, 0) = 1.0;
+    d_pressure(0, 0) = twelfth * fluidity;
+    d_poiseuille(0, 0) = -twelfth * fluidity;
+    return;
+  }
   const Eigen::Index n = mu.size();
   const double d = 1.0 / static_cast<double>(n);
   const auto low = [d](Eigen::Index k) { return d * static_cast<double>(k); };

@@ -12,6 +12,9 @@ using Map = Eigen::Map<const Eigen::VectorXd>;
 namespace {
 
 constexpr double enough = 1e-10;
+// A last step by its own derivatives leaves its square in the states, and itself in the derivatives, times how much
+// these bend.
+constexpr double nearly = 1e-7, not_in_tangents = 1e-9;
 
 Map view(const std::vector<double>& v) {
   return {v.data(), static_cast<Eigen::Index>(v.size())};
@@ -47,6 +50,7 @@ void Steady::factor() {
   if (band_ ? !band_->factor(matrix) : lu_.info() != Eigen::Success)
     throw core::NotConverged("the film by itself is singular");
   factored_ = linear_.d_states;
+  factored_at_ = view(now_);
   ++factorisations_;
 }
 
@@ -93,9 +97,22 @@ bool Steady::pays(double contraction, double size) const {
   return std::log(std::max(size / enough, 10.0)) / -std::log(contraction) <= newton_steps * price_;
 }
 
+// What the film would answer there differs from what its derivatives say by the square of the step.
+void Steady::take_last(const Eigen::VectorXd& step, std::vector<double>& states) {
+  for (Eigen::Index k = 0; k < step.size(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    states[i] = now_[i] - step[k];
+  }
+  const auto ports = film_.ports();
+  for (std::size_t f = 0; f < ports.size(); ++f)
+    linear_.journal.force[static_cast<std::size_t>(ports[f])] -= view(linear_.force_d_states[f]).dot(step);
+  linear_.journal.min_thickness = film_.least_thickness(motion_, states);
+}
+
 // Converged by the step and not by the residual, whose rounding error grows with the square of the mesh. The last step
 // is taken, so that of a smooth film what is left is its square, or with kept factors the share that they leave.
-void Steady::solve(const JournalMotion& motion, std::span<const double> rates, Until until,
+// Tangents want derivatives and factors at the end in any case: kept factors then lead only near enough for these.
+void Steady::solve(const JournalMotion& motion, std::span<const double> rates, Until until, Need need,
                    std::vector<double>& states) {
   constexpr int most_steps = 60;
   constexpr double not_felt = 1e-13;
@@ -117,7 +134,6 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
     linearise(now_);
   }
   double size_before = unknown;
-  bool newton_before = false;  // the step before was one with its own derivatives
   std::array<double, 4> before, force_before;
   before.fill(unknown);
   force_before.fill(unknown);
@@ -128,12 +144,18 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
     if (keep) {
       // The first step from another motion shows nothing yet.
       contraction_ = std::isfinite(size_before) ? moves / size_before : contraction_;
-      if (newton_before && std::isfinite(size_before)) bend_ = contraction_ / size_before;
+      if (std::isfinite(size_before) && size_before > nearly) bend_ = contraction_ / size(view(now_) - factored_at_);
       if (std::isfinite(size_before) && moves > enough && !pays(contraction_, moves)) {
         refresh();
         change = step(at_->residual);
         moves = size(change);
       }
+    }
+    const bool linear_ends = may_keep && need == Need::tangents && until == Until::same_force;
+    const auto near = [&](double s) { return s <= nearly && s * bend_ <= not_in_tangents; };
+    if (linear_ends && !keep && near(moves)) {
+      take_last(change, states);
+      return;
     }
     bool last = moves <= enough;
     if (until == Until::same_force && last && moves > 0.0) {
@@ -144,7 +166,8 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
       before = moved;
     }
     force_before = at_->journal.force;
-    const bool keep_next = may_keep && (last || keep || pays(std::min(bend_ * moves, 0.4), moves));
+    const bool derivatives_now = linear_ends && keep && near(5.0 * contraction_ * moves);
+    const bool keep_next = may_keep && !derivatives_now && (last || keep || pays(std::min(bend_ * moves, 0.4), moves));
     for (double damping = 1.0;;) {
       if (!(damping >= 1e-6)) throw core::NotConverged("the film by itself did not relax");
       trial_ = now_;
@@ -161,7 +184,6 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
         std::swap(keep_next ? here_ : linear_, there_);
         at_ = keep_next ? &here_ : &linear_;
         size_before = damping < 1.0 ? unknown : moves;
-        newton_before = !keep;
         break;
       }
       if (keep) {  // the factors are not good enough
@@ -188,24 +210,25 @@ const StateResponse& Steady::tangents() {
 
 // By the factors of derivatives near by where that is known to cost less, and in either case until rounding is all that
 // is left of what the factors lack.
-Eigen::VectorXd Steady::solve_transposed(const std::vector<double>& b) {
+Eigen::MatrixXd Steady::solve_transposed(const Eigen::MatrixXd& b) {
   constexpr double exact = 1e-12, forces = 2.0, too_slow = 0.2;
-  const auto solved = [&](const Eigen::VectorXd& r) {
-    return band_ ? band_->solve_transposed(r) : Eigen::VectorXd(lu_.transpose().solve(r));
+  const auto solved = [&](const Eigen::MatrixXd& r) {
+    return band_ ? band_->solve_transposed(r) : Eigen::MatrixXd(lu_.transpose().solve(r));
   };
   const bool near =
       !factored_.empty() && contraction_ < 0.1 && forces * std::log(exact) / std::log(contraction_) <= price_;
   if (!near) factor();
   for (;;) {
-    const auto& matrix = matrix_.filled(linear_.d_states);
     const bool own = factored_ == linear_.d_states;
-    Eigen::VectorXd x = solved(view(b));
-    if (own && !band_) return x;
+    Eigen::MatrixXd x = solved(b);
+    if (own && (!band_ || band_->loss() <= exact)) return x;
+    const auto& matrix = matrix_.filled(linear_.d_states);
     for (double before = unknown;;) {
-      const Eigen::VectorXd more = solved(view(b) - matrix.transpose() * x);
+      const Eigen::MatrixXd more = solved(b - matrix.transpose() * x);
       x += more;
-      const double now = more.norm();
-      if (now <= exact * x.norm() || (own && !(now < too_slow * before))) return x;
+      // Of the columns the one that lacks most.
+      const double now = more.colwise().norm().cwiseQuotient(x.colwise().norm().cwiseMax(1e-300)).maxCoeff();
+      if (now <= exact || (own && !(now < too_slow * before))) return x;
       if (!(now < too_slow * before)) break;
       before = now;
     }

@@ -26,14 +26,16 @@ public:
   /// How small the last step must be: 1e-10 of the typical state, or so small too that it does not show in the force.
   enum class Until { small_step, same_force };
   /// Finds the states from those given, which it leaves as they were if it throws core::NotConverged or
-  /// core::DomainError.
-  void solve(const JournalMotion& motion, std::span<const double> rates, Until until, std::vector<double>& states);
+  /// core::DomainError. Where tangents are needed too, those are of the states before the last step, which is then too
+  /// small to show in them.
+  void solve(const JournalMotion& motion, std::span<const double> rates, Until until, Need need,
+             std::vector<double>& states);
   /// What the film answers at the states found, without tangents.
   [[nodiscard]] const StateResponse& here() const { return *at_; }
   /// The same with tangents.
   [[nodiscard]] const StateResponse& tangents();
-  /// x = (dg/ds)^-T b at the states found, after tangents().
-  [[nodiscard]] Eigen::VectorXd solve_transposed(const std::vector<double>& b);
+  /// x = (dg/ds)^-T b [states x any] at the states found, after tangents().
+  [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b);
   /// Adds to `states`, those of a motion that was solved, what the derivatives last taken say that a change of the
   /// motion does to them; not if that is more than half a typical state, where derivatives say little.
   void follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states);
@@ -50,6 +52,7 @@ private:
   [[nodiscard]] std::pair<std::array<double, 4>, std::array<double, 4>> effect_by_steps(
       const std::array<double, 4>& force_before) const;
   [[nodiscard]] bool pays(double contraction, double size) const;
+  void take_last(const Eigen::VectorXd& step, std::vector<double>& states);
 
   static constexpr double unknown = std::numeric_limits<double>::infinity();
   Film& film_;
@@ -64,9 +67,10 @@ private:
   std::optional<BandLu> band_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
   std::vector<double> factored_;  // dg/ds that the factors belong to; empty: there are none
+  Eigen::VectorXd factored_at_;   // states that they are of
   double price_;                  // of derivatives and factors, in steps with kept ones
   double contraction_ = unknown;  // of the last step with kept factors
-  double bend_ = unknown;         // contraction over the size of the step from where the factors are
+  double bend_ = unknown;         // contraction over how far the states are from where the factors are of
   long factorisations_ = 0;
 };
 
