@@ -89,15 +89,24 @@ bool BandLu::factor(const Sparse& a) {
 // Right-looking, four columns at a time: the square of their rows by itself, then what lies below it, then the columns
 // behind. A pivot of zero shows in what is tried afterwards. The diagonal holds the reciprocals of the pivots.
 void BandLu::factor_as_it_stands(const Sparse& a) {
-  std::fill(band_.begin(), band_.end(), 0.0);
-  for (int k = 0; k < size_; ++k) {
-    double* const to = column(k);
-    for (Sparse::InnerIterator it(a, k); it; ++it) to[it.row()] = scale_(it.row()) * it.value() * units_(k);
-  }
   const int end = whole(size_, at_once), h = height_;
-  for (int k = size_; k < end; ++k) column(k)[k] = 1.0;  // nothing lies beside them
+  // Columns are laid out shortly before they are needed, while they are in the cache.
+  int laid_out = 0;
+  const auto lay_out = [&](int to) {
+    for (; laid_out < to; ++laid_out) {
+      const int k = laid_out;
+      double* const c = column(k);
+      std::fill(c + k - width_, c + k - width_ + stride_, 0.0);
+      if (k >= size_) {
+        c[k] = 1.0;  // nothing lies beside it
+        continue;
+      }
+      for (Sparse::InnerIterator it(a, k); it; ++it) c[it.row()] = scale_(it.row()) * it.value() * units_(k);
+    }
+  };
   double* const l = panel_.data();
   for (int k = 0; k < end; k += at_once) {
+    lay_out(std::min(k + at_once + width_, end));
     double *const c0 = column(k), *const c1 = column(k + 1), *const c2 = column(k + 2), *const c3 = column(k + 3);
     const double p0 = c0[k] = 1.0 / c0[k];
     const double l10 = c0[k + 1] *= p0, l20 = c0[k + 2] *= p0, l30 = c0[k + 3] *= p0;

@@ -68,6 +68,8 @@ ThdPad<Count, Most>::ThdPad(const Pad& pad, const Thd& options, const Lubricant&
   mean_.resize(options.layers);
   conduction(options, conduction_, walls_);
   const double step = pad.radius * grid_.dtheta;
+  over_rho_c_ = 1.0 / (lubricant.density * options.heat_capacity);
+  diffusivity_ = options.layers * options.conductivity * over_rho_c_;
   hold_ = pad.clearance * pad.clearance * pad.clearance / (12.0 * lubricant.viscosity * step * step);
   lay_out();
 }
@@ -85,6 +87,7 @@ void ThdPad<Count, Most>::lay_out() {
       n.edge = first || side;
       n.along = grid_.dz * (halved ? 0.5 : 1.0);
       n.area = n.along * step * (first ? 0.5 : 1.0);
+      n.over_area = 1.0 / n.area;
       n.z = j * grid_.dz - 0.5 * pad_.length;
       const auto k = static_cast<std::size_t>(i);
       const double mean = first ? 1.0 : grid_.mean;
@@ -101,6 +104,7 @@ void ThdPad<Count, Most>::lay_out() {
     f.to = static_cast<int>(to);
     f.around = around;
     f.step = around ? step : grid_.dz;
+    f.over_step = 1.0 / f.step;
     f.width = around ? nodes_[from].along : step * (i == 0 || i + 1 == columns_ ? 0.5 : 1.0);
     f.cosine = around ? grid_.face_cos[k] : grid_.node_cos[k];
     f.sine = around ? grid_.face_sin[k] : grid_.node_sin[k];
@@ -156,6 +160,7 @@ void ThdPad<Count, Most>::read(const JournalMotion& motion, std::span<const doub
     Node& here = nodes_[n];
     here.value = &states[n * static_cast<std::size_t>(block())];
     here.h = pad_.clearance - (X + here.z * tx) * here.cosine - (Y + here.z * ty) * here.sine;
+    here.over_h = 1.0 / here.h;
     here.rate = -(motion.velocity[0] + here.z * vtx) * here.cosine - (motion.velocity[1] + here.z * vty) * here.sine;
     for (int k = 0; k < layers(); ++k) {
       const double t = here.value[1 + k];
@@ -198,7 +203,8 @@ void ThdPad<Count, Most>::flow(int face, bool tangents) {
   mean_ = 0.5 * (a.mu + b.mu);
   profile_.set(mean_, tangents);
   const auto& p = profile_;
-  const double u = f.around ? speed_ * pad_.radius : 0.0, h = f.h, g = (b.value[0] - a.value[0]) / f.step;
+  const double u = f.around ? speed_ * pad_.radius : 0.0, h = f.h, over_h = 1.0 / h,
+               g = (b.value[0] - a.value[0]) * f.over_step;
   double c = 1.0, c_re = 0.0, s = 1.0, s_re = 0.0;
   if (turbulent_) {
     const Resistance& r = f.around ? resistance_around_ : resistance_along_;
@@ -210,29 +216,29 @@ void ThdPad<Count, Most>::flow(int face, bool tangents) {
   }
   const double h3 = h * h * h;
   f.q = u * h * p.drag + (c * h3 * g) * p.pressure;
-  f.d = (s * u * u / h) * p.couette + (c * u * h * g) * p.cross + (c * h3 * g * g) * p.poiseuille;
-  f.shear = s * u / h * p.pull + g * h * (1.0 - p.neutral);
+  f.d = (s * u * u * over_h) * p.couette + (c * u * h * g) * p.cross + (c * h3 * g * g) * p.poiseuille;
   if (!tangents) return;
   Slopes& by = slopes_[number];
   by.q_g = (c * h3) * p.pressure;
   by.d_g = (c * u * h) * p.cross + (2.0 * c * h3 * g) * p.poiseuille;
   by.q_h = u * p.drag + (3.0 * c * h * h * g) * p.pressure;
-  by.d_h = (-s * u * u / (h * h)) * p.couette + (c * u * g) * p.cross + (3.0 * c * h * h * g * g) * p.poiseuille;
+  by.d_h =
+      (-s * u * u * over_h * over_h) * p.couette + (c * u * g) * p.cross + (3.0 * c * h * h * g * g) * p.poiseuille;
   by.q_u.setZero();
   by.d_u.setZero();
   if (f.around) {
     by.q_u = h * p.drag;
-    by.d_u = (2.0 * s * u / h) * p.couette + (c * h * g) * p.cross;
+    by.d_u = (2.0 * s * u * over_h) * p.couette + (c * h * g) * p.cross;
   }
   by.q_mu = (u * h) * p.d_drag + (c * h3 * g) * p.d_pressure;
-  by.d_mu = (s * u * u / h) * p.d_couette + (c * u * h * g) * p.d_cross + (c * h3 * g * g) * p.d_poiseuille;
+  by.d_mu = (s * u * u * over_h) * p.d_couette + (c * u * h * g) * p.d_cross + (c * h3 * g * g) * p.d_poiseuille;
   if (!turbulent_) return;
   const double mu = mean_.mean();
   const Vector q_re = (c_re * h3 * g) * p.pressure;
   const Vector d_re =
-      (s_re * u * u / h) * p.couette + (c_re * u * h * g) * p.cross + (c_re * h3 * g * g) * p.poiseuille;
-  by.q_h += q_re / h;
-  by.d_h += d_re / h;
+      (s_re * u * u * over_h) * p.couette + (c_re * u * h * g) * p.cross + (c_re * h3 * g * g) * p.poiseuille;
+  by.q_h += q_re * over_h;
+  by.d_h += d_re * over_h;
   const double signed_surface = speed_ * pad_.radius;
   by.q_u += q_re / signed_surface;
   by.d_u += d_re / signed_surface;
@@ -295,17 +301,17 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
   const Node& here = nodes_[n];
   const int L = layers(), b = block();
   const double* T = here.value + 1;
-  const double over_volume = L / (here.area * here.h), rho_c = lubricant_.density * options_.heat_capacity;
+  const double over_volume = L * here.over_area * here.over_h;
   const auto [all, advected, heat] = balance(n);
   const Eigen::Map<const OfLayers> t(T, L);
-  const double conduct = L * options_.conductivity / (rho_c * here.h * here.h);
+  const double conduct = diffusivity_ * here.over_h * here.over_h;
   const OfLayers conducted = conduct * (conduction_.lazyProduct(t) - walls_);
   const std::size_t r = first + n * static_cast<std::size_t>(b);
-  response.residual[r] = here.edge ? hold_ * here.value[0] : all / here.area;
+  response.residual[r] = here.edge ? hold_ * here.value[0] : all * here.over_area;
   for (int k = 0; k < L; ++k)
     response.residual[r + 1 + static_cast<std::size_t>(k)] =
         rates[n * static_cast<std::size_t>(b) + 1 + static_cast<std::size_t>(k)] +
-        over_volume * (advected(k) - heat(k) / rho_c) + conducted(k);
+        over_volume * (advected(k) - over_rho_c_ * heat(k)) + conducted(k);
   if (need == Need::force) return;
   // M: what rows, without the heat, change by with the flows out of the layers through any side (common), and through
   // each side beside that. Row 0 is the pressure's.
@@ -325,7 +331,7 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
       if (left_over(n, k) < 0.0) common(1 + k, k) -= options_.feed - T[k];
   } else {
     double upwards = 0.0;
-    common.row(0).setConstant(1.0 / here.area);
+    common.row(0).setConstant(here.over_area);
     for (int k = 0; k + 1 < L; ++k) {
       upwards += left_over(n, k);
       const int into = upwards > 0.0 ? k + 1 : k, from = upwards > 0.0 ? k : k + 1;
@@ -342,7 +348,7 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
   by[0].template bottomRightCorner<Count, Count>(L, L) += conduct * conduction_;
   OfRows by_thickness = OfRows::Zero(b), by_rate = common.rowwise().sum() * (here.area / L), by_speed = OfRows::Zero(b);
   by_thickness.template bottomRows<Count>(L) =
-      -(over_volume / here.h) * (advected - heat / rho_c) - (2.0 / here.h) * conducted;
+      -here.over_h * (over_volume * (advected - over_rho_c_ * heat) + 2.0 * conducted);
   Eigen::Matrix<double, Block, 4, by_columns, MostBlock, 4> by_position;
   by_position.setZero(b, 4);
   const auto thickness = [&](const OfRows& rows, double cosine, double sine, double z) {
@@ -360,7 +366,7 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
     RowsByLayers flows = common;
     flows.template bottomRows<Count>(L).diagonal() += over_volume * own[side];
     flows *= s.sign * f.width;
-    const double warm = -0.5 * f.step * f.width * over_volume / rho_c;
+    const double warm = -0.5 * f.step * f.width * over_volume * over_rho_c_;
     const auto rows = [&](const Vector& q, const Vector& heat_d) {
       OfRows out = flows.lazyProduct(q);
       out.template bottomRows<Count>(L) += warm * heat_d;
@@ -368,7 +374,7 @@ void ThdPad<Count, Most>::row(int number, std::span<const double> rates, Need ne
     };
     RowsByLayers by_mu = flows.lazyProduct(d.q_mu);
     by_mu.template bottomRows<Count>(L) += warm * d.d_mu;
-    const OfRows by_g = rows(d.q_g, d.d_g) * (s.sign / f.step);
+    const OfRows by_g = rows(d.q_g, d.d_g) * (s.sign * f.over_step);
     Square& there = by[side + 1];
     there.resize(b, b);
     there.col(0) = by_g;

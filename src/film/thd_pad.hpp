@@ -74,20 +74,20 @@ private:
   using Vector = Eigen::Matrix<double, Count, 1, 0, Most, 1>;
   using Matrix = Eigen::Matrix<double, Count, Count, 0, Most, Most>;
   struct Node {
-    double h = 0, rate = 0;              // m, m/s
+    double h = 0, over_h = 0, rate = 0;  // m, 1/m, m/s
     double cosine = 0, sine = 0, z = 0;  // h falls with the position of the journal along these
-    double along = 0, area = 0;          // m, m^2, of its volume
+    double along = 0;                    // m, of its volume
+    double area = 0, over_area = 0;      // m^2, 1/m^2
     bool edge = false;
     const double* value = nullptr;  // its block of states
     Vector mu, mu_t;                // Pa s and its slope
   };
-  // Between two nodes, towards larger i or j: flows q per width, dissipation d per area, and shear at the journal.
+  // Between two nodes, towards larger i or j: flows q per width and dissipation d per area.
   struct Face {
     int from = 0, to = 0;
-    double step = 0, width = 0;  // m
+    double step = 0, over_step = 0, width = 0;  // m, 1/m, m
     double h = 0, cosine = 0, sine = 0, z = 0;
     bool around = true;
-    double shear = 0;
     Vector q, d;
   };
   // Their derivatives, apart: residuals are asked for more often, and then only faces go through the cache.
@@ -129,7 +129,8 @@ private:
   bool turbulent_ = false;  // in the last evaluate()
   Matrix conduction_;       // K and b of conduction across the film, in lambda/h
   Vector walls_;
-  double hold_;  // m/(s Pa): what a pressure at an edge weighs
+  double over_rho_c_, diffusivity_;  // K m^3/J; lambda/(rho c) times the layers, m^2/s
+  double hold_;                      // m/(s Pa): what a pressure at an edge weighs
   double h_min_ = 0, speed_ = 0;
   std::vector<Node> nodes_;
   std::vector<Face> faces_;  // those around, then those along

@@ -70,8 +70,15 @@ double ThdPad<Count, Most>::side_outflow() const {
 template <int Count, int Most>
 double ThdPad<Count, Most>::friction() const {
   double out = 0.0;
-  for (const Face& f : faces_)
-    if (f.around) out += (whole_ ? 1.0 : 2.0) * f.step * f.width * f.shear * pad_.radius;
+  Layers<Count, Most> profile(layers_);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(around_); ++k) {
+    const Face& f = faces_[k];
+    const Node &a = nodes_[static_cast<std::size_t>(f.from)], &b = nodes_[static_cast<std::size_t>(f.to)];
+    profile.set(0.5 * (a.mu + b.mu), false);
+    const double gradient = (b.value[0] - a.value[0]) * f.over_step, more = turbulent_ ? 1.0 + sheared_[k] : 1.0;
+    const double stress = more * speed_ * pad_.radius / f.h * profile.pull + gradient * f.h * (1.0 - profile.neutral);
+    out += (whole_ ? 1.0 : 2.0) * f.step * f.width * stress * pad_.radius;
+  }
   return out;
 }
 
