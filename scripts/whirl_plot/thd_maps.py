@@ -23,6 +23,9 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True):
     theta, z = np.degrees(theta), z * 1e3
     low, high = values.min(), values.max()
     span = high - low
+    same = span <= 1e-9 * max(abs(low), abs(high))  # rounding is no shape
+    if same:
+        low, high = low - 0.01 * abs(low), high + 0.01 * abs(high)
     if cmap == SIGNED:
         high = max(abs(low), abs(high))
         low = -high
@@ -32,7 +35,7 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True):
     for part in np.unique(region):
         inside = np.ma.masked_where(region != part, shown)
         here = levels[(levels > inside.min()) & (levels < inside.max())]
-        if (part != RUPTURED or not jumps) and len(here):
+        if (part != RUPTURED or not jumps) and len(here) and not same:
             axis.contour(*middles, inside, here, colors=ink, linewidths=0.5, alpha=0.6, corner_mask=False)
     axis.grid(False)
     figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
@@ -81,7 +84,8 @@ def figure_of(count):
 
 
 def range_of(values, unit):
-    return f"{values.min():.4g} to {values.max():.4g} {unit}"
+    low, high = f"{values.min():.4g}", f"{values.max():.4g}"
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
 
 
 def draw_maps(study):
