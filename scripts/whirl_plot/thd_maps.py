@@ -135,7 +135,7 @@ def draw_fluid(study):
         return []
     fields, same = [], []
     for name in known:
-        values, unit = study.get(f"film/{name}"), str(study.group[f"film/{name}"].attrs.get("unit", ""))
+        values, unit = study.get(f"film/{name}"), str(study.group[f"film/{name}"].attrs.get("unit", "")).replace("^3", "\u00b3")
         if unit == "Pa s":
             factor, unit = (1e3, "mPa s") if values.max() >= 1e-3 else (1e6, "\u00b5Pa s")
             values = values * factor
