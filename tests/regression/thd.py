@@ -193,12 +193,14 @@ def maps(h):
     """Fields per area add up to the budget, properties are those of the temperature, groove and cavity are where deck and pressure say."""
     few = ["studies.*.thd.cells=[40, 12, 4]", "studies.*.thd.meshes=1"]
     oil = [*few, "studies.*.thd.speeds=[4000 rpm]"]
-    cases = {"reynolds": ("oil_groove.yaml", "bronze bush", 50e-3, oil), "gas": ("bearing_a.yaml", "bearing A", 15e-3, [*few, "studies.*.thd.speeds=[10000 rad/s]"]),
-             "conserving": ("oil_groove.yaml", "bronze bush", 50e-3, [*oil, "studies.*.thd.cavitation=mass_conserving"])}
+    alone = h.work / "bronze.yaml"
+    alone.write_text((h.source / "inputs/thd/oil_groove.yaml").read_text().split("  - thd:\n      name: cold bush")[0])
+    cases = {"reynolds": (alone, "bronze bush", 50e-3, oil), "gas": ("../thd/bearing_a.yaml", "bearing A", 15e-3, [*few, "studies.*.thd.speeds=[10000 rad/s]"]),
+             "conserving": (alone, "bronze bush", 50e-3, [*oil, "studies.*.thd.cavitation=mass_conserving"])}
     for case, (deck, name, radius, words) in cases.items():
         fields = {}
         for n in (1, 2):
-            study = h.run(f"../thd/{deck}", f"{case} {n}", words, launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])[name]
+            study = h.run(deck, f"{case} {n}", words, launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])[name]
             with h5py.File(h.work / f"{case} {n}/results.h5") as f:
                 film = fields[n] = {k: v[:] for k, v in f[f"studies/{name}/film"].items() if v.ndim < 4}
             depth = numpy.full(13, film["z"][1] - film["z"][0])
