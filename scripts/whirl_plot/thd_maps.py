@@ -85,7 +85,7 @@ def figure_of(count):
 
 def range_of(values, unit):
     low, high = f"{values.min():.4g}", f"{values.max():.4g}"
-    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
+    return f"{low} {unit}".rstrip() if low == high else f"{low} to {high} {unit}".rstrip()
 
 
 def draw_maps(study):
@@ -99,11 +99,13 @@ def draw_maps(study):
     # The wall of a rotating journal is the same all around.
     maps += [(f"wall of the {name}", values, HEAT, LABEL, "white", True) for name, values in film.walls.items()
              if np.ptp(values, axis=1).max() > 1e-6 * np.ptp(film.temperature)]
+    if film.conserves_mass:
+        maps.append(("share of the gap that is full", study.get("film/fill"), "Blues", "share [1]", "white", True))
     figure, axes = figure_of(len(maps))
     flow = film.radius and study.has("film/flow_around", "film/flow_along")
     for axis, (title, values, colours, label, ink, jumps) in zip(axes, maps):
         field(figure, axis, film, values, colours, label, ink, jumps)
-        axis.set_title(f"{title}: {range_of(values, label.split('[')[1][:-1])}")
+        axis.set_title(f"{title}: {range_of(values, label.split('[')[1][:-1].replace('1', ''))}")
         if title == "pressure" and flow:
             streams(axis, film, study.get("film/flow_around"), study.get("film/flow_along"))
         mark_regions(axis, film)
