@@ -107,6 +107,13 @@ class Film:
                  for m, count, nodes in zip(per_cell, values.shape, (self.z, theta))]
         return edges[1], edges[0], total / weight, own
 
+    def strips(self, mask):
+        """Rectangles (rad, rad, m, m) of the cells of nodes in `mask`, those side by side in a row as one."""
+        z = np.concatenate((self.z[:1], (self.z[1:] + self.z[:-1]) / 2, self.z[-1:]))
+        theta, mask = ring(self.theta, mask, self.closed)
+        edges = np.concatenate((theta[:1], (theta[1:] + theta[:-1]) / 2, theta[-1:]))
+        return [(edges[start], edges[stop], z[j], z[j + 1]) for j, row in enumerate(mask) for start, stop in runs(list(row)) if row[start]]
+
     def border(self, mask):
         """Segments [[(rad, m), (rad, m)]] between the cells of nodes in `mask` and others, and the film's ends."""
         n, found = len(self.theta), []

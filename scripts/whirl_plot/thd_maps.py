@@ -2,9 +2,7 @@
 and of a cavity are set apart: fields jump at their borders, and nothing is interpolated across them."""
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib import patheffects
-from matplotlib.collections import LineCollection
-from matplotlib.colors import ListedColormap
+from matplotlib.collections import LineCollection, PolyCollection
 
 from .style import GREY, INK, LIGHT, length_unit, save
 from .thd_film import HEAT, LABEL, RUPTURED, Film, ring
@@ -42,7 +40,7 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True):
 
 
 def mark_regions(axis, film):
-    """Hatches the cells around the nodes where the film is ruptured, cell by cell, outlines those that grooves feed, and says which way
+    """Hatches the cells around the nodes where the film is ruptured, outlines those that grooves feed, and says which way
     the shaft moves."""
     axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
     axis.set_ylabel("z [mm]")
@@ -51,20 +49,13 @@ def mark_regions(axis, film):
     axis.set_xticks(np.arange(np.ceil(first / 45 - 1e-9), last / 45 + 1e-9) * 45)
     axis.set_ylim(film.z[0] * 1e3, film.z[-1] * 1e3)
     if film.cavity.any():
-        edges = np.degrees(np.append(film.theta - film.step / 2, film.theta[-1] + film.step / 2))
-        z = film.z * 1e3
-        rows = np.concatenate((z[:1], (z[1:] + z[:-1]) / 2, z[-1:]))
-        shown = np.ma.masked_where(~film.cavity, np.ones(film.cavity.shape))
-        halves = [(edges, shown)]
-        if film.closed:  # half of the first node's cell lies at the other end of the map
-            halves.append((edges[:2] + 360, shown[:, :1]))
-        for at, values in halves:
-            cells = axis.pcolor(at, rows, values, hatch="////", edgecolor=LIGHT, linewidth=0, cmap=ListedColormap(["none"]))
-            cells.set_facecolor("none")
+        strips = np.array(film.strips(film.cavity)) * (180 / np.pi, 180 / np.pi, 1e3, 1e3)
+        corners = strips[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
+        axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=LIGHT, linewidth=0), autolim=False)
     for groove in np.unique(film.groove[film.groove > 0]):
-        lines = LineCollection(np.array(film.border(film.groove == groove)) * (180 / np.pi, 1e3), colors=INK, linewidths=1.3, label="groove")
-        lines.set_path_effects([patheffects.Stroke(linewidth=2.8, foreground="white"), patheffects.Normal()])
-        axis.add_collection(lines, autolim=False)
+        border = np.array(film.border(film.groove == groove)) * (180 / np.pi, 1e3)
+        for colour, width, label in (("white", 2.8, "_halo"), (INK, 1.3, "groove")):  # all of the halo first: these are many short lines
+            axis.add_collection(LineCollection(border, colors=colour, linewidths=width, capstyle="round", label=label, zorder=3), autolim=False)
 
 
 def regions_in_words(film):
