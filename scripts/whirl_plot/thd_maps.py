@@ -147,7 +147,8 @@ def draw_fluid(study):
                 + (f"; the same everywhere: {', '.join(same)}" if same else "") + regions_in_words(film))
 
 
-FLOWS = {"heat_bush": "heat to the bush", "heat_journal": "heat to the journal", "dissipation": "dissipation", "expansion": "work of pressure"}
+FLOWS = {"heat_bush": "heat to the bush", "heat_journal": "heat to the journal", "dissipation": "dissipation", "expansion": "work of pressure",
+         "heat": "both together"}
 
 
 def draw_heat(study):
@@ -156,6 +157,8 @@ def draw_heat(study):
     found = {name: study.get(f"film/{name}") for name in FLOWS if study.has(f"film/{name}")}
     if not film or not film.radius or not found:
         return []
+    if {"dissipation", "expansion"} <= found.keys():
+        found["heat"] = found["dissipation"] + found["expansion"]
     most = max(np.abs(values).max() for values in found.values())
     none = [FLOWS[name] for name, values in found.items() if np.abs(values).max() <= 1e-9 * most]
     found = {name: values for name, values in found.items() if FLOWS[name] not in none}

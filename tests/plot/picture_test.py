@@ -500,6 +500,10 @@ def heat_flows(folder):
     titles = [a.get_title("left") for a in figures["thd-heat"].axes if a.get_title("left")]
     assert titles[0] == f"heat to the bush: 20 kW/m\u00b2, {2e4 * 2 * np.pi * 0.015 * 0.03:.4g} W in all", titles
     assert [t.split(":")[0] for t in titles] == ["heat to the bush", "heat to the journal", "dissipation"]
+    with results_with(folder, lambda root: synthetic.put(root["studies/hot/film"], expansion=-1e4 * np.ones((17, 48)))) as results:
+        gas = Figures().draw(thd_maps, thd_maps.draw_heat, results["hot"])["thd-heat"]
+    last = [a.get_title("left") for a in gas.axes if a.get_title("left")][-1]
+    assert last.startswith("both together: 16.67 to 70 kW/m\u00b2"), last
     signed = [c for c in figures["thd-heat"].axes[1].collections if isinstance(c, QuadMesh)][0]
     low, high = signed.get_clim()
     assert low == -high and 7.9 < high <= 8, "white is no heat flow"
