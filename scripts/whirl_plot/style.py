@@ -142,12 +142,12 @@ def shorter(svg):
 
 
 def few_colours(image):
-    """In 256 colours: the 32 of the largest areas as they are, maximum coverage of the rest, which keeps the hue of thin lines
+    """In 256 colours: the 128 of the largest areas as they are, maximum coverage of the rest, which keeps the hue of thin lines
     and small marks."""
     pixels = np.asarray(image).astype(np.int64) @ (1 << 16, 1 << 8, 1)
     codes, place, count = np.unique(pixels.ravel(), return_inverse=True, return_counts=True)
     colours = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1)
-    frequent = colours[np.argsort(-count, kind="stable")[:32]]
+    frequent = colours[np.argsort(-count, kind="stable")[:128]]
     rest = image.quantize(256 - len(frequent), method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).getpalette()
     palette = np.concatenate([frequent, np.reshape(rest, (-1, 3))])[:256]
     nearest = np.concatenate([np.argmin(((part[:, None] - palette)**2).sum(axis=2), axis=1)

@@ -204,17 +204,35 @@ EnergyBudget Energy::budget(Vec temperature) {
   return terms_->budget(in.data());
 }
 
+namespace {
+
+// value(node, rise of its cell at a wall) of all nodes.
+template <class Value>
+std::vector<double> at_wall(const Rows& rows, Vec rise, bool journal, const Value& value) {
+  const ReadArray in(rise);
+  const int l = rows.mesh().across;
+  std::vector<double> out(at(rows.count()) * at(rows.mesh().nodes_around()));
+  for (std::size_t node = 0; node < out.size(); ++node) {
+    const auto number = static_cast<PetscInt>(node);
+    out[node] = value(number, in[number * l + (journal ? l - 1 : 0)]);
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<double> Energy::wall_factors(Vec temperature, bool journal) {
   check(VecCopy(temperature, rise_.get()));
   check(VecShift(rise_.get(), -terms_->surroundings().ambient));
-  const ReadArray in(rise_.get());
-  const int l = rows_.mesh().across;
-  std::vector<double> out(at(rows_.count()) * at(rows_.mesh().nodes_around()));
-  for (std::size_t node = 0; node < out.size(); ++node) {
-    const PetscInt cell = static_cast<PetscInt>(node) * l + (journal ? l - 1 : 0);
-    out[node] = terms_->wall_factor(journal, static_cast<PetscInt>(node), in[cell]).value;
-  }
-  return out;
+  return at_wall(rows_, rise_.get(), journal,
+                 [&](PetscInt node, double rise) { return terms_->wall_factor(journal, node, rise).value; });
+}
+
+std::vector<double> Energy::wall_heat(Vec temperature, bool journal) {
+  check(VecCopy(temperature, rise_.get()));
+  check(VecShift(rise_.get(), -terms_->surroundings().ambient));
+  return at_wall(rows_, rise_.get(), journal,
+                 [&](PetscInt node, double rise) { return terms_->wall_heat(journal, node, rise).value; });
 }
 
 }  // namespace whirl::thermal

@@ -31,6 +31,9 @@ void FilmFlow::start(const std::vector<double>& pressure) {
 const std::vector<double>& FilmFlow::fill() const {
   return w_->filled;
 }
+bool FilmFlow::conserves_mass() const {
+  return w_->conserving;
+}
 int FilmFlow::solve(double tolerance, double reduction) {
   return w_->solve(tolerance, reduction);
 }

@@ -146,6 +146,59 @@ std::vector<double> FilmFlow::orifice_flows() const {
   return all;
 }
 
+std::vector<char> FilmFlow::ruptured() const {
+  const Work& w = *w_;
+  const auto at = [](PetscInt k) { return static_cast<std::size_t>(k); };
+  const bool reynolds = w.options.cavitation == FilmFlowOptions::Cavitation::reynolds && !w.options.fluid.gas;
+  std::vector<char> out(w.pressure.size(), 0);
+  for (std::size_t c = 0; c < out.size(); ++c)
+    out[c] = !w.fixed[c] && (w.filled[c] < 1 || (reynolds && w.pressure[c] <= 0)) ? 1 : 0;
+  // Ends last: two or more rows are on each rank.
+  for (int i = 0; i < w.n; ++i) {
+    if (w.rows.begin() == 0) out[at(w.rows.node(i, 0))] = out[at(w.rows.node(i, 1))];
+    if (w.rows.end() == w.mesh.nodes_along())
+      out[at(w.rows.node(i, w.mesh.along))] = out[at(w.rows.node(i, w.mesh.along - 1))];
+  }
+  for (int q = w.rows.begin(); q < w.rows.end() && !w.mesh.closed; ++q) {
+    out[at(w.rows.node(0, q))] = out[at(w.rows.node(1, q))];
+    out[at(w.rows.node(w.n - 1, q))] = out[at(w.rows.node(w.n - 2, q))];
+  }
+  return out;
+}
+
+std::vector<double> FilmFlow::expansion(const Flow& flow) const {
+  const Work& w = *w_;
+  const Mesh& mesh = w.mesh;
+  const int n = w.n, l = mesh.across, begin = w.rows.begin(), end = w.rows.end();
+  const auto at = [](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
+  const std::vector<double> p = with_halo(w.rows, w.pressure, at(n));
+  std::vector<double> out(w.pressure.size(), 0.0);
+  // Volume flow times the difference of pressure, of one face.
+  const auto work = [&](std::size_t a, std::size_t b, const double* mass) {
+    const double dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
+    double volume = 0;
+    for (int k = 0; k < l; ++k) volume += mass[k] / (w.density(a, b, at(k)) * dense);
+    return volume * (p[b] - p[a]);
+  };
+  const auto share = [&](int i, int q, double watts) {
+    if (q >= begin && q < end) out[at(w.rows.node(i, q))] += 0.5 * watts;
+  };
+  for (int q = begin; q < end; ++q)
+    for (int i = 0; i < (mesh.closed ? n : n - 1); ++i) {
+      const double watts = work(w.halo(i, q), w.halo((i + 1) % n, q), flow.around.data() + w.rows.cell(0, i, q));
+      share(i, q, watts);
+      share((i + 1) % n, q, watts);
+    }
+  for (int q = std::max(begin, 1); q <= std::min(end, mesh.along); ++q)
+    for (int i = 0; i < n; ++i) {
+      const double* mass = flow.along.data() + (static_cast<std::ptrdiff_t>(q - begin) * n + i) * l;
+      const double watts = work(w.halo(i, q - 1), w.halo(i, q), mass);
+      share(i, q - 1, watts);
+      share(i, q, watts);
+    }
+  return out;
+}
+
 FlowReport FilmFlow::report(const Flow& flow) const {
   Work& w = *w_;
   const Mesh& mesh = w.mesh;
@@ -155,13 +208,7 @@ FlowReport FilmFlow::report(const Flow& flow) const {
   Profile profile(l);
   // Force x, y, friction, heat, inflow, outflow, expansion; defect, highest pressure.
   double sums[7] = {}, most[2] = {};
-  // Volume flow times the difference of pressure, of one face.
-  const auto expansion = [&](std::size_t a, std::size_t b, const double* mass) {
-    const double dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
-    double out = 0;
-    for (int k = 0; k < l; ++k) out += mass[k] / (w.density(a, b, at(k)) * dense);
-    return out * (p[b] - p[a]);
-  };
+  for (const double watts : expansion(flow)) sums[6] += watts;
   // Pressure times normal is linear between two nodes of a row, and acts where the pressure is above the ambient's: it
   // is cut off within cells, not by node, so that the force goes smoothly with the place of the journal. The
   // derivatives of the integral of max(p, 0) are the integrals of both hat functions where p > 0. A whole film is the
@@ -188,15 +235,11 @@ FlowReport FilmFlow::report(const Flow& flow) const {
         if (q == 0) sums[5] -= flow.along[at(i * l + k)];
         if (q == mesh.along) sums[5] += flow.along[at(((q - w.rows.begin() + 1) * n + i) * l + k)];
       }
-      if (q > 0)
-        sums[6] += expansion(w.halo(i, q - 1), w.halo(i, q),
-                             flow.along.data() + (static_cast<std::ptrdiff_t>(q - w.rows.begin()) * n + i) * l);
       if (!mesh.closed && i == n - 1) continue;
       const std::size_t a = w.halo(i, q), b = w.halo((i + 1) % n, q);
       press(p[a] - w.options.ambient, p[b] - w.options.ambient, mesh.theta(i), mesh.theta(i + 1),
             mesh.dx() * mesh.depth(q));
       w.face(a, b, profile);
-      sums[6] += expansion(a, b, flow.around.data() + w.rows.cell(0, i, q));
       const double dense = w.options.fluid.gas ? 0.5 * (p[a] + p[b]) : 1.0;
       const double more = w.turbulent ? couette_factor(w.options.turbulence, w.reynolds(a, b) * dense) : 1.0;
       // Streamers of the share that is filled cross a gap that is not full.

@@ -440,6 +440,9 @@ const std::vector<double>& Thd::temperature() const {
 std::vector<double> Thd::mixed() {
   return w_->energy->mixed(w_->film_temperature.get());
 }
+std::vector<double> Thd::wall_heat(bool journal) {
+  return w_->energy->wall_heat(w_->film_temperature.get(), journal);
+}
 EnergyBudget Thd::budget() {
   return w_->energy->budget(w_->film_temperature.get());
 }

@@ -7,12 +7,12 @@ import tempfile
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import QuadMesh
+from matplotlib.collections import LineCollection, QuadMesh
 
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep, thd, thd_compare  # noqa: E402
+from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep, thd_compare, thd_cuts, thd_film, thd_maps  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -346,8 +346,9 @@ def sections(folder):
     plt.close("all")  # of the pictures before
     with results_with(folder, lambda root: None) as results:
         figures = Figures()
-        for function in (thd.draw_maps, thd.draw_radial, thd.draw_axial):
-            figures.draw(thd, function, results["hot"])
+        figures.draw(thd_maps, thd_maps.draw_maps, results["hot"])
+        for function in (thd_cuts.draw_radial, thd_cuts.draw_axial):
+            figures.draw(thd_cuts, function, results["hot"])
     meshes = [c for c in figures["thd-radial"].axes[0].collections if isinstance(c, QuadMesh)]
     assert len(meshes) == 3
     bush, film, journal = (m.get_coordinates() for m in meshes)
@@ -385,27 +386,129 @@ def beside(folder):
     assert np.allclose(curves[0], (1 + 6.5e-3 * (np.linspace(250, 500, 6) - 275)) / (1 - 6.5e-3 * 25)) and np.isclose(curves[2][-1], 0.5)
 
 
+def with_groove_and_cavity(root):
+    """An oil film ruptured from 300 over 0 to 60 deg, across the whole length, whose groove from 105 to 135 deg ends before the ends. The film
+    is at 350 K, the groove at 320 K, the cavity at 310 K."""
+    film = root["studies/hot/film"]
+    theta, z = np.degrees(film["theta"][:]), film["z"][:]
+    cavity = ((theta > 298) | (theta < 62))[None, :] & np.ones((17, 1), bool)
+    groove = ((theta > 104) & (theta < 136))[None, :] & (np.abs(z) < 0.0125)[:, None]
+    film["pressure"][...] = np.where(cavity, 0, 1e6 * (1 - (z / 0.015)**2)[:, None] * (2 + np.cos(np.radians(theta))))
+    film["temperature"][...] = np.where(cavity, 310, np.where(groove, 320, 350 + 1e3 * z[:, None]))[..., None] + np.zeros(8)
+    film["bush_wall"][...] = film["journal_wall"][...] = film["temperature"][..., 0]
+    synthetic.put(film, ruptured=cavity.astype(float), groove=groove.astype(float))
+
+
+def region_at(film, theta, z):
+    """Of the node whose cell holds points [deg, mm]."""
+    i = np.round((np.radians(theta) - film.theta[0]) / film.step).astype(int) % len(film.theta)
+    j = np.clip(np.round((z * 1e-3 - film.z[0]) / (film.z[1] - film.z[0])).astype(int), 0, len(film.z) - 1)
+    return film.region[j, i]
+
+
+def refined():
+    """A field between nodes: linear inside of a region, up to its border, and nothing of one region in another."""
+    film = object.__new__(thd_film.Film)
+    for closed in (True, False):
+        film.theta = np.linspace(0.3, 0.3 + 2 * np.pi, 24, endpoint=False) if closed else np.linspace(0.3, 2, 12)
+        n = len(film.theta)
+        film.z = np.linspace(-0.02, 0.02, 9)
+        film.region = np.zeros((9, n), int)
+        film.region[2:7, 4:7] = 2
+        film.region[:, 0] = 1
+        values = np.where(film.region == 2, 5.0, 100 + 1e3 * film.z[:, None] + np.arange(n))
+        theta, z, fine, region = film.fine(values)
+        assert fine.shape == (len(z) - 1, len(theta) - 1) and np.isclose(theta[0], film.theta[0]) and np.isclose(z[-1], 0.02)
+        assert np.isclose(theta[-1] - theta[0], 2 * np.pi if closed else 1.7)
+        full, nodes = fine[region == 0], values[film.region == 0]
+        assert np.allclose(fine[region == 2], 5) and full.min() > nodes.min() - 1e-9 and full.max() < nodes.max() + 1e-9
+        places = ((theta[1:] + theta[:-1]) / 2 - film.theta[0]) / film.step
+        inside = (places > 7) & (places < min(n - 1, 22))
+        exact = 100 + 1e3 * ((z[1:] + z[:-1]) / 2)[:, None] + places[inside]
+        assert np.allclose(fine[:, inside], exact, rtol=0, atol=1e-9), "linear"
+        first = np.flatnonzero((region[len(z) // 2] == 2))[0]
+        assert np.isclose(theta[first], film.theta[0] + 3.5 * film.step), "a region begins at the face of its first cell"
+        smooth = film.fine(values, jumps=False)
+        assert (smooth[3] == 0).all() and ((smooth[2] > 6) & (smooth[2] < 90)).any(), "what does not jump is drawn through"
+        length = sum(abs(b[0] - a[0]) * 0.015 + abs(b[1] - a[1]) for a, b in film.border(film.region == 2))
+        assert np.isclose(length, 2 * (3 * film.step * 0.015 + 5 * 0.005)), "the border goes around"
+        length = sum(b[0] - a[0] for a, b in film.border(film.region == 1))
+        assert np.isclose(length, 2 * (1 if closed else 0.5) * film.step), "also where the map is cut open"
+
+
 def ruptured(folder):
-    """Cells around nodes without pressure are hatched one by one, also across the seam; a film without any has none."""
+    """A groove and a cavity in maps and cuts: hatched and outlined; no contour, isotherm or line of flow where there is none, and no
+    temperature between those of two regions."""
     plt.close("all")
+    with results_with(folder, lambda root: None) as results:
+        figures = Figures().draw(thd_maps, thd_maps.draw_maps, results["hot"])
+    assert not any(c.get_hatch() or c.get_label() == "groove" for a in figures["thd-maps"].axes for c in a.collections)
+    with results_with(folder, with_groove_and_cavity) as results:
+        film = thd_film.Film(results["hot"])
+        figures = Figures()
+        for module, function in ((thd_maps, thd_maps.draw_maps), (thd_maps, thd_maps.draw_heat), (thd_cuts, thd_cuts.draw_radial), (thd_cuts, thd_cuts.draw_axial),
+                                 (thd_cuts, thd_cuts.draw_profiles)):
+            figures.draw(module, function, results["hot"])
+    warm, pressed = figures["thd-maps"].axes[:2]
+    hatched = [c for c in warm.collections if c.get_hatch()]
+    corners = [p.vertices[:4] for p in hatched[0].get_paths()]
+    area = sum(np.ptp(c[:, 0]) * np.ptp(c[:, 1]) for c in corners)
+    assert len(corners) == 2 * 17 and np.isclose(area, 17 * 7.5 * 30), "whole cells, also at the seam"
+    assert {tuple(np.round(np.sort(c[[0, 1], 0]), 9)) for c in corners} == {(0, 63.75), (296.25, 360)}
+    outline, = (c for c in warm.collections if c.get_label() == "groove")
+    corners = np.concatenate(outline.get_segments())
+    assert np.allclose((corners.min(axis=0), corners.max(axis=0)), ((101.25, -12.1875), (138.75, 12.1875))), "cells, not nodes"
+    mesh = next(c for c in warm.collections if isinstance(c, QuadMesh))
+    drawn = np.asarray(mesh.get_array()).ravel()
+    assert set(np.round(drawn[drawn < 334])) == {310, 320} and drawn[drawn > 321].min() >= 335 - 1e-9, "nothing between regions"
+    contours = [p for c in warm.collections if c not in (*hatched, outline, mesh) and c.get_label() != "_halo" for p in c.get_paths() if len(p.vertices)]
+    assert contours
+    for path in contours:
+        assert (region_at(film, *path.vertices.T) == thd_film.FULL).all(), "a contour through the groove or the cavity"
+    lines = [c for c in pressed.collections if isinstance(c, LineCollection) and len(c.get_segments()) > 100]
+    points = np.concatenate(lines[0].get_segments())
+    assert (region_at(film, *points.T) != thd_film.RUPTURED).all(), "a line of flow in the cavity"
+    radial, = [a for a in figures["thd-radial"].axes if a.get_xlabel()]
+    angles = [np.degrees(np.arctan2(*p.get_xy().T[::-1])) for p in radial.patches if p.get_hatch()]
+    assert np.allclose([(a.min(), a.max()) for a in angles], [(0, 63.75), (-63.75, 0)]), "to the faces of its last cells"
+    assert [line.get_label() for line in radial.lines].count("groove") == 1
+    pieces = [c for c in radial.collections if isinstance(c, QuadMesh)][1:-1]
+    assert len(pieces) == 5 and {float(np.ptp(np.asarray(p.get_array()))) for p in pieces} == {0}, "ruptured, full, groove, full, ruptured"
+    axial = figures["thd-axial"].axes[0]
+    assert sum(bool(p.get_hatch()) for p in axial.patches) == 1, "the thinnest film is ruptured, the widest is not"
+    labels = [line.get_label() for line in figures["thd-profiles"].axes[0].lines]
+    assert labels == ["0 deg, ruptured", "60 deg, ruptured", "120 deg, groove", "180 deg", "240 deg", "300 deg, ruptured"], labels
 
-    def oil(root):
-        values = root["studies/hot/film/pressure"]
-        theta, z = root["studies/hot/film/theta"][:], root["studies/hot/film/z"][:]
-        p = 1e6 * np.maximum(np.cos(theta - 3), 0)[None, :] * (1 - (z / 0.015)**2)[:, None]
-        p[[0, -1]] = 0
-        values[...] = p
 
-    for change, wanted in ((lambda root: None, 0), (oil, 1)):
+def heat_flows(folder):
+    """Per area with the sum over the film; properties that change as maps; the way of the shaft."""
+    plt.close("all")
+    figures = Figures()
+    for speed, words in ((1e4, "moves to the right"), (0, "the shaft stands"), (-5, "moves to the left")):
+        def change(root, speed=speed):
+            root["studies/hot/film/speed"][...] = speed
         with results_with(folder, change) as results:
-            figures = Figures()
-            figures.draw(thd, thd.draw_maps, results["hot"])
-        hatched = [c for c in figures["thd-maps"].axes[0].collections if c.get_hatch()]
-        assert bool(hatched) == bool(wanted), f"{len(hatched)} hatched"
-    cells = sum(int((~np.ma.getmaskarray(c.get_array())).sum()) for c in hatched)
-    theta = np.linspace(0, 2 * np.pi, 48, endpoint=False)
-    none = np.cos(theta - 3) <= 0
-    assert cells == 17 * (none.sum() + none[0]), f"{cells} cells"
+            figures.draw(thd_maps, thd_maps.draw_heat, results["hot"])
+            figures.draw(thd_maps, thd_maps.draw_fluid, results["hot"])
+            figures.draw(thd_cuts, thd_cuts.draw_radial, results["hot"])
+        assert words in figures["thd-heat"].axes[0].get_xlabel()
+        arrows = [p for p in figures["thd-radial"].axes[0].patches if p.get_label() == "rotation"]
+        assert len(arrows) == (speed != 0)
+        if speed:
+            (ax, ay), (bx, by) = arrows[0]._posA_posB
+            assert (ax * by - ay * bx) * speed > 0, "the arrow turns as the shaft does"
+    titles = [a.get_title("left") for a in figures["thd-heat"].axes if a.get_title("left")]
+    assert titles[0] == f"heat to the bush: 20 kW/m\u00b2, {2e4 * 2 * np.pi * 0.015 * 0.03:.4g} W in all", titles
+    assert [t.split(":")[0] for t in titles] == ["heat to the bush", "heat to the journal", "dissipation"]
+    with results_with(folder, lambda root: synthetic.put(root["studies/hot/film"], expansion=-1e4 * np.ones((17, 48)))) as results:
+        gas = Figures().draw(thd_maps, thd_maps.draw_heat, results["hot"])["thd-heat"]
+    last = [a.get_title("left") for a in gas.axes if a.get_title("left")][-1]
+    assert last.startswith("both together: 16.67 to 70 kW/m\u00b2"), last
+    signed = [c for c in figures["thd-heat"].axes[1].collections if isinstance(c, QuadMesh)][0]
+    low, high = signed.get_clim()
+    assert low == -high and 7.9 < high <= 8, "white is no heat flow"
+    titles = [a.get_title("left") for a in figures["thd-fluid"].axes if a.get_title("left")]
+    assert [t.split(":")[0] for t in titles] == ["viscosity", "density"] and titles[0].endswith("\u00b5Pa s"), titles
 
 
 def legends():
@@ -416,10 +519,11 @@ def legends():
 
 style.use_style()
 beams()
+refined()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci, sections, beside, ruptured):
+              coefficients, loci, sections, beside, ruptured, heat_flows):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")

@@ -51,8 +51,13 @@ def thd(root):
     pressure = 1e5 + 3e5 * np.exp(np.cos(theta) - 1)[None, :] * (1 - (z / 0.015)**2)[:, None]
     r_bush, r_journal = 0.015 + 0.01 * (np.arange(6) + 0.5) / 6, np.append(0.005 + 0.01 * (np.arange(6) + 0.5) / 6, 0.015)
     z_journal = np.concatenate((np.linspace(-0.035, -0.016, 9), z, np.linspace(0.018, 0.065, 20)))
-    put(g.create_group("film"), theta=theta, z=z, radius=0.015, thickness=thickness, pressure=pressure, bush_wall=300 + warm, journal_wall=358 * np.ones((17, 48)),
-        temperature=300 + warm[..., None] + 10 * (zeta * (1 - zeta)), flow_around=1e-3 * np.ones((17, 48)), flow_along=1e-2 * z[:, None] * np.ones(48))
+    film = g.create_group("film")
+    put(film, theta=theta, z=z, radius=0.015, speed=1e4, thickness=thickness, pressure=pressure, bush_wall=300 + warm, journal_wall=358 * np.ones((17, 48)),
+        temperature=300 + warm[..., None] + 10 * (zeta * (1 - zeta)), flow_around=1e-3 * np.ones((17, 48)), flow_along=1e-2 * z[:, None] * np.ones(48),
+        viscosity=1.8e-5 * (1 + warm / 300)**0.7, density=pressure / 286.7 / (300 + warm), conductivity=0.026 * np.ones((17, 48)),
+        heat_bush=2e4 * np.ones((17, 48)), heat_journal=1e3 * (warm - 60), dissipation=4e4 / (1 - 0.5 * np.cos(theta))[None, :] * np.ones((17, 1)))
+    for name, unit in (("viscosity", "Pa s"), ("density", "kg/m^3"), ("conductivity", "W/(m K)")):
+        film[name].attrs["unit"] = unit
     put(g.create_group("bush"), theta=theta, z=z, r=r_bush, r_faces=np.linspace(0.015, 0.025, 7), temperature=300 + warm[..., None] * (1 - 10 * (r_bush - 0.015)))
     put(g.create_group("journal"), z=z_journal, r=r_journal, r_faces=np.append(np.linspace(0.005, 0.015, 7), 0.015), temperature=300 + 58 * np.exp(-np.abs(z_journal / 0.03))[:, None] * (1 + 0 * r_journal))
     put(g.create_group("iterations"), field=["temperature"], residual=10.0 ** -np.arange(7)[:, None])

@@ -189,6 +189,54 @@ def shown(h):
             h.close(f"{name}: extent [m^2, m^3]", extent(corners), volumes[name], 0.005 * volumes[name])
 
 
+def maps(h):
+    """Fields per area add up to the budget, properties are those of the temperature, groove and cavity are where deck and pressure say."""
+    few = ["studies.*.thd.cells=[40, 12, 4]", "studies.*.thd.meshes=1"]
+    oil = [*few, "studies.*.thd.speeds=[4000 rpm]"]
+    alone = h.work / "bronze.yaml"
+    alone.write_text((h.source / "inputs/thd/oil_groove.yaml").read_text().split("  - thd:\n      name: cold bush")[0])
+    cases = {"reynolds": (alone, "bronze bush", 50e-3, oil), "gas": ("../thd/bearing_a.yaml", "bearing A", 15e-3, [*few, "studies.*.thd.speeds=[10000 rad/s]"]),
+             "conserving": (alone, "bronze bush", 50e-3, [*oil, "studies.*.thd.cavitation=mass_conserving"])}
+    for case, (deck, name, radius, words) in cases.items():
+        fields = {}
+        for n in (1, 2):
+            study = h.run(deck, f"{case} {n}", words, launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])[name]
+            with h5py.File(h.work / f"{case} {n}/results.h5") as f:
+                film = fields[n] = {k: v[:] for k, v in f[f"studies/{name}/film"].items() if v.ndim < 4}
+            depth = numpy.full(13, film["z"][1] - film["z"][0])
+            depth[[0, -1]] /= 2
+            area = depth[:, None] * radius * 2 * numpy.pi / 40
+            loss = value(study, "power_loss")
+            for field, entry in (("heat_bush", "bush"), ("heat_journal", "journal"), ("dissipation", "dissipation"), ("expansion", "expansion")):
+                if field in film:
+                    h.close(f"{case}, {n} ranks: {field} [W]", (film[field] * area).sum(), value(study, f"heat.{entry}"), 1e-11 * loss)
+            h.true(f"{case}: friction heats everywhere", (film["dissipation"] > 0).all())
+            h.true(f"{case}: work of pressure is of a gas", ("expansion" in film) == (case == "gas"))
+        for field in sorted(fields[1]):
+            off = numpy.abs(fields[1][field] - fields[2][field]).max()
+            h.close(f"{case}: {field} on two ranks", off, 0, 1e-6 * numpy.abs(fields[1][field]).max())
+        t = film["temperature"] - 273.15
+        if case == "gas":
+            t += 273.15
+            mu = (1.846e-5 * (t / 300) ** 1.5 * (300 + 110.4) / (t + 110.4)).mean(axis=2)
+            h.close("gas: density [kg/m^3]", numpy.abs(film["density"] - (film["pressure"][..., None] / (286.7 * t)).mean(axis=2)).max(), 0, 1e-9)
+            h.true("gas: no cavity, no groove", "ruptured" not in film and "groove" not in film)
+        else:
+            mu = (27.7e-3 * (3.287 - 3.064 * t / 40 + 0.777 * (t / 40) ** 2)).mean(axis=2)
+            h.close(f"{case}: density [kg/m^3]", numpy.abs(film["density"] - 860).max(), 0, 1e-9)
+            angle, z = numpy.degrees(film["theta"]), film["z"]
+            wanted = (numpy.abs(angle - 135) < 9.001)[None, :] & (numpy.abs(z) < 35e-3)[:, None]
+            h.true(f"{case}: groove at the deck's place", (film["groove"] == wanted).all() and wanted.sum() == 3 * 11, f"{film['groove'].sum()}")
+            dry = film["ruptured"][1:-1] > 0
+            none = film["pressure"][1:-1] <= 0
+            h.true(f"{case}: ruptured where there is no pressure", dry.any() and (dry == (none & (film["groove"][1:-1] == 0))).all(), f"{dry.sum()}, {none.sum()}")
+            h.true(f"{case}: ends as their neighbours", (film["ruptured"][[0, -1]] == film["ruptured"][[1, -2]]).all())
+            h.true(f"{case}: share that is full", ("fill" in film) == (case == "conserving"))
+            if "fill" in film:
+                h.true("conserving: full but in the cavity", ((film["fill"][1:-1] < 1) == dry).all() and film["fill"].min() > 0, f"{film['fill'].min()}")
+        h.close(f"{case}: viscosity [Pa s]", numpy.abs(film["viscosity"] / mu - 1).max(), 0, 1e-10)
+
+
 def read_item(h, n, item):
     """The dataset that a DataItem names, None where it is not there or has another shape."""
     name, path = item.text.split(":")
@@ -474,5 +522,5 @@ def ranks(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "properties": properties, "effective": effective, "bars": bars, "shown": shown, "oil": oil, "peak": peak, "feed": feed, "turbulent": turbulent, "conserving": conserving, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
+    {"walls": walls, "mesh": mesh, "budget": budget, "solids": solids, "growth": growth, "properties": properties, "effective": effective, "bars": bars, "shown": shown, "maps": maps, "oil": oil, "peak": peak, "feed": feed, "turbulent": turbulent, "conserving": conserving, "load": load, "ranks": ranks, "resume": resume, "resume_load": resume_load}[sys.argv[3]](harness)
     harness.finish()

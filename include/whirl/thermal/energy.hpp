@@ -116,6 +116,8 @@ public:
   /// - [r, n]: how much better than half_layer() says the half layer at a wall conducts, by the conductivity there over
   /// that at the ambient's temperature and by turbulence.
   [[nodiscard]] std::vector<double> wall_factors(Vec temperature, bool journal);
+  /// W [r, n], conducted to a wall from each of its cells: budget() has their sums.
+  [[nodiscard]] std::vector<double> wall_heat(Vec temperature, bool journal);
 
 private:
   static PetscErrorCode form_residual(SNES, Vec x, Vec f, void* self);

@@ -87,11 +87,18 @@ public:
   [[nodiscard]] const std::vector<double>& pressure() const;
   /// - [r, n], share of the gap that is full of liquid: 1 but in the cavity of a film that conserves its mass.
   [[nodiscard]] const std::vector<double>& fill() const;
+  [[nodiscard]] bool conserves_mass() const;
+  /// [r, n], whether the film is ruptured there: by Reynolds' condition without pressure, of a film that conserves its
+  /// mass not full. An end is as its neighbour inside. Never of a gas or by half_sommerfeld, whose film is full
+  /// throughout.
+  [[nodiscard]] std::vector<char> ruptured() const;
   /// Mass flows and heat at this pressure. What orifices and grooves give enters layer 0; at the ends each layer leaves
   /// the film by itself. Collective.
   [[nodiscard]] Flow flow() const;
   /// kg/s of each orifice, the same on all ranks. Collective.
   [[nodiscard]] std::vector<double> orifice_flows() const;
+  /// W [r, n], work of pressure in the volume of each node, half of that between two nodes to each. Collective.
+  [[nodiscard]] std::vector<double> expansion(const Flow& flow) const;
   /// Collective.
   [[nodiscard]] FlowReport report(const Flow& flow) const;
   /// Residual kg/s [nodes, then orifices Pa^2 of this rank] and Jacobian at any such state, to test. Collective.

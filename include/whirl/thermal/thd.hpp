@@ -63,6 +63,8 @@ public:
   [[nodiscard]] const std::vector<double>& temperature() const;
   /// W. Collective.
   [[nodiscard]] EnergyBudget budget();
+  /// W [r, n], conducted to bush or journal by the volume of each node. Collective.
+  [[nodiscard]] std::vector<double> wall_heat(bool journal);
   /// K, of each groove that is mixed. Collective.
   [[nodiscard]] std::vector<double> mixed();
   /// Null where the wall is none.

@@ -62,13 +62,14 @@ std::vector<double> supply_of(const ThdOptions& o, const thermal::Rows& rows, co
   return out;
 }
 
-// [r, n], the groove of each node that is mixed; empty if none is.
-std::vector<int> mixed_of(const ThdOptions& o, const thermal::Rows& rows, const thermal::FilmFlowOptions& flow) {
+// [r, n], the groove of each node, counted from 1 among those that are `wanted`; empty if none is.
+template <class Wanted>
+std::vector<int> grooves_of(const thermal::Rows& rows, const thermal::FilmFlowOptions& flow, const Wanted& wanted) {
   std::vector<int> out;
   const int n = rows.mesh().nodes_around();
   int groove = 0;
   for (std::size_t k = 0; k < flow.feeds.size(); ++k) {
-    if (!o.grooves[k].mixing) continue;
+    if (!wanted(k)) continue;
     out.resize(static_cast<std::size_t>(rows.count() * n));
     ++groove;
     for (int j = std::max(flow.feeds[k].first_along, rows.begin());
@@ -101,10 +102,14 @@ ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, do
   setup.journal = o.journal;
   setup.inlet_from_bush = !o.orifices.empty() && o.orifices.front().inlet == thermal::OrificeRing::Inlet::bush;
   setup.supply = supply_;
-  setup.mixed = mixed_of(o, rows_, flow_);
+  setup.mixed = grooves_of(rows_, flow_, [&](std::size_t k) { return o.grooves[k].mixing; });
   setup.tolerance = o.tolerance;
   setup.most_iterations = o.most_iterations;
   thd_ = std::make_unique<thermal::Thd>(rows_, std::move(setup), thickness_);
+}
+
+std::vector<int> ThdFilm::grooves() const {
+  return grooves_of(rows_, flow_, [](std::size_t) { return true; });
 }
 
 std::array<double, 2> ThdFilm::force_beside(const std::array<double, 2>& move, std::vector<double>& pressure) const {

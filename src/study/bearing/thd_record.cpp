@@ -32,6 +32,60 @@ io::Dataset by_rows(const Rows& rows, io::Shape shape, std::vector<double> value
   return out;
 }
 
+// Means across the film of what its fluid is.
+void put_fluid(io::Group& group, ThdFilm& film) {
+  const Rows& rows = film.rows();
+  const auto n = static_cast<std::size_t>(rows.mesh().nodes_around()), r = static_cast<std::size_t>(rows.count()),
+             l = static_cast<std::size_t>(rows.mesh().across);
+  const thermal::Fluid& fluid = film.fluid();
+  const std::vector<double>&t = film.thd().temperature(), &p = film.thd().flow().pressure();
+  const auto put = [&](const char* name, const char* unit, const char* description, const auto& value) {
+    std::vector<double> mean(r * n, 0.0);
+    for (std::size_t c = 0; c < t.size(); ++c) mean[c / l] += value(p[c / l], t[c]) / static_cast<double>(l);
+    group.put(name, by_rows(rows, {r, n}, std::move(mean), unit, description));
+  };
+  put("viscosity", "Pa s", "of the fluid, mean across the film [along][around]",
+      [&](double, double at) { return thermal::viscosity(fluid.viscosity, at).value; });
+  put("density", "kg/m^3", "of the fluid, mean across the film [along][around]; vapour of a cavity is left out",
+      [&](double pressure, double at) { return fluid.rho(pressure, at); });
+  put("conductivity", "W/(m K)", "of the fluid, mean across the film [along][around]",
+      [&](double, double at) { return fluid.k(at); });
+  put("heat_capacity", "J/(kg K)", "of the fluid at constant pressure, mean across the film [along][around]",
+      [&](double, double at) { return fluid.c(at); });
+}
+
+// What heats the film and where that goes, over the area of the film.
+void put_heat(io::Group& group, ThdFilm& film) {
+  const Rows& rows = film.rows();
+  const thermal::Mesh& mesh = rows.mesh();
+  const auto n = static_cast<std::size_t>(mesh.nodes_around()), r = static_cast<std::size_t>(rows.count()),
+             l = static_cast<std::size_t>(mesh.across);
+  thermal::Thd& thd = film.thd();
+  const auto put = [&](const char* name, std::vector<double> watts, const char* description) {
+    for (std::size_t c = 0; c < watts.size(); ++c)
+      watts[c] /= mesh.width(static_cast<int>(c % n)) * mesh.depth(rows.begin() + static_cast<int>(c / n));
+    group.put(name, by_rows(rows, {r, n}, std::move(watts), "W/m^2", description));
+  };
+  put("heat_bush", thd.wall_heat(false), "conducted from the film to the bush [along][around]");
+  put("heat_journal", thd.wall_heat(true), "conducted from the film to the journal [along][around]");
+  std::vector<double> dissipation(r * n, 0.0);
+  for (std::size_t c = 0; c < thd.flows().heat.size(); ++c) dissipation[c / l] += thd.flows().heat[c];
+  if (film.is_gas()) {
+    std::vector<double> expansion = thd.flow().expansion(thd.flows());
+    for (std::size_t c = 0; c < expansion.size(); ++c) dissipation[c] -= expansion[c];
+    put("expansion", std::move(expansion), "work of pressure on the film [along][around], negative where gas expands");
+  }
+  put("dissipation", std::move(dissipation), "viscosity times the square of the shear rate, across [along][around]");
+}
+
+// Nodes that the deck or the pressure sets apart, as numbers.
+template <class Number>
+void put_marks(io::Group& group, const Rows& rows, const char* name, const std::vector<Number>& marks,
+               const char* description) {
+  const auto r = static_cast<std::size_t>(rows.count());
+  group.put(name, by_rows(rows, {r, marks.size() / r}, {marks.begin(), marks.end()}, "1", description));
+}
+
 }  // namespace
 
 TemperatureNumbers temperature_numbers(const ThdFilm& film, const std::vector<double>& temperature) {
@@ -106,6 +160,16 @@ void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geome
     }
   group.put("flow_around", by_rows(rows, {r, n}, around, "kg/(m s)", "mass flow around, to the next node"));
   group.put("flow_along", by_rows(rows, {r, n}, along, "kg/(m s)", "mass flow along, from the node before"));
+  group.put("speed", std::vector<double>{film.speed()}, "rad/s", "of the shaft");
+  if (const std::vector<char> ruptured = thd.flow().ruptured(); !film.is_gas())
+    put_marks(group, rows, "ruptured", ruptured, "1 where the film is ruptured [along][around]");
+  if (thd.flow().conserves_mass())
+    group.put("fill",
+              by_rows(rows, {r, n}, thd.flow().fill(), "1", "share of the gap that is full of liquid [along][around]"));
+  if (const std::vector<int> grooves = film.grooves(); !grooves.empty())
+    put_marks(group, rows, "groove", grooves, "number of the groove that feeds a node, 0 of none [along][around]");
+  put_fluid(group, film);
+  put_heat(group, film);
   show_film(context, film, geometry);
   if (thd.bush()) put_solid(context, film, *thd.bush(), thd.bush_temperature(), "bush", geometry);
   if (thd.journal()) put_solid(context, film, *thd.journal(), thd.journal_temperature(), "journal", geometry);

@@ -1,0 +1,176 @@
+"""A film with its heat unwrapped: temperatures, pressure, thickness and flow, properties of its fluid, and heat flows. Cells of a groove
+and of a cavity are set apart: fields jump at their borders, and nothing is interpolated across them."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+
+from .style import GREY, INK, LIGHT, length_unit, save
+from .thd_film import HEAT, LABEL, RUPTURED, Film, ring
+
+SIGNED = "RdBu_r"
+
+
+def film_of(study):
+    return Film(study) if study.has("film/theta", "film/z", "film/temperature", "film/pressure", "film/thickness") else None
+
+
+def field(figure, axis, film, values, cmap, label, ink, jumps=True):
+    """A field over the unwrapped film. One that jumps has no contours where the film is ruptured. Colours of both signs are even about
+    zero; there are few enough of them for a picture of 256 colours."""
+    theta, z, shown, region = film.fine(values, jumps)
+    theta, z = np.degrees(theta), z * 1e3
+    low, high = values.min(), values.max()
+    span = high - low
+    same = span <= 1e-9 * max(abs(low), abs(high))  # rounding is no shape
+    if same:
+        low, high = low - 0.01 * abs(low), high + 0.01 * abs(high)
+    if cmap == SIGNED:
+        high = max(abs(low), abs(high))
+        low = -high
+    mesh = axis.pcolormesh(theta, z, shown, cmap=plt.get_cmap(cmap, 41), vmin=low, vmax=high, rasterized=True)
+    levels = values.min() + span * np.linspace(0.05, 0.95, 10)
+    middles = (theta[1:] + theta[:-1]) / 2, (z[1:] + z[:-1]) / 2
+    for part in np.unique(region):
+        inside = np.ma.masked_where(region != part, shown)
+        here = levels[(levels > inside.min()) & (levels < inside.max())]
+        if (part != RUPTURED or not jumps) and len(here) and not same:
+            axis.contour(*middles, inside, here, colors=ink, linewidths=0.5, alpha=0.6, corner_mask=False)
+    axis.grid(False)
+    figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
+
+
+def mark_regions(axis, film):
+    """Hatches the cells around the nodes where the film is ruptured, outlines those that grooves feed, and says which way
+    the shaft moves."""
+    axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
+    axis.set_ylabel("z [mm]")
+    first, last = np.degrees(ring(film.theta, film.theta, film.closed)[0][[0, -1]])
+    axis.set_xlim(first, last)
+    axis.set_xticks(np.arange(np.ceil(first / 45 - 1e-9), last / 45 + 1e-9) * 45)
+    axis.set_ylim(film.z[0] * 1e3, film.z[-1] * 1e3)
+    if film.cavity.any():
+        strips = np.array(film.strips(film.cavity)) * (180 / np.pi, 180 / np.pi, 1e3, 1e3)
+        corners = strips[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
+        axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=LIGHT, linewidth=0), autolim=False)
+    for groove in np.unique(film.groove[film.groove > 0]):
+        border = np.array(film.border(film.groove == groove)) * (180 / np.pi, 1e3)
+        for colour, width, label in (("white", 2.8, "_halo"), (INK, 1.3, "groove")):  # all of the halo first: these are many short lines
+            axis.add_collection(LineCollection(border, colors=colour, linewidths=width, capstyle="round", label=label, zorder=3), autolim=False)
+
+
+def regions_in_words(film):
+    words = "; outlined: cells that a groove feeds" if film.groove.any() else ""
+    if film.cavity.any() and film.conserves_mass:
+        return words + "; hatched: the film is ruptured, and the gap is not full"
+    return words + ("; hatched: the film is ruptured, and what is drawn there is not of a full film" if film.cavity.any() else "")
+
+
+def figure_of(count):
+    """A figure of panels two in a row; those left over are empty."""
+    rows, columns = -(-count // 2), min(count, 2)
+    figure, axes = plt.subplots(rows, columns, figsize=(11.2 if columns == 2 else 7.2, 2.9 * rows + 1.0), squeeze=False)
+    for axis in axes.flat[count:]:
+        axis.set_visible(False)
+    return figure, axes.flat
+
+
+def range_of(values, unit):
+    low, high = f"{values.min():.4g}", f"{values.max():.4g}"
+    return f"{low} {unit}".rstrip() if low == high else f"{low} to {high} {unit}".rstrip()
+
+
+def draw_maps(study):
+    film = film_of(study)
+    if not film:
+        return []
+    scale, unit = length_unit(film.thickness)
+    maps = [("temperature in the middle of the film", film.middle, HEAT, LABEL, "white", True),
+            ("pressure", film.pressure / 1e6, "YlOrRd", "pressure [MPa]", "#5a1a00", False),
+            ("film thickness", film.thickness * scale, "viridis_r", f"thickness [{unit}]", "white", False)]
+    # The wall of a rotating journal is the same all around.
+    maps += [(f"wall of the {name}", values, HEAT, LABEL, "white", True) for name, values in film.walls.items()
+             if np.ptp(values, axis=1).max() > 1e-6 * np.ptp(film.temperature)]
+    if film.conserves_mass:
+        maps.append(("share of the gap that is full", study.get("film/fill"), "Blues", "share [1]", "white", True))
+    figure, axes = figure_of(len(maps))
+    flow = film.radius and study.has("film/flow_around", "film/flow_along")
+    for axis, (title, values, colours, label, ink, jumps) in zip(axes, maps):
+        field(figure, axis, film, values, colours, label, ink, jumps)
+        axis.set_title(f"{title}: {range_of(values, label.split('[')[1][:-1].replace('1', ''))}")
+        if title == "pressure" and flow:
+            streams(axis, film, study.get("film/flow_around"), study.get("film/flow_along"))
+        mark_regions(axis, film)
+    return save(figure, study, "thd-maps", " ".join(filter(None, ("film unwrapped", film.at_speed))) + (", with lines of mass flow" if flow else "") + regions_in_words(film))
+
+
+def streams(axis, film, around, along):
+    """Lines of mass flow over a map, from kg/(m s) at faces: in degrees and millimetres. They end where the film is ruptured, unless it
+    knows what flows there."""
+    # Flows around are those between a node and the next one, along those between the node before and this one.
+    around = (around + np.roll(around, 1, axis=1)) / 2 if film.closed else around
+    along = np.concatenate(((along[:-1] + along[1:]) / 2, along[-1:]))
+    known = np.ones(film.cavity.shape) if film.conserves_mass else np.where(film.cavity, np.nan, 1.0)
+    theta, around = ring(film.theta, around * known, film.closed)
+    _, along = ring(film.theta, along * known, film.closed)
+    theta = np.degrees(np.linspace(theta[0], theta[-1], len(theta)))
+    z = np.linspace(film.z[0], film.z[-1], len(film.z)) * 1e3
+    axis.streamplot(theta, z, np.degrees(np.ma.masked_invalid(around) / film.radius), np.ma.masked_invalid(along) * 1e3, color=GREY, linewidth=0.6,
+                    density=0.8, arrowsize=0.6)
+
+
+FLUID = {"viscosity": "viscosity", "density": "density", "conductivity": "conductivity", "heat_capacity": "heat capacity"}
+
+
+def draw_fluid(study):
+    """Mean properties across the film; those that are the same everywhere are numbers below."""
+    film, known = film_of(study), [name for name in FLUID if study.has(f"film/{name}")]
+    if not film or not known:
+        return []
+    fields, same = [], []
+    for name in known:
+        values, unit = study.get(f"film/{name}"), str(study.group[f"film/{name}"].attrs.get("unit", "")).replace("^3", "\u00b3")
+        if unit == "Pa s":
+            factor, unit = (1e3, "mPa s") if values.max() >= 1e-3 else (1e6, "\u00b5Pa s")
+            values = values * factor
+        if np.ptp(values) > 1e-6 * np.abs(values).max():
+            fields.append((FLUID[name], values, unit))
+        else:
+            same.append(f"{FLUID[name]} {values.mean():.4g} {unit}")
+    if not fields:
+        return []
+    figure, axes = figure_of(len(fields))
+    for axis, (title, values, unit) in zip(axes, fields):
+        field(figure, axis, film, values, "cividis", f"{title} [{unit}]", "white")
+        axis.set_title(f"{title}: {range_of(values, unit)}")
+        mark_regions(axis, film)
+    return save(figure, study, "thd-fluid", " ".join(filter(None, ("mean across the film, unwrapped,", film.at_speed)))
+                + (f"; the same everywhere: {', '.join(same)}" if same else "") + regions_in_words(film))
+
+
+FLOWS = {"heat_bush": "heat to the bush", "heat_journal": "heat to the journal", "dissipation": "dissipation", "expansion": "work of pressure",
+         "heat": "both together"}
+
+
+def draw_heat(study):
+    """What the film gives to bush and journal and what heats it, per area, with the sum over the film."""
+    film = film_of(study)
+    found = {name: study.get(f"film/{name}") for name in FLOWS if study.has(f"film/{name}")}
+    if not film or not film.radius or not found:
+        return []
+    if {"dissipation", "expansion"} <= found.keys():
+        found["heat"] = found["dissipation"] + found["expansion"]
+    most = max(np.abs(values).max() for values in found.values())
+    none = [FLOWS[name] for name, values in found.items() if np.abs(values).max() <= 1e-9 * most]
+    found = {name: values for name, values in found.items() if FLOWS[name] not in none}
+    if not found:
+        return []
+    factor, unit = (1e-6, "MW/m\u00b2") if most >= 1e6 else (1e-3, "kW/m\u00b2") if most >= 1e3 else (1, "W/m\u00b2")
+    figure, axes = figure_of(len(found))
+    for axis, (name, values) in zip(axes, found.items()):
+        signed = values.min() < 0
+        field(figure, axis, film, values * factor, SIGNED if signed else "YlOrRd", f"heat flow [{unit}]", GREY if signed else "#5a1a00")
+        axis.set_title(f"{FLOWS[name]}: {range_of(values * factor, unit)}, {np.sum(values * film.areas):.4g} W in all")
+        mark_regions(axis, film)
+    return save(figure, study, "thd-heat", " ".join(filter(None, ("per area of the film, unwrapped,", film.at_speed)))
+                + "; positive: out of the film to a wall, or into the film by friction and pressure"
+                + (f"; none: {', '.join(none)}" if none else "") + regions_in_words(film))
