@@ -140,6 +140,35 @@ TEST(EnergyScheme, StepCarriedObliquelyMakesNoNewExtrema) {
   }
 }
 
+// A bearing without dissipation, with reversed flow, whose bush is hot in patches: everything stays between the
+// temperatures of walls and ends.
+TEST(EnergyScheme, NoNewExtremaWithoutSources) {
+  constexpr double hot = feed + 50;
+  for (const auto& [around, along, across] : {std::array{36, 12, 6}, {192, 64, 24}}) {
+    const auto film = test::heated_bearing(PETSC_COMM_WORLD, around, along, across, 0.9);
+    std::fill(film->flow.heat.begin(), film->flow.heat.end(), 0.0);
+    double back = 0;
+    for (const double f : film->flow.around) back = std::min(back, f);
+    MPI_Allreduce(MPI_IN_PLACE, &back, 1, MPI_DOUBLE, MPI_MIN, PETSC_COMM_WORLD);
+    ASSERT_LT(back, 0);
+    Surroundings s = walls_at(*film, feed);
+    std::size_t node = 0;
+    for (int j = film->rows.begin(); j < film->rows.end(); ++j)
+      for (int i = 0; i < film->mesh.nodes_around(); ++i, ++node)
+        if ((6 * i / film->mesh.nodes_around() + 3 * j / film->mesh.nodes_along()) % 2 == 0)
+          s.bush.temperature[node] = hot;
+    Energy energy(film->rows, film->flow, {c, k, 2}, film->thickness, s);
+    core::Vector t = film->temperature(feed);
+    ASSERT_TRUE(energy.solve(t.get(), 1e-11).converged);
+    double low = 0, high = 0;
+    core::check(VecMin(t.get(), nullptr, &low));
+    core::check(VecMax(t.get(), nullptr, &high));
+    EXPECT_GT(low, feed - 1e-7);
+    EXPECT_LT(high, hot + 1e-7);
+    EXPECT_GT(high, feed + 20);
+  }
+}
+
 TEST(EnergySolver, ReverseFlowIsSweptMoreOften) {
   for (const double eccentricity : {0.3, 0.9}) {
     const auto film = test::heated_bearing(PETSC_COMM_WORLD, 48, 16, 6, eccentricity);
