@@ -1,4 +1,5 @@
 // Cost of one pad of 60 x 16 cells against one banded factorisation of the same pressure equation.
+// Pads with heat stand against one linear solve of their equations.
 // OPENBLAS_NUM_THREADS=1 bench_film; the counter `per_factorisation` is the ratio to dpbtrf measured in the same run.
 #include <benchmark/benchmark.h>
 
@@ -7,8 +8,11 @@
 #include <numbers>
 #include <vector>
 
+#include "film/band_lu.hpp"
+#include "film/condensed.hpp"
 #include "support/film_of.hpp"
 #include "whirl/film/film.hpp"
+#include "whirl/film/film_matrix.hpp"
 
 extern "C" {
 void dpbtrf_(const char* uplo, const int* n, const int* kd, double* ab, const int* ldab, int* info);
@@ -152,6 +156,78 @@ void evaluate_states(benchmark::State& state, testing::Elastic options, Need nee
   }
 }
 
+// A pad with heat, its temperatures condensed.
+Thd heated(int layers) {
+  Thd o;
+  o.cells = {kAround, kAlong};
+  o.layers = layers;
+  o.feed = 323.15;
+  o.viscosity = whirl::thermal::ViscosityOptions{whirl::thermal::Walther{{46e-6, 6.8e-6}, {313.15, 373.15}, 850.0}};
+  return o;
+}
+
+// Seconds of one linear solve of all equations of that film, pressure and energy: derivatives, factors, one right-hand
+// side.
+double linear_solve_time(int layers) {
+  Thd o = heated(layers);
+  o.states = States::dynamic;
+  auto film = make_film(one_pad(), o, {0.0067, 850.0});
+  const JournalMotion m = loaded(false);
+  std::vector<double> states(film->states()), rates(film->states(), 0.0);
+  film->unloaded(m, states);
+  relax(*film, m, states);
+  FilmMatrix<double> matrix(film->whole(), film->whole().d_states);
+  Eigen::VectorXd units(static_cast<Eigen::Index>(states.size()));
+  for (const StateField& f : film->state_fields()) f.each([&](int k) { units(k) = f.scale; });
+  BandLu band(matrix.pattern(), units);
+  StateResponse r;
+  double least = 1e9;
+  for (int run = 0; run < 10; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    film->evaluate(m, states, rates, Need::tangents, r);
+    if (!band.factor(matrix.filled(r.d_states))) return 0;
+    const Eigen::Map<const Eigen::VectorXd> b(r.d_speed.data(), static_cast<Eigen::Index>(r.d_speed.size()));
+    benchmark::DoNotOptimize(band.solve(b));
+    const std::chrono::duration<double> t = std::chrono::steady_clock::now() - start;
+    least = std::min(least, t.count());
+  }
+  return least;
+}
+
+// The force with all tangents of a journal that goes around an orbit of a tenth of the clearance in `points` steps, as
+// at the points of a cycle; against one linear solve of the pad in the same run.
+void heated_orbit(benchmark::State& state) {
+  const auto layers = static_cast<int>(state.range(0)), points = static_cast<int>(state.range(1));
+  Condensed film(make_film(one_pad(),
+                           [&] {
+                             Thd o = heated(layers);
+                             o.states = States::dynamic;
+                             return o;
+                           }(),
+                           {0.0067, 850.0}));
+  StateResponse r;
+  JournalMotion m = loaded(false);
+  const JournalMotion middle = m;
+  const double turn = 2.0 * std::numbers::pi / points, radius = 0.05 * 0.0004;
+  long count = 0;
+  const auto go_on = [&] {
+    const double phase = turn * static_cast<double>(count++);
+    m.position[0] = middle.position[0] - 0.4 * 0.0004 + radius * std::cos(phase);
+    m.position[1] = middle.position[1] + radius * std::sin(phase);
+    m.velocity[0] = -radius * m.speed * std::sin(phase);
+    m.velocity[1] = radius * m.speed * std::cos(phase);
+    film.evaluate(m, film.whole(), {}, {}, Need::tangents, r);
+  };
+  for (int k = 0; k < points; ++k) go_on();  // warm
+  const long factorisations = film.factorisations();
+  count = 0;
+  for (auto _ : state) go_on();
+  const auto times = static_cast<double>(count);
+  state.counters["factorisations"] = static_cast<double>(film.factorisations() - factorisations) / times;
+  state.counters["per_linear_solve"] =
+      benchmark::Counter(linear_solve_time(layers) * times, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 testing::Elastic compliant(testing::Kind kind, bool as_source) {
   testing::Elastic o;
   o.kind = kind;
@@ -209,6 +285,8 @@ WHIRL_STATES(long_as_source, compliant(K::compliant_long, true));
 WHIRL_STATES(long_general, general(compliant(K::compliant_long, false)));
 WHIRL_STATES(finite_100x20, compliant(K::compliant_finite, false));
 WHIRL_STATES(finite_100x20_general, general(compliant(K::compliant_finite, false)));
+
+BENCHMARK(heated_orbit)->ArgsProduct({{1, 8}, {60, 120, 480}})->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 
