@@ -87,6 +87,10 @@ def draw_maps(study):
     maps = [("temperature in the middle of the film", film.middle, HEAT, LABEL, "white", True),
             ("pressure", film.pressure / 1e6, "YlOrRd", "pressure [MPa]", "#5a1a00", False),
             ("film thickness", film.thickness * scale, "viridis_r", f"thickness [{unit}]", "white", False)]
+    if study.has("film/pressure_isothermal"):
+        change = (film.pressure - study.get("film/pressure_isothermal")) / 1e3
+        if np.ptp(change) > 1e-9 * np.ptp(film.pressure):
+            maps.insert(2, ("pressure less that at one temperature", change, SIGNED, "difference [kPa]", GREY, False))
     # The wall of a rotating journal is the same all around.
     maps += [(f"wall of the {name}", values, HEAT, LABEL, "white", True) for name, values in film.walls.items()
              if np.ptp(values, axis=1).max() > 1e-6 * np.ptp(film.temperature)]

@@ -210,6 +210,9 @@ def maps(h):
             for field, entry in (("heat_bush", "bush"), ("heat_journal", "journal"), ("dissipation", "dissipation"), ("expansion", "expansion")):
                 if field in film:
                     h.close(f"{case}, {n} ranks: {field} [W]", (film[field] * area).sum(), value(study, f"heat.{entry}"), 1e-11 * loss)
+            cold = film["pressure_isothermal"]  # of a gas the change is that of the place
+            change = (numpy.abs(film["pressure"] - cold) / (cold if case == "gas" else cold.max())).max()
+            h.close(f"{case}: change of the pressure against isothermal", value(study, "pressure_change"), change, 1e-9)
             h.true(f"{case}: friction heats everywhere", (film["dissipation"] > 0).all())
             h.true(f"{case}: work of pressure is of a gas", ("expansion" in film) == (case == "gas"))
         for field in sorted(fields[1]):

@@ -145,6 +145,8 @@ void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geome
   thermal::Thd& thd = film.thd();
   group.put("pressure", by_rows(rows, {r, n}, thd.flow().pressure(), "Pa",
                                 "pressure [along][around]: absolute of a gas, above the ambient's of a liquid"));
+  group.put("pressure_isothermal", by_rows(rows, {r, n}, film.isothermal().pressure, "Pa",
+                                           "pressure of the film at the ambient's temperature [along][around]"));
   group.put("thickness", by_rows(rows, {r, n}, film.thickness(), "m", "film thickness [along][around]"));
   group.put("temperature", by_rows(rows, {r, n, l}, thd.temperature(), "K",
                                    "temperature of the cells [along][around][across], from the bush to the journal"));
