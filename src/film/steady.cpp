@@ -14,7 +14,7 @@ namespace {
 constexpr double enough = 1e-10;
 // A last step by its own derivatives leaves its square in the states, and itself in the derivatives, times how much
 // these bend.
-constexpr double nearly = 1e-7, not_in_tangents = 1e-9;
+constexpr double nearly = 1e-5, not_in_tangents = 1e-7;
 
 Map view(const std::vector<double>& v) {
   return {v.data(), static_cast<Eigen::Index>(v.size())};

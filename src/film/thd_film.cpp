@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "film/one_layer_pad.hpp"
 #include "film/refine.hpp"
 #include "film/thd_pad.hpp"
 #include "whirl/core/error.hpp"
@@ -170,7 +171,11 @@ private:
   // At rest in its states: what reports are of.
   void at(const JournalMotion& motion, std::span<const double> states) {
     const std::vector<double> rates(states.size(), 0.0);
-    evaluate(motion, whole(), states, rates, Need::force, report_);
+    std::size_t at = 0, at_rates = 0;
+    report_.residual.resize(states.size());
+    for (std::size_t n = 0; n < pads_.size(); ++n)
+      static_cast<typename HeatedPad::Base&>(*pads_[n]).evaluate(motion, of(n, states), of(n, rates), Need::force,
+                                                                 first_[n], at, at_rates, report_);
   }
 
   Geometry geometry_;
@@ -253,7 +258,7 @@ std::unique_ptr<Film> make(const Geometry& geometry, const Thd& options, const L
   constexpr int few = 8, any = Eigen::Dynamic;
   std::unique_ptr<Film> film;
   if (options.layers == 1)
-    film = std::make_unique<ThdFilm<ThdPad<1, 1>>>(geometry, options, lubricant);
+    film = std::make_unique<ThdFilm<OneLayerPad>>(geometry, options, lubricant);
   else if (options.layers <= few)
     film = std::make_unique<ThdFilm<ThdPad<any, few>>>(geometry, options, lubricant);
   else

@@ -319,13 +319,7 @@ void ThdPad<Count, Most>::integrate(Need need, std::size_t first, StateResponse&
 }
 
 template <int Count, int Most>
-void ThdPad<Count, Most>::evaluate(const JournalMotion& motion, std::span<const double> states,
-                                   std::span<const double> rates, Need need, std::size_t first, std::size_t& at,
-                                   std::size_t& at_rates, StateResponse& response) {
-  read(motion, states);
-  response.journal.min_thickness = std::min(response.journal.min_thickness, h_min_);
-  turbulence();
-  for (std::size_t f = 0; f < faces_.size(); ++f) flow(static_cast<int>(f), need == Need::tangents);
+std::size_t ThdPad<Count, Most>::entries() {
   if (entries_.empty()) {
     std::size_t before = 0;
     for (const auto& sides : sides_) {
@@ -335,10 +329,22 @@ void ThdPad<Count, Most>::evaluate(const JournalMotion& motion, std::span<const 
     }
     entries_.push_back(before);
   }
+  return entries_.back();
+}
+
+template <int Count, int Most>
+void ThdPad<Count, Most>::evaluate(const JournalMotion& motion, std::span<const double> states,
+                                   std::span<const double> rates, Need need, std::size_t first, std::size_t& at,
+                                   std::size_t& at_rates, StateResponse& response) {
+  read(motion, states);
+  response.journal.min_thickness = std::min(response.journal.min_thickness, h_min_);
+  turbulence();
+  for (std::size_t f = 0; f < faces_.size(); ++f) flow(static_cast<int>(f), need == Need::tangents);
+  const std::size_t all = entries();
   for (int n = 0; n < nodes(); ++n)
     row(n, rates, need, first, at + entries_[static_cast<std::size_t>(n)],
         at_rates + static_cast<std::size_t>(n * layers_), response);
-  at += entries_.back();
+  at += all;
   at_rates += static_cast<std::size_t>(nodes() * layers_);
   integrate(need, first, response);
 }

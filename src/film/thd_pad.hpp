@@ -42,6 +42,7 @@ enum class Nodal { pressure, mean, bush, journal };
 template <int Count, int Most>
 class ThdPad {
 public:
+  using Base = ThdPad;
   ThdPad(const Pad& pad, const Thd& options, const Lubricant& lubricant);
   [[nodiscard]] int nodes() const { return columns_ * rows_; }
   [[nodiscard]] int block() const { return 1 + layers(); }
@@ -70,7 +71,7 @@ public:
   /// States `to` at the nodes of this mesh from those of `other`, linearly.
   void resample(const ThdPad& other, std::span<const double> from, std::span<double> to) const;
 
-private:
+protected:
   using Vector = Eigen::Matrix<double, Count, 1, 0, Most, 1>;
   using Matrix = Eigen::Matrix<double, Count, Count, 0, Most, Most>;
   struct Node {
@@ -101,6 +102,8 @@ private:
   [[nodiscard]] int layers() const { return Count == Eigen::Dynamic ? layers_ : Count; }  // a constant if it can be
   void lay_out();
   void read(const JournalMotion& motion, std::span<const double> states);
+  // Throws core::DomainError where no law holds, so that Newton's method comes back.
+  [[nodiscard]] thermal::Valued viscosity_at(double temperature);
   // Re, k - 12 and s - 1 of all faces; see flow().
   void turbulence();
   void flow(int face, bool tangents);
@@ -115,6 +118,8 @@ private:
   void integrate(Need need, std::size_t first, StateResponse& response) const;
   [[nodiscard]] double pressure(int i, int j) const { return nodes_[node(i, j)].value[0]; }
   [[nodiscard]] std::size_t node(int i, int j) const { return static_cast<std::size_t>(i * rows_ + j); }
+  // Of dg/ds.
+  [[nodiscard]] std::size_t entries();
   // -q_k of all sides and of the growth of the volume: what is left to leave layer k.
   [[nodiscard]] double left_over(std::size_t node, int layer) const;
 

@@ -10,6 +10,15 @@
 namespace whirl::film {
 
 template <int Count, int Most>
+thermal::Valued ThdPad<Count, Most>::viscosity_at(double t) {
+  if (!(t > 200.0 && t < 1000.0)) throw core::DomainError("a temperature of the film is not that of an oil");
+  const thermal::Valued mu = viscosity_.at(t);
+  if (!(mu.value > 0.0 && std::isfinite(mu.value)))
+    throw core::DomainError("the viscosity has no value at a temperature of the film");
+  return mu;
+}
+
+template <int Count, int Most>
 void ThdPad<Count, Most>::read(const JournalMotion& motion, std::span<const double> states) {
   const bool tilt = options_.tilt;
   const double X = motion.position[0] - pad_.centre_x, Y = motion.position[1] - pad_.centre_y;
@@ -25,12 +34,7 @@ void ThdPad<Count, Most>::read(const JournalMotion& motion, std::span<const doub
     here.over_h = 1.0 / here.h;
     here.rate = -(motion.velocity[0] + here.z * vtx) * here.cosine - (motion.velocity[1] + here.z * vty) * here.sine;
     for (int k = 0; k < layers(); ++k) {
-      const double t = here.value[1 + k];
-      // Beyond these no law holds, and Newton's method is to come back.
-      if (!(t > 200.0 && t < 1000.0)) throw core::DomainError("a temperature of the film is not that of an oil");
-      const thermal::Valued mu = viscosity_.at(t);
-      if (!(mu.value > 0.0 && std::isfinite(mu.value)))
-        throw core::DomainError("the viscosity has no value at a temperature of the film");
+      const thermal::Valued mu = viscosity_at(here.value[1 + k]);
       here.mu(k) = mu.value;
       here.mu_t(k) = mu.slope;
     }

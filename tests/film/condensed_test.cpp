@@ -118,7 +118,8 @@ TEST_P(CondensedFilm, IsTheFilmWithStatesAtRest) {
   EXPECT_EQ(film.fields(still, {}).size(), dynamic->fields(still, s).size());
 }
 
-// Whatever was asked before.
+// Whatever was asked before: not in the force, and in the tangents no more than a film leaves in them that ends by its
+// own tangents (Steady).
 TEST_P(CondensedFilm, TheStartDoesNotShow) {
   const Case& c = GetParam();
   Condensed fresh(c.film());
@@ -138,7 +139,7 @@ TEST_P(CondensedFilm, TheStartDoesNotShow) {
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_NEAR(found.force[i], expected.force[i], 1e-12 * load_of(expected));
       for (std::size_t j = 0; j < 2; ++j)
-        EXPECT_NEAR(found.d_position[i][j], expected.d_position[i][j], 1e-9 * stiffness);
+        EXPECT_NEAR(found.d_position[i][j], expected.d_position[i][j], 1e-7 * stiffness);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film/one_layer_pad.hpp"
 #include "film/thd_cases.hpp"
 #include "film/thd_pad.hpp"
 #include "whirl/core/error.hpp"
@@ -76,6 +77,62 @@ Settled settle(const Geometry& geometry, Thd o, const Lubricant& lubricant, cons
   out.film->unloaded(m, out.states);
   relax(*out.film, m, out.states);
   return out;
+}
+
+// Array by array as node by node, in flow both ways: residuals, force and all derivatives, to rounding.
+TEST(ThdFilm, OneLayerInArraysIsThatOfNodes) {
+  for (const Turbulence turbulence : {Turbulence::laminar, Turbulence::constantinescu})
+    for (const bool tilt : {false, true})
+      for (const double speed : {kTurn, -kTurn, 0.0}) {
+        Thd o = heated({9, tilt ? 5 : 7}, 1);
+        o.turbulence = turbulence;
+        o.tilt = tilt;
+        const Pad pad = make_pads(lemon()).front();
+        OneLayerPad arrays(pad, o, oil());
+        ThdPad<1, 1> nodes(pad, o, oil());
+        const auto n = static_cast<std::size_t>(nodes.states());
+        std::vector<double> states(n), rates(n);
+        for (std::size_t k = 0; k < n; ++k) {
+          const double wave = std::sin(7.3 * static_cast<double>(k));
+          states[k] = k % 2 == 0 ? 3e5 * wave : 330.0 + 12.0 * wave;
+          rates[k] = k % 2 == 0 ? 0.0 : 5.0 * std::cos(3.1 * static_cast<double>(k));
+        }
+        const JournalMotion m = motion(lemon(), {0.3, -0.5, 0.2, 0.1}, {0.03, -0.05, 0.02, 0.01}, speed);
+        Places by_states, by_rates;
+        nodes.add_places(0, by_states, by_rates);
+        const auto evaluated = [&](auto& film) {
+          StateResponse r;
+          r.residual.resize(n);
+          r.d_states.resize(by_states.size());
+          r.d_rates.resize(by_rates.size());
+          r.d_speed.resize(n);
+          for (PortColumns* columns : {&r.d_position, &r.d_velocity, &r.force_d_states})
+            columns->assign(tilt ? 4 : 2, std::vector<double>(n, 0.0));
+          std::size_t at = 0, at_rates = 0;
+          film.evaluate(m, states, rates, Need::tangents, 0, at, at_rates, r);
+          EXPECT_EQ(at, by_states.size());
+          EXPECT_EQ(at_rates, by_rates.size());
+          return r;
+        };
+        const StateResponse a = evaluated(arrays), b = evaluated(nodes);
+        // Rows of one kind have one unit, blocks of four entries four.
+        const auto same = [](const std::vector<double>& x, const std::vector<double>& y, std::size_t kinds) {
+          ASSERT_EQ(x.size(), y.size());
+          std::vector<double> largest(kinds, 0.0);
+          for (std::size_t k = 0; k < y.size(); ++k) largest[k % kinds] = std::max(largest[k % kinds], std::abs(y[k]));
+          for (std::size_t k = 0; k < y.size(); ++k) ASSERT_NEAR(x[k], y[k], 1e-12 * largest[k % kinds]) << k;
+        };
+        same(a.residual, b.residual, 2);
+        same(a.d_states, b.d_states, 4);
+        same(a.d_rates, b.d_rates, 1);
+        same(a.d_speed, b.d_speed, 2);
+        for (std::size_t port = 0; port < a.d_position.size(); ++port) {
+          same(a.d_position[port], b.d_position[port], 2);
+          same(a.d_velocity[port], b.d_velocity[port], 2);
+          same(a.force_d_states[port], b.force_d_states[port], 2);
+        }
+        for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(a.journal.force[c], b.journal.force[c]);
+      }
 }
 
 // Between adiabatic walls a concentric film warms along its way by what its shear dissipates: with mu = mu_0 exp(-b (T
