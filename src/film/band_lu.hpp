@@ -25,6 +25,8 @@ public:
   [[nodiscard]] bool factor(const Sparse& a);
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   /// Of each column of b [n x any]; two at a time cost little more than one.
+  [[nodiscard]] Eigen::MatrixXd solve_all(const Eigen::MatrixXd& b) const;
+  /// Of each column of b [n x any]; two at a time cost little more than one.
   [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const;
   /// The largest relative error of the solution that was tried.
   [[nodiscard]] double loss() const { return loss_; }
@@ -34,8 +36,12 @@ public:
 private:
   [[nodiscard]] bool scale_rows(const Sparse& a);
   void factor_as_it_stands(const Sparse& a);
+  template <int Vectors, class LayOut>
+  void eliminate(const LayOut& lay_out);
   [[nodiscard]] bool factor_with_exchanges(const Sparse& a);
   [[nodiscard]] Eigen::VectorXd solved(char which, Eigen::VectorXd b) const;
+  template <int Sides>
+  void direct(const double* b, double* to) const;
   template <int Sides>
   void transposed(const double* b, double* to) const;
   [[nodiscard]] double* column(int k) { return band_.data() + first(k); }

@@ -1,5 +1,6 @@
 #include "film/condensed.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "whirl/core/error.hpp"
@@ -20,10 +21,10 @@ std::vector<double> Condensed::carried(const std::array<double, 4>& by) const {
   return out;
 }
 
-bool Condensed::attempt(const JournalMotion& motion, Need need, std::vector<double> states) {
+bool Condensed::attempt(const JournalMotion& motion, Need need, std::vector<double> states, double error) {
   there_ = false;
   try {
-    steady_.solve(motion, carried(motion.velocity), Steady::Until::same_force, need, states);
+    steady_.solve(motion, carried(motion.velocity), Steady::Until::same_force, need, states, error);
   } catch (const core::DomainError&) {
     reason_ = std::current_exception();
     return false;
@@ -34,6 +35,63 @@ bool Condensed::attempt(const JournalMotion& motion, Need need, std::vector<doub
   found_ = motion;
   states_ = std::move(states);
   return there_ = true;
+}
+
+namespace {
+
+// Changes of the ports' positions and velocities, and of the speed: the order of Steady::slopes().
+Eigen::VectorXd change(const JournalMotion& from, const JournalMotion& to, std::span<const Port> ports) {
+  const auto n = static_cast<Eigen::Index>(ports.size());
+  Eigen::VectorXd out(2 * n + 1);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const auto w = static_cast<std::size_t>(ports[static_cast<std::size_t>(p)]);
+    out(p) = to.position[w] - from.position[w];
+    out(n + p) = to.velocity[w] - from.velocity[w];
+  }
+  out(2 * n) = to.speed - from.speed;
+  return out;
+}
+
+}  // namespace
+
+// From the nearest motion that is known, along its slopes; not where they change the states by more than half a typical
+// one, where they say little.
+bool Condensed::predict(const JournalMotion& motion, Need need) {
+  constexpr double most = 0.5;
+  const Known* nearest = nullptr;
+  double least = most * most;
+  const auto ports = film_->ports();
+  for (const Known& k : known_) {
+    const double distance = change(k.motion, motion, ports).cwiseProduct(moves_).squaredNorm();
+    if (distance < least) least = distance, nearest = &k;
+  }
+  if (!nearest) return false;
+  const Eigen::VectorXd moved = (nearest->slopes * change(nearest->motion, motion, ports).cast<float>()).cast<double>();
+  const double size = steady_.size(moved);
+  if (!(size <= most)) return false;
+  std::vector<double> states = nearest->states;
+  for (std::size_t k = 0; k < states.size(); ++k) states[k] += moved(static_cast<Eigen::Index>(k));
+  // Slopes in single precision.
+  return attempt(motion, need, std::move(states), steady_.lacks(size) + 1e-6 * size);
+}
+
+// Residuals, Jacobians, multipliers and reports ask for the same points of a cycle.
+const Condensed::Known* Condensed::known(const JournalMotion& motion) const {
+  const auto it = std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.motion == motion; });
+  return it == known_.end() ? nullptr : &*it;
+}
+
+void Condensed::remember(const Eigen::MatrixXd& slopes, const Response& response) {
+  constexpr std::size_t most_bytes = 16 << 20;
+  moves_.resize(slopes.cols());
+  for (Eigen::Index w = 0; w < slopes.cols(); ++w) moves_(w) = steady_.size(slopes.col(w));
+  const std::size_t each = states_.size() * (sizeof(double) + static_cast<std::size_t>(slopes.cols()) * sizeof(float));
+  if (known_.size() < std::max<std::size_t>(1, most_bytes / each)) {
+    known_.push_back({*found_, states_, slopes.cast<float>(), response});
+    return;
+  }
+  known_[oldest_] = {*found_, states_, slopes.cast<float>(), response};
+  oldest_ = (oldest_ + 1) % known_.size();
 }
 
 // From the last states, with what the film remembers carried along.
@@ -60,7 +118,8 @@ bool Condensed::start_anew(const JournalMotion& motion, Need need) {
 // same centre, so that the way there does not show.
 void Condensed::solve(const JournalMotion& motion, Need need) {
   if (there_ && *found_ == motion) return;
-  if ((found_ && follow(motion, need)) || start_anew(motion, need)) return;
+  if ((!known_.empty() && predict(motion, need)) || (found_ && follow(motion, need)) || start_anew(motion, need))
+    return;
   const std::exception_ptr reason = reason_;
   const std::optional<JournalMotion> before = found_;
   const std::vector<double> states = states_;
@@ -96,8 +155,12 @@ void Condensed::solve(const JournalMotion& motion, Need need) {
 
 void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                          std::span<const double> /*rates*/, Need need, StateResponse& all) {
-  solve(motion, need);
   Response& response = all.without_states();
+  if (const Known* k = known(motion)) {
+    response = k->response;
+    return;
+  }
+  solve(motion, need);
   response.force = steady_.here().journal.force;
   response.min_thickness = steady_.here().journal.min_thickness;
   if (need == Need::force) return;
@@ -107,6 +170,22 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
   const auto n = static_cast<Eigen::Index>(states_.size());
   const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };
   const Share& whole = film_->whole();
+  if (carried_rates_.empty()) {
+    const Eigen::MatrixXd slopes = steady_.slopes();
+    for (std::size_t f = 0; f < ports.size(); ++f) {
+      const auto i = static_cast<std::size_t>(ports[f]);
+      const Eigen::RowVectorXd by = thin(at.force_d_states[f]).transpose() * slopes;
+      const auto count = static_cast<Eigen::Index>(ports.size());
+      for (Eigen::Index w = 0; w < count; ++w) {
+        const auto j = static_cast<std::size_t>(ports[static_cast<std::size_t>(w)]);
+        response.d_position[i][j] += by(w);
+        response.d_velocity[i][j] += by(count + w);
+      }
+      response.d_speed[i] += by(2 * count);
+    }
+    remember(slopes, response);
+    return;
+  }
   Eigen::MatrixXd by_states(n, static_cast<Eigen::Index>(ports.size()));
   for (std::size_t f = 0; f < ports.size(); ++f)
     by_states.col(static_cast<Eigen::Index>(f)) = thin(at.force_d_states[f]);
@@ -115,17 +194,14 @@ void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, st
     const auto i = static_cast<std::size_t>(ports[f]);
     const auto lambda = lambdas.col(static_cast<Eigen::Index>(f));
     // What a rate of each state does to the force, all in all.
-    Eigen::VectorXd by_rates = Eigen::VectorXd::Zero(carried_rates_.empty() ? 0 : n);
-    if (!carried_rates_.empty()) {
-      for_entries(whole, whole.d_rates, at.d_rates,
-                  [&](int row, int column, double value) { by_rates(column) -= lambda(row) * value; });
-      if (!at.force_d_rates.empty()) by_rates += thin(at.force_d_rates[f]);
-    }
+    Eigen::VectorXd by_rates = Eigen::VectorXd::Zero(n);
+    for_entries(whole, whole.d_rates, at.d_rates,
+                [&](int row, int column, double value) { by_rates(column) -= lambda(row) * value; });
+    if (!at.force_d_rates.empty()) by_rates += thin(at.force_d_rates[f]);
     for (std::size_t w = 0; w < ports.size(); ++w) {
       const auto j = static_cast<std::size_t>(ports[w]);
       response.d_position[i][j] -= lambda.dot(thin(at.d_position[w]));
-      response.d_velocity[i][j] -= lambda.dot(thin(at.d_velocity[w]));
-      if (!carried_rates_.empty()) response.d_velocity[i][j] += by_rates.dot(thin(carried_rates_[w]));
+      response.d_velocity[i][j] += by_rates.dot(thin(carried_rates_[w])) - lambda.dot(thin(at.d_velocity[w]));
     }
     response.d_speed[i] -= lambda.dot(thin(at.d_speed));
   }
@@ -144,7 +220,7 @@ std::vector<NodalField> Condensed::fields(const JournalMotion& motion, std::span
 }
 
 double Condensed::least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) {
-  solve(motion, Need::force);
+  if (film_->thickness_of_states()) solve(motion, Need::force);
   return film_->least_thickness(motion, states_);
 }
 

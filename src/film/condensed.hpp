@@ -7,6 +7,9 @@
 // = (dg/ds)^-T df/ds of each force
 //
 //     dF/dw = df/dw - lambda . dg/dw,   dF/dw' = df/dw' + df/ds' r - lambda . (dg/dw' + dg/ds' r)
+//
+// A film that remembers nothing (r = 0) is asked for ds/dw = -(dg/ds)^-1 dg/dw instead, which predicts its states at
+// motions near by: dF/dw = df/dw + df/ds ds/dw.
 
 #include <exception>
 #include <memory>
@@ -33,10 +36,22 @@ public:
   [[nodiscard]] long factorisations() const { return steady_.factorisations(); }
 
 private:
+  // Motions that were solved with tangents, the oldest overwritten first. The points of a cycle come back in every step
+  // of Newton's method, each time nearer to where they were.
+  struct Known {
+    JournalMotion motion;
+    std::vector<double> states;
+    Eigen::MatrixXf slopes;  // ds/dw as Steady::slopes()
+    Response response;
+  };
   void solve(const JournalMotion& motion, Need need);
   [[nodiscard]] bool follow(const JournalMotion& motion, Need need);
   [[nodiscard]] bool start_anew(const JournalMotion& motion, Need need);
-  [[nodiscard]] bool attempt(const JournalMotion& motion, Need need, std::vector<double> states);
+  [[nodiscard]] bool attempt(const JournalMotion& motion, Need need, std::vector<double> states,
+                             double error = Steady::unknown);
+  [[nodiscard]] bool predict(const JournalMotion& motion, Need need);
+  void remember(const Eigen::MatrixXd& slopes, const Response& response);
+  [[nodiscard]] const Known* known(const JournalMotion& motion) const;
   [[nodiscard]] std::vector<double> carried(const std::array<double, 4>& by) const;
 
   std::unique_ptr<Film> film_;
@@ -46,6 +61,9 @@ private:
   std::optional<JournalMotion> found_;
   std::vector<double> states_;
   bool there_ = false;
+  std::vector<Known> known_;
+  std::size_t oldest_ = 0;
+  Eigen::VectorXd moves_;      // what a change of each w does to the states, in typical ones, at the motion last known
   std::exception_ptr reason_;  // why the last attempt failed
 };
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double enough = 1e-10;
 // A last step by its own derivatives leaves its square in the states, and itself in the derivatives, times how much
 // these bend.
-constexpr double nearly = 1e-5, not_in_tangents = 1e-7;
+constexpr double nearly = 3e-5, not_in_tangents = 1e-7;
 
 Map view(const std::vector<double>& v) {
   return {v.data(), static_cast<Eigen::Index>(v.size())};
@@ -113,14 +113,16 @@ void Steady::take_last(const Eigen::VectorXd& step, std::vector<double>& states)
 // is taken, so that of a smooth film what is left is its square, or with kept factors the share that they leave.
 // Tangents want derivatives and factors at the end in any case: kept factors then lead only near enough for these.
 void Steady::solve(const JournalMotion& motion, std::span<const double> rates, Until until, Need need,
-                   std::vector<double>& states) {
+                   std::vector<double>& states, double error) {
   constexpr int most_steps = 60;
   constexpr double not_felt = 1e-13;
   const bool may_keep = !film_.whole_steps();
   motion_ = motion;
   rates_.assign(rates.begin(), rates.end());
   now_ = states;
-  bool keep = may_keep && !factored_.empty();
+  const bool linear_ends = may_keep && need == Need::tangents && until == Until::same_force;
+  const auto near = [&](double s) { return s <= nearly && s * bend_ <= not_in_tangents; };
+  bool keep = may_keep && !factored_.empty() && !(linear_ends && near(error));
   const auto refresh = [&] {
     linearise(now_);
     factor();
@@ -144,15 +146,13 @@ void Steady::solve(const JournalMotion& motion, std::span<const double> rates, U
     if (keep) {
       // The first step from another motion shows nothing yet.
       contraction_ = std::isfinite(size_before) ? moves / size_before : contraction_;
-      if (std::isfinite(size_before) && size_before > nearly) bend_ = contraction_ / size(view(now_) - factored_at_);
+      if (std::isfinite(size_before) && size_before > 1e-7) bend_ = contraction_ / size(view(now_) - factored_at_);
       if (std::isfinite(size_before) && moves > enough && !pays(contraction_, moves)) {
         refresh();
         change = step(at_->residual);
         moves = size(change);
       }
     }
-    const bool linear_ends = may_keep && need == Need::tangents && until == Until::same_force;
-    const auto near = [&](double s) { return s <= nearly && s * bend_ <= not_in_tangents; };
     if (linear_ends && !keep && near(moves)) {
       take_last(change, states);
       return;
@@ -208,12 +208,14 @@ const StateResponse& Steady::tangents() {
   return linear_;
 }
 
-// By the factors of derivatives near by where that is known to cost less, and in either case until rounding is all that
-// is left of what the factors lack.
-Eigen::MatrixXd Steady::solve_transposed(const Eigen::MatrixXd& b) {
+// (dg/ds)^-1 b or its transpose: by the factors of derivatives near by where that is known to cost less, and in either
+// case until rounding is all that is left of what the factors lack.
+Eigen::MatrixXd Steady::refined(const Eigen::MatrixXd& b, bool transposed) {
   constexpr double exact = 1e-12, forces = 2.0, too_slow = 0.2;
-  const auto solved = [&](const Eigen::MatrixXd& r) {
-    return band_ ? band_->solve_transposed(r) : Eigen::MatrixXd(lu_.transpose().solve(r));
+  const auto solved = [&](const Eigen::MatrixXd& r) -> Eigen::MatrixXd {
+    if (band_) return transposed ? band_->solve_transposed(r) : band_->solve_all(r);
+    if (transposed) return lu_.transpose().solve(r);
+    return lu_.solve(r);
   };
   const bool near =
       !factored_.empty() && contraction_ < 0.1 && forces * std::log(exact) / std::log(contraction_) <= price_;
@@ -224,7 +226,8 @@ Eigen::MatrixXd Steady::solve_transposed(const Eigen::MatrixXd& b) {
     if (own && (!band_ || band_->loss() <= exact)) return x;
     const auto& matrix = matrix_.filled(linear_.d_states);
     for (double before = unknown;;) {
-      const Eigen::MatrixXd more = solved(b - matrix.transpose() * x);
+      const Eigen::MatrixXd image = transposed ? Eigen::MatrixXd(matrix.transpose() * x) : Eigen::MatrixXd(matrix * x);
+      const Eigen::MatrixXd more = solved(b - image);
       x += more;
       // Of the columns the one that lacks most.
       const double now = more.colwise().norm().cwiseQuotient(x.colwise().norm().cwiseMax(1e-300)).maxCoeff();
@@ -234,6 +237,21 @@ Eigen::MatrixXd Steady::solve_transposed(const Eigen::MatrixXd& b) {
     }
     factor();
   }
+}
+
+Eigen::MatrixXd Steady::solve_transposed(const Eigen::MatrixXd& b) {
+  return refined(b, true);
+}
+
+Eigen::MatrixXd Steady::slopes() {
+  const auto ports = static_cast<Eigen::Index>(film_.ports().size());
+  Eigen::MatrixXd rows(scale_.size(), 2 * ports + 1);
+  for (Eigen::Index p = 0; p < ports; ++p) {
+    rows.col(p) = view(linear_.d_position[static_cast<std::size_t>(p)]);
+    rows.col(ports + p) = view(linear_.d_velocity[static_cast<std::size_t>(p)]);
+  }
+  rows.col(2 * ports) = view(linear_.d_speed);
+  return -refined(rows, false);
 }
 
 void Steady::follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states) {

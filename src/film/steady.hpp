@@ -20,6 +20,7 @@ namespace whirl::film {
 
 class Steady {
 public:
+  static constexpr double unknown = std::numeric_limits<double>::infinity();
   explicit Steady(Film& film);
   Steady(const Steady&) = delete;
   Steady& operator=(const Steady&) = delete;
@@ -27,15 +28,21 @@ public:
   enum class Until { small_step, same_force };
   /// Finds the states from those given, which it leaves as they were if it throws core::NotConverged or
   /// core::DomainError. Where tangents are needed too, those are of the states before the last step, which is then too
-  /// small to show in them.
+  /// small to show in them. `error` is what the states given may lack, in typical states, as far as that is known.
   void solve(const JournalMotion& motion, std::span<const double> rates, Until until, Need need,
-             std::vector<double>& states);
+             std::vector<double>& states, double error = unknown);
   /// What the film answers at the states found, without tangents.
   [[nodiscard]] const StateResponse& here() const { return *at_; }
   /// The same with tangents.
   [[nodiscard]] const StateResponse& tangents();
   /// x = (dg/ds)^-T b [states x any] at the states found, after tangents().
   [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b);
+  /// ds/dw [states x (2 ports + 1)] by positions and velocities of the ports and by the speed, after tangents().
+  [[nodiscard]] Eigen::MatrixXd slopes();
+  /// How much of a typical state each state is, as the root of a mean square.
+  [[nodiscard]] double size(const Eigen::VectorXd& step) const;
+  /// What a prediction by slopes lacks that changes the states by `size`: its square, times how much derivatives bend.
+  [[nodiscard]] double lacks(double size) const { return bend_ * size * size; }
   /// Adds to `states`, those of a motion that was solved, what the derivatives last taken say that a change of the
   /// motion does to them; not if that is more than half a typical state, where derivatives say little.
   void follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states);
@@ -46,7 +53,7 @@ private:
   void linearise(std::span<const double> states);
   void factor();
   [[nodiscard]] Eigen::VectorXd step(const std::vector<double>& residual);
-  [[nodiscard]] double size(const Eigen::VectorXd& step) const;
+  [[nodiscard]] Eigen::MatrixXd refined(const Eigen::MatrixXd& b, bool transposed);
   [[nodiscard]] double distance(const StateResponse& at) const;
   [[nodiscard]] std::array<double, 4> effect(const Eigen::VectorXd& step) const;
   [[nodiscard]] std::pair<std::array<double, 4>, std::array<double, 4>> effect_by_steps(
@@ -54,7 +61,6 @@ private:
   [[nodiscard]] bool pays(double contraction, double size) const;
   void take_last(const Eigen::VectorXd& step, std::vector<double>& states);
 
-  static constexpr double unknown = std::numeric_limits<double>::infinity();
   Film& film_;
   Eigen::VectorXd scale_, row_weight_;
   // What is being solved, and where it stands.

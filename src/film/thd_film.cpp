@@ -112,6 +112,8 @@ public:
     return minimum_thickness(geometry_, position);
   }
 
+  [[nodiscard]] bool thickness_of_states() const override { return false; }
+
   FilmReport summary(const JournalMotion& motion, std::span<const double> states) override {
     at(motion, states);
     FilmReport out;

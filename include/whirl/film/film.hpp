@@ -91,6 +91,8 @@ public:
   /// surfaces touch. Infinite for a linear film. From some of the states alone it is that of these or of the whole
   /// film: the least over all shares is the film's. Throws as evaluate() does where the film has to be known.
   [[nodiscard]] virtual double least_thickness(const JournalMotion& motion, std::span<const double> states) = 0;
+  /// Whether least_thickness() depends on the states: not where the walls are rigid.
+  [[nodiscard]] virtual bool thickness_of_states() const { return true; }
   /// Starts the search for its pressure from where `other` ended, a film of the same mesh with other numbers. Without
   /// effect on a film that searches nothing, or if the meshes differ.
   virtual void start_from(const Film& /*other*/) {}
