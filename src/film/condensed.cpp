@@ -54,31 +54,57 @@ Eigen::VectorXd change(const JournalMotion& from, const JournalMotion& to, std::
 
 }  // namespace
 
-// From the nearest motion that is known, along its slopes; not where they change the states by more than half a typical
-// one, where they say little.
-bool Condensed::predict(const JournalMotion& motion, Need need) {
-  constexpr double most = 0.5;
-  const Known* nearest = nullptr;
-  double least = most * most;
+Condensed::Near Condensed::nearest(const JournalMotion& motion) const {
+  Near out;
+  double least = Steady::unknown;
   const auto ports = film_->ports();
   for (const Known& k : known_) {
-    const double distance = change(k.motion, motion, ports).cwiseProduct(moves_).squaredNorm();
-    if (distance < least) least = distance, nearest = &k;
+    const Eigen::VectorXd by = change(k.motion, motion, ports);
+    const double distance = by.cwiseProduct(moves_).squaredNorm();
+    if (!(distance < least)) continue;
+    least = distance;
+    out.known = &k;
+    out.by = by;
   }
-  if (!nearest) return false;
-  const Eigen::VectorXd moved = (nearest->slopes * change(nearest->motion, motion, ports).cast<float>()).cast<double>();
-  const double size = steady_.size(moved);
-  if (!(size <= most)) return false;
-  std::vector<double> states = nearest->states;
-  for (std::size_t k = 0; k < states.size(); ++k) states[k] += moved(static_cast<Eigen::Index>(k));
-  // Slopes in single precision.
-  return attempt(motion, need, std::move(states), steady_.lacks(size) + 1e-6 * size);
+  if (!out.known) return out;
+  out.moved = (out.known->slopes * out.by.cast<float>()).cast<double>();
+  out.size = steady_.size(out.moved);
+  return out;
 }
 
-// Residuals, Jacobians, multipliers and reports ask for the same points of a cycle.
-const Condensed::Known* Condensed::known(const JournalMotion& motion) const {
-  const auto it = std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.motion == motion; });
-  return it == known_.end() ? nullptr : &*it;
+// Not where slopes change the states by more than half a typical one, where they say little.
+bool Condensed::predict(const JournalMotion& motion, Need need) {
+  constexpr double most = 0.5;
+  const Near near = nearest(motion);
+  if (!(near.size <= most)) return false;
+  std::vector<double> states = near.known->states;
+  for (std::size_t k = 0; k < states.size(); ++k) states[k] += near.moved(static_cast<Eigen::Index>(k));
+  // Slopes in single precision.
+  return attempt(motion, need, std::move(states), steady_.lacks(near.size) + 1e-6 * near.size);
+}
+
+// The last steps of Newton's method move a cycle by less than shows in tangents. What is left out of the force is
+// second order.
+bool Condensed::extrapolate(const JournalMotion& motion, Response& response) const {
+  constexpr double not_in_tangents = 1e-8, not_in_force = 1e-13;
+  if (known_.empty() || film_->thickness_of_states()) return false;
+  const Near near = nearest(motion);
+  if (!(steady_.bends(near.size) <= not_in_tangents && steady_.bends(near.size) * near.size <= not_in_force))
+    return false;
+  response = near.known->response;
+  response.min_thickness = film_->least_thickness(motion, near.known->states);
+  const auto ports = film_->ports();
+  for (const Port from : ports) {
+    const auto i = static_cast<std::size_t>(from);
+    for (std::size_t w = 0; w < ports.size(); ++w) {
+      const auto j = static_cast<std::size_t>(ports[w]);
+      const auto k = static_cast<Eigen::Index>(w);
+      response.force[i] += response.d_position[i][j] * near.by(k) +
+                           response.d_velocity[i][j] * near.by(static_cast<Eigen::Index>(ports.size()) + k);
+    }
+    response.force[i] += response.d_speed[i] * near.by(near.by.size() - 1);
+  }
+  return true;
 }
 
 void Condensed::remember(const Eigen::MatrixXd& slopes, const Response& response) {
@@ -156,10 +182,7 @@ void Condensed::solve(const JournalMotion& motion, Need need) {
 void Condensed::evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                          std::span<const double> /*rates*/, Need need, StateResponse& all) {
   Response& response = all.without_states();
-  if (const Known* k = known(motion)) {
-    response = k->response;
-    return;
-  }
+  if (extrapolate(motion, response)) return;
   solve(motion, need);
   response.force = steady_.here().journal.force;
   response.min_thickness = steady_.here().journal.min_thickness;

@@ -51,7 +51,14 @@ private:
                              double error = Steady::unknown);
   [[nodiscard]] bool predict(const JournalMotion& motion, Need need);
   void remember(const Eigen::MatrixXd& slopes, const Response& response);
-  [[nodiscard]] const Known* known(const JournalMotion& motion) const;
+  // The nearest motion that is known, and how its states change from there.
+  struct Near {
+    const Known* known = nullptr;
+    Eigen::VectorXd by, moved;  // change of w in the order of the slopes; of the states
+    double size = Steady::unknown;
+  };
+  [[nodiscard]] Near nearest(const JournalMotion& motion) const;
+  [[nodiscard]] bool extrapolate(const JournalMotion& motion, Response& response) const;
   [[nodiscard]] std::vector<double> carried(const std::array<double, 4>& by) const;
 
   std::unique_ptr<Film> film_;

@@ -41,8 +41,9 @@ public:
   [[nodiscard]] Eigen::MatrixXd slopes();
   /// How much of a typical state each state is, as the root of a mean square.
   [[nodiscard]] double size(const Eigen::VectorXd& step) const;
-  /// What a prediction by slopes lacks that changes the states by `size`: its square, times how much derivatives bend.
-  [[nodiscard]] double lacks(double size) const { return bend_ * size * size; }
+  /// How much derivatives change, relatively, where the states change by `size`, and what a prediction by them lacks.
+  [[nodiscard]] double bends(double size) const { return size == 0.0 ? 0.0 : bend_ * size; }
+  [[nodiscard]] double lacks(double size) const { return bends(size) * size; }
   /// Adds to `states`, those of a motion that was solved, what the derivatives last taken say that a change of the
   /// motion does to them; not if that is more than half a typical state, where derivatives say little.
   void follow(const JournalMotion& from, const JournalMotion& to, std::vector<double>& states);

@@ -88,8 +88,10 @@ public:
     response.force_d_rates.clear();
     for (PortColumns* columns : {&response.d_position, &response.d_velocity, &response.force_d_states}) {
       columns->resize(ports().size());
-      for (std::vector<double>& column : *columns) column.assign(tangents ? rows : 0, 0.0);
+      for (std::vector<double>& column : *columns) column.resize(tangents ? rows : 0);
     }
+    // Pads write all of the others, and add to these.
+    for (std::vector<double>& column : response.force_d_states) std::fill(column.begin(), column.end(), 0.0);
     if (rows == 0) return;
     std::size_t at = 0, at_rates = 0;
     for (std::size_t n = 0; n < pads_.size(); ++n)
