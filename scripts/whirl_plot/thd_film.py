@@ -44,10 +44,16 @@ class Film:
         self.groove = np.round(study.get("film/groove", nowhere)).astype(int)
         self.region = np.where(self.groove > 0, RUPTURED + self.groove, np.where(self.cavity, RUPTURED, FULL))
         self.conserves_mass = study.has("film/fill")
+        self.orifices = np.stack((study.get("orifices/theta"), study.get("orifices/z")), axis=1) if study.has("orifices/theta", "orifices/z") else np.zeros((0, 2))
 
     @property
     def closed(self):
         return closes(self.theta)
+
+    @property
+    def flow_known(self):
+        """Whether nodes know what flows there: not where the film is ruptured, unless it conserves its mass."""
+        return np.ones(self.cavity.shape, bool) if self.conserves_mass else ~self.cavity
 
     @property
     def step(self):
