@@ -15,9 +15,9 @@ def film_of(study):
     return Film(study) if study.has("film/theta", "film/z", "film/temperature", "film/pressure", "film/thickness") else None
 
 
-def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None):
+def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, white=0):
     """A field over the unwrapped film. One that jumps has no contours where the film is ruptured. Nodes that are not `known` are left
-    white. Colours of both signs are even about zero; there are few enough of them for a picture of 256 colours."""
+    blank. Colours of both signs are even about what is `white`; there are few enough of them for a picture of 256 colours."""
     theta, z, shown, region = film.fine(values, jumps)
     theta, z = np.degrees(theta), z * 1e3
     if known is not None and not known.all():
@@ -29,8 +29,8 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None):
     if same:
         low, high = low - 0.01 * abs(low), high + 0.01 * abs(high)
     if cmap == SIGNED:
-        high = max(abs(low), abs(high))
-        low = -high
+        reach = max(white - low, high - white)
+        low, high = white - reach, white + reach
     mesh = axis.pcolormesh(theta, z, shown, cmap=plt.get_cmap(cmap, 41), vmin=low, vmax=high, rasterized=True)
     levels = values.min() + span * np.linspace(0.05, 0.95, 10)
     middles = (theta[1:] + theta[:-1]) / 2, (z[1:] + z[:-1]) / 2
@@ -147,16 +147,16 @@ def draw_velocity(study):
     around, along = study.get("film/velocity_around"), study.get("film/velocity_along")
     known = film.flow_known
     figure, axes = plt.subplots(2, 1, figsize=(9.2, 6.8))
-    for axis, (title, values) in zip(axes, (("circumferential velocity", around), ("axial velocity", along))):
-        signed = values[known].min() < 0 < values[known].max()
-        field(figure, axis, film, values, SIGNED if signed else "viridis", "velocity [m/s]", GREY if signed else "white", known=known)
+    drag = 0.5 * (film.speed or 0) * film.radius
+    for axis, (title, values, white) in zip(axes, (("circumferential velocity", around, drag), ("axial velocity", along, 0))):
+        field(figure, axis, film, values, SIGNED, "velocity [m/s]", GREY, known=known, white=white)
         axis.set_title(f"{title}: {range_of(values[known], 'm/s')}")
         mark_regions(axis, film)
     streams(axes[1], film, around, along, known)
     words = regions_in_words(film) if known.all() else regions_in_words(film).split("; hatched")[0] + "; hatched: the film is ruptured, and its flow is not known"
-    speed = "" if film.speed is None else f"; the journal's surface moves at {film.speed * film.radius:.4g} m/s"
+    white = "; white: none" if drag == 0 else f"; white: what drag alone gives, {drag:.4g} m/s above and none below"
     return save(figure, study, "thd-velocity", " ".join(filter(None, ("half-way between bush and journal, unwrapped,", film.at_speed)))
-                + ", below with streamlines; positive: to larger angles and larger z" + speed + words)
+                + ", below with streamlines; positive: to larger angles and larger z" + white + words)
 
 
 FLUID = {"viscosity": "viscosity", "density": "density", "conductivity": "conductivity", "heat_capacity": "heat capacity"}

@@ -3,7 +3,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from .style import INK, length_unit, save
-from .thd_cuts import at_speed, axial, edge, fill_film, isotherms, parts, regions_in_words
+from .thd_cuts import at_speed, axial, edge, fill_film, parts, regions_in_words
 from .thd_film import LABEL, Film, ring, stretches
 
 SOLID = "#e6e6e6"
@@ -22,7 +22,7 @@ def supplies(film):
 
 def cuts(film):
     """Nodes [column, column, row] at a supply where the film is thinnest, half-way to the next one in the direction of rotation, and at the
-    supply along; the kind of the supply. None without one."""
+    supply along; words for it and for half-way. None without one."""
     kind, places = supplies(film)
     if not len(places) or not film.closed:
         return None
@@ -33,25 +33,28 @@ def cuts(film):
     ahead = (way * (places[:, 0] - angle)) % turn
     ahead = ahead[(ahead > 1e-6) & (ahead < turn - 1e-6)]
     step = ahead.min() if len(ahead) else turn
-    return nearest(angle), nearest(angle + way * step / 2), int(np.argmin(np.abs(film.z - z))), kind
+    words = f"half-way to the next {kind}" if len(ahead) else f"opposite the {kind}"
+    return nearest(angle), nearest(angle + way * step / 2), int(np.argmin(np.abs(film.z - z))), kind, words
 
 
-def of_film(axis, film, region, at, thickness, values, limits, scale):
-    """The film over the bush, [um]; values [across, node]. Above it the journal."""
+def of_film(figure, axis, film, region, at, thickness, values, limits, scale, orifices):
+    """The film over the bush, [um]; values [across, node]. Above it the journal, below it what orifices open at."""
     for kind, places, piece in stretches(region, at, values):
         height = np.interp(places, at, thickness) * film.zeta[:, None] * scale
         mesh = fill_film(axis, kind, np.broadcast_to(places, height.shape), height, piece, limits)
-    top = 1.12 * film.thickness.max() * scale
+    top = 1.2 * thickness.max() * scale
     axis.fill_between(at, thickness * scale, top, color=SOLID, linewidth=0)
-    axis.fill_between(at, -0.08 * top, 0, color=SOLID, linewidth=0)
+    axis.fill_between(at, -0.1 * top, 0, color=SOLID, linewidth=0)
     for height in (0 * thickness, thickness * scale):
         edge(axis, at, height)
+    if len(orifices):  # an empty line that is not clipped has no extent, and the layout collapses
+        axis.plot(orifices, np.full(len(orifices), -0.05 * top), "^", color=INK, markersize=6, clip_on=False, label="orifice")
     axis.set_xlim(at[0], at[-1])
-    axis.set_ylim(-0.08 * top, top)
+    axis.set_ylim(-0.1 * top, top)
     axis.grid(False)
-    axis.text(0.99, 0.96, "journal", transform=axis.transAxes, ha="right", va="top", fontsize=8, color=INK)
-    axis.text(0.99, 0.02, "bush", transform=axis.transAxes, ha="right", va="bottom", fontsize=8, color=INK)
-    return mesh
+    axis.text(0.99, 0.97, "journal", transform=axis.transAxes, ha="right", va="top", fontsize=8, color=INK)
+    axis.text(0.03, 0.01, "bush", transform=axis.transAxes, ha="left", va="bottom", fontsize=8, color=INK)
+    figure.colorbar(mesh, ax=axis, label=LABEL, pad=0.015).outline.set_visible(False)
 
 
 def draw_film(study):
@@ -61,30 +64,36 @@ def draw_film(study):
     found = film and cuts(film)
     if not found:
         return []
-    supply, between, row, kind = found
+    supply, between, row, kind, words = found
     scale, unit = length_unit(film.thickness)
-    z = film.z * 1e3
-    lines = [(f"along at {np.degrees(film.theta[supply]) % 360:.4g} deg, at {'an' if kind == 'orifice' else 'a'} {kind}", supply),
-             (f"along at {np.degrees(film.theta[between]) % 360:.4g} deg, half-way to the next {kind}", between)]
-    rings = [(f"around at z = {z[row]:.3g} mm, through the {kind}s", row), (f"around at z = {z[0]:.3g} mm, the end of the film", 0)]
-    here = [film.temperature[:, [supply, between]], film.temperature[[row, 0]]]
-    limits = min(v.min() for v in here), max(v.max() for v in here)
-    figure, axes = plt.subplots(2, 2, figsize=(11.2, 6.4))
-    for axis, (title, i) in zip(axes[0], lines):
-        mesh = of_film(axis, film, film.region[:, i], z, film.thickness[:, i], film.temperature[:, i].T, limits, scale)
-        axis.set_title(title)
+    figure, axes = plt.subplots(2, 2, figsize=(11.2, 6.6))
+    columns, rows = [supply, between], [row, 0]
+    limits = [(part.min(), part.max()) for part in (film.temperature[:, columns], film.temperature[rows])]
+    angles, heights = np.degrees(film.orifices[:, 0]), film.orifices[:, 1]
+    z, half = film.z * 1e3, film.step * 90 / np.pi
+    for axis, i, where in zip(axes[0], columns, (f"at {'an' if kind == 'orifice' else 'a'} {kind}", words)):
+        angle = np.degrees(film.theta[i]) % 360
+        here = np.abs((angles - angle + 180) % 360 - 180) < half
+        of_film(figure, axis, film, film.region[:, i], z, film.thickness[:, i], film.temperature[:, i].T, limits[0], scale, heights[here] * 1e3)
+        axis.set_title(f"along at {angle:.4g} deg, {where}")
         axis.set_xlabel("z [mm]")
-    for axis, (title, j) in zip(axes[1], rings):
+    through = f"through the {kind}" + ("s" if len(supplies(film)[1]) > 1 else "")
+    for axis, j, where in zip(axes[1], rows, (through, "the end of the film")):
+        here = np.abs(heights - film.z[j]) < np.diff(film.z).max() / 2
         theta, values = ring(film.theta, film.temperature[j].T, True)
-        mesh = of_film(axis, film, ring(film.theta, film.region[j], True)[1], np.degrees(theta), ring(film.theta, film.thickness[j], True)[1], values, limits, scale)
-        axis.set_title(title)
+        _, region = ring(film.theta, film.region[j], True)
+        _, thickness = ring(film.theta, film.thickness[j], True)
+        low, high = np.degrees(theta[[0, -1]])
+        open_at = np.unique([a + turn for a in angles[here] for turn in (-360, 0, 360) if low - 1e-6 < a + turn < high + 1e-6])
+        of_film(figure, axis, film, region, np.degrees(theta), thickness, values, limits[1], scale, open_at)
+        axis.set_title(f"around at z = {z[j]:.3g} mm, {where}")
         axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
-        axis.set_xticks(np.arange(np.ceil(np.degrees(theta[0]) / 45 - 1e-9), np.degrees(theta[-1]) / 45 + 1e-9) * 45)
+        axis.set_xticks(np.arange(np.ceil(low / 45 - 1e-9), high / 45 + 1e-9) * 45)
     for axis in axes.flat:
-        axis.set_ylabel(f"above the bush [{unit}]")
-    figure.colorbar(mesh, ax=axes, label=LABEL, pad=0.015).outline.set_visible(False)
-    regions = np.concatenate([film.region[:, [supply, between]].ravel(), film.region[[row, 0]].ravel()])
-    return save(figure, study, "thd-film", f"sections through the film{at_speed(film)}; {isotherms(limits)}{regions_in_words(regions)}")
+        axis.set_ylabel(f"height [{unit}]")
+    regions = np.concatenate([film.region[:, columns].ravel(), film.region[rows].ravel()])
+    return save(figure, study, "thd-film", f"sections through the film, height above the bush{at_speed(film)}; isotherms every {np.ptp(limits[0]) / 17:.2g} K above and "
+                f"{np.ptp(limits[1]) / 17:.2g} K below" + ("; triangles: orifices" if len(film.orifices) else "") + regions_in_words(regions))
 
 
 def draw_axial(study):
@@ -93,7 +102,7 @@ def draw_axial(study):
     found = film and cuts(film)
     if not (found and film.radius and bush and journal):
         return []
-    supply, between, _, kind = found
+    supply, between, _, kind, words = found
     at, half = (np.degrees(film.theta[i]) % 360 for i in (supply, between))
     return axial(study, (film, bush, journal, limits), f"thd-axial-{kind}", (film.theta[supply], film.theta[between]),
-                 f"above: at {at:.4g} deg, at {'an' if kind == 'orifice' else 'a'} {kind}, below: at {half:.4g} deg, half-way to the next one")
+                 f"above: at {at:.4g} deg, at {'an' if kind == 'orifice' else 'a'} {kind}, below: at {half:.4g} deg, {words}")
