@@ -45,6 +45,13 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, 
     figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
 
 
+def hatch_cavity(axis, film, colour=LIGHT):
+    if film.cavity.any():
+        strips = np.array(film.strips(film.cavity)) * (180 / np.pi, 180 / np.pi, 1e3, 1e3)
+        corners = strips[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
+        axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=colour, linewidth=0), autolim=False)
+
+
 def mark_regions(axis, film):
     """Hatches the cells around the nodes where the film is ruptured, outlines those that grooves feed, marks orifices, and says
     which way the shaft moves."""
@@ -54,10 +61,7 @@ def mark_regions(axis, film):
     axis.set_xlim(first, last)
     axis.set_xticks(np.arange(np.ceil(first / 45 - 1e-9), last / 45 + 1e-9) * 45)
     axis.set_ylim(film.z[0] * 1e3, film.z[-1] * 1e3)
-    if film.cavity.any():
-        strips = np.array(film.strips(film.cavity)) * (180 / np.pi, 180 / np.pi, 1e3, 1e3)
-        corners = strips[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
-        axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=LIGHT, linewidth=0), autolim=False)
+    hatch_cavity(axis, film)
     if len(film.orifices):
         theta, z = film.orifices.T
         theta = np.concatenate([theta + turn for turn in (-2 * np.pi, 0, 2 * np.pi)])
