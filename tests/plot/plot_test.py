@@ -25,7 +25,7 @@ EXPECTED = {
     "hard": ["impedance"],
     "soft": ["frequencies"],
     "period_two": ["motion"],
-    "hot": ["thd-maps", "thd-fluid", "thd-heat", "thd-profiles", "thd-radial", "thd-axial", "thd-iterations", "thd-meshes", "thd-budget", "thd-effective", "thd-properties"],
+    "hot": ["thd-maps", "thd-velocity", "thd-fluid", "thd-heat", "thd-profiles", "thd-film", "thd-radial", "thd-axial", "thd-axial-orifice", "thd-iterations", "thd-meshes", "thd-budget", "thd-effective", "thd-properties"],
     "clearances": ["trends", "balanced"],
 }
 TOGETHER = ["bifurcations", "map-locus", "map-stiffness", "map-damping", "map-stability", "map-pressure"]
