@@ -204,7 +204,7 @@ def middle(h, case, film, radius):
         here = free[: len(wanted)]
         size = numpy.abs(wanted[here] - (surface / 2 if name == "around" else 0)).max()
         off = numpy.median(numpy.abs(wanted - found)[here]) / size
-        h.close(f"{case}: velocity {name} half-way is that of the mass flow", off, 0, 0.05)
+        h.close(f"{case}: velocity {name} half-way is that of the mass flow", off, 0, 0.02)
     h.true(f"{case}: it goes out at both ends", film["velocity_along"][0].min() < 0 < film["velocity_along"][-1].max())
 
 
