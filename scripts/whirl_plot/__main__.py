@@ -6,7 +6,7 @@ import sys
 import whirl
 
 from . import (bearing_map, bifurcation, campbell, eccentricity, film, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
-               style, sweep, thd, thd_compare, thd_cuts, thd_maps)
+               style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
 from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -19,8 +19,8 @@ PICTURES = {
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
     "motion": [motion.draw],
-    "thd": [thd_maps.draw_maps, thd_maps.draw_fluid, thd_maps.draw_heat, thd_cuts.draw_profiles, thd_cuts.draw_radial, thd_cuts.draw_axial,
-            thd.draw_iterations, thd.draw_meshes, thd.draw_budget, thd_compare.draw_effective, thd_compare.draw_properties],
+    "thd": [thd_maps.draw_maps, thd_maps.draw_velocity, thd_maps.draw_fluid, thd_maps.draw_heat, thd_cuts.draw_profiles, thd_sections.draw_film, thd_cuts.draw_radial,
+            thd_cuts.draw_axial, thd_sections.draw_axial, thd.draw_iterations, thd.draw_meshes, thd.draw_budget, thd_compare.draw_effective, thd_compare.draw_properties],
     "sweep": [sweep.draw_trends, sweep.draw_branches, sweep.draw_response, sweep.draw_stability_factors, sweep.draw_films, sweep.draw_coefficients],
 }
 TOGETHER = [machine.draw, bifurcation.draw_together, eccentricity.draw, bearing_map.draw_together, locus.draw_together, run_up.draw_together]

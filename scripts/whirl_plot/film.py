@@ -1,8 +1,10 @@
-"""Unwrapped oil films: pressure and thickness of every pad."""
+"""Unwrapped oil films: pressure, thickness, temperature and fill of every pad."""
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import BAD, GREY, INK, length_unit, save
+from .style import GREY, length_unit, save
+from .thd_film import Unwrapped, cavity_of
+from .thd_maps import field, hatch_cavity
 
 
 def pads_of(study):
@@ -17,14 +19,19 @@ def pads_of(study):
     return found
 
 
-def panel(figure, axis, theta, z, values, cmap, label, ink):
-    mesh = axis.pcolormesh(theta, z, values.T, cmap=cmap, shading="gouraud" if min(values.shape) > 1 else "nearest", rasterized=True)
-    if np.ptp(values) > 0 and min(values.shape) > 1:
-        levels = values.min() + np.ptp(values) * np.linspace(0.05, 0.95, 10)
-        axis.contour(theta, z, values.T, levels, colors=ink, linewidths=0.5, alpha=0.6)
+def panel(figure, axis, pad, values, cmap, label, ink, jumps=False):
+    """A field [around, along] of a pad. One that jumps is not interpolated between film and cavity, and has no contours in it."""
+    theta, z = np.degrees(pad.theta), pad.z * 1e3
+    if min(values.shape) > 1:
+        field(figure, axis, pad, values.T, cmap, label, ink, jumps)
+    else:
+        mesh = axis.pcolormesh(theta, z, values.T, cmap=cmap, shading="nearest", rasterized=True)
+        figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
+    hatch_cavity(axis, pad, GREY)
     axis.grid(False)
-    bar = figure.colorbar(mesh, ax=axis, pad=0.015, label=label)
-    bar.outline.set_visible(False)
+    if len(z) > 1:
+        axis.set_xlim(theta[0], theta[-1])
+        axis.set_ylim(z[0], z[-1])
     axis.set_xlabel("\u03b8 [deg], from +x counter-clockwise; the shaft moves to the right \u2192", fontsize=8.5)
     axis.set_ylabel("z [mm]")
 
@@ -32,34 +39,43 @@ def panel(figure, axis, theta, z, values, cmap, label, ink):
 def draw(study):
     files = []
     for bearing, pads in pads_of(study).items():
-        warm = all(study.has(f"{path}/temperature") for _, path in pads)
-        columns = 3 if warm else 2
+        warm, partly = (all(study.has(f"{path}/{name}") for _, path in pads) for name in ("temperature", "fill"))
+        columns = 2 + warm + partly
         figure, axes = plt.subplots(len(pads), columns, figsize=(5.6 * columns, 2.9 * len(pads) + 1.0), squeeze=False)
         known = [study.get(f"{path}/thickness").ravel() for _, path in pads if study.has(f"{path}/thickness")]
         scale, unit = length_unit(np.concatenate(known or [np.zeros(1)]))
+        ruptured = False
         for row, (name, path) in enumerate(pads):
-            theta, z = np.degrees(study.get(f"{path}/theta")), study.get(f"{path}/z") * 1e3
-            pressure = study.get(f"{path}/pressure") / 1e6
+            pressure, fill = study.get(f"{path}/pressure") / 1e6, study.get(f"{path}/fill", None)
+            pad = Unwrapped(study.get(f"{path}/theta"), study.get(f"{path}/z"), cavity_of(pressure.T, None if fill is None else fill.T))
+            ruptured = ruptured or pad.cavity.any()
+            theta, z = np.degrees(pad.theta), pad.z * 1e3
             left, right = axes[row][:2]
-            panel(figure, left, theta, z, pressure, "YlOrRd", "pressure [MPa]", "#5a1a00")
+            panel(figure, left, pad, pressure, "YlOrRd", "pressure [MPa]", "#5a1a00")
             i, j = np.unravel_index(np.argmax(pressure), pressure.shape)
             if pressure[i, j] > 0:
                 left.plot(theta[i], z[j], "+", color="black", markersize=8)
             left.set_title(f"{name}: pressure, largest {pressure.max():.4g} MPa at {theta[i]:.1f} deg")
             if warm:
-                celsius, last = study.get(f"{path}/temperature") - 273.15, axes[row][2]
-                panel(figure, last, theta, z, celsius, "inferno", "mean temperature [\u00b0C]", "white")
+                celsius = study.get(f"{path}/temperature") - 273.15
+                panel(figure, axes[row][2], pad, celsius, "inferno", "mean temperature [\u00b0C]", "white", jumps=True)
                 i, j = np.unravel_index(np.argmax(celsius), celsius.shape)
-                last.set_title(f"{name}: temperature, highest {celsius.max():.4g} \u00b0C at {theta[i]:.1f} deg")
+                axes[row][2].set_title(f"{name}: temperature, highest {celsius.max():.4g} \u00b0C at {theta[i]:.1f} deg")
+            if partly:
+                # An edge holds what would enter there; what is carried past it comes from inside.
+                fill = np.where(pad.cavity.T, np.pad(fill[1:-1, 1:-1], 1, mode="edge"), fill) if pad.cavity.any() else fill
+                panel(figure, axes[row][-1], pad, fill, "Blues", "share [1]", "white", jumps=True)
+                axes[row][-1].set_title(f"{name}: share of the gap that is full, least {fill.min():.3g}")
             if not study.has(f"{path}/thickness"):
                 right.set_visible(False)
                 continue
             thickness = study.get(f"{path}/thickness") * scale
-            panel(figure, right, theta, z, thickness, "viridis_r", f"thickness [{unit}]", "white")
+            panel(figure, right, pad, thickness, "viridis_r", f"thickness [{unit}]", "white")
             i, j = np.unravel_index(np.argmin(thickness), thickness.shape)
             if np.ptp(thickness[i]) < 1e-9 * thickness[i, j]:  # aligned: the whole line is thinnest
                 j = len(z) // 2
             right.plot(theta[i], z[j], "+", color="white", markersize=8)
             right.set_title(f"{name}: film thickness, smallest {thickness.min():.4g} {unit} at {theta[i]:.1f} deg")
-        files += save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness")
+        hatched = "; hatched: the film is ruptured, and the gap is not full" if partly else "; hatched: no pressure, the film is ruptured or its suction cut off"
+        files += save(figure, study, f"film-{bearing}", f"bearing {bearing}, film unwrapped; + largest pressure, smallest thickness" + hatched * bool(ruptured))
     return files

@@ -142,27 +142,27 @@ def draw_radial(study):
     axis.set_xlabel("x [mm]")
     axis.set_ylabel("y [mm]")
     figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)
-    return save(figure, study, "thd-radial", f"section at z = {film.z[row] * 1e3:.3g} mm{at_speed(film)}; the film is drawn {factor:.0f} times as thick; isotherms every "
-                f"{np.ptp(limits) / 17:.2g} K" + regions_in_words(region))
+    return save(figure, study, "thd-radial", f"section at z = {film.z[row] * 1e3:.3g} mm{at_speed(film)}; the film is drawn {factor:.0f} times as thick; "
+                f"{isotherms(limits)}" + regions_in_words(region))
 
 
-def draw_axial(study):
-    """Bush, film and journal along the shaft where the film is thinnest, and opposite (the film drawn thicker)."""
-    film, bush, journal, limits = parts(study)
-    if not (film and film.radius and bush and journal):
-        return []
+def isotherms(limits):
+    return f"isotherms every {np.ptp(limits) / 17:.2g} K"
+
+
+def axial(study, of, what, angles, words):
+    """Bush, film and journal along the shaft at two angles [rad], the first above, the second below the axis."""
+    film, bush, journal, limits = of
     wall = film.radius
     factor, _, _, _ = magnified(film, wall)
-    thinnest = int(np.argmin(film.thickness.mean(axis=0)))
     figure, axis = plt.subplots(figsize=(10.5, 6.4))
     shown = []
-    for side in (1, -1):
-        angle = film.theta[thinnest] + (0 if side > 0 else np.pi)
-        away = lambda theta: np.abs((theta - angle + np.pi) % (2 * np.pi) - np.pi)  # noqa: E731
+    for side, angle in zip((1, -1), angles):
+        away = lambda theta: np.abs((theta - angle + np.pi) % (2 * np.pi) - np.pi)  # noqa: E731, B023
         i = int(np.argmin(away(film.theta)))
         gap = factor * film.thickness[:, i]
         shift = gap.max()
-        if side > 0 or away(film.theta)[i] < 0.2:
+        if away(film.theta)[i] < 0.2:
             shown.append(film.region[:, i])
             radii = lambda at: side * 1e3 * (wall + shift - np.interp(at, film.z, gap)[:, None] * film.zeta)  # noqa: E731, B023
             for kind, places, piece in stretches(film.region[:, i], film.z, film.temperature[:, i].T):
@@ -171,7 +171,7 @@ def draw_axial(study):
             for wet in (0, -1):
                 edge(axis, film.z * 1e3, radii(film.z)[:, wet])
         k = int(np.argmin(away(bush["theta"])))
-        if side > 0 or away(bush["theta"])[k] < 0.2:
+        if away(bush["theta"])[k] < 0.2:
             z, r = np.meshgrid(bush["z"] * 1e3, (bush["r"] + shift) * side * 1e3, indexing="ij")
             fill(axis, z, r, bush["temperature"][:, k], limits)
         inside = journal["temperature"]
@@ -183,5 +183,14 @@ def draw_axial(study):
     axis.set_xlabel("z [mm]")
     axis.set_ylabel("r [mm]")
     figure.colorbar(mesh, ax=axis, label=LABEL).outline.set_visible(False)
-    return save(figure, study, "thd-axial", f"above: at {np.degrees(film.theta[thinnest]):.0f} deg, where the film is thinnest, below: opposite{at_speed(film)}; the film is drawn "
-                f"{factor:.0f} times as thick; isotherms every {np.ptp(limits) / 17:.2g} K" + regions_in_words(np.concatenate(shown)))
+    return save(figure, study, what, f"{words}{at_speed(film)}; the film is drawn {factor:.0f} times as thick; {isotherms(limits)}"
+                + regions_in_words(np.concatenate(shown)))
+
+
+def draw_axial(study):
+    """Bush, film and journal along the shaft where the film is thinnest, and opposite (the film drawn thicker)."""
+    of = film, bush, journal, _ = parts(study)
+    if not (film and film.radius and bush and journal):
+        return []
+    angle = film.theta[int(np.argmin(film.thickness.mean(axis=0)))]
+    return axial(study, of, "thd-axial", (angle, angle + np.pi), f"above: at {np.degrees(angle):.0f} deg, where the film is thinnest, below: opposite")

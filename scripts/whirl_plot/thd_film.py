@@ -21,29 +21,22 @@ def ring(theta, values, closed):
     return np.append(theta, theta[0] + 2 * np.pi), np.concatenate((values, values[..., :1]), axis=-1)
 
 
-class Film:
-    """Fields at the nodes, [along, around], and the temperature from the bush (zeta 0) to the journal (zeta 1)."""
+def cavity_of(pressure, fill=None):
+    """Nodes [along, around] of a pad where the film is ruptured: not full, or without pressure where nothing pulls. The edges, which have
+    no pressure of their own, are as their neighbours."""
+    inside = fill < 1 if fill is not None else (pressure <= 0) & (pressure.min() >= 0)
+    if min(inside.shape) < 3:
+        return np.zeros(inside.shape, bool)
+    return np.pad(inside[1:-1, 1:-1], 1, mode="edge")
 
-    def __init__(self, study):
-        self.theta, self.z = study.get("film/theta"), study.get("film/z")
-        self.thickness, self.pressure = study.get("film/thickness"), study.get("film/pressure")
-        self.radius = float(np.ravel(study.get("film/radius", 0))[0])
-        self.speed = study.get("film/speed")
-        self.speed = None if self.speed is None else float(np.ravel(self.speed)[0])
-        self.temperature = study.get("film/temperature")
-        layers = self.temperature.shape[2]
-        self.zeta = (np.arange(layers) + 0.5) / layers
-        self.walls = {name: study.get(f"film/{name}_wall") for name in ("bush", "journal") if study.has(f"film/{name}_wall")}
-        for name, at in (("bush", 0), ("journal", 1)):
-            if name in self.walls:
-                side = 0 if at == 0 else len(self.zeta)
-                self.zeta = np.insert(self.zeta, side, at)
-                self.temperature = np.insert(self.temperature, side, self.walls[name], axis=2)
-        nowhere = np.zeros(self.thickness.shape)
-        self.cavity = study.get("film/ruptured", nowhere) > 0
-        self.groove = np.round(study.get("film/groove", nowhere)).astype(int)
-        self.region = np.where(self.groove > 0, RUPTURED + self.groove, np.where(self.cavity, RUPTURED, FULL))
-        self.conserves_mass = study.has("film/fill")
+
+class Unwrapped:
+    """Nodes [along, around] of a film and the regions between which fields jump."""
+
+    def __init__(self, theta, z, cavity, groove=None):
+        self.theta, self.z, self.cavity = theta, z, cavity
+        self.groove = np.zeros(cavity.shape, int) if groove is None else groove
+        self.region = np.where(self.groove > 0, RUPTURED + self.groove, np.where(cavity, RUPTURED, FULL))
 
     @property
     def closed(self):
@@ -53,36 +46,6 @@ class Film:
     def step(self):
         """rad between nodes."""
         return np.diff(self.theta).max()
-
-    @property
-    def middle(self):
-        """K [along, around] between the walls."""
-        return np.array([[np.interp(0.5, self.zeta, column) for column in row] for row in self.temperature])
-
-    @property
-    def areas(self):
-        """m^2 [along, around], of the cells around the nodes: half of one at an end."""
-        ends = np.concatenate((self.z[:1], (self.z[1:] + self.z[:-1]) / 2, self.z[-1:]))
-        widths = np.full(len(self.theta), self.radius * self.step)
-        if not self.closed:
-            widths[[0, -1]] /= 2
-        return np.diff(ends)[:, None] * widths
-
-    @property
-    def rotation(self):
-        """The way of the shaft in an unwrapped map."""
-        if self.speed == 0:
-            return "the shaft stands"
-        return "\u2190 the shaft moves to the left" if (self.speed or 1) < 0 else "the shaft moves to the right \u2192"
-
-    @property
-    def at_speed(self):
-        return "" if self.speed is None else "at standstill" if self.speed == 0 else f"at {self.speed:.5g} rad/s"
-
-    def place(self):
-        """Clearance and eccentricity [m] of the circle that the thickness is the gap of: h = c - x cos - y sin."""
-        h = self.thickness.mean(axis=0)
-        return np.linalg.lstsq(np.stack((np.ones_like(h), -np.cos(self.theta), -np.sin(self.theta)), axis=1), h, rcond=None)[0]
 
     def fine(self, values, jumps=True):
         """Angles [rad] and z [m] of the edges of fine cells, values in them, and their regions: a node's field goes to the faces of its
@@ -131,6 +94,65 @@ class Film:
             for j in np.flatnonzero(padded[1:, i] != padded[:-1, i]):
                 found += [[(a, z[j]), (b, z[j])] for a, b in spans]
         return found
+
+
+class Film(Unwrapped):
+    """Fields at the nodes, [along, around], and the temperature from the bush (zeta 0) to the journal (zeta 1)."""
+
+    def __init__(self, study):
+        self.thickness, self.pressure = study.get("film/thickness"), study.get("film/pressure")
+        self.radius = float(np.ravel(study.get("film/radius", 0))[0])
+        self.speed = study.get("film/speed")
+        self.speed = None if self.speed is None else float(np.ravel(self.speed)[0])
+        self.temperature = study.get("film/temperature")
+        layers = self.temperature.shape[2]
+        self.zeta = (np.arange(layers) + 0.5) / layers
+        self.walls = {name: study.get(f"film/{name}_wall") for name in ("bush", "journal") if study.has(f"film/{name}_wall")}
+        for name, at in (("bush", 0), ("journal", 1)):
+            if name in self.walls:
+                side = 0 if at == 0 else len(self.zeta)
+                self.zeta = np.insert(self.zeta, side, at)
+                self.temperature = np.insert(self.temperature, side, self.walls[name], axis=2)
+        nowhere = np.zeros(self.thickness.shape)
+        super().__init__(study.get("film/theta"), study.get("film/z"), study.get("film/ruptured", nowhere) > 0,
+                         np.round(study.get("film/groove", nowhere)).astype(int))
+        self.conserves_mass = study.has("film/fill")
+        self.orifices = np.stack((study.get("orifices/theta"), study.get("orifices/z")), axis=1) if study.has("orifices/theta", "orifices/z") else np.zeros((0, 2))
+
+    @property
+    def flow_known(self):
+        """Whether nodes know what flows there: not where the film is ruptured, unless it conserves its mass."""
+        return np.ones(self.cavity.shape, bool) if self.conserves_mass else ~self.cavity
+
+    @property
+    def middle(self):
+        """K [along, around] between the walls."""
+        return np.array([[np.interp(0.5, self.zeta, column) for column in row] for row in self.temperature])
+
+    @property
+    def areas(self):
+        """m^2 [along, around], of the cells around the nodes: half of one at an end."""
+        ends = np.concatenate((self.z[:1], (self.z[1:] + self.z[:-1]) / 2, self.z[-1:]))
+        widths = np.full(len(self.theta), self.radius * self.step)
+        if not self.closed:
+            widths[[0, -1]] /= 2
+        return np.diff(ends)[:, None] * widths
+
+    @property
+    def rotation(self):
+        """The way of the shaft in an unwrapped map."""
+        if self.speed == 0:
+            return "the shaft stands"
+        return "\u2190 the shaft moves to the left" if (self.speed or 1) < 0 else "the shaft moves to the right \u2192"
+
+    @property
+    def at_speed(self):
+        return "" if self.speed is None else "at standstill" if self.speed == 0 else f"at {self.speed:.5g} rad/s"
+
+    def place(self):
+        """Clearance and eccentricity [m] of the circle that the thickness is the gap of: h = c - x cos - y sin."""
+        h = self.thickness.mean(axis=0)
+        return np.linalg.lstsq(np.stack((np.ones_like(h), -np.cos(self.theta), -np.sin(self.theta)), axis=1), h, rcond=None)[0]
 
 
 def stretches(region, at, values, ends=None):

@@ -2,6 +2,7 @@
 and of a cavity are set apart: fields jump at their borders, and nothing is interpolated across them."""
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import patheffects
 from matplotlib.collections import LineCollection, PolyCollection
 
 from .style import GREY, INK, LIGHT, length_unit, save
@@ -14,24 +15,29 @@ def film_of(study):
     return Film(study) if study.has("film/theta", "film/z", "film/temperature", "film/pressure", "film/thickness") else None
 
 
-def field(figure, axis, film, values, cmap, label, ink, jumps=True):
-    """A field over the unwrapped film. One that jumps has no contours where the film is ruptured. Colours of both signs are even about
-    zero; there are few enough of them for a picture of 256 colours."""
+def field(figure, axis, film, values, cmap, label, ink, jumps=True, known=None, white=0):
+    """A field over the unwrapped film. One that jumps has no contours where the film is ruptured. Nodes that are not `known` are left
+    blank. Colours of both signs are even about what is `white`; there are few enough of them for a picture of 256 colours."""
     theta, z, shown, region = film.fine(values, jumps)
     theta, z = np.degrees(theta), z * 1e3
+    if known is not None and not known.all():
+        _, _, share, _ = film.fine(known.astype(float), jumps)
+        shown, values = np.ma.masked_where(share < 1, shown), values[known]
     low, high = values.min(), values.max()
     span = high - low
     same = span <= 1e-9 * max(abs(low), abs(high))  # rounding is no shape
     if same:
         low, high = low - 0.01 * abs(low), high + 0.01 * abs(high)
     if cmap == SIGNED:
-        high = max(abs(low), abs(high))
-        low = -high
+        reach = max(white - low, high - white)
+        low, high = white - reach, white + reach
     mesh = axis.pcolormesh(theta, z, shown, cmap=plt.get_cmap(cmap, 41), vmin=low, vmax=high, rasterized=True)
     levels = values.min() + span * np.linspace(0.05, 0.95, 10)
     middles = (theta[1:] + theta[:-1]) / 2, (z[1:] + z[:-1]) / 2
     for part in np.unique(region):
         inside = np.ma.masked_where(region != part, shown)
+        if inside.mask.all():
+            continue
         here = levels[(levels > inside.min()) & (levels < inside.max())]
         if (part != RUPTURED or not jumps) and len(here) and not same:
             axis.contour(*middles, inside, here, colors=ink, linewidths=0.5, alpha=0.6, corner_mask=False)
@@ -39,19 +45,30 @@ def field(figure, axis, film, values, cmap, label, ink, jumps=True):
     figure.colorbar(mesh, ax=axis, pad=0.015, label=label).outline.set_visible(False)
 
 
+def hatch_cavity(axis, film, colour=LIGHT):
+    if film.cavity.any():
+        strips = np.array(film.strips(film.cavity)) * (180 / np.pi, 180 / np.pi, 1e3, 1e3)
+        corners = strips[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
+        axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=colour, linewidth=0), autolim=False)
+
+
 def mark_regions(axis, film):
-    """Hatches the cells around the nodes where the film is ruptured, outlines those that grooves feed, and says which way
-    the shaft moves."""
+    """Hatches the cells around the nodes where the film is ruptured, outlines those that grooves feed, marks orifices, and says
+    which way the shaft moves."""
     axis.set_xlabel(f"\u03b8 [deg], from +x counter-clockwise; {film.rotation}", fontsize=8.5)
     axis.set_ylabel("z [mm]")
     first, last = np.degrees(ring(film.theta, film.theta, film.closed)[0][[0, -1]])
     axis.set_xlim(first, last)
     axis.set_xticks(np.arange(np.ceil(first / 45 - 1e-9), last / 45 + 1e-9) * 45)
     axis.set_ylim(film.z[0] * 1e3, film.z[-1] * 1e3)
-    if film.cavity.any():
-        strips = np.array(film.strips(film.cavity)) * (180 / np.pi, 180 / np.pi, 1e3, 1e3)
-        corners = strips[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
-        axis.add_collection(PolyCollection(corners, hatch="////", facecolor="none", edgecolor=LIGHT, linewidth=0), autolim=False)
+    hatch_cavity(axis, film)
+    if len(film.orifices):
+        theta, z = film.orifices.T
+        theta = np.concatenate([theta + turn for turn in (-2 * np.pi, 0, 2 * np.pi)])
+        places, z = np.degrees(theta), np.tile(z, 3) * 1e3
+        inside = (places > first - 1e-6) & (places < last + 1e-6)  # one at the seam is on both sides
+        axis.plot(places[inside], z[inside], "o", markersize=4.5, markerfacecolor="none", markeredgecolor=INK, markeredgewidth=1.1, label="orifice",
+                  clip_on=False, zorder=4, path_effects=[patheffects.Stroke(linewidth=2.6, foreground="white"), patheffects.Normal()])
     for groove in np.unique(film.groove[film.groove > 0]):
         border = np.array(film.border(film.groove == groove)) * (180 / np.pi, 1e3)
         for colour, width, label in (("white", 2.8, "_halo"), (INK, 1.3, "groove")):  # all of the halo first: these are many short lines
@@ -60,6 +77,7 @@ def mark_regions(axis, film):
 
 def regions_in_words(film):
     words = "; outlined: cells that a groove feeds" if film.groove.any() else ""
+    words += "; circles: orifices" if len(film.orifices) else ""
     if film.cavity.any() and film.conserves_mass:
         return words + "; hatched: the film is ruptured, and the gap is not full"
     return words + ("; hatched: the film is ruptured, and what is drawn there is not of a full film" if film.cavity.any() else "")
@@ -102,24 +120,47 @@ def draw_maps(study):
         field(figure, axis, film, values, colours, label, ink, jumps)
         axis.set_title(f"{title}: {range_of(values, label.split('[')[1][:-1].replace('1', ''))}")
         if title == "pressure" and flow:
-            streams(axis, film, study.get("film/flow_around"), study.get("film/flow_along"))
+            streams(axis, film, *at_nodes(film, study.get("film/flow_around"), study.get("film/flow_along")), film.flow_known)
         mark_regions(axis, film)
     return save(figure, study, "thd-maps", " ".join(filter(None, ("film unwrapped", film.at_speed))) + (", with lines of mass flow" if flow else "") + regions_in_words(film))
 
 
-def streams(axis, film, around, along):
-    """Lines of mass flow over a map, from kg/(m s) at faces: in degrees and millimetres. They end where the film is ruptured, unless it
-    knows what flows there."""
-    # Flows around are those between a node and the next one, along those between the node before and this one.
+def at_nodes(film, around, along):
+    """Flows at faces (around: from a node to the next one, along: from the node before) as means at nodes."""
     around = (around + np.roll(around, 1, axis=1)) / 2 if film.closed else around
-    along = np.concatenate(((along[:-1] + along[1:]) / 2, along[-1:]))
-    known = np.ones(film.cavity.shape) if film.conserves_mass else np.where(film.cavity, np.nan, 1.0)
+    return around, np.concatenate(((along[:-1] + along[1:]) / 2, along[-1:]))
+
+
+def streams(axis, film, around, along, known):
+    """Lines along a vector [.., at nodes, m times anything] over a map in degrees and millimetres. They end at nodes that are not `known`."""
+    known = np.where(known, 1.0, np.nan)
     theta, around = ring(film.theta, around * known, film.closed)
     _, along = ring(film.theta, along * known, film.closed)
     theta = np.degrees(np.linspace(theta[0], theta[-1], len(theta)))
     z = np.linspace(film.z[0], film.z[-1], len(film.z)) * 1e3
     axis.streamplot(theta, z, np.degrees(np.ma.masked_invalid(around) / film.radius), np.ma.masked_invalid(along) * 1e3, color=GREY, linewidth=0.6,
                     density=0.8, arrowsize=0.6)
+
+
+def draw_velocity(study):
+    """How fast the fluid moves half-way between bush and journal, around and along, with its streamlines. Where a film is ruptured and does
+    not conserve its mass it knows no flow: nothing is drawn there."""
+    film = film_of(study)
+    if not film or not film.radius or not study.has("film/velocity_around", "film/velocity_along"):
+        return []
+    around, along = study.get("film/velocity_around"), study.get("film/velocity_along")
+    known = film.flow_known
+    figure, axes = plt.subplots(2, 1, figsize=(9.2, 6.8))
+    drag = 0.5 * (film.speed or 0) * film.radius
+    for axis, (title, values, white) in zip(axes, (("circumferential velocity", around, drag), ("axial velocity", along, 0))):
+        field(figure, axis, film, values, SIGNED, "velocity [m/s]", GREY, known=known, white=white)
+        axis.set_title(f"{title}: {range_of(values[known], 'm/s')}")
+        mark_regions(axis, film)
+    streams(axes[1], film, around, along, known)
+    words = regions_in_words(film) if known.all() else regions_in_words(film).split("; hatched")[0] + "; hatched: the film is ruptured, and its flow is not known"
+    white = "; white: none" if drag == 0 else f"; white: what drag alone gives, {drag:.4g} m/s above and none below"
+    return save(figure, study, "thd-velocity", " ".join(filter(None, ("half-way between bush and journal, unwrapped,", film.at_speed)))
+                + ", below with streamlines; positive: to larger angles and larger z" + white + words)
 
 
 FLUID = {"viscosity": "viscosity", "density": "density", "conductivity": "conductivity", "heat_capacity": "heat capacity"}

@@ -4,7 +4,7 @@ namespace whirl::thermal {
 
 void Profile::set(double h, const double* mu) {
   const std::size_t l = by_drag.size();
-  const double d = h / static_cast<double>(l);
+  const double d = layer = h / static_cast<double>(l);
   double f0 = 0, f1 = 0;
   for (std::size_t k = 0; k < l; ++k) {
     const double low = d * static_cast<double>(k), high = low + d;
@@ -31,6 +31,13 @@ void Profile::set(double h, const double* mu) {
   }
   pressure[l] = 0;
   drag[l] = 1;
+}
+
+Profile::Middle Profile::middle() const {
+  const std::size_t l = by_drag.size(), k = l / 2;
+  if (l % 2 == 0) return {pressure[k], drag[k]};
+  const double fluidity = (drag[k + 1] - drag[k]) / (pull * layer);  // 1/mu, the curvature of `pressure`
+  return {0.5 * (pressure[k] + pressure[k + 1]) - layer * layer / 8 * fluidity, 0.5 * (drag[k] + drag[k + 1])};
 }
 
 }  // namespace whirl::thermal

@@ -13,6 +13,13 @@ struct Profile {
       : pressure(at(layers) + 1), drag(at(layers) + 1), by_pressure(at(layers)), by_drag(at(layers)) {}
   void set(double h, const double* mu);
 
+  /// pressure(h/2) and drag(h/2): a border of layers, or half of the middle layer, in which both are polynomials.
+  struct Middle {
+    double pressure, drag;  // m^2/(Pa s), -
+  };
+  [[nodiscard]] Middle middle() const;
+
+  double layer = 0;                          // m, thickness of each
   double neutral = 0;                        // m
   double pull = 0;                           // Pa s/m
   std::vector<double> pressure, drag;        // m^2/(Pa s), - at the layers' borders [layers + 1]

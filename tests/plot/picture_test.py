@@ -12,7 +12,8 @@ from matplotlib.collections import LineCollection, QuadMesh
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import bearing_map, bifurcation, campbell, curves, locus, motion, orbits, shapes, style, sweep, thd_compare, thd_cuts, thd_film, thd_maps  # noqa: E402
+from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, orbits, shapes, style, sweep, thd_compare,  # noqa: E402
+                        thd_cuts, thd_film, thd_maps, thd_sections)
 from whirl_plot.subject import Drawn  # noqa: E402
 
 
@@ -511,6 +512,109 @@ def heat_flows(folder):
     assert [t.split(":")[0] for t in titles] == ["viscosity", "density"] and titles[0].endswith("\u00b5Pa s"), titles
 
 
+def streamlines(axis):
+    lines = [c for c in axis.collections if isinstance(c, LineCollection) and len(c.get_segments()) > 100]
+    return np.concatenate(lines[0].get_segments())
+
+
+def velocities(folder):
+    """White is what drag alone gives; orifices are marked on both sides of the seam; nothing is drawn in a cavity that knows no flow, and one
+    that conserves its mass is drawn through."""
+    plt.close("all")
+    with results_with(folder, lambda root: None) as results:
+        above, below = Figures().draw(thd_maps, thd_maps.draw_velocity, results["hot"])["thd-velocity"].axes[:2]
+    for axis, white, reach in ((above, 75, 40), (below, 0, 30)):
+        mesh = next(c for c in axis.collections if isinstance(c, QuadMesh))
+        assert np.allclose(mesh.get_clim(), (white - reach, white + reach)), mesh.get_clim()
+        marks, = (line.get_xydata() for line in axis.get_lines() if line.get_label() == "orifice")
+        assert np.allclose(np.sort(marks[:, 0]), 45 * np.arange(9)) and not marks[:, 1].any(), marks
+    points = streamlines(below)
+    assert np.ptp(points[:, 0]) > 300 and abs(points[:, 1]).max() > 10
+    for keeps in (False, True):
+        def fill(root, keeps=keeps):
+            with_groove_and_cavity(root)
+            if keeps:
+                synthetic.put(root["studies/hot/film"], fill=1 - 0.5 * root["studies/hot/film/ruptured"][:])
+        with results_with(folder, fill) as results:
+            film = thd_film.Film(results["hot"])
+            above, below = Figures().draw(thd_maps, thd_maps.draw_velocity, results["hot"])["thd-velocity"].axes[:2]
+        for axis in (above, below):
+            mesh = next(c for c in axis.collections if isinstance(c, QuadMesh))
+            corners, drawn = mesh.get_coordinates(), np.ma.asarray(mesh.get_array())
+            middles = (corners[1:, 1:] + corners[:-1, :-1]).reshape(-1, 2) / 2
+            blank = np.broadcast_to(np.ma.getmaskarray(drawn), drawn.shape).ravel()
+            assert (blank == ((region_at(film, *middles.T) == thd_film.RUPTURED) & (not keeps))).all(), "blank in the cavity alone"
+        assert (region_at(film, *streamlines(below).T) == thd_film.RUPTURED).any() == keeps, "lines end at a cavity"
+
+
+def film_sections(folder):
+    """Through the film where it is fed and half-way to the next place, with the thickness to scale; isotherms and colours between the walls."""
+    plt.close("all")
+    feeds = {"orifice": (lambda root: None, "along at 0 deg, at an orifice", "along at 22.5 deg, half-way to the next orifice", 10),
+             "groove": (lambda root: (with_groove_and_cavity(root), root["studies/hot"].pop("orifices")), "along at 120 deg, at a groove", "along at 300 deg, opposite the groove", 25)}
+    for kind, (change, first, second, thickness) in feeds.items():
+        with results_with(folder, change) as results:
+            figures = Figures().draw(thd_sections, thd_sections.draw_film, results["hot"])
+            figures.draw(thd_cuts, thd_sections.draw_axial, results["hot"])  # saved by the function that all axial sections share
+        axes = figures["thd-film"].axes[:4]
+        titles = [a.get_title("left") for a in axes]
+        # 22.5 deg lies on a node of 48.
+        assert titles[:2] == [first, second], titles
+        assert titles[2].startswith(f"around at z = 0 mm, through the {kind}") and "end of the film" in titles[3], titles
+        for axis, wanted in zip(axes, (thickness, None, 30, 30)):
+            meshes = [c for c in axis.collections if isinstance(c, QuadMesh)]
+            corners = np.concatenate([m.get_coordinates().reshape(-1, 2) for m in meshes])
+            assert corners[:, 1].min() == 0 and (wanted is None or np.isclose(corners[:, 1].max(), wanted)), corners[:, 1].max()
+            if axis in axes[2:]:
+                gap = 20 - 10 * np.cos(np.radians(corners[:, 0]))
+                assert (corners[:, 1] <= gap + 0.05).all(), "nothing beyond the journal's surface"
+            hatched = [p for p in axis.patches if p.get_hatch()]
+            assert bool(hatched) == (kind == "groove" and (axis in axes[1:])), "a cavity around 0 deg, to 300 deg"
+        arrows = [np.sort(line.get_xdata()) for a in axes for line in a.get_lines() if line.get_label() == "orifice"]
+        if kind == "orifice":
+            assert len(arrows) == 2 and np.allclose(arrows[0], 0) and np.allclose(arrows[1], 45 * np.arange(9)), arrows
+        else:
+            assert not arrows
+        assert f"thd-axial-{kind}" in figures
+        meshes = [c for c in figures[f"thd-axial-{kind}"].axes[0].collections if isinstance(c, QuadMesh)]
+        assert len(meshes) == (6 if kind == "orifice" else 8), "film, bush and journal, above and below; the film of a groove in three"
+
+
+def films_of_machines(folder):
+    """Where a pad has no pressure or is not full it is hatched; what jumps there is not interpolated, and has no contours."""
+    plt.close("all")
+
+    def fill(root):
+        pad = root["studies/at service speed/films/B1/pad1"]
+        theta, z = np.degrees(pad["theta"][:]), pad["z"][:]
+        empty = (theta > -80.5)[:, None] & np.ones(len(z), bool)
+        pad["pressure"][...] = np.where(empty, 0, 1e6 * np.cos(np.radians(3 * (theta + 100)))[:, None] * (1.1 - (z / 0.1)**2))
+        synthetic.put(pad, fill=np.where(empty, 0.4, 1.0), temperature=np.where(empty, 320, 350 + theta[:, None] / 10))
+
+    with results_with(folder, fill) as results:
+        figures = Figures().draw(machine_film, machine_film.draw, results["at service speed"])
+    axes = [a for a in figures["film-B1"].axes if a.get_title() or a.get_title("left")]
+    assert len(axes) == 4
+    for axis in axes:
+        hatched, = (c for c in axis.collections if c.get_hatch())
+        corners = np.concatenate([p.vertices[:4] for p in hatched.get_paths()])
+        assert np.allclose((corners[:, 0].min(), corners[:, 0].max()), (-80.5, -60)), "to the faces of its cells"
+    for axis, values in ((axes[2], (320 - 273.15, None)), (axes[3], (0.4, 1.0))):
+        mesh = next(c for c in axis.collections if isinstance(c, QuadMesh))
+        drawn = np.unique(np.round(np.ma.compressed(mesh.get_array()), 6))
+        if values[1] is None:
+            assert np.isclose(drawn[0], values[0]) and drawn[1] > 338 - 273.15, "nothing between film and cavity"
+        else:
+            assert np.allclose(drawn, values), drawn
+        contours = [p.vertices for c in axis.collections if c is not mesh and not c.get_hatch() for p in c.get_paths() if len(p.vertices)]
+        assert all(v[:, 0].max() <= -80.5 + 1e-6 for v in contours), "a contour in the cavity"
+    # A film that may pull is full.
+    with results_with(folder, lambda root: root["studies/at service speed/films/B1/pad1/pressure"].write_direct(
+            np.ascontiguousarray(root["studies/at service speed/films/B1/pad1/pressure"][:] - 1e5))) as results:
+        figures = Figures().draw(machine_film, machine_film.draw, results["at service speed"])
+    assert not any(c.get_hatch() for a in figures["film-B1"].axes for c in a.collections)
+
+
 def legends():
     """As many columns as fit: a long label takes only its own."""
     assert style.columns_of(["a", "b", "c"], 8, 6) == 3 and style.columns_of([], 8, 6) == 1
@@ -523,7 +627,7 @@ refined()
 legends()
 border_of_stability()
 for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
-              coefficients, loci, sections, beside, ruptured, heat_flows):
+              coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("pictures show what there is")

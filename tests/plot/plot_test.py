@@ -25,7 +25,7 @@ EXPECTED = {
     "hard": ["impedance"],
     "soft": ["frequencies"],
     "period_two": ["motion"],
-    "hot": ["thd-maps", "thd-fluid", "thd-heat", "thd-profiles", "thd-radial", "thd-axial", "thd-iterations", "thd-meshes", "thd-budget", "thd-effective", "thd-properties"],
+    "hot": ["thd-maps", "thd-velocity", "thd-fluid", "thd-heat", "thd-profiles", "thd-film", "thd-radial", "thd-axial", "thd-axial-orifice", "thd-iterations", "thd-meshes", "thd-budget", "thd-effective", "thd-properties"],
     "clearances": ["trends", "balanced"],
 }
 TOGETHER = ["bifurcations", "map-locus", "map-stiffness", "map-damping", "map-stability", "map-pressure"]
@@ -104,11 +104,13 @@ with tempfile.TemporaryDirectory() as name:
             branch[column] = first
         root["studies/balanced/branch/stable"][...] = 1
         del root["studies/balanced/bifurcations"]
+        del root["studies/hot/film"]
         root.create_group("studies/unknown").attrs["kind"] = "of the future"
     done = run("plot", part)
     check(done.returncode == 0 and not done.stderr, f"plot of an early end said {done.returncode}\n{done.stderr}")
     check_picture(part / "balanced.equilibria.png")
     check(not (part / "pair_G6.3.orbits.png").exists(), "a picture of nothing")
+    check(not list(part.glob("hot.thd-[fv]*")) and (part / "hot.thd-iterations.png").exists(), "pictures of a film that was not stored")
     check(run("report", part).returncode == 0, "the report needs summary.json")
 
     few = pathlib.Path(name) / "few"

@@ -56,6 +56,9 @@ def thd(root):
         temperature=300 + warm[..., None] + 10 * (zeta * (1 - zeta)), flow_around=1e-3 * np.ones((17, 48)), flow_along=1e-2 * z[:, None] * np.ones(48),
         viscosity=1.8e-5 * (1 + warm / 300)**0.7, density=pressure / 286.7 / (300 + warm), conductivity=0.026 * np.ones((17, 48)),
         heat_bush=2e4 * np.ones((17, 48)), heat_journal=1e3 * (warm - 60), dissipation=4e4 / (1 - 0.5 * np.cos(theta))[None, :] * np.ones((17, 1)))
+    # Air at half of the surface's speed but for what pressure does around and along.
+    put(film, velocity_around=75 - 40 * np.sin(theta)[None, :] * (1 - (z / 0.015)**2)[:, None], velocity_along=2e3 * z[:, None] * np.ones(48))
+    put(g.create_group("orifices"), theta=np.pi / 4 * np.arange(8), z=np.zeros(8), diameter=2e-4 * np.ones(8), mass_flow=1e-5 * np.ones(8))
     for name, unit in (("viscosity", "Pa s"), ("density", "kg/m^3"), ("conductivity", "W/(m K)")):
         film[name].attrs["unit"] = unit
     put(g.create_group("bush"), theta=theta, z=z, r=r_bush, r_faces=np.linspace(0.015, 0.025, 7), temperature=300 + warm[..., None] * (1 - 10 * (r_bush - 0.015)))

@@ -189,6 +189,25 @@ def shown(h):
             h.close(f"{name}: extent [m^2, m^3]", extent(corners), volumes[name], 0.005 * volumes[name])
 
 
+def middle(h, case, film, radius):
+    """Velocity half-way between the walls. Of one viscosity across u - U/2 and w are 3/2 of what the pressure moves in the mean; here the
+    viscosity differs across by a few per cent (gas) or a third (oil), and orifices and grooves are steps. So most nodes are near that."""
+    surface = film["speed"][0] * radius
+    mass = film["density"] * film["thickness"]
+    around = (film["flow_around"] + numpy.roll(film["flow_around"], 1, axis=1)) / 2
+    along = (film["flow_along"][:-1] + film["flow_along"][1:]) / 2
+    u, w = surface / 2 + 1.5 * (around / mass - surface / 2), 1.5 * along / mass[:-1]
+    free = numpy.ones(u.shape, bool) if case == "gas" else (film["ruptured"] == 0) & (film["groove"] == 0)
+    free[:2] = free[-2:] = False
+    free &= numpy.roll(free, 1, axis=1) & numpy.roll(free, -1, axis=1)
+    for name, wanted, found in (("around", u, film["velocity_around"]), ("along", w, film["velocity_along"][:-1])):
+        here = free[: len(wanted)]
+        size = numpy.abs(wanted[here] - (surface / 2 if name == "around" else 0)).max()
+        off = numpy.median(numpy.abs(wanted - found)[here]) / size
+        h.close(f"{case}: velocity {name} half-way is that of the mass flow", off, 0, 0.02)
+    h.true(f"{case}: it goes out at both ends", film["velocity_along"][0].min() < 0 < film["velocity_along"][-1].max())
+
+
 def maps(h):
     """Fields per area add up to the budget, properties are those of the temperature, groove and cavity are where deck and pressure say."""
     few = ["studies.*.thd.cells=[40, 12, 4]", "studies.*.thd.meshes=1"]
@@ -203,6 +222,8 @@ def maps(h):
             study = h.run(deck, f"{case} {n}", words, launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])[name]
             with h5py.File(h.work / f"{case} {n}/results.h5") as f:
                 film = fields[n] = {k: v[:] for k, v in f[f"studies/{name}/film"].items() if v.ndim < 4}
+                fields[n] |= {f"orifices/{k}": v[:] for k, v in f[f"studies/{name}"].get("orifices", {}).items()}
+                h.true(f"{case}: unit of a velocity", f[f"studies/{name}/film/velocity_along"].attrs["unit"] in ("m/s", b"m/s"))
             depth = numpy.full(13, film["z"][1] - film["z"][0])
             depth[[0, -1]] /= 2
             area = depth[:, None] * radius * 2 * numpy.pi / 40
@@ -218,11 +239,15 @@ def maps(h):
         for field in sorted(fields[1]):
             off = numpy.abs(fields[1][field] - fields[2][field]).max()
             h.close(f"{case}: {field} on two ranks", off, 0, 1e-6 * numpy.abs(fields[1][field]).max())
+        middle(h, case, film, radius)
         t = film["temperature"] - 273.15
         if case == "gas":
             t += 273.15
             mu = (1.846e-5 * (t / 300) ** 1.5 * (300 + 110.4) / (t + 110.4)).mean(axis=2)
             h.close("gas: density [kg/m^3]", numpy.abs(film["density"] - (film["pressure"][..., None] / (286.7 * t)).mean(axis=2)).max(), 0, 1e-9)
+            h.close("gas: orifices around [rad]", numpy.abs(film["orifices/theta"] - numpy.pi / 4 * numpy.arange(8)).max(), 0, 1e-12)
+            h.close("gas: orifices along [m]", numpy.abs(film["orifices/z"]).max(), 0, 1e-15)
+            h.close("gas: all of what orifices give [kg/s]", film["orifices/mass_flow"].sum(), value(study, "mass_flow"), 1e-12)
             h.true("gas: no cavity, no groove", "ruptured" not in film and "groove" not in film)
         else:
             mu = (27.7e-3 * (3.287 - 3.064 * t / 40 + 0.777 * (t / 40) ** 2)).mean(axis=2)

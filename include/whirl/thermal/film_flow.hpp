@@ -95,6 +95,13 @@ public:
   /// Mass flows and heat at this pressure. What orifices and grooves give enters layer 0; at the ends each layer leaves
   /// the film by itself. Collective.
   [[nodiscard]] Flow flow() const;
+  /// m/s [r, n], at s = h/2, around and along: of the velocity of which flow() is the integral, the mean of the faces
+  /// beside a node, at an end the line through the two nearest. In the cavity of a film that conserves its mass it is
+  /// that of the liquid there. The resistance of turbulence is that of flow(), the shape across laminar. Collective.
+  struct Velocity {
+    std::vector<double> around, along;
+  };
+  [[nodiscard]] Velocity middle() const;
   /// kg/s of each orifice, the same on all ranks. Collective.
   [[nodiscard]] std::vector<double> orifice_flows() const;
   /// W [r, n], work of pressure in the volume of each node, half of that between two nodes to each. Collective.

@@ -31,6 +31,7 @@ public:
   [[nodiscard]] const thermal::ThdSolve& cost() const { return cost_; }
   [[nodiscard]] bool is_gas() const { return flow_.fluid.gas; }
   [[nodiscard]] const thermal::Fluid& fluid() const { return flow_.fluid; }
+  [[nodiscard]] const std::vector<thermal::Orifice>& orifices() const { return flow_.orifices; }
   /// rad/s
   [[nodiscard]] double speed() const { return flow_.speed; }
   /// [r, n], the groove that feeds a node, counted from 1 in the order of the deck, 0 of none; empty: there is none.

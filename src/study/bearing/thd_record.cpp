@@ -78,6 +78,24 @@ void put_heat(io::Group& group, ThdFilm& film) {
   put("dissipation", std::move(dissipation), "viscosity times the square of the shear rate, across [along][around]");
 }
 
+// Where orifices are, at nodes of the mesh, and what they give.
+void put_orifices(io::Group& results, ThdFilm& film) {
+  const std::vector<thermal::Orifice>& orifices = film.orifices();
+  if (orifices.empty()) return;
+  const thermal::Mesh& mesh = film.rows().mesh();
+  std::vector<double> theta, z, diameter;
+  for (const thermal::Orifice& o : orifices) {
+    theta.push_back(mesh.theta(o.i));
+    z.push_back(mesh.z(o.j));
+    diameter.push_back(o.diameter);
+  }
+  io::Group& group = results.child("orifices");
+  group.put("theta", std::move(theta), "rad", "of the node of each orifice, from +x");
+  group.put("z", std::move(z), "m", "of the node of each orifice, from the mid-plane of the bearing");
+  group.put("diameter", std::move(diameter), "m", "of each orifice");
+  group.put("mass_flow", film.thd().flow().orifice_flows(), "kg/s", "into the film");
+}
+
 // Nodes that the deck or the pressure sets apart, as numbers.
 template <class Number>
 void put_marks(io::Group& group, const Rows& rows, const char* name, const std::vector<Number>& marks,
@@ -162,6 +180,11 @@ void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geome
     }
   group.put("flow_around", by_rows(rows, {r, n}, around, "kg/(m s)", "mass flow around, to the next node"));
   group.put("flow_along", by_rows(rows, {r, n}, along, "kg/(m s)", "mass flow along, from the node before"));
+  thermal::FilmFlow::Velocity middle = thd.flow().middle();
+  group.put("velocity_around", by_rows(rows, {r, n}, std::move(middle.around), "m/s",
+                                       "velocity around, half-way between bush and journal [along][around]"));
+  group.put("velocity_along", by_rows(rows, {r, n}, std::move(middle.along), "m/s",
+                                      "velocity along, half-way between bush and journal [along][around]"));
   group.put("speed", std::vector<double>{film.speed()}, "rad/s", "of the shaft");
   if (const std::vector<char> ruptured = thd.flow().ruptured(); !film.is_gas())
     put_marks(group, rows, "ruptured", ruptured, "1 where the film is ruptured [along][around]");
@@ -172,6 +195,7 @@ void put_thd_fields(Context& context, ThdFilm& film, const film::Geometry& geome
     put_marks(group, rows, "groove", grooves, "number of the groove that feeds a node, 0 of none [along][around]");
   put_fluid(group, film);
   put_heat(group, film);
+  put_orifices(context.results.group(), film);
   show_film(context, film, geometry);
   if (thd.bush()) put_solid(context, film, *thd.bush(), thd.bush_temperature(), "bush", geometry);
   if (thd.journal()) put_solid(context, film, *thd.journal(), thd.journal_temperature(), "journal", geometry);
