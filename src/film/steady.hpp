@@ -6,6 +6,7 @@
 // not what is left at its end.
 
 #include <Eigen/SparseLU>
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -42,7 +43,8 @@ public:
   /// How much of a typical state each state is, as the root of a mean square.
   [[nodiscard]] double size(const Eigen::VectorXd& step) const;
   /// How much derivatives change, relatively, where the states change by `size`, and what a prediction by them lacks.
-  [[nodiscard]] double bends(double size) const { return size == 0.0 ? 0.0 : bend_ * size; }
+  /// At least by 1 over a typical state: what kept factors have shown may be that of one direction.
+  [[nodiscard]] double bends(double size) const { return size == 0.0 ? 0.0 : std::max(1.0, bend_) * size; }
   [[nodiscard]] double lacks(double size) const { return bends(size) * size; }
   /// Adds to `states`, those of a motion that was solved, what the derivatives last taken say that a change of the
   /// motion does to them; not if that is more than half a typical state, where derivatives say little.
