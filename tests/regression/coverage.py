@@ -3,7 +3,8 @@
 
 coverage.py measure PROGRAM SOURCE OUT.json [GROUP...]   runs the decks, two at a time, and writes every number with its bar
 coverage.py table DATA.json                              prints the table of docs/validation.md from such a file
-coverage.py check DATA.json                              exit 1 if fewer than 99 % of the bars cover or their median is above 5 errors
+coverage.py check DATA.json                              exit 1 if fewer than 99 % of the bars cover, if those of forces with kinks
+                                        cover less than 95 % (significant at 5 %), or if the median is above 5 errors
 coverage.py PROGRAM SOURCE GROUP...                      measures and checks; group `named`: the bars that were found not to cover
 
 Groups: threshold (the train's variants), cycles (its forced cycles), compliant (Hopf points, folds, flips and Neimark-Sacker
@@ -425,10 +426,26 @@ def table(rows):
             print(f"| {r['group']}: {r['case']} | {r['mesh']} | {r.get('name', r['point'])} | {r['value']:.6g} | {r['uncertainty']:.2g} | {error_of(r):.2g} |")
 
 
+# Films by Simpson's rule have forces with kinks: their bars are intervals of 95 % (src/study/README.md). All others cover.
+def scatters(row):
+    return row["case"].endswith(", source")
+
+
+# Probability of at least so many misses if each bar misses with 5 %. Numbers of one film miss together: a rough measure.
+def chance(missed, bars):
+    return sum(math.comb(bars, k) * 0.05**k * 0.95 ** (bars - k) for k in range(missed, bars + 1))
+
+
+# Named cycles are few; of all else many are asked for, and few judged mean that runs failed.
 def check(rows):
+    least = len(NAMED) if {r["group"] for r in rows} == {"compliant cycles"} else 20
     d = digest(rows)
-    print(d)
-    return 0 if d["judged"] > 20 and d["cover"] >= 0.99 * d["judged"] and d["median"] <= 5 else 1
+    regular, kinks = (digest([r for r in rows if scatters(r) == with_kinks]) for with_kinks in (False, True))
+    missed = kinks["judged"] - kinks["cover"]
+    by_chance = chance(missed, kinks["judged"])
+    print(d, "\nwithout kinks", regular, "\nwith kinks", kinks, f"\nprobability of {missed} misses or more at 95 %: {by_chance:.3g}")
+    good = regular["cover"] >= 0.99 * regular["judged"] and by_chance >= 0.05
+    return 0 if d["judged"] > least and good and d["median"] <= 5 else 1
 
 
 if __name__ == "__main__":
