@@ -4,6 +4,8 @@
 
 #include <unordered_set>
 
+#include "whirl/rotor/element.hpp"
+
 namespace whirl::rotor {
 
 using deck::non_negative;
@@ -21,6 +23,21 @@ std::span<const deck::Name<Shear>> names(Shear) {
       {Shear::cowper_solid, "cowper_solid", "6 (1 + nu)/(7 + 6 nu), also for hollow sections"},
       {Shear::cowper_hollow, "cowper_hollow", "Cowper (1966) for the hollow circle"},
       {Shear::rigid, "rigid", "no shear deformation"}};
+  return table;
+}
+
+std::span<const deck::Name<Element>> names(Element) {
+  static constexpr deck::Name<Element> table[] = {
+      {Element::rayleigh, "rayleigh", "no shear deformation, whatever 'shear' is; frequencies converge with h^4"},
+      {Element::timoshenko, "timoshenko",
+       "one shear angle, tied to the curvature as in the static solution (Nelson 1980); exact at rest, frequencies "
+       "converge with h^2"},
+      {Element::timoshenko_linear, "timoshenko_linear",
+       "shear angle and curvature linear and independent: two inner freedoms a plane, frequencies converge with h^4"},
+      {Element::timoshenko_hermitian, "timoshenko_hermitian",
+       "16 freedoms: displacement and slope cubic and independent, with shear angle and curvature at the ends, which "
+       "are "
+       "one where neither sections, discs nor bearings let them jump; frequencies converge with h^6"}};
   return table;
 }
 
@@ -144,6 +161,7 @@ void describe(deck::Description<Options>& d) {
   d.add("material", &Options::material, "material of the shaft").required().only(&Options::type, {shaft});
   d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5")
       .only(&Options::type, {shaft});
+  d.add("element", &Options::element, "beam element", "003 app. A, sec. 2.2").only(&Options::type, {shaft});
   d.add("stiffness_damping", &Options::stiffness_damping, "s", non_negative,
         "damping per stiffness in the stationary frame, C = value K", "004 errata 8")
       .continuable()
@@ -151,6 +169,8 @@ void describe(deck::Description<Options>& d) {
   d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms").only(&Options::type, {shaft});
   d.check([](const Options& o, const deck::Report& r) {
     if (o.type == rigid) return;
+    if (n_inner(o.element) > 0 && o.shear == Shear::rigid)
+      r.fail("element", "an element with independent shear needs a shear stiffness: 'shear' is rigid");
     const int n_nodes = static_cast<int>(o.segments.size()) + 1;
     auto node = [&](int k, const std::string& path) {
       if (k > n_nodes) r.fail(path, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", k, n_nodes));

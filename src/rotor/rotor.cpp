@@ -83,6 +83,7 @@ PetscInt Rotor::coordinate(int node, Freedom freedom) const {
 
 std::optional<Freedom> Rotor::freedom(PetscInt coordinate) const {
   const auto pair = static_cast<std::size_t>(coordinate / 2);
+  if (!reduced_ && !rigid_ && coordinate >= freedoms_per_node * n_nodes_) return std::nullopt;
   if (reduced_ && pair >= masters_.size()) return std::nullopt;
   const int planar = reduced_ ? masters_[pair] : static_cast<int>(coordinate / 2);
   return freedom_at(2 * planar + static_cast<int>(coordinate % 2));

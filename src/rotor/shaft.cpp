@@ -8,6 +8,7 @@
 #include <set>
 
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/element.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -75,6 +76,10 @@ void validate(const Options& o) {
   if (o.type == Options::Type::rigid) return refuse_unless(o.mass > 0, "the mass must be positive");
   validate(o.material);
   refuse_unless(!o.segments.empty(), "there are no segments");
+  refuse_unless(n_inner(o.element) == 0 || o.shear != Shear::rigid,
+                "an element with independent shear needs a shear stiffness");
+  for (const int node : o.joints)
+    refuse_unless(node >= 1 && node <= n_nodes(o), fmt::format("joint node {} is not in 1..{}", node, n_nodes(o)));
   refuse_unless(o.stiffness_damping >= 0, "the stiffness damping must not be negative");
   for (std::size_t i = 0; i < o.segments.size(); ++i) {
     const std::string name = fmt::format("segment {}", i + 1);

@@ -232,11 +232,11 @@ void RotorPart::scales(double* s, double* r) const {
     double length = clearance, load = force;
     if (g < n_rotor_) {
       const std::optional<rotor::Freedom> freedom = rotor_->freedom(g);
-      if (!freedom) {  // mass-normalised modes
+      if (!freedom && rotor_->reduced()) {  // mass-normalised modes
         length = clearance * std::sqrt(mass);
         load = force / std::sqrt(mass);
-      } else if (rotor::is_slope(*freedom)) {
-        load = force * 0.1;  // clearance per metre, moments on a lever of 0.1 m
+      } else if (!freedom || rotor::is_slope(*freedom)) {  // inner freedoms of elements are angles or curvatures
+        load = force * 0.1;                                // clearance per metre, moments on a lever of 0.1 m
       }
     }
     s[2 * i] = length;

@@ -53,6 +53,14 @@ enum class Shear {
   rigid           // Phi = 0: Rayleigh beam
 };
 
+/// Which beam element a segment is.
+enum class Element {
+  rayleigh,             // cubic, no shear: Phi = 0
+  timoshenko,           // one shear angle, that of the static solution without load on the span
+  timoshenko_linear,    // shear angle and curvature each linear and independent: two inner freedoms
+  timoshenko_hermitian  // displacement and slope each cubic and independent: shear angle and curvature at the ends
+};
+
 /// Reduction of the coordinates. Masters are both translations of each master node, and both slopes of some of them.
 struct Reduction {
   enum class Type { none, guyan, craig_bampton };
@@ -73,6 +81,10 @@ struct Options {
   std::vector<Disc> discs;
   Material material;
   Shear shear = Shear::cowper_solid;
+  Element element = Element::timoshenko;
+  // 1-based nodes where forces from outside act (films, unbalance), so that shear force or bending moment may jump;
+  // those of discs and steps need not be named. No key of a deck; only timoshenko_hermitian asks for it.
+  std::vector<int> joints{};
   double stiffness_damping = 0;  // s, C = stiffness_damping * K in the stationary frame
   Reduction reduction;
   friend bool operator==(const Options&, const Options&) = default;

@@ -20,7 +20,8 @@ struct Matrices {
   core::Matrix stiffness;   // K, symmetric
   core::Matrix damping;     // C = stiffness_damping K
   core::Vector gravity;     // kg: nodal weights along -y per unit acceleration; multiply by g
-  core::Matrix basis;       // T (4 n_nodes x size), q_full = T q; empty if not reduced. Loads reduce as T^T f_full.
+  core::Matrix basis;   // T, q_full = T q, rows of inner freedoms of elements last; empty if not reduced. Loads reduce
+                        // as T^T f_full.
   core::Vector offset;  // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
 };
 
@@ -33,7 +34,8 @@ struct ReductionQuality {
 
 /// A rotor assembled from beam elements and discs, or one rigid mass (x and y of node 1, owned by the first rank).
 ///
-/// Full coordinates are those of full_coordinate(). Reduced coordinates are the pairs (x, y) of the master nodes in
+/// Full coordinates are those of full_coordinate(), then the pairs (x, y) of the inner freedoms of elements, which
+/// have no node. Reduced coordinates are the pairs (x, y) of the master nodes in
 /// ascending order of nodes, each followed by the pair (dx/dz, dy/dz) where slopes are masters too, then pairs of
 /// mass-normalised fixed-interface modes in ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan
 /// 1965), with modes Craig & Bampton (1968). Construction is collective on `comm`; throws core::InputError on all ranks
@@ -51,8 +53,9 @@ public:
   /// Index of the coordinate that is a freedom of `node` (1-based); -1 if it is not retained. Not collective; the same
   /// on all ranks.
   [[nodiscard]] PetscInt coordinate(int node, Freedom freedom) const;
-  /// The freedom of a node that a coordinate is; empty of a mode.
+  /// The freedom of a node that a coordinate is; empty of a mode and of an inner freedom.
   [[nodiscard]] std::optional<Freedom> freedom(PetscInt coordinate) const;
+  [[nodiscard]] bool reduced() const noexcept { return reduced_; }
   [[nodiscard]] const ReductionQuality& quality() const noexcept { return quality_; }
 
 private:
