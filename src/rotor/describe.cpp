@@ -166,6 +166,12 @@ void describe(deck::Description<Options>& d) {
         "damping per stiffness in the stationary frame, C = value K", "004 errata 8")
       .continuable()
       .only(&Options::type, {shaft});
+  d.add("internal_damping", &Options::internal_damping, "s", non_negative,
+        "viscous damping of the material per stiffness, which turns with the shaft: it damps whirl above the speed and "
+        "drives "
+        "forward whirl below it",
+        "003 (2.29)-(2.35)")
+      .only(&Options::type, {shaft});
   d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms").only(&Options::type, {shaft});
   d.check([](const Options& o, const deck::Report& r) {
     if (o.type == rigid) return;

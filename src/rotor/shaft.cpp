@@ -81,6 +81,7 @@ void validate(const Options& o) {
   for (const int node : o.joints)
     refuse_unless(node >= 1 && node <= n_nodes(o), fmt::format("joint node {} is not in 1..{}", node, n_nodes(o)));
   refuse_unless(o.stiffness_damping >= 0, "the stiffness damping must not be negative");
+  refuse_unless(o.internal_damping >= 0, "the internal damping must not be negative");
   for (std::size_t i = 0; i < o.segments.size(); ++i) {
     const std::string name = fmt::format("segment {}", i + 1);
     validate(o.segments[i], name);

@@ -261,6 +261,59 @@ TEST(TrialRotor, FreeRotorHasADefectiveZeroEigenvalueAndPrecesses) {
   }
 }
 
+// Internal damping opposes motion relative to the turning shaft. Without other damping the rotor becomes unstable where
+// its speed passes the first forward critical speed; damped bearings move that up. Quasistatic element, as the
+// reference.
+TEST(TrialRotor, InternalDampingHasTheThresholdsOfTheReference) {
+  rotor::Options o = trial_shaft(Element::timoshenko, 20, true);
+  o.internal_damping = trial::internal_damping;
+  const auto growth = [&](double damping, double speed) {
+    double most = -INFINITY, frequency = 0;
+    for (const test::Whirl& w : test::whirl_modes(o, {{1, 1e7, damping}, {21, 1e7, damping}}, speed))
+      if (w.growth > most) {
+        most = w.growth;
+        frequency = w.frequency;
+      }
+    EXPECT_GT(frequency, 0) << "forward whirl";
+    EXPECT_NEAR(frequency, 1250, 20);
+    return most;
+  };
+  for (const auto& [damping, threshold] :
+       {std::pair{0.0, trial::threshold_undamped}, std::pair{trial::damped_bearing, trial::threshold_damped}}) {
+    EXPECT_LT(growth(damping, threshold - 0.01), 0);
+    EXPECT_GT(growth(damping, threshold + 0.01), 0);
+  }
+}
+
+// Any family, whole and reduced: N is the stiffness across the planes, C the stiffness, and in a frame that turns with
+// the shaft a bent shape held there, q' = Omega e_z x q, meets no damping: C q' + Omega N q = 0.
+TEST(Families, AShapeThatTurnsWithTheShaftIsNotDampedByIt) {
+  for (const Element e : all_elements)
+    for (const bool reduced : {false, true}) {
+      rotor::Options o = test::stepped_shaft();
+      o.element = e;
+      o.stiffness_damping = 0;
+      o.internal_damping = 3e-5;
+      if (reduced) o.reduction = {rotor::Reduction::Type::craig_bampton, {2, 12}, 3};
+      rotor::Rotor r(MPI_COMM_WORLD, o);
+      const Eigen::MatrixXd c = test::dense(r.matrices().damping.get()),
+                            n = test::dense(r.matrices().circulatory.get()),
+                            k = test::dense(r.matrices().stiffness.get());
+      EXPECT_LT((c - 3e-5 * k).norm(), 1e-14 * c.norm());
+      EXPECT_LT((n + n.transpose()).norm(), 1e-14 * n.norm());
+      Eigen::VectorXd q(r.size()), turned(r.size());
+      for (Eigen::Index i = 0; i < q.size(); i += 2) {
+        q(i) = std::cos(3.0 * static_cast<double>(i));
+        q(i + 1) = std::sin(1 + 5.0 * static_cast<double>(i));
+        turned(i) = -q(i + 1);
+        turned(i + 1) = q(i);
+      }
+      EXPECT_LT((c * turned + n * q).norm(), 1e-13 * (c * turned).norm());
+      r.set_stiffness_damping(1e-5);
+      EXPECT_LT((test::dense(r.matrices().damping.get()) - 4e-5 * k).norm(), 1e-14 * c.norm());
+    }
+}
+
 // Statics do not depend on the family: nodal deflections of the beam are exact.
 TEST(Families, AlignmentIsTheSame) {
   rotor::Options o = test::stepped_shaft();

@@ -86,6 +86,7 @@ struct Options {
   // those of discs and steps need not be named. No key of a deck; only timoshenko_hermitian asks for it.
   std::vector<int> joints{};
   double stiffness_damping = 0;  // s, C = stiffness_damping * K in the stationary frame
+  double internal_damping = 0;   // s, viscous damping of the material, which turns with the shaft
   Reduction reduction;
   friend bool operator==(const Options&, const Options&) = default;
 };

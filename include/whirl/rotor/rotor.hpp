@@ -10,7 +10,7 @@
 
 namespace whirl::rotor {
 
-/// M q'' + (C + Omega G) q' + K q = f, with q in m and rad, f in N and N m.
+/// M q'' + (C + Omega G) q' + (K + Omega N) q = f, with q in m and rad, f in N and N m.
 ///
 /// All are AIJ matrices on the rotor's communicator. Coordinates come in pairs (x, y) in natural order along the shaft
 /// that does not depend on the number of ranks; each rank owns whole pairs (whole nodes if not reduced).
@@ -18,11 +18,14 @@ struct Matrices {
   core::Matrix mass;        // M, symmetric
   core::Matrix gyroscopic;  // G, skew, multiplied by Omega (rad/s); forward whirl is x -> y
   core::Matrix stiffness;   // K, symmetric
-  core::Matrix damping;     // C = stiffness_damping K
-  core::Vector gravity;     // kg: nodal weights along -y per unit acceleration; multiply by g
-  core::Matrix basis;   // T, q_full = T q, rows of inner freedoms of elements last; empty if not reduced. Loads reduce
-                        // as T^T f_full.
-  core::Vector offset;  // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
+  core::Matrix damping;     // C = (stiffness_damping + internal_damping) K
+  // N = internal_damping K x [[0, 1], [-1, 0]], skew: what turning with the shaft makes of its damping, which opposes
+  // q' - Omega e_z x q. It drives forward whirl slower than the shaft. Empty without internal damping.
+  core::Matrix circulatory;
+  core::Vector gravity;  // kg: nodal weights along -y per unit acceleration; multiply by g
+  core::Matrix basis;    // T, q_full = T q, rows of inner freedoms of elements last; empty if not reduced. Loads reduce
+                         // as T^T f_full.
+  core::Vector offset;   // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
 };
 
 /// How good a reduction is: vibration at frequency omega is followed with a relative error of order
@@ -45,7 +48,7 @@ public:
   Rotor(MPI_Comm comm, const Options& options);
 
   [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
-  /// C = `value` K [s]; all else stays. Collective.
+  /// C = (`value` + internal_damping) K [s]; all else stays. Collective.
   void set_stiffness_damping(double value);
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
@@ -61,6 +64,7 @@ public:
 private:
   Matrices matrices_;
   PetscInt size_ = 0;
+  double internal_damping_ = 0;
   int n_nodes_ = 0;
   bool rigid_ = false, reduced_ = false;
   std::vector<int> masters_;  // freedoms of a plane, ascending
