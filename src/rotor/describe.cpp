@@ -46,7 +46,8 @@ std::span<const deck::Name<Reduction::Type>> names(Reduction::Type) {
   static constexpr deck::Name<Reduction::Type> table[] = {
       {none, "none", "every node keeps its four freedoms"},
       {guyan, "guyan", "static condensation onto the translations of the masters"},
-      {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"}};
+      {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"},
+      {modal, "modal", "the lowest real modes of the shaft at rest, free or on springs at its masters"}};
   return table;
 }
 
@@ -130,12 +131,19 @@ void describe(deck::Description<Reduction>& d) {
   d.add("masters", &Reduction::masters, positive,
         "nodes whose translations are kept, and whose slopes where a film there tilts")
       .required()
-      .only(&Reduction::type, {guyan, craig_bampton});
-  d.add("modes", &Reduction::modes, positive, "modes per plane of the shaft with its masters held")
+      .only(&Reduction::type, {guyan, craig_bampton, modal});
+  d.add("modes", &Reduction::modes, positive,
+        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all")
       .required()
-      .only(&Reduction::type, {craig_bampton});
+      .only(&Reduction::type, {craig_bampton, modal});
+  d.add("support", &Reduction::support, "N/m", non_negative,
+        "springs at the masters while the modes are computed; 0: modes of the free shaft", "003 sec. 2.3")
+      .only(&Reduction::type, {modal});
   d.check([](const Reduction& x, const deck::Report& r) {
     if (x.type == none) return;
+    if (x.type == modal && x.modes < static_cast<int>(x.masters.size()))
+      r.fail("modes",
+             fmt::format("{} masters need as many modes per plane at least, not {}", x.masters.size(), x.modes));
     if (x.masters.size() < 2) r.fail("masters", "'masters' needs at least two nodes");
     std::unordered_set<int> seen;
     for (std::size_t i = 0; i < x.masters.size(); ++i)

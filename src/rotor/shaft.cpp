@@ -64,7 +64,15 @@ void validate(const Reduction& r, int nodes) {
   for (const int node : std::set<int>(r.slopes.begin(), r.slopes.end()))
     refuse_unless(seen.contains(node),
                   fmt::format("node {} has its slopes as masters, but not its translations", node));
-  if (r.type != Reduction::Type::craig_bampton) return;
+  if (r.type == Reduction::Type::guyan) return;
+  if (r.type == Reduction::Type::modal) {
+    const int kept = static_cast<int>(r.masters.size() + r.slopes.size());
+    refuse_unless(
+        r.modes >= kept && r.modes <= 2 * nodes,
+        fmt::format("{} modes per plane are not in {}..{}: masters are motions of them", r.modes, kept, 2 * nodes));
+    refuse_unless(r.support >= 0, "the support must not be negative");
+    return;
+  }
   const int slaves = 2 * nodes - static_cast<int>(r.masters.size() + r.slopes.size());
   refuse_unless(r.modes >= 0 && r.modes <= slaves,
                 fmt::format("{} fixed-interface modes per plane are not in 0..{}", r.modes, slaves));

@@ -29,6 +29,7 @@ double n_states(const system::Machine& machine) {
   double freedoms = r.type == rotor::Options::Type::rigid ? 2
                     : r.reduction.type == none
                         ? rotor::freedoms_per_node * nodes + 2.0 * rotor::n_inner(r.element) * (nodes - 1)
+                    : r.reduction.type == modal ? 2 * modes
                     : r.reduction.type == guyan ? 2 * masters
                                                 : 2 * (masters + modes);
   for (const system::Bearing& b : machine.bearings) {

@@ -63,10 +63,13 @@ enum class Element {
 
 /// Reduction of the coordinates. Masters are both translations of each master node, and both slopes of some of them.
 struct Reduction {
-  enum class Type { none, guyan, craig_bampton };
+  enum class Type { none, guyan, craig_bampton, modal };
   Type type = Type::none;
-  std::vector<int> masters;   // 1-based nodes, at least two, any order
-  int modes = 0;              // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
+  std::vector<int> masters;  // 1-based nodes, at least two, any order
+  // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate). modal: real modes of the shaft
+  // at rest per plane, at least as many as masters, whose motions are among theirs.
+  int modes = 0;
+  double support = 0;         // N/m, modal: springs at the masters while its modes are computed; 0: the free shaft
   std::vector<int> slopes{};  // those of the masters whose slopes are masters too; no key of a deck
   friend bool operator==(const Reduction&, const Reduction&) = default;
 };
