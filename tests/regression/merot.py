@@ -59,7 +59,27 @@ def internal_damping(h):
         h.true("    before which it is stable", points[0]["others_unstable"] == 0)
 
 
+def reduction(h):
+    """Whirl frequencies of the reduced shafts: the whole shaft's, off by what was computed independently."""
+    reference = json.loads((h.source / "tests/reference/rotor/reduction_trial_rotor.json").read_text())
+    deck = h.source / "inputs/merot/reduction.yaml"
+    modes = "studies=[{modes: {name: modes, supports: films, speeds: [10000 rad/s], count: 10}}]"
+    whole = [m["imag"] for m in h.run(deck, "whole", [modes], launcher=[])["modes"]["modes"]]
+    for k, (f, wanted) in enumerate(zip(whole, reference["frequency"])):
+        h.close(f"whole, {k + 1}", f, wanted, 1e-7 * wanted)
+    words = {"modal_supported": "{type: modal, masters: [1, 21], modes: 8, support: 1e7 N/m}",
+             "modal_free": "{type: modal, masters: [1, 21], modes: 8}", "cb_real": "{type: craig_bampton, masters: [1, 21], modes: 6}"}
+    for name, word in words.items():
+        for ranks in (1, 2):
+            launcher = [*h.launcher, "-n", "2"] if ranks == 2 else []
+            s = h.run(deck, f"{name}, {ranks}", [modes, f"rotor.reduction={word}"], launcher=launcher)
+            for k, (m, f, error) in enumerate(zip(s["modes"]["modes"], whole, reference["error"]["16"][name])):
+                h.close(f"{name}, {k + 1}, ranks {ranks}", abs(m["imag"] / f - 1), error, 2e-3 * error + 1e-8)
+    # As the deck is.
+    h.true("sweep ends", "reductions" in h.run(deck, "sweep", launcher=[]))
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"disc_rotor": disc_rotor, "internal_damping": internal_damping}[sys.argv[3]](harness)
+    {"disc_rotor": disc_rotor, "internal_damping": internal_damping, "reduction": reduction}[sys.argv[3]](harness)
     harness.finish()
