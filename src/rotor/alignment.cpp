@@ -87,9 +87,12 @@ private:
   std::vector<double> moments(const RigidStatic& r, double gravity) const {
     std::vector<double> m;
     for (std::size_t e = 0; e < options_.segments.size(); ++e) {
-      const Beam beam = make_beam(options_.segments[e], options_.material, shear_of(options_));
+      const ElementMatrices element =
+          element_matrices(options_.segments[e], options_.material, shear_of(options_), of_statics(options_).element);
+      const Eigen::Matrix4d k = element.stiffness;
+      const Eigen::Vector4d w = element.weight;
       const Eigen::Vector4d u(r.deflection[e], r.slope[e], r.deflection[e + 1], r.slope[e + 1]);
-      const Eigen::Vector4d ends = stiffness(beam) * u + gravity * weight(beam);
+      const Eigen::Vector4d ends = k * u + gravity * w;
       if (e == 0) m.push_back(-ends(1));
       m.push_back(ends(3));
     }

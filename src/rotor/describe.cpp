@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "whirl/rotor/element.hpp"
+#include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
 
@@ -63,6 +64,10 @@ void describe(deck::Description<Segment>& d) {
   d.add("inner_mass_diameter", &Segment::inner_mass_diameter, "m", non_negative, "bore of the material")
       .alias("inner_diameter")
       .alias("bore");
+  d.add("right_outer_diameter", &Segment::right_outer_diameter, "m", positive,
+        "outer diameter at the right end of a tapered segment; absent: as at the left end");
+  d.add("right_inner_diameter", &Segment::right_inner_diameter, "m", non_negative,
+        "bore at the right end of a tapered segment; absent: as at the left end");
   d.add("outer_stiffness_diameter", &Segment::outer_stiffness_diameter, "m", non_negative,
         "outer diameter of the part that bends; 0: both stiffness diameters are the mass diameters", "004 table 2.1");
   d.add("inner_stiffness_diameter", &Segment::inner_stiffness_diameter, "m", non_negative,
@@ -82,6 +87,13 @@ void describe(deck::Description<Segment>& d) {
     if (s.outer_stiffness_diameter > 0)
       fits(s.inner_stiffness_diameter, s.outer_stiffness_diameter, "inner_stiffness_diameter",
            "outer_stiffness_diameter");
+    if (tapered(s)) {
+      const Segment right = section_at(s, 1);
+      fits(right.inner_mass_diameter, right.outer_mass_diameter, "right_inner_diameter", "right_outer_diameter");
+      if (s.outer_stiffness_diameter > 0)
+        r.fail("right_outer_diameter",
+               "a tapered segment bends with its mass diameters: stiffness diameters are not taken");
+    }
     if (s.added_mass_inner_diameter > s.added_mass_outer_diameter)
       r.fail("added_mass_inner_diameter", "'added_mass_inner_diameter' exceeds 'added_mass_outer_diameter'");
   });

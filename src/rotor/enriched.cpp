@@ -1,10 +1,11 @@
-// Elements whose shear angle is free of their curvature.
+// Elements by quadrature: those whose shear angle is free of their curvature, and tapered ones.
 
 #include <array>
 #include <cmath>
 
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/element.hpp"
+#include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -58,36 +59,71 @@ Shapes hermitian_shapes(const Beam& b, double x) {
   return n;
 }
 
-// Gauss-Legendre on (0, 1), exact to degree 7: products of cubics have degree 6.
+// Cubic u without inner freedoms: those of the nodes alone.
+Shapes nodal_shapes(const Beam& b, double x) {
+  Shapes n = linear_shapes(b, x);
+  for (Eigen::RowVectorXd* of : {&n.u, &n.s, &n.curvature, &n.shear}) of->conservativeResize(4);
+  return n;
+}
+
+Shapes shapes(const Beam& b, Element element, double x) {
+  if (element == Element::timoshenko_linear) return linear_shapes(b, x);
+  if (element == Element::timoshenko_hermitian) return hermitian_shapes(b, x);
+  return nodal_shapes(b, x);
+}
+
+// Gauss-Legendre on (0, 1).
 struct Gauss {
   double place, weight;
 };
 
-std::array<Gauss, 4> gauss() {
-  const double a = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)), b = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2)),
-               w = std::sqrt(30.0) / 72;
-  return {{{(1 - b) / 2, 0.25 - w}, {(1 - a) / 2, 0.25 + w}, {(1 + a) / 2, 0.25 + w}, {(1 + b) / 2, 0.25 - w}}};
+// Exact to degree 7: products of cubics have degree 6.
+constexpr std::array<Gauss, 4> along_uniform{{{0.069431844202973713, 0.17392742256872693},
+                                              {0.33000947820757187, 0.32607257743127307},
+                                              {0.66999052179242813, 0.32607257743127307},
+                                              {0.93056815579702629, 0.17392742256872693}}};
+// Exact to degree 11: times the fourth power of a diameter.
+constexpr std::array<Gauss, 6> along_tapered{{{0.033765242898423989, 0.085662246189585178},
+                                              {0.16939530676686776, 0.18038078652406930},
+                                              {0.38069040695840156, 0.23395696728634552},
+                                              {0.61930959304159844, 0.23395696728634552},
+                                              {0.83060469323313224, 0.18038078652406930},
+                                              {0.96623475710157601, 0.085662246189585178}}};
+
+// Adds what a piece dz of the element with this section has.
+void add_piece(ElementMatrices& m, const Beam& b, const Shapes& at, double dz) {
+  m.stiffness += dz * b.bending_stiffness * at.curvature.transpose() * at.curvature;
+  if (b.shear_parameter > 0)
+    m.stiffness +=
+        dz * 12 * b.bending_stiffness / (b.shear_parameter * b.length * b.length) * at.shear.transpose() * at.shear;
+  m.translational_mass += dz * b.mass_per_length * at.u.transpose() * at.u;
+  m.rotary_mass += dz * b.inertia_per_length * at.s.transpose() * at.s;
+  m.weight += dz * b.mass_per_length * at.u.transpose();
+}
+
+ElementMatrices empty_matrices(Element element) {
+  const Eigen::Index n = 4 + n_inner(element);
+  return {Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
+          Eigen::VectorXd::Zero(n)};
 }
 
 }  // namespace
 
 ElementMatrices element_matrices(const Beam& b, Element element) {
-  const int inner = n_inner(element);
-  if (inner == 0) return {stiffness(b), translational_mass(b), rotary_mass(b), weight(b)};
+  if (n_inner(element) == 0) return {stiffness(b), translational_mass(b), rotary_mass(b), weight(b)};
   core::require(b.shear_parameter > 0, "a shear stiffness");
-  const double shear_stiffness = 12 * b.bending_stiffness / (b.shear_parameter * b.length * b.length);
-  const Eigen::Index n = 4 + inner;
-  ElementMatrices m{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
-                    Eigen::VectorXd::Zero(n)};
-  for (const auto& [place, share] : gauss()) {
-    const Shapes at = element == Element::timoshenko_linear ? linear_shapes(b, place) : hermitian_shapes(b, place);
-    const double dz = share * b.length;
-    m.stiffness += dz * (b.bending_stiffness * at.curvature.transpose() * at.curvature +
-                         shear_stiffness * at.shear.transpose() * at.shear);
-    m.translational_mass += dz * b.mass_per_length * at.u.transpose() * at.u;
-    m.rotary_mass += dz * b.inertia_per_length * at.s.transpose() * at.s;
-    m.weight += dz * b.mass_per_length * at.u.transpose();
-  }
+  ElementMatrices m = empty_matrices(element);
+  for (const auto& [place, share] : along_uniform) add_piece(m, b, shapes(b, element, place), share * b.length);
+  return m;
+}
+
+ElementMatrices element_matrices(const Segment& s, const Material& material, Shear shear, Element element) {
+  if (!tapered(s)) return element_matrices(make_beam(s, material, shear), element);
+  core::require(n_inner(element) == 0 || shear != Shear::rigid, "a shear stiffness");
+  const Beam half_way = make_beam(section_at(s, 0.5), material, shear);
+  ElementMatrices m = empty_matrices(element);
+  for (const auto& [place, share] : along_tapered)
+    add_piece(m, make_beam(section_at(s, place), material, shear), shapes(half_way, element, place), share * s.length);
   return m;
 }
 

@@ -20,7 +20,7 @@ using core::check;
 double bending_scale(const Options& o) {
   double length = 0, bending = 0;
   for (const Segment& s : o.segments) {
-    const Beam b = make_beam(s, o.material, shear_of(o));
+    const Beam b = make_beam(section_at(s, 0.5), o.material, shear_of(o));
     length += b.length;
     bending += b.length * b.bending_stiffness;
   }

@@ -4,18 +4,19 @@
 #include <set>
 
 #include "whirl/rotor/element.hpp"
+#include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
 namespace {
 
-// The constants that curvature and shear angle jump with: E I, the shear stiffness, and the masses, whose inertia loads
-// may step but never a force. Only the stiffnesses count.
+// Curvature and shear angle jump with E I and the shear stiffness. Masses are loads on the span and make no jump.
 bool same_stiffness(const Options& o, std::size_t left) {
-  const Beam a = make_beam(o.segments[left], o.material, o.shear),
+  const Beam a = make_beam(section_at(o.segments[left], 1), o.material, o.shear),
              b = make_beam(o.segments[left + 1], o.material, o.shear);
   // Phi L^2 = 12 E I/(kappa G A)
   const double shear_a = a.shear_parameter * a.length * a.length, shear_b = b.shear_parameter * b.length * b.length;
-  return a.bending_stiffness == b.bending_stiffness && std::abs(shear_a - shear_b) <= 1e-12 * shear_a;
+  return std::abs(a.bending_stiffness - b.bending_stiffness) <= 1e-12 * a.bending_stiffness &&
+         std::abs(shear_a - shear_b) <= 1e-12 * shear_a;
 }
 
 }  // namespace

@@ -59,10 +59,9 @@ core::Matrix make_enriched_matrix(MPI_Comm comm, PetscInt local_nodes, PetscInt 
   return m;
 }
 
-void add_enriched(const Planar& p, const Beam& beam, Element element, PetscInt node, PetscInt nodal,
-                  const std::vector<int>& inner) {
+void add_general(const Planar& p, const ElementMatrices& e, PetscInt node, PetscInt nodal,
+                 const std::vector<int>& inner) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const ElementMatrices e = element_matrices(beam, element);
   const std::vector<PetscInt> at = freedoms_of(node, nodal, inner);
   const auto n = static_cast<PetscInt>(at.size());
   const auto put = [&](const core::Matrix& m, const RowMajor& values) {
@@ -97,11 +96,12 @@ Planar assemble_planar(MPI_Comm comm, const Options& o) {
 
   for (PetscInt node = first; node < end && node < nodes - 1; ++node) {
     const auto k = static_cast<std::size_t>(node);
-    const Beam beam = make_beam(o.segments[k], o.material, shear_of(o));
-    if (!inner.of_segment.empty()) {
-      add_enriched(p, beam, o.element, node, 2 * nodes, inner.of_segment[k]);
+    if (!inner.of_segment.empty() || tapered(o.segments[k])) {
+      add_general(p, element_matrices(o.segments[k], o.material, shear_of(o), o.element), node, 2 * nodes,
+                  inner.of_segment.empty() ? std::vector<int>() : inner.of_segment[k]);
       continue;
     }
+    const Beam beam = make_beam(o.segments[k], o.material, shear_of(o));
     const std::array<PetscInt, 4> at{2 * node, 2 * node + 1, 2 * node + 2, 2 * node + 3};
     const Eigen::Matrix4d rotary = rotary_mass(beam);
     add(p.mass.get(), at, translational_mass(beam) + rotary);

@@ -36,6 +36,12 @@ void validate(const Segment& s, const std::string& name) {
   refuse_unless(s.length > 0, name + ": the length must be positive");
   refuse_unless(s.inner_mass_diameter >= 0 && s.outer_mass_diameter > s.inner_mass_diameter,
                 name + ": mass diameters must satisfy outer > inner >= 0");
+  if (tapered(s)) {
+    const Segment right = section_at(s, 1);
+    refuse_unless(right.inner_mass_diameter >= 0 && right.outer_mass_diameter > right.inner_mass_diameter,
+                  name + ": diameters at the right end must satisfy outer > inner >= 0");
+    refuse_unless(s.outer_stiffness_diameter == 0, name + ": a tapered segment bends with its mass diameters");
+  }
   if (s.outer_stiffness_diameter != 0)
     refuse_unless(s.inner_stiffness_diameter >= 0 && s.outer_stiffness_diameter > s.inner_stiffness_diameter,
                   name + ": stiffness diameters must satisfy outer > inner >= 0");
@@ -126,7 +132,25 @@ double modulus(const Material& m, double temperature) {
   return e0 + (e1 - e0) * (temperature - t0) / (t1 - t0);
 }
 
+bool tapered(const Segment& s) {
+  return s.right_outer_diameter.value_or(s.outer_mass_diameter) != s.outer_mass_diameter ||
+         s.right_inner_diameter.value_or(s.inner_mass_diameter) != s.inner_mass_diameter;
+}
+
+Segment section_at(const Segment& s, double place) {
+  Segment out = s;
+  out.outer_mass_diameter += place * (s.right_outer_diameter.value_or(s.outer_mass_diameter) - s.outer_mass_diameter);
+  out.inner_mass_diameter += place * (s.right_inner_diameter.value_or(s.inner_mass_diameter) - s.inner_mass_diameter);
+  out.right_outer_diameter.reset();
+  out.right_inner_diameter.reset();
+  return out;
+}
+
 double segment_mass(const Segment& s, const Material& m) {
+  if (tapered(s)) {  // areas are quadratic along it: Simpson's rule is exact
+    const auto at = [&](double place) { return segment_mass(section_at(s, place), m); };
+    return (at(0) + 4 * at(0.5) + at(1)) / 6;
+  }
   const double area =
       pi / 4 * (s.outer_mass_diameter * s.outer_mass_diameter - s.inner_mass_diameter * s.inner_mass_diameter);
   return m.density * area * s.length + s.added_mass;
@@ -181,7 +205,7 @@ double slenderness(const Options& o, int from, int to) {
   refuse_unless(from >= 1 && from < to && to <= n_nodes(o), fmt::format("nodes {}, {} bound no span", from, to));
   double length = 0, profile = 0;
   for (int k = from; k < to; ++k) {
-    const Segment& s = o.segments[static_cast<std::size_t>(k - 1)];
+    const Segment s = section_at(o.segments[static_cast<std::size_t>(k - 1)], 0.5);
     length += s.length;
     profile += s.length * (s.outer_stiffness_diameter > 0 ? s.outer_stiffness_diameter : s.outer_mass_diameter);
   }

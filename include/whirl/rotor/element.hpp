@@ -41,8 +41,13 @@ struct ElementMatrices {
 /// quadrature, which is exact here. They need a shear parameter that is not zero.
 [[nodiscard]] ElementMatrices element_matrices(const Beam& beam, Element element);
 
-/// Constants of a segment at its temperature. Throws core::DomainError if E(T) is not known there.
-/// Source: Gavalas (2022), table 2.1 with A_S, D_AM and J_AD corrected; kappa by Cowper (1966).
+/// The same of a segment, which may be tapered: then by Gauss quadrature along it with the shapes of the element with
+/// the section half way, which keeps the order of the frequencies but is not exact at rest. Throws as make_beam does.
+[[nodiscard]] ElementMatrices element_matrices(const Segment& segment, const Material& material, Shear shear,
+                                               Element element);
+
+/// Constants of a segment at its temperature, of its left end if it is tapered. Throws core::DomainError if E(T) is not
+/// known there. Source: Gavalas (2022), table 2.1 with A_S, D_AM and J_AD corrected; kappa by Cowper (1966).
 [[nodiscard]] Beam make_beam(const Segment& segment, const Material& material, Shear shear);
 
 /// K = E I/(L^3 (1+Phi)) [[12, 6L, -12, 6L], ...]; Nelson (1980).

@@ -1,6 +1,7 @@
 #pragma once
 // What a user says about a rotor. Plain data in SI; nodes are 1-based, node k is the left end of segment k.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,11 +11,13 @@ namespace whirl::rotor {
 /// One Timoshenko beam element of circular section. The material outline gives mass and inertia, the (possibly smaller)
 /// stiffness outline bends; added mass has no stiffness and is spread uniformly over the length.
 struct Segment {
-  std::string rotor;                     // name of the rotor it belongs to (HP, GEN, ...)
-  std::string part;                      // name of the shaft portion
-  double length = 0;                     // m
-  double outer_mass_diameter = 0;        // m
-  double inner_mass_diameter = 0;        // m
+  std::string rotor;               // name of the rotor it belongs to (HP, GEN, ...)
+  std::string part;                // name of the shaft portion
+  double length = 0;               // m
+  double outer_mass_diameter = 0;  // m
+  double inner_mass_diameter = 0;  // m
+  // At the right end, where the segment is tapered: diameters are linear between the ends.
+  std::optional<double> right_outer_diameter{}, right_inner_diameter{};
   double outer_stiffness_diameter = 0;   // m; 0: both stiffness diameters equal the mass diameters
   double inner_stiffness_diameter = 0;   // m
   double added_mass = 0;                 // kg in the whole element
