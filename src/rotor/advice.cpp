@@ -4,13 +4,16 @@
 
 #include <algorithm>
 
+#include "whirl/rotor/shaft.hpp"
+
 namespace whirl::rotor {
 
 std::vector<std::string> advice(const Options& rotor) {
   constexpr double least = 0.05, most = 0.8, step = 4;
   std::vector<std::string> lines;
   const auto ratio = [](const Segment& s) {
-    return s.length / (s.outer_stiffness_diameter > 0 ? s.outer_stiffness_diameter : s.outer_mass_diameter);
+    return s.length /
+           (s.outer_stiffness_diameter > 0 ? s.outer_stiffness_diameter : section_at(s, 0.5).outer_mass_diameter);
   };
   for (std::size_t i = 0; i < rotor.segments.size(); ++i) {
     const double r = ratio(rotor.segments[i]);

@@ -16,11 +16,18 @@ namespace {
 using core::check;
 using core::InputError;
 
+// Inner freedoms change nothing that is at rest: nodes move as the beam does, exactly, under forces at nodes and
+// weight.
+Options of_statics(Options o) {
+  if (n_inner(o.element) > 0) o.element = Element::timoshenko;
+  return o;
+}
+
 // The shaft on rigid supports, factorised once: K with the rows and columns of the supports replaced by the identity.
 class Supported {
 public:
   Supported(MPI_Comm comm, const Options& o, const std::vector<Support>& supports)
-      : options_(o), planar_(assemble_planar(comm, o)) {
+      : options_(o), planar_(assemble_planar(comm, of_statics(o))) {
     for (const Support& s : supports) nodes_.push_back(s.node);
     std::vector<PetscInt> rows;
     for (int node : nodes_) rows.push_back(2 * (node - 1));
@@ -80,9 +87,12 @@ private:
   std::vector<double> moments(const RigidStatic& r, double gravity) const {
     std::vector<double> m;
     for (std::size_t e = 0; e < options_.segments.size(); ++e) {
-      const Beam beam = make_beam(options_.segments[e], options_.material, options_.shear);
+      const ElementMatrices element =
+          element_matrices(options_.segments[e], options_.material, shear_of(options_), of_statics(options_).element);
+      const Eigen::Matrix4d k = element.stiffness;
+      const Eigen::Vector4d w = element.weight;
       const Eigen::Vector4d u(r.deflection[e], r.slope[e], r.deflection[e + 1], r.slope[e + 1]);
-      const Eigen::Vector4d ends = stiffness(beam) * u + gravity * weight(beam);
+      const Eigen::Vector4d ends = k * u + gravity * w;
       if (e == 0) m.push_back(-ends(1));
       m.push_back(ends(3));
     }

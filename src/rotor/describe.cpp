@@ -4,6 +4,9 @@
 
 #include <unordered_set>
 
+#include "whirl/rotor/element.hpp"
+#include "whirl/rotor/shaft.hpp"
+
 namespace whirl::rotor {
 
 using deck::non_negative;
@@ -24,12 +27,28 @@ std::span<const deck::Name<Shear>> names(Shear) {
   return table;
 }
 
+std::span<const deck::Name<Element>> names(Element) {
+  static constexpr deck::Name<Element> table[] = {
+      {Element::rayleigh, "rayleigh", "no shear deformation, whatever 'shear' is; frequencies converge with h^4"},
+      {Element::timoshenko, "timoshenko",
+       "one shear angle, tied to the curvature as in the static solution (Nelson 1980); exact at rest, frequencies "
+       "converge with h^2"},
+      {Element::timoshenko_linear, "timoshenko_linear",
+       "shear angle and curvature linear and independent: two inner freedoms a plane, frequencies converge with h^4"},
+      {Element::timoshenko_hermitian, "timoshenko_hermitian",
+       "16 freedoms: displacement and slope cubic and independent, with shear angle and curvature at the ends, which "
+       "are "
+       "one where neither sections, discs nor bearings let them jump; frequencies converge with h^6"}};
+  return table;
+}
+
 std::span<const deck::Name<Reduction::Type>> names(Reduction::Type) {
   using enum Reduction::Type;
   static constexpr deck::Name<Reduction::Type> table[] = {
       {none, "none", "every node keeps its four freedoms"},
       {guyan, "guyan", "static condensation onto the translations of the masters"},
-      {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"}};
+      {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"},
+      {modal, "modal", "the lowest real modes of the shaft at rest, free or on springs at its masters"}};
   return table;
 }
 
@@ -45,6 +64,10 @@ void describe(deck::Description<Segment>& d) {
   d.add("inner_mass_diameter", &Segment::inner_mass_diameter, "m", non_negative, "bore of the material")
       .alias("inner_diameter")
       .alias("bore");
+  d.add("right_outer_diameter", &Segment::right_outer_diameter, "m", positive,
+        "outer diameter at the right end of a tapered segment; absent: as at the left end");
+  d.add("right_inner_diameter", &Segment::right_inner_diameter, "m", non_negative,
+        "bore at the right end of a tapered segment; absent: as at the left end");
   d.add("outer_stiffness_diameter", &Segment::outer_stiffness_diameter, "m", non_negative,
         "outer diameter of the part that bends; 0: both stiffness diameters are the mass diameters", "004 table 2.1");
   d.add("inner_stiffness_diameter", &Segment::inner_stiffness_diameter, "m", non_negative,
@@ -64,6 +87,13 @@ void describe(deck::Description<Segment>& d) {
     if (s.outer_stiffness_diameter > 0)
       fits(s.inner_stiffness_diameter, s.outer_stiffness_diameter, "inner_stiffness_diameter",
            "outer_stiffness_diameter");
+    if (tapered(s)) {
+      const Segment right = section_at(s, 1);
+      fits(right.inner_mass_diameter, right.outer_mass_diameter, "right_inner_diameter", "right_outer_diameter");
+      if (s.outer_stiffness_diameter > 0)
+        r.fail("right_outer_diameter",
+               "a tapered segment bends with its mass diameters: stiffness diameters are not taken");
+    }
     if (s.added_mass_inner_diameter > s.added_mass_outer_diameter)
       r.fail("added_mass_inner_diameter", "'added_mass_inner_diameter' exceeds 'added_mass_outer_diameter'");
   });
@@ -113,12 +143,19 @@ void describe(deck::Description<Reduction>& d) {
   d.add("masters", &Reduction::masters, positive,
         "nodes whose translations are kept, and whose slopes where a film there tilts")
       .required()
-      .only(&Reduction::type, {guyan, craig_bampton});
-  d.add("modes", &Reduction::modes, positive, "modes per plane of the shaft with its masters held")
+      .only(&Reduction::type, {guyan, craig_bampton, modal});
+  d.add("modes", &Reduction::modes, positive,
+        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all")
       .required()
-      .only(&Reduction::type, {craig_bampton});
+      .only(&Reduction::type, {craig_bampton, modal});
+  d.add("support", &Reduction::support, "N/m", non_negative,
+        "springs at the masters while the modes are computed; 0: modes of the free shaft", "003 sec. 2.3")
+      .only(&Reduction::type, {modal});
   d.check([](const Reduction& x, const deck::Report& r) {
     if (x.type == none) return;
+    if (x.type == modal && x.modes < static_cast<int>(x.masters.size()))
+      r.fail("modes",
+             fmt::format("{} masters need as many modes per plane at least, not {}", x.masters.size(), x.modes));
     if (x.masters.size() < 2) r.fail("masters", "'masters' needs at least two nodes");
     std::unordered_set<int> seen;
     for (std::size_t i = 0; i < x.masters.size(); ++i)
@@ -144,13 +181,22 @@ void describe(deck::Description<Options>& d) {
   d.add("material", &Options::material, "material of the shaft").required().only(&Options::type, {shaft});
   d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5")
       .only(&Options::type, {shaft});
+  d.add("element", &Options::element, "beam element", "003 app. A, sec. 2.2").only(&Options::type, {shaft});
   d.add("stiffness_damping", &Options::stiffness_damping, "s", non_negative,
         "damping per stiffness in the stationary frame, C = value K", "004 errata 8")
       .continuable()
       .only(&Options::type, {shaft});
+  d.add("internal_damping", &Options::internal_damping, "s", non_negative,
+        "viscous damping of the material per stiffness, which turns with the shaft: it damps whirl above the speed and "
+        "drives "
+        "forward whirl below it",
+        "003 (2.29)-(2.35)")
+      .only(&Options::type, {shaft});
   d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms").only(&Options::type, {shaft});
   d.check([](const Options& o, const deck::Report& r) {
     if (o.type == rigid) return;
+    if (n_inner(o.element) > 0 && o.shear == Shear::rigid)
+      r.fail("element", "an element with independent shear needs a shear stiffness: 'shear' is rigid");
     const int n_nodes = static_cast<int>(o.segments.size()) + 1;
     auto node = [&](int k, const std::string& path) {
       if (k > n_nodes) r.fail(path, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", k, n_nodes));

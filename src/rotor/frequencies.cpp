@@ -20,7 +20,7 @@ using core::check;
 double bending_scale(const Options& o) {
   double length = 0, bending = 0;
   for (const Segment& s : o.segments) {
-    const Beam b = make_beam(s, o.material, o.shear);
+    const Beam b = make_beam(section_at(s, 0.5), o.material, shear_of(o));
     length += b.length;
     bending += b.length * b.bending_stiffness;
   }
@@ -38,7 +38,8 @@ std::vector<core::Vector> rigid_motions(Vec layout, IS free, const std::vector<d
     core::Vector whole = core::duplicate(layout);
     {
       const core::WriteArray a(whole.get());
-      for (PetscInt i = begin; i < end; ++i)
+      // Inner freedoms stand behind the nodes and rest.
+      for (PetscInt i = begin; i < std::min(end, static_cast<PetscInt>(2 * z.size())); ++i)
         a[i - begin] = i % 2 == 1 ? tilt : shift + tilt * z[static_cast<std::size_t>(i / 2)];
     }
     Vec part = nullptr;
@@ -75,7 +76,8 @@ std::vector<double> natural_frequencies(MPI_Comm comm, const Options& o, const s
   check(VecGetOwnershipRange(planar.weight.get(), &begin, &end));
   std::vector<PetscInt> kept;
   for (PetscInt i = begin; i < end; ++i)
-    if (i % 2 == 1 || !std::binary_search(held.begin(), held.end(), static_cast<int>(i / 2) + 1)) kept.push_back(i);
+    if (i % 2 == 1 || i >= 2 * n_nodes(o) || !std::binary_search(held.begin(), held.end(), static_cast<int>(i / 2) + 1))
+      kept.push_back(i);
   core::IndexSet free;
   check(ISCreateGeneral(comm, static_cast<PetscInt>(kept.size()), kept.data(), PETSC_COPY_VALUES, free.put()));
   core::Matrix k, m;

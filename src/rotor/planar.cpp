@@ -1,8 +1,10 @@
 #include "planar.hpp"
 
 #include <array>
+#include <set>
 #include <vector>
 
+#include "inner.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -27,6 +29,50 @@ core::Matrix make_chain_matrix(MPI_Comm comm, PetscInt local_nodes, PetscInt fir
   return m;
 }
 
+// The planar freedoms of a segment: of its two nodes, then its inner ones, which stand behind all nodes.
+std::vector<PetscInt> freedoms_of(PetscInt node, PetscInt nodal, const std::vector<int>& inner) {
+  std::vector<PetscInt> at{2 * node, 2 * node + 1, 2 * node + 2, 2 * node + 3};
+  for (const int k : inner) at.push_back(nodal + k);
+  return at;
+}
+
+core::Matrix make_enriched_matrix(MPI_Comm comm, PetscInt local_nodes, PetscInt first, PetscInt nodes,
+                                  PetscInt inner_here, const Inner& inner) {
+  const PetscInt begin = 2 * first, local = 2 * local_nodes + inner_here;
+  std::vector<std::set<PetscInt>> columns(static_cast<std::size_t>(local));
+  for (PetscInt i = 0; i < local; ++i) columns[static_cast<std::size_t>(i)].insert(begin + i);
+  for (PetscInt node = 0; node < nodes - 1; ++node) {
+    const auto at = freedoms_of(node, 2 * nodes, inner.of_segment[static_cast<std::size_t>(node)]);
+    for (const PetscInt row : at)
+      if (row >= begin && row < begin + local)
+        columns[static_cast<std::size_t>(row - begin)].insert(at.begin(), at.end());
+  }
+  std::vector<PetscInt> here, elsewhere;
+  for (const std::set<PetscInt>& c : columns) {
+    const auto inside = std::distance(c.lower_bound(begin), c.lower_bound(begin + local));
+    here.push_back(static_cast<PetscInt>(inside));
+    elsewhere.push_back(static_cast<PetscInt>(c.size()) - here.back());
+  }
+  const PetscInt all = 2 * nodes + inner.count;
+  core::Matrix m;
+  check(MatCreateAIJ(comm, local, local, all, all, 0, here.data(), 0, elsewhere.data(), m.put()));
+  return m;
+}
+
+void add_general(const Planar& p, const ElementMatrices& e, PetscInt node, PetscInt nodal,
+                 const std::vector<int>& inner) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<PetscInt> at = freedoms_of(node, nodal, inner);
+  const auto n = static_cast<PetscInt>(at.size());
+  const auto put = [&](const core::Matrix& m, const RowMajor& values) {
+    check(MatSetValues(m.get(), n, at.data(), n, at.data(), values.data(), ADD_VALUES));
+  };
+  put(p.mass, e.translational_mass + e.rotary_mass);
+  put(p.gyroscopic, 2 * e.rotary_mass);
+  put(p.stiffness, e.stiffness);
+  check(VecSetValues(p.weight.get(), n, at.data(), e.weight.data(), ADD_VALUES));
+}
+
 void add(Mat m, const std::array<PetscInt, 4>& at, const Eigen::Matrix4d& values) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = values;
   check(MatSetValues(m, 4, at.data(), 4, at.data(), rows.data(), ADD_VALUES));
@@ -41,11 +87,21 @@ Planar assemble_planar(MPI_Comm comm, const Options& o) {
   const PetscInt first = end - local;
 
   Planar p;
-  for (core::Matrix* m : {&p.mass, &p.gyroscopic, &p.stiffness}) *m = make_chain_matrix(comm, local, first, nodes);
-  p.weight = core::make_vector(comm, 2 * local, 2 * nodes);
+  const Inner inner = inner_freedoms(o);
+  const PetscInt inner_here = core::rank_of(comm) == core::size_of(comm) - 1 ? inner.count : 0;
+  for (core::Matrix* m : {&p.mass, &p.gyroscopic, &p.stiffness})
+    *m = inner.count == 0 ? make_chain_matrix(comm, local, first, nodes)
+                          : make_enriched_matrix(comm, local, first, nodes, inner_here, inner);
+  p.weight = core::make_vector(comm, 2 * local + inner_here, 2 * nodes + inner.count);
 
   for (PetscInt node = first; node < end && node < nodes - 1; ++node) {
-    const Beam beam = make_beam(o.segments[static_cast<std::size_t>(node)], o.material, o.shear);
+    const auto k = static_cast<std::size_t>(node);
+    if (!inner.of_segment.empty() || tapered(o.segments[k])) {
+      add_general(p, element_matrices(o.segments[k], o.material, shear_of(o), o.element), node, 2 * nodes,
+                  inner.of_segment.empty() ? std::vector<int>() : inner.of_segment[k]);
+      continue;
+    }
+    const Beam beam = make_beam(o.segments[k], o.material, shear_of(o));
     const std::array<PetscInt, 4> at{2 * node, 2 * node + 1, 2 * node + 2, 2 * node + 3};
     const Eigen::Matrix4d rotary = rotary_mass(beam);
     add(p.mass.get(), at, translational_mass(beam) + rotary);

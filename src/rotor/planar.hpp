@@ -1,13 +1,15 @@
 #pragma once
 // A rotor of circular section is the same in both planes and the planes couple only through the gyroscopic moment, so
-// everything is built once for one plane, with freedoms 2 (node - 1) + {0: displacement, 1: slope}, and then doubled.
+// everything is built once for one plane, with freedoms 2 (node - 1) + {0: displacement, 1: slope}, then inner freedoms
+// of elements, and then doubled.
 
 #include "whirl/core/petsc.hpp"
 #include "whirl/rotor/options.hpp"
 
 namespace whirl::rotor {
 
-/// Matrices of one plane. Each rank owns whole nodes. `gyroscopic` is symmetric: its moments act across the planes.
+/// Matrices of one plane. Each rank owns whole nodes; inner freedoms stand on the last rank. `gyroscopic` is symmetric:
+/// its moments act across the planes.
 struct Planar {
   core::Matrix mass, gyroscopic, stiffness;
   core::Vector weight;  // consistent nodal forces per unit acceleration along the plane, kg and kg m

@@ -1,5 +1,6 @@
 #include "reduction.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -85,6 +86,26 @@ PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
   const core::Matrix m_ss = block(planar.mass.get(), slave_set.get(), slave_set.get());
   const core::LinearSolver solver = direct_solver(k_ss.get());
 
+  if (reduction.type == Reduction::Type::modal) {
+    PlanarBasis basis = modal_basis(planar, reduction);
+    core::Vector f = core::make_vector(comm, static_cast<PetscInt>(s.size()), PETSC_DETERMINE),
+                 x = core::duplicate(f.get());
+    {
+      const core::ReadArray w(planar.weight.get());
+      const core::WriteArray a(f.get());
+      for (std::size_t i = 0; i < s.size(); ++i) a[static_cast<PetscInt>(i)] = w[s[i] - begin];
+    }
+    check(KSPSolve(solver.get(), f.get(), x.get()));
+    const core::ReadArray shape(x.get()), w(planar.weight.get());
+    for (std::size_t i = 0; i < s.size(); ++i) basis.offset(s[i] - begin) = shape[static_cast<PetscInt>(i)];
+    // Without what the coordinates carry of it that hold the masters.
+    const Eigen::Index held = basis.rows.cols() - static_cast<Eigen::Index>(masters.size());
+    const Eigen::MatrixXd own = basis.rows.rightCols(held);
+    const Eigen::MatrixXd load =
+        sum_over_ranks(own.transpose() * Eigen::Map<const Eigen::VectorXd>(w.data(), w.size()), comm);
+    if (held > 0) basis.offset -= own * projected(k, own).ldlt().solve(load);
+    return basis;
+  }
   const bool with_modes = reduction.type == Reduction::Type::craig_bampton;
   const PetscInt n_masters = static_cast<PetscInt>(masters.size()), n_modes = with_modes ? reduction.modes : 0;
   PlanarBasis basis;
@@ -166,23 +187,32 @@ core::Matrix to_matrix(const PlanarBasis& basis, MPI_Comm comm) {
   return t;
 }
 
-core::Matrix project(Mat a, const PlanarBasis& basis) {
-  const MPI_Comm comm = comm_of(a);
-  const Eigen::Index n = basis.rows.cols();
+Eigen::MatrixXd sum_over_ranks(const Eigen::MatrixXd& mine, MPI_Comm comm) {
+  Eigen::MatrixXd sum(mine.rows(), mine.cols());
+  MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_SUM, comm);
+  return sum;
+}
+
+Eigen::MatrixXd projected(Mat a, const Eigen::MatrixXd& rows) {
+  const Eigen::Index n = rows.cols();
   core::Vector x, y;
   check(MatCreateVecs(a, x.put(), y.put()));
-  Eigen::MatrixXd mine(n, n), sum(n, n);
+  Eigen::MatrixXd mine(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     {
       const core::WriteArray to(x.get());
-      Eigen::Map<Eigen::VectorXd>(to.data(), to.size()) = basis.rows.col(j);
+      Eigen::Map<Eigen::VectorXd>(to.data(), to.size()) = rows.col(j);
     }
     check(MatMult(a, x.get(), y.get()));
     const core::ReadArray from(y.get());
-    mine.col(j) = basis.rows.transpose() * Eigen::Map<const Eigen::VectorXd>(from.data(), from.size());
+    mine.col(j) = rows.transpose() * Eigen::Map<const Eigen::VectorXd>(from.data(), from.size());
   }
-  MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(n * n), MPI_DOUBLE, MPI_SUM, comm);
-  return distribute((sum + sum.transpose()) / 2, comm);
+  const Eigen::MatrixXd sum = sum_over_ranks(mine, comm_of(a));
+  return (sum + sum.transpose()) / 2;
+}
+
+core::Matrix project(Mat a, const PlanarBasis& basis) {
+  return distribute(projected(a, basis.rows), comm_of(a));
 }
 
 core::Vector project(Vec f, const PlanarBasis& basis) {

@@ -1,5 +1,5 @@
 #pragma once
-// Guyan and Craig-Bampton bases of one plane.
+// Guyan, Craig-Bampton and modal bases of one plane.
 
 #include <Eigen/Core>
 #include <vector>
@@ -19,9 +19,23 @@ struct PlanarBasis {
   ReductionQuality quality;
 };
 
-/// T = [[I, 0], [-K_ss^-1 K_sm, Phi]] with K_ss Phi = M_ss Phi Lambda, Phi^T M_ss Phi = I, and
+/// Guyan and Craig-Bampton: T = [[I, 0], [-K_ss^-1 K_sm, Phi]] with K_ss Phi = M_ss Phi Lambda, Phi^T M_ss Phi = I, and
 /// offset = [0; (K_ss^-1 - Phi Lambda^-1 Phi^T) f_s]. Collective.
+///
+/// Modal: the span of the lowest modes of K + support at the masters (Psi), with the masters among its coordinates:
+/// T = Psi [V_m V_0] with Psi_m V_m = I and Psi_m V_0 = 0, V_0 diagonal in K and M, V_m orthogonal to it in K.
+/// Partial decoupling by real modes, Skarolek (2011) sec. 2.3. Throws core::InputError if the modes do not tell the
+/// masters apart.
 [[nodiscard]] PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction);
+
+/// A^T times the rows of all ranks: `mine` of this one. Collective.
+[[nodiscard]] Eigen::MatrixXd sum_over_ranks(const Eigen::MatrixXd& mine, MPI_Comm comm);
+
+/// T^T A T on all ranks, symmetrised. Collective.
+[[nodiscard]] Eigen::MatrixXd projected(Mat a, const Eigen::MatrixXd& rows);
+
+/// The modal basis, whose offset is not set.
+[[nodiscard]] PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction);
 
 /// T as a distributed matrix: rows as the plane, columns split by PETSc; exact zeros are left out. Collective.
 [[nodiscard]] core::Matrix to_matrix(const PlanarBasis& basis, MPI_Comm comm);

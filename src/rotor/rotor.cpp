@@ -60,6 +60,11 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
   matrices_.gyroscopic = doubled(planar.gyroscopic.get(), across_planes);
   matrices_.stiffness = doubled(planar.stiffness.get(), both_planes);
   check(MatDuplicate(matrices_.stiffness.get(), MAT_DO_NOT_COPY_VALUES, matrices_.damping.put()));
+  if (!rigid_ && options.internal_damping > 0) {
+    internal_damping_ = options.internal_damping;
+    matrices_.circulatory = doubled(planar.stiffness.get(), across_planes);
+    check(MatScale(matrices_.circulatory.get(), internal_damping_));
+  }
   set_stiffness_damping(options.stiffness_damping);
   matrices_.gravity = doubled_vertical(planar.weight.get(), -1);
   check(VecGetSize(matrices_.gravity.get(), &size_));
@@ -67,7 +72,7 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
 
 void Rotor::set_stiffness_damping(double value) {
   check(MatCopy(matrices_.stiffness.get(), matrices_.damping.get(), SAME_NONZERO_PATTERN));
-  check(MatScale(matrices_.damping.get(), value));
+  check(MatScale(matrices_.damping.get(), value + internal_damping_));
 }
 
 PetscInt Rotor::coordinate(int node, Freedom freedom) const {
@@ -83,6 +88,7 @@ PetscInt Rotor::coordinate(int node, Freedom freedom) const {
 
 std::optional<Freedom> Rotor::freedom(PetscInt coordinate) const {
   const auto pair = static_cast<std::size_t>(coordinate / 2);
+  if (!reduced_ && !rigid_ && coordinate >= freedoms_per_node * n_nodes_) return std::nullopt;
   if (reduced_ && pair >= masters_.size()) return std::nullopt;
   const int planar = reduced_ ? masters_[pair] : static_cast<int>(coordinate / 2);
   return freedom_at(2 * planar + static_cast<int>(coordinate % 2));

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/element.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -35,6 +36,12 @@ void validate(const Segment& s, const std::string& name) {
   refuse_unless(s.length > 0, name + ": the length must be positive");
   refuse_unless(s.inner_mass_diameter >= 0 && s.outer_mass_diameter > s.inner_mass_diameter,
                 name + ": mass diameters must satisfy outer > inner >= 0");
+  if (tapered(s)) {
+    const Segment right = section_at(s, 1);
+    refuse_unless(right.inner_mass_diameter >= 0 && right.outer_mass_diameter > right.inner_mass_diameter,
+                  name + ": diameters at the right end must satisfy outer > inner >= 0");
+    refuse_unless(s.outer_stiffness_diameter == 0, name + ": a tapered segment bends with its mass diameters");
+  }
   if (s.outer_stiffness_diameter != 0)
     refuse_unless(s.inner_stiffness_diameter >= 0 && s.outer_stiffness_diameter > s.inner_stiffness_diameter,
                   name + ": stiffness diameters must satisfy outer > inner >= 0");
@@ -63,7 +70,15 @@ void validate(const Reduction& r, int nodes) {
   for (const int node : std::set<int>(r.slopes.begin(), r.slopes.end()))
     refuse_unless(seen.contains(node),
                   fmt::format("node {} has its slopes as masters, but not its translations", node));
-  if (r.type != Reduction::Type::craig_bampton) return;
+  if (r.type == Reduction::Type::guyan) return;
+  if (r.type == Reduction::Type::modal) {
+    const int kept = static_cast<int>(r.masters.size() + r.slopes.size());
+    refuse_unless(
+        r.modes >= kept && r.modes <= 2 * nodes,
+        fmt::format("{} modes per plane are not in {}..{}: masters are motions of them", r.modes, kept, 2 * nodes));
+    refuse_unless(r.support >= 0, "the support must not be negative");
+    return;
+  }
   const int slaves = 2 * nodes - static_cast<int>(r.masters.size() + r.slopes.size());
   refuse_unless(r.modes >= 0 && r.modes <= slaves,
                 fmt::format("{} fixed-interface modes per plane are not in 0..{}", r.modes, slaves));
@@ -75,7 +90,12 @@ void validate(const Options& o) {
   if (o.type == Options::Type::rigid) return refuse_unless(o.mass > 0, "the mass must be positive");
   validate(o.material);
   refuse_unless(!o.segments.empty(), "there are no segments");
+  refuse_unless(n_inner(o.element) == 0 || o.shear != Shear::rigid,
+                "an element with independent shear needs a shear stiffness");
+  for (const int node : o.joints)
+    refuse_unless(node >= 1 && node <= n_nodes(o), fmt::format("joint node {} is not in 1..{}", node, n_nodes(o)));
   refuse_unless(o.stiffness_damping >= 0, "the stiffness damping must not be negative");
+  refuse_unless(o.internal_damping >= 0, "the internal damping must not be negative");
   for (std::size_t i = 0; i < o.segments.size(); ++i) {
     const std::string name = fmt::format("segment {}", i + 1);
     validate(o.segments[i], name);
@@ -112,7 +132,25 @@ double modulus(const Material& m, double temperature) {
   return e0 + (e1 - e0) * (temperature - t0) / (t1 - t0);
 }
 
+bool tapered(const Segment& s) {
+  return s.right_outer_diameter.value_or(s.outer_mass_diameter) != s.outer_mass_diameter ||
+         s.right_inner_diameter.value_or(s.inner_mass_diameter) != s.inner_mass_diameter;
+}
+
+Segment section_at(const Segment& s, double place) {
+  Segment out = s;
+  out.outer_mass_diameter += place * (s.right_outer_diameter.value_or(s.outer_mass_diameter) - s.outer_mass_diameter);
+  out.inner_mass_diameter += place * (s.right_inner_diameter.value_or(s.inner_mass_diameter) - s.inner_mass_diameter);
+  out.right_outer_diameter.reset();
+  out.right_inner_diameter.reset();
+  return out;
+}
+
 double segment_mass(const Segment& s, const Material& m) {
+  if (tapered(s)) {  // areas are quadratic along it: Simpson's rule is exact
+    const auto at = [&](double place) { return segment_mass(section_at(s, place), m); };
+    return (at(0) + 4 * at(0.5) + at(1)) / 6;
+  }
   const double area =
       pi / 4 * (s.outer_mass_diameter * s.outer_mass_diameter - s.inner_mass_diameter * s.inner_mass_diameter);
   return m.density * area * s.length + s.added_mass;
@@ -167,7 +205,7 @@ double slenderness(const Options& o, int from, int to) {
   refuse_unless(from >= 1 && from < to && to <= n_nodes(o), fmt::format("nodes {}, {} bound no span", from, to));
   double length = 0, profile = 0;
   for (int k = from; k < to; ++k) {
-    const Segment& s = o.segments[static_cast<std::size_t>(k - 1)];
+    const Segment s = section_at(o.segments[static_cast<std::size_t>(k - 1)], 0.5);
     length += s.length;
     profile += s.length * (s.outer_stiffness_diameter > 0 ? s.outer_stiffness_diameter : s.outer_mass_diameter);
   }

@@ -5,6 +5,7 @@
 
 #include "whirl/core/cost.hpp"
 #include "whirl/film/options.hpp"
+#include "whirl/rotor/element.hpp"
 #include "whirl/rotor/freedom.hpp"
 
 namespace whirl::study {
@@ -26,9 +27,11 @@ double n_states(const system::Machine& machine) {
                nodes = static_cast<double>(r.segments.size()) + 1;
   using enum rotor::Reduction::Type;
   double freedoms = r.type == rotor::Options::Type::rigid ? 2
-                    : r.reduction.type == none            ? rotor::freedoms_per_node * nodes
-                    : r.reduction.type == guyan           ? 2 * masters
-                                                          : 2 * (masters + modes);
+                    : r.reduction.type == none
+                        ? rotor::freedoms_per_node * nodes + 2.0 * rotor::n_inner(r.element) * (nodes - 1)
+                    : r.reduction.type == modal ? 2 * modes
+                    : r.reduction.type == guyan ? 2 * masters
+                                                : 2 * (masters + modes);
   for (const system::Bearing& b : machine.bearings) {
     if (b.pedestal) freedoms += 2;
     // Slopes that no reduction takes away.

@@ -52,6 +52,7 @@ void RotorSystem::MachineBlocks::rebuild() {
   add_entries(m.stiffness.get(), 0, at_rest);
   add_entries(m.damping.get(), 1, at_rest);
   add_entries(m.gyroscopic.get(), 1, gyroscopic);
+  if (m.circulatory) add_entries(m.circulatory.get(), 0, gyroscopic);
   for (int i = 0; i < static_cast<int>(n / 2); ++i) {
     rates.emplace_back(2 * i + 1, 2 * i, 1);
     at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);

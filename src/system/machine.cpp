@@ -110,6 +110,11 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     }
     t.supports.push_back(s);
   }
+  if (m.rotor.element == rotor::Element::timoshenko_hermitian) {
+    for (const Bearing& b : m.bearings) t.rotor.joints.push_back(b.node);
+    for (const Unbalance& u : m.unbalance)
+      for (const UnbalanceMass& x : unbalance_masses(m, u)) t.rotor.joints.push_back(x.node);
+  }
   for (const std::string& name : unbalance) {
     const auto i = find_unbalance(m, name);
     if (!i)

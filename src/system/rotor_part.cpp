@@ -101,7 +101,8 @@ RotorPart::Matrices RotorPart::matrices_of(const rotor::Rotor& rotor) const {
     const core::Matrix moved = on_first_ ? on_first(from) : core::Matrix();
     return with_pedestals(moved ? moved.get() : from, end_ - begin_, n_rotor_);
   };
-  return {made(m.mass.get()), made(m.damping.get()), made(m.gyroscopic.get()), made(m.stiffness.get())};
+  return {made(m.mass.get()), made(m.damping.get()), made(m.gyroscopic.get()), made(m.stiffness.get()),
+          m.circulatory ? made(m.circulatory.get()) : core::Matrix()};
 }
 
 void RotorPart::make_matrices() {
@@ -232,11 +233,11 @@ void RotorPart::scales(double* s, double* r) const {
     double length = clearance, load = force;
     if (g < n_rotor_) {
       const std::optional<rotor::Freedom> freedom = rotor_->freedom(g);
-      if (!freedom) {  // mass-normalised modes
+      if (!freedom && rotor_->reduced()) {  // mass-normalised modes
         length = clearance * std::sqrt(mass);
         load = force / std::sqrt(mass);
-      } else if (rotor::is_slope(*freedom)) {
-        load = force * 0.1;  // clearance per metre, moments on a lever of 0.1 m
+      } else if (!freedom || rotor::is_slope(*freedom)) {  // inner freedoms of elements are angles or curvatures
+        load = force * 0.1;                                // clearance per metre, moments on a lever of 0.1 m
       }
     }
     s[2 * i] = length;
@@ -271,6 +272,7 @@ core::Vector RotorPart::products(const Matrices& m, const Moment& at) const {
   check(MatMultAdd(m.damping.get(), v.get(), sum.get(), sum.get()));
   check(MatMultAdd(m.mass.get(), a.get(), sum.get(), sum.get()));
   check(MatMult(m.gyroscopic.get(), v.get(), a.get()));
+  if (m.circulatory) check(MatMultAdd(m.circulatory.get(), q.get(), a.get(), a.get()));
   check(VecAXPY(sum.get(), at.speed, a.get()));
   return sum;
 }
@@ -294,6 +296,15 @@ void RotorPart::speed_derivative(const Moment& at, double* f) const {
     for (PetscInt i = 0; i < va.size(); ++i) va[i] = xa[2 * i + 1];
   }
   check(MatMult(matrices_.gyroscopic.get(), v.get(), sum.get()));
+  if (matrices_.circulatory) {
+    const core::Vector q = core::duplicate(v.get());
+    {
+      const core::ReadArray xa(at.x);
+      const core::WriteArray qa(q.get());
+      for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = xa[2 * i];
+    }
+    check(MatMultAdd(matrices_.circulatory.get(), q.get(), sum.get(), sum.get()));
+  }
   const core::ReadArray sa(sum.get());
   const double force = at.forcing ? 2 * at.speed : 0.0, c = force * std::cos(at.angle), s = force * std::sin(at.angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
@@ -306,7 +317,9 @@ void RotorPart::speed_derivative(const Moment& at, double* f) const {
 void RotorPart::count_entries(std::span<PetscInt> count) const {
   for (PetscInt i = 0; i < end_ - begin_; ++i) {
     PetscInt total = 12;
-    for (const core::Matrix* m : {&matrices_.mass, &matrices_.damping, &matrices_.stiffness, &matrices_.gyroscopic}) {
+    for (const core::Matrix* m :
+         {&matrices_.mass, &matrices_.damping, &matrices_.stiffness, &matrices_.gyroscopic, &matrices_.circulatory}) {
+      if (!*m) continue;
       PetscInt k = 0;
       check(MatGetRow(m->get(), begin_ + i, &k, nullptr, nullptr));
       total += 2 * k;
@@ -340,6 +353,7 @@ void RotorPart::add(Mat j, double at_rest, double gyroscopic, double rates) cons
   add(matrices_.stiffness.get(), 0, at_rest);
   add(matrices_.damping.get(), 1, at_rest);
   add(matrices_.gyroscopic.get(), 1, gyroscopic);
+  if (matrices_.circulatory) add(matrices_.circulatory.get(), 0, gyroscopic);
   add(matrices_.mass.get(), 1, rates);
   for (PetscInt i = begin_; i < end_; ++i) {
     check(MatSetValue(j, 2 * i + 1, 2 * i, rates, ADD_VALUES));

@@ -16,7 +16,7 @@ namespace whirl::system {
 
 /// With q = (rotor coordinates, pedestals), v = q' and the state (q_1, v_1, q_2, v_2, ...)
 ///
-///     row 2i:     M v' + (C + Omega G) v + K q - load - Omega^2 (u_c cos angle + u_s sin angle)
+///     row 2i:     M v' + (C + Omega G) v + (K + Omega N) q - load - Omega^2 (u_c cos angle + u_s sin angle)
 ///                                              - alpha (u_c sin angle - u_s cos angle)
 ///     row 2i + 1: q' - v
 ///
@@ -27,6 +27,7 @@ public:
   /// Matrices of coordinates, pedestals behind the rotor.
   struct Matrices {
     core::Matrix mass, damping, gyroscopic, stiffness;
+    core::Matrix circulatory;  // empty without internal damping
   };
   /// Force of unbalance per Omega^2 [coordinates()], whole on every rank.
   struct Unbalances {
@@ -71,8 +72,8 @@ public:
   void residual(const Moment& at, double* f) const override;
   void speed_derivative(const Moment& at, double* f) const override;
   void count_entries(std::span<PetscInt> count) const override;
-  /// j += at_rest dF/dx without the gyroscopic part, gyroscopic times that of unit speed, rates times dF/d(dx/dt): all
-  /// entries, if need be zero. Not assembled.
+  /// j += at_rest dF/dx without what grows with speed (gyroscopic, circulatory), gyroscopic times that of unit speed,
+  /// rates times dF/d(dx/dt): all entries, if need be zero. Not assembled.
   void add(Mat j, double at_rest, double gyroscopic, double rates) const;
   /// Sets the entries of the pedestals in the same matrices of the whole machine, which hold them already.
   void set_pedestals(Mat at_rest, Mat rates) const;
@@ -101,7 +102,7 @@ private:
   void set_pedestals();
   [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
   [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
-  /// K q + (C + Omega G) v + M v' on this rank's coordinates. Collective.
+  /// (K + Omega N) q + (C + Omega G) v + M v' on this rank's coordinates. Collective.
   [[nodiscard]] core::Vector products(const Matrices& m, const Moment& at) const;
 
   MPI_Comm comm_;

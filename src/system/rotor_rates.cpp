@@ -37,8 +37,9 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
     const Matrices less = matrices_of(*below);
     for (const auto& [m, n] :
          {std::pair{&out.matrices->mass, &less.mass}, std::pair{&out.matrices->damping, &less.damping},
-          std::pair{&out.matrices->gyroscopic, &less.gyroscopic},
-          std::pair{&out.matrices->stiffness, &less.stiffness}}) {
+          std::pair{&out.matrices->gyroscopic, &less.gyroscopic}, std::pair{&out.matrices->stiffness, &less.stiffness},
+          std::pair{&out.matrices->circulatory, &less.circulatory}}) {
+      if (!*m) continue;
       check(MatAXPY(m->get(), -1, n->get(), DIFFERENT_NONZERO_PATTERN));
       check(MatScale(m->get(), 1 / step));
     }
@@ -57,8 +58,9 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
       out.matrices = matrices_of(*rotor_);
       check(MatCopy(out.matrices->stiffness.get(), out.matrices->damping.get(), SAME_NONZERO_PATTERN));
       check(MatScale(out.matrices->damping.get(), rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping)));
-      for (const core::Matrix* m : {&out.matrices->mass, &out.matrices->gyroscopic, &out.matrices->stiffness})
-        check(MatZeroEntries(m->get()));
+      for (const core::Matrix* m :
+           {&out.matrices->mass, &out.matrices->gyroscopic, &out.matrices->stiffness, &out.matrices->circulatory})
+        if (*m) check(MatZeroEntries(m->get()));
     }
   }
   for (std::size_t i = 0; change.pedestals && i < minus.supports.size(); ++i) {

@@ -229,7 +229,9 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
   }
   check(MatMult(m.basis.get(), q.get(), full.get()));
   if (with_gravity && m.offset) check(VecAXPY(full.get(), train_.gravity, m.offset.get()));
-  return core::gather(full.get());
+  std::vector<double> out = core::gather(full.get());
+  out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor().n_nodes()));  // without inner freedoms
+  return out;
 }
 
 }  // namespace whirl::system

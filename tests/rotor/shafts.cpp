@@ -38,6 +38,11 @@ std::vector<Whirl> whirl_modes(const rotor::Options& options, const std::vector<
   a.bottomLeftCorner(n, n) = -root_k;
   a.bottomRightCorner(n, n).real() = -(v.transpose() * c * v);
   a.bottomRightCorner(n, n).imag() = speed * (v.transpose() * g * v);
+  if (r.matrices().circulatory) {
+    const Eigen::MatrixXd circulatory = every_other(dense(r.matrices().circulatory.get()), 0, 1);
+    const Eigen::VectorXd inverse_root = rest.eigenvalues().cwiseSqrt().cwiseInverse();  // on springs: K > 0
+    a.bottomLeftCorner(n, n).imag() = speed * (v.transpose() * circulatory * v * inverse_root.asDiagonal());
+  }
   const Eigen::VectorXcd roots = a.eigenvalues();
   std::vector<Whirl> modes;
   for (const auto& root : roots) modes.push_back({root.imag(), root.real()});

@@ -59,9 +59,9 @@ struct Whirl {
   double growth;     // 1/s
 };
 
-/// Whirl modes by ascending modulus of the frequency, from M q'' + (C + Omega G) q' + K q = 0. An isotropic rotor moves
-/// in circles: with w = x + i y, M_p w'' + (C_p - i Omega G_p) w' + K_p w = 0, so each complex root has one sense of
-/// whirl.
+/// Whirl modes by ascending modulus of the frequency, from M q'' + (C + Omega G) q' + (K + Omega N) q = 0. An isotropic
+/// rotor moves in circles: with w = x + i y, M_p w'' + (C_p - i Omega G_p) w' + (K_p - i Omega N_p) w = 0, so each
+/// complex root has one sense of whirl.
 [[nodiscard]] std::vector<Whirl> whirl_modes(const rotor::Options& options,
                                              const std::vector<IsotropicBearing>& bearings, double speed);
 

@@ -8,6 +8,7 @@ namespace whirl::rotor {
 
 [[nodiscard]] std::span<const deck::Name<Options::Type>> names(Options::Type);
 [[nodiscard]] std::span<const deck::Name<Shear>> names(Shear);
+[[nodiscard]] std::span<const deck::Name<Element>> names(Element);
 [[nodiscard]] std::span<const deck::Name<Reduction::Type>> names(Reduction::Type);
 
 void describe(deck::Description<Segment>& d);

@@ -16,8 +16,38 @@ struct Beam {
   double inertia_per_length = 0;  // diametral j_d = rho I_M + (M_AM/L)(D_AMO^2 + D_AMI^2)/16, kg m; polar 2 j_d
 };
 
-/// Constants of a segment at its temperature. Throws core::DomainError if E(T) is not known there.
-/// Source: Gavalas (2022), table 2.1 with A_S, D_AM and J_AD corrected; kappa by Cowper (1966).
+/// The matrices of an element, freedoms (u1, s1, u2, s2, inner freedoms); n = 4 + n_inner(element).
+///
+/// Inner freedoms are zero in rigid motions. timoshenko_linear: a, b with the shear angle a (2 xi - 1) - b and the
+/// slope 6 b xi (1 - xi), both at rest at the nodes. timoshenko_hermitian: shear angle [-] and curvature ds/dz [1/m] at
+/// the left end, then at the right one.
+struct ElementMatrices {
+  Eigen::MatrixXd stiffness;  // n x n
+  Eigen::MatrixXd translational_mass, rotary_mass;
+  Eigen::VectorXd weight;  // n, of a unit acceleration along the plane
+};
+
+/// Inner freedoms of an element per plane.
+[[nodiscard]] constexpr int n_inner(Element element) {
+  return element == Element::timoshenko_linear ? 2 : element == Element::timoshenko_hermitian ? 4 : 0;
+}
+
+/// Shear that an element has: none of the Rayleigh beam.
+[[nodiscard]] constexpr Shear shear_of(const Options& options) {
+  return options.element == Element::rayleigh ? Shear::rigid : options.shear;
+}
+
+/// Matrices of an element. Those without inner freedoms in closed form (below); those with inner freedoms by Gauss
+/// quadrature, which is exact here. They need a shear parameter that is not zero.
+[[nodiscard]] ElementMatrices element_matrices(const Beam& beam, Element element);
+
+/// The same of a segment, which may be tapered: then by Gauss quadrature along it with the shapes of the element with
+/// the section half way, which keeps the order of the frequencies but is not exact at rest. Throws as make_beam does.
+[[nodiscard]] ElementMatrices element_matrices(const Segment& segment, const Material& material, Shear shear,
+                                               Element element);
+
+/// Constants of a segment at its temperature, of its left end if it is tapered. Throws core::DomainError if E(T) is not
+/// known there. Source: Gavalas (2022), table 2.1 with A_S, D_AM and J_AD corrected; kappa by Cowper (1966).
 [[nodiscard]] Beam make_beam(const Segment& segment, const Material& material, Shear shear);
 
 /// K = E I/(L^3 (1+Phi)) [[12, 6L, -12, 6L], ...]; Nelson (1980).

@@ -1,6 +1,7 @@
 #pragma once
 // What a user says about a rotor. Plain data in SI; nodes are 1-based, node k is the left end of segment k.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,11 +11,13 @@ namespace whirl::rotor {
 /// One Timoshenko beam element of circular section. The material outline gives mass and inertia, the (possibly smaller)
 /// stiffness outline bends; added mass has no stiffness and is spread uniformly over the length.
 struct Segment {
-  std::string rotor;                     // name of the rotor it belongs to (HP, GEN, ...)
-  std::string part;                      // name of the shaft portion
-  double length = 0;                     // m
-  double outer_mass_diameter = 0;        // m
-  double inner_mass_diameter = 0;        // m
+  std::string rotor;               // name of the rotor it belongs to (HP, GEN, ...)
+  std::string part;                // name of the shaft portion
+  double length = 0;               // m
+  double outer_mass_diameter = 0;  // m
+  double inner_mass_diameter = 0;  // m
+  // At the right end, where the segment is tapered: diameters are linear between the ends.
+  std::optional<double> right_outer_diameter{}, right_inner_diameter{};
   double outer_stiffness_diameter = 0;   // m; 0: both stiffness diameters equal the mass diameters
   double inner_stiffness_diameter = 0;   // m
   double added_mass = 0;                 // kg in the whole element
@@ -53,12 +56,23 @@ enum class Shear {
   rigid           // Phi = 0: Rayleigh beam
 };
 
+/// Which beam element a segment is.
+enum class Element {
+  rayleigh,             // cubic, no shear: Phi = 0
+  timoshenko,           // one shear angle, that of the static solution without load on the span
+  timoshenko_linear,    // shear angle and curvature each linear and independent: two inner freedoms
+  timoshenko_hermitian  // displacement and slope each cubic and independent: shear angle and curvature at the ends
+};
+
 /// Reduction of the coordinates. Masters are both translations of each master node, and both slopes of some of them.
 struct Reduction {
-  enum class Type { none, guyan, craig_bampton };
+  enum class Type { none, guyan, craig_bampton, modal };
   Type type = Type::none;
-  std::vector<int> masters;   // 1-based nodes, at least two, any order
-  int modes = 0;              // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate)
+  std::vector<int> masters;  // 1-based nodes, at least two, any order
+  // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate). modal: real modes of the shaft
+  // at rest per plane, at least as many as masters, whose motions are among theirs.
+  int modes = 0;
+  double support = 0;         // N/m, modal: springs at the masters while its modes are computed; 0: the free shaft
   std::vector<int> slopes{};  // those of the masters whose slopes are masters too; no key of a deck
   friend bool operator==(const Reduction&, const Reduction&) = default;
 };
@@ -73,7 +87,12 @@ struct Options {
   std::vector<Disc> discs;
   Material material;
   Shear shear = Shear::cowper_solid;
+  Element element = Element::timoshenko;
+  // 1-based nodes where forces from outside act (films, unbalance), so that shear force or bending moment may jump;
+  // those of discs and steps need not be named. No key of a deck; only timoshenko_hermitian asks for it.
+  std::vector<int> joints{};
   double stiffness_damping = 0;  // s, C = stiffness_damping * K in the stationary frame
+  double internal_damping = 0;   // s, viscous damping of the material, which turns with the shaft
   Reduction reduction;
   friend bool operator==(const Options&, const Options&) = default;
 };

@@ -10,7 +10,7 @@
 
 namespace whirl::rotor {
 
-/// M q'' + (C + Omega G) q' + K q = f, with q in m and rad, f in N and N m.
+/// M q'' + (C + Omega G) q' + (K + Omega N) q = f, with q in m and rad, f in N and N m.
 ///
 /// All are AIJ matrices on the rotor's communicator. Coordinates come in pairs (x, y) in natural order along the shaft
 /// that does not depend on the number of ranks; each rank owns whole pairs (whole nodes if not reduced).
@@ -18,10 +18,14 @@ struct Matrices {
   core::Matrix mass;        // M, symmetric
   core::Matrix gyroscopic;  // G, skew, multiplied by Omega (rad/s); forward whirl is x -> y
   core::Matrix stiffness;   // K, symmetric
-  core::Matrix damping;     // C = stiffness_damping K
-  core::Vector gravity;     // kg: nodal weights along -y per unit acceleration; multiply by g
-  core::Matrix basis;       // T (4 n_nodes x size), q_full = T q; empty if not reduced. Loads reduce as T^T f_full.
-  core::Vector offset;  // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
+  core::Matrix damping;     // C = (stiffness_damping + internal_damping) K
+  // N = internal_damping K x [[0, 1], [-1, 0]], skew: what turning with the shaft makes of its damping, which opposes
+  // q' - Omega e_z x q. It drives forward whirl slower than the shaft. Empty without internal damping.
+  core::Matrix circulatory;
+  core::Vector gravity;  // kg: nodal weights along -y per unit acceleration; multiply by g
+  core::Matrix basis;    // T, q_full = T q, rows of inner freedoms of elements last; empty if not reduced. Loads reduce
+                         // as T^T f_full.
+  core::Vector offset;   // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
 };
 
 /// How good a reduction is: vibration at frequency omega is followed with a relative error of order
@@ -33,7 +37,8 @@ struct ReductionQuality {
 
 /// A rotor assembled from beam elements and discs, or one rigid mass (x and y of node 1, owned by the first rank).
 ///
-/// Full coordinates are those of full_coordinate(). Reduced coordinates are the pairs (x, y) of the master nodes in
+/// Full coordinates are those of full_coordinate(), then the pairs (x, y) of the inner freedoms of elements, which
+/// have no node. Reduced coordinates are the pairs (x, y) of the master nodes in
 /// ascending order of nodes, each followed by the pair (dx/dz, dy/dz) where slopes are masters too, then pairs of
 /// mass-normalised fixed-interface modes in ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan
 /// 1965), with modes Craig & Bampton (1968). Construction is collective on `comm`; throws core::InputError on all ranks
@@ -43,7 +48,7 @@ public:
   Rotor(MPI_Comm comm, const Options& options);
 
   [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
-  /// C = `value` K [s]; all else stays. Collective.
+  /// C = (`value` + internal_damping) K [s]; all else stays. Collective.
   void set_stiffness_damping(double value);
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
@@ -51,13 +56,15 @@ public:
   /// Index of the coordinate that is a freedom of `node` (1-based); -1 if it is not retained. Not collective; the same
   /// on all ranks.
   [[nodiscard]] PetscInt coordinate(int node, Freedom freedom) const;
-  /// The freedom of a node that a coordinate is; empty of a mode.
+  /// The freedom of a node that a coordinate is; empty of a mode and of an inner freedom.
   [[nodiscard]] std::optional<Freedom> freedom(PetscInt coordinate) const;
+  [[nodiscard]] bool reduced() const noexcept { return reduced_; }
   [[nodiscard]] const ReductionQuality& quality() const noexcept { return quality_; }
 
 private:
   Matrices matrices_;
   PetscInt size_ = 0;
+  double internal_damping_ = 0;
   int n_nodes_ = 0;
   bool rigid_ = false, reduced_ = false;
   std::vector<int> masters_;  // freedoms of a plane, ascending

@@ -18,6 +18,12 @@ void validate(const Options& options);
 /// points.
 [[nodiscard]] double modulus(const Material& material, double temperature);
 
+/// Whether its diameters change along a segment.
+[[nodiscard]] bool tapered(const Segment& segment);
+
+/// The segment with the section at `place` (0 at the left end, 1 at the right one) all along it.
+[[nodiscard]] Segment section_at(const Segment& segment, double place);
+
 /// Mass of a segment in kg, shaft and added mass.
 [[nodiscard]] double segment_mass(const Segment& segment, const Material& material);
 
