@@ -11,6 +11,7 @@
 
 #include "film/compliant_cases.hpp"
 #include "film/content_cases.hpp"
+#include "film/gas_cases.hpp"
 #include "film/thd_cases.hpp"
 
 namespace whirl::film::testing {
@@ -81,6 +82,23 @@ std::vector<Case> cases() {
                      waves(film, 100.0, 0.7, rates);
                    },
                    1e-6});
+  }
+  for (const GasCase& c : gas_films()) {
+    const auto waves = [](const Film& film, double size, double phase, std::vector<double>& to) {
+      for (const StateField& f : film.state_fields())
+        f.each([&](int k) { to[static_cast<std::size_t>(k)] = size * f.scale * std::sin(phase + 2.3 * k); });
+    };
+    all.push_back({c.name, spindle(), c.options, [c] { return motion(spindle(), c.position, c.velocity, kSpeed); },
+                   [waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
+                     waves(film, 0.3, 1.0, s);
+                     for (double& p : s) p += 2.5e5;
+                     waves(film, 100.0, 2.0, rates);
+                   },
+                   [waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
+                     waves(film, 1.0, 0.3, s);
+                     waves(film, 100.0, 0.7, rates);
+                   },
+                   1e-4});
   }
   return all;
 }
