@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/cases.hpp"
+#include "film/steady.hpp"
 #include "whirl/film/film.hpp"
 
 namespace whirl::film::testing {
@@ -24,7 +25,6 @@ inline Gas aerostatic(int rows, double supply, std::array<int, 2> cells) {
   for (int r = 0; r < rows; ++r) o.orifices.push_back({8, rows == 1 ? 0.0 : (r - 0.5) * 0.015, 0.0, 0.2e-3, supply});
   return o;
 }
-/// Self-acting, of length L/D = ratio.
 inline Gas self_acting(std::array<int, 2> cells) {
   Gas o;
   o.cells = cells;
@@ -33,6 +33,7 @@ inline Gas self_acting(std::array<int, 2> cells) {
 
 struct GasCase {
   std::string name;
+  Geometry geometry;
   Gas options;
   std::array<double, 4> position, velocity;
 };
@@ -43,10 +44,41 @@ inline std::vector<GasCase> gas_films() {
   tilted.tilt = true;
   Gas at_nodes = aerostatic(1, 4e5, {16, 6});
   at_nodes.source = Gas::Source::node;
-  return {{"gas_one_row", aerostatic(1, 5e5, {24, 6}), loaded, moving},
-          {"gas_two_rows_tilted", tilted, loaded, moving},
-          {"gas_node_source", at_nodes, loaded, moving},
-          {"gas_self_acting", self_acting({12, 5}), loaded, moving}};
+  // As wide as oil needs.
+  Geometry wide = spindle();
+  wide.clearance = 200e-6;
+  return {{"gas_one_row", wide, aerostatic(1, 5e5, {24, 6}), loaded, moving},
+          {"gas_two_rows_tilted", wide, tilted, loaded, moving},
+          {"gas_node_source", wide, at_nodes, loaded, moving},
+          {"gas_self_acting", wide, self_acting({12, 5}), loaded, moving}};
+}
+
+/// At rest in its states, by Newton's method from a cold start.
+struct SolvedGas {
+  std::unique_ptr<Film> film;
+  JournalMotion motion;
+  std::vector<double> states;
+  Response journal;
+  FilmReport report;
+  long factorisations;
+};
+/// Journal at `at` clearances.
+inline SolvedGas solved(const Geometry& geometry, const Gas& options, std::array<double, 2> at, double speed) {
+  SolvedGas out{make_film(geometry, options, air()), {}, {}, {}, {}, 0};
+  out.motion.position = {at[0] * geometry.clearance, at[1] * geometry.clearance, 0.0, 0.0};
+  out.motion.speed = speed;
+  out.states.resize(out.film->states());
+  out.film->unloaded(out.motion, out.states);
+  const std::vector<double> rest(out.states.size(), 0.0);
+  Steady steady(*out.film);
+  steady.solve(out.motion, rest, Steady::Until::small_step, Need::force, out.states);
+  out.journal = steady.here().journal;
+  out.report = out.film->summary(out.motion, out.states);
+  out.factorisations = steady.factorisations();
+  return out;
+}
+inline double load_of(const SolvedGas& s) {
+  return std::hypot(s.journal.force[0], s.journal.force[1]);
 }
 
 }  // namespace whirl::film::testing
