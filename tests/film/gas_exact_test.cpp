@@ -53,12 +53,13 @@ TEST(GasExact, HighSpeeds) {
   const Geometry g = bore(4.0);
   for (const double eps : {0.2, 0.6}) {
     const double exact = pi / eps * (1.0 / std::sqrt(1.0 - eps * eps) - 1.0) * std::sqrt(1.0 + 1.5 * eps * eps);
+    // Over speeds four times as high each: what is left after the root is taken out falls with the speed.
     std::array<Complex, 3> at;
-    for (std::size_t n = 0; n < 3; ++n) at[n] = load(g, self_acting({64, 256}), eps, 50.0 * std::pow(4.0, n));
-    for (std::size_t n = 0; n < 2; ++n)
-      EXPECT_NEAR(std::log(std::abs(at[n] - exact) / std::abs(at[n + 1] - exact)) / std::log(4.0), 0.5, 0.1) << eps;
-    EXPECT_NEAR(2.0 * at[2].real() - at[1].real(), exact, 5e-3 * exact);
-    EXPECT_NEAR(2.0 * at[2].imag() - at[1].imag(), 0.0, 5e-3 * exact);
+    for (std::size_t n = 0; n < 3; ++n) at[n] = load(g, self_acting({48, 192}), eps, 25.0 * std::pow(4.0, n));
+    const double before = std::abs(2.0 * at[1] - at[0] - exact), after = std::abs(2.0 * at[2] - at[1] - exact);
+    EXPECT_NEAR(std::log(before / after) / std::log(4.0), 1.0, 0.3) << eps;
+    EXPECT_LT(after, 1e-2 * exact);
+    EXPECT_GT(std::abs(at[2] - exact), 2e-2 * exact);  // the layers themselves
   }
 }
 
