@@ -55,36 +55,47 @@ void relax(Film& film, const JournalMotion& motion, std::vector<double>& states)
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.
-Coefficients coefficients(Film& film, const JournalMotion& motion, std::span<const double> states, double omega) {
+PortCoefficients port_coefficients(Film& film, const JournalMotion& motion, std::span<const double> states,
+                                   double omega) {
   if (!(omega > 0.0)) throw core::InputError("film: the frequency of stiffness and damping must be positive");
   const std::vector<double> rest(states.size(), 0.0);
   StateResponse r;
   film.evaluate(motion, states, rest, Need::tangents, r);
   const Complex iw(0.0, omega);
-  Coefficients out;
-  if (states.empty()) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      out.stiffness[i] = -r.journal.d_position[i / 2][i % 2];
-      out.damping[i] = -r.journal.d_velocity[i / 2][i % 2];
-    }
-    return out;
-  }
-  const Share& all = film.whole();
-  FilmMatrix<Complex> matrix(all, all.d_states, &all.d_rates);
-  const Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(matrix.filled(r.d_states, r.d_rates, 1.0, iw));
-  if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+  const auto ports = film.ports();
   const auto n = static_cast<Eigen::Index>(states.size());
   const auto thin = [n](const std::vector<double>& v) { return Eigen::Map<const Eigen::VectorXd>(v.data(), n); };
-  for (std::size_t j = 0; j < 2; ++j) {  // ports x and y
-    const Eigen::VectorXcd rhs = thin(r.d_position[j]).cast<Complex>() + iw * thin(r.d_velocity[j]);
-    const Eigen::VectorXcd s = lu.solve(rhs);
-    for (std::size_t i = 0; i < 2; ++i) {
-      Complex transfer = r.journal.d_position[i][j] + iw * r.journal.d_velocity[i][j];
-      transfer -= thin(r.force_d_states[i]).cast<Complex>().dot(s);
-      if (!r.force_d_rates.empty()) transfer -= iw * thin(r.force_d_rates[i]).cast<Complex>().dot(s);
-      out.stiffness[2 * i + j] = -transfer.real();
-      out.damping[2 * i + j] = -transfer.imag() / omega;
+  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu;
+  if (n > 0) {
+    const Share& all = film.whole();
+    FilmMatrix<Complex> matrix(all, all.d_states, &all.d_rates);
+    lu.compute(matrix.filled(r.d_states, r.d_rates, 1.0, iw));
+    if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+  }
+  PortCoefficients out;
+  out.ports = ports.size();
+  for (std::size_t j = 0; j < ports.size(); ++j) {
+    Eigen::VectorXcd s;
+    if (n > 0) s = lu.solve(thin(r.d_position[j]).cast<Complex>() + iw * thin(r.d_velocity[j]));
+    const auto to = static_cast<std::size_t>(ports[j]);
+    for (std::size_t i = 0; i < ports.size(); ++i) {
+      const auto of = static_cast<std::size_t>(ports[i]);
+      Complex transfer = r.journal.d_position[of][to] + iw * r.journal.d_velocity[of][to];
+      if (n > 0) transfer -= thin(r.force_d_states[i]).cast<Complex>().dot(s);
+      if (n > 0 && !r.force_d_rates.empty()) transfer -= iw * thin(r.force_d_rates[i]).cast<Complex>().dot(s);
+      out.stiffness[i][j] = -transfer.real();
+      out.damping[i][j] = -transfer.imag() / omega;
     }
+  }
+  return out;
+}
+
+Coefficients coefficients(Film& film, const JournalMotion& motion, std::span<const double> states, double omega) {
+  const PortCoefficients all = port_coefficients(film, motion, states, omega);
+  Coefficients out;
+  for (std::size_t i = 0; i < 4; ++i) {
+    out.stiffness[i] = all.stiffness[i / 2][i % 2];
+    out.damping[i] = all.damping[i / 2][i % 2];
   }
   return out;
 }

@@ -216,7 +216,7 @@ std::vector<film::FilmReport> RotorSystem::film_summaries(const double* x) {
     MPI_Bcast(&holes, 1, MPI_INT, from, comm_);
     s.hole_flows.resize(static_cast<std::size_t>(holes));
     for (double* value : {&s.min_thickness, &s.max_pressure, &s.max_temperature, &s.mean_temperature, &s.side_flow,
-                          &s.power_loss, &s.inlet_flow, &s.outlet_flow, &s.imbalance})
+                          &s.power_loss, &s.inlet_flow, &s.outlet_flow, &s.imbalance, &s.mass_flow, &s.drag_torque})
       MPI_Bcast(value, 1, MPI_DOUBLE, from, comm_);
     MPI_Bcast(s.hole_flows.data(), holes, MPI_DOUBLE, from, comm_);
   }

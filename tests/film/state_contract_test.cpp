@@ -11,6 +11,7 @@
 
 #include "film/compliant_cases.hpp"
 #include "film/content_cases.hpp"
+#include "film/gas_cases.hpp"
 #include "film/thd_cases.hpp"
 
 namespace whirl::film::testing {
@@ -81,6 +82,24 @@ std::vector<Case> cases() {
                      waves(film, 100.0, 0.7, rates);
                    },
                    1e-6});
+  }
+  // Around a film in the closed form of parallel plates.
+  for (const GasCase& c : gas_films()) {
+    const auto waves = [](double size, double phase, std::vector<double>& to) {
+      for (std::size_t k = 0; k < to.size(); ++k) to[k] = size * std::sin(phase + 2.3 * static_cast<double>(k));
+    };
+    all.push_back({c.name, c.geometry, c.options, [c] { return motion(c.geometry, c.position, c.velocity, kSpeed); },
+                   [c, waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
+                     film.unloaded(motion(c.geometry, c.position, c.velocity, kSpeed), s);
+                     for (std::size_t k = 0; k < s.size(); ++k)
+                       s[k] *= 1.0 + 0.1 * std::sin(0.1 * static_cast<double>(k));
+                     waves(1e7, 2.0, rates);
+                   },
+                   [waves](const Film&, std::vector<double>& s, std::vector<double>& rates) {
+                     waves(1e5, 0.3, s);
+                     waves(1e7, 0.7, rates);
+                   },
+                   1e-4});
   }
   return all;
 }
@@ -305,6 +324,8 @@ TEST_P(StateContract, TurnsWithItsFrame) {
     std::vector<Groove>& grooves = as<Compliant>(turned).grooves;
     if (find<CompliantLong>(turned) && grooves.empty()) grooves = {{90.0 * kDegree, 0.0}};
     for (Groove& g : grooves) g.angle += turn;
+  } else if (find<Gas>(turned)) {
+    for (OrificeRow& r : as<Gas>(turned).orifices) r.angle += turn;
   } else {
     auto& content = as<Reynolds>(turned);
     for (Groove& g : content.grooves) g.angle += turn;

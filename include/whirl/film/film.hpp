@@ -155,4 +155,13 @@ struct Coefficients {
 };
 Coefficients coefficients(Film& film, const JournalMotion& motion, std::span<const double> states, double omega);
 
+/// The same of all ports, [i][j] of the force along port i by the motion along port j of a film's ports(): x, y [N/m,
+/// N s/m] and of a film that follows tilt both slopes with their moments. Zero beyond `ports`.
+struct PortCoefficients {
+  std::size_t ports = 0;
+  std::array<std::array<double, 4>, 4> stiffness{}, damping{};
+};
+PortCoefficients port_coefficients(Film& film, const JournalMotion& motion, std::span<const double> states,
+                                   double omega);
+
 }  // namespace whirl::film

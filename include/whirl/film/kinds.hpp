@@ -15,6 +15,7 @@
 
 #include "whirl/film/closed_form.hpp"
 #include "whirl/film/elastic.hpp"
+#include "whirl/film/gas.hpp"
 #include "whirl/film/linear.hpp"
 #include "whirl/film/reynolds.hpp"
 #include "whirl/film/thd.hpp"
@@ -25,6 +26,7 @@ namespace whirl::film {
 using Kinds = std::variant<
     Reynolds,
     Thd,
+    Gas,
     Linear,
     Short,
     Long,

@@ -76,6 +76,8 @@ struct FilmReport {
   // m^3/s, what enters less what leaves through edges and sides and what the moving journal presses out: the volume
   // that cavitation makes or loses, zero if it conserves its mass. Films that cut off their pressure do not know it.
   double imbalance = std::numeric_limits<double>::quiet_NaN();
+  double mass_flow = std::numeric_limits<double>::quiet_NaN();    // kg/s, of gas out of all orifices
+  double drag_torque = std::numeric_limits<double>::quiet_NaN();  // N m, on the journal, of a film of gas
 };
 
 /// One array on the grid of one pad, row-major.

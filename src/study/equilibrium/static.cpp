@@ -117,6 +117,13 @@ void put_values(const Context& context, system::RotorSystem& system, Vec at, io:
       if (std::isfinite(report.inlet_flow)) summary.set(head + "inlet_flow", report.inlet_flow, "m^3/s");
       for (std::size_t k = 0; k < report.hole_flows.size(); ++k)
         summary.set(fmt::format("{}hole.{}.flow", head, k + 1), report.hole_flows[k], "m^3/s");
+      if (std::isfinite(report.mass_flow)) {
+        // Normal volumes are those at 0 degC and 101325 Pa.
+        constexpr double normal_air = 1.2929;  // kg/m^3
+        summary.set(head + "mass_flow", report.mass_flow, "kg/s");
+        summary.set(head + "normal_flow", report.mass_flow / normal_air * 60e3, "l/min");
+        summary.set(head + "drag_torque", report.drag_torque, "N m");
+      }
       summary.set(head + "power_loss", report.power_loss, "W");
       total_loss += report.power_loss;
     }
