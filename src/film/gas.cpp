@@ -34,8 +34,8 @@ void describe(deck::Description<Gas>& d) {
   d.add("source", &Gas::source, "what the orifices see of the pressure", "003 errata sec. 2");
   d.add("cells", &Gas::cells, deck::in(4, 4000), "intervals around and along the bearing");
   d.add("tilt", &Gas::tilt, "follow the slope of the journal, and turn it by moments");
-  d.add("ambient", &Gas::ambient, "Pa", deck::positive, "pressure at both ends, absolute").continuable();
-  d.add("temperature", &Gas::temperature, "K", deck::positive, "of the film and of the supply").continuable();
+  d.add("ambient", &Gas::ambient, "Pa", deck::positive, "pressure at both ends, absolute");
+  d.add("temperature", &Gas::temperature, "K", deck::positive, "of the film and of the supply");
   d.add("gas_constant", &Gas::gas_constant, "J/(kg K)", deck::positive, "specific gas constant");
   d.add("heat_ratio", &Gas::heat_ratio, deck::Check{.min = 1, .max = 2, .min_open = true}, "ratio of specific heats");
   d.add(

@@ -2,11 +2,16 @@
 
 #include <utility>
 
+#include "whirl/core/agree.hpp"
+
 namespace whirl::thermal {
 
 Solid make_solid(const Rows& film, const Bush& bush) {
   const Mesh& mesh = film.mesh();
-  if (!(bush.outer_radius > mesh.radius)) throw core::Error("the bush has no thickness: its outer radius is too small");
+  core::agree(film.comm(), [&] {
+    if (!(bush.outer_radius > mesh.radius))
+      throw core::InputError("the bush has no thickness: its outer radius is too small");
+  });
   Cylinder shape;
   shape.r = graded(mesh.radius, bush.outer_radius, bush.layers, bush.grading);
   shape.theta = columns_beside(mesh, bush.ring);

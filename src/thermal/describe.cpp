@@ -1,5 +1,7 @@
 #include "whirl/thermal/describe.hpp"
 
+#include <algorithm>
+
 #include <numbers>
 
 namespace whirl::thermal {
@@ -52,6 +54,9 @@ void describe(deck::Description<Vogel>& d) {
   d.add("temperature", &Vogel::temperature, "K", positive, "at which the viscosity is given");
   d.add("b", &Vogel::b, "K", positive, "mu = mu_0 exp(b/(T - c) - b/(T_0 - c))", "Vogel 1921").required();
   d.add("c", &Vogel::c, "K", deck::non_negative, "temperature at which the law ends").required();
+  d.check([](const Vogel& v, const deck::Report& r) {
+    if (v.c >= v.temperature) r.fail("c", "the law ends at 'c', which must lie below 'temperature'");
+  });
 }
 
 void describe(deck::Description<Walther>& d) {
@@ -60,7 +65,11 @@ void describe(deck::Description<Walther>& d) {
   d.add("temperatures", &Walther::temperature, "K", positive, "at which these are given").required();
   d.add("oil_density", &Walther::density, "kg/m^3", positive, "density that makes them dynamic viscosities").required();
   d.check([](const Walther& w, const deck::Report& r) {
-    if (w.temperature[0] == w.temperature[1]) r.fail("temperatures", "'temperatures' must differ");
+    if (w.temperature[0] == w.temperature[1]) return r.fail("temperatures", "'temperatures' must differ");
+    if (std::min(w.kinematic[0], w.kinematic[1]) <= 0.3e-6)
+      return r.fail("kinematic", "the law holds above 0.3 mm^2/s: are the units right?");
+    if ((w.kinematic[0] - w.kinematic[1]) * (w.temperature[1] - w.temperature[0]) <= 0)
+      r.fail("kinematic", "the viscosity of an oil falls with the temperature");
   });
 }
 
@@ -71,6 +80,10 @@ void describe(deck::Description<Quadratic>& d) {
         "mu/mu_0 = c_0 + c_1 t + c_2 t^2 with t the temperature over T_0, both in degrees Celsius",
         "Ferron, Frene and Boncompain 1983")
       .required();
+  d.check([](const Quadratic& q, const deck::Report& r) {
+    if (q.coefficients[0] + q.coefficients[1] + q.coefficients[2] <= 0)
+      r.fail("coefficients", "the viscosity at 'celsius', the sum of the coefficients, must be positive");
+  });
 }
 
 void describe(deck::Description<ViscosityOptions>& d) {

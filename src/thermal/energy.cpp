@@ -136,7 +136,8 @@ EnergySolve Energy::solve(Vec temperature, double tolerance, double reduction) {
   check(VecShift(x, -ambient));
   const double start = norm_at(), target = std::max(tolerance * (forcing > 0 ? forcing : start), reduction * start);
   EnergySolve out;
-  out.residual = start;
+  out.residual = out.before = start;
+  out.scale = forcing > 0 ? forcing : start;
   out.converged = start <= target;
   if (out.converged) return out;
   check(SNESSetTolerances(snes_.get(), target, 0, 0, PETSC_DEFAULT, PETSC_DEFAULT));

@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "whirl/core/agree.hpp"
+
 namespace whirl::thermal {
 
 Solid make_solid(const Rows& film, const Journal& journal) {
   const Mesh& mesh = film.mesh();
   const double after = journal.length - journal.before - mesh.length;
-  if (journal.before < 0 || after < -1e-9 * mesh.length)
-    throw core::Error("the film reaches beyond the journal: its length or the place of the film are wrong");
-  if (!(journal.bore_radius < mesh.radius)) throw core::Error("the bore of the journal is as large as the journal");
+  core::agree(film.comm(), [&] {
+    if (journal.before < 0 || after < -1e-9 * mesh.length)
+      throw core::InputError("the film reaches beyond the journal: its length or the place of the film are wrong");
+    if (!(journal.bore_radius < mesh.radius))
+      throw core::InputError("the bore of the journal is as large as the journal");
+  });
   Cylinder shape;
   shape.outside = false;
   shape.r = graded(mesh.radius, journal.bore_radius, journal.layers, journal.grading);

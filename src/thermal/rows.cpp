@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "whirl/core/agree.hpp"
+
 namespace whirl::thermal {
 
 using core::check;
@@ -9,9 +11,11 @@ using core::check;
 Rows::Rows(const Mesh& mesh, MPI_Comm comm) : mesh_(mesh), comm_(comm) {
   const int ranks = core::size_of(comm), m = mesh.nodes_along();
   // Flows of second order look two rows far; a grid of fewer on a rank would be refused by that rank alone.
-  if (ranks > 1 && m < 2 * ranks)
-    throw core::Error("a film of " + std::to_string(m) + " rows cannot be spread over " + std::to_string(ranks) +
-                      " ranks: each needs two");
+  core::agree(comm, [&] {
+    if (ranks > 1 && m < 2 * ranks)
+      throw core::InputError("a film of " + std::to_string(m) + " rows cannot be spread over " + std::to_string(ranks) +
+                             " ranks: each needs two");
+  });
   std::vector<PetscInt> rows(static_cast<std::size_t>(ranks));
   for (int r = 0; r < ranks; ++r) rows[static_cast<std::size_t>(r)] = m * (r + 1) / ranks - m * r / ranks;
   const DMBoundaryType around = mesh.closed ? DM_BOUNDARY_PERIODIC : DM_BOUNDARY_GHOSTED;

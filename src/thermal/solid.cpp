@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "thermal/solid_parts.hpp"
+#include "whirl/core/agree.hpp"
 
 namespace whirl::thermal {
 
@@ -21,8 +22,10 @@ Solid::Solid(const Rows& film, Cylinder shape, const Material& material, const S
       film_begin_(film.begin()),
       film_end_(film.end()) {
   const Surface& free = shape_.outside ? surfaces_.inner : surfaces_.outer;
-  if (shape_.axisymmetric() && free.kind == Surface::Kind::prescribed)
-    throw core::Error("the free surface of a rotating journal cannot have a prescribed temperature");
+  core::agree(comm_, [&] {
+    if (shape_.axisymmetric() && free.kind == Surface::Kind::prescribed)
+      throw core::InputError("the free surface of a rotating journal cannot have a prescribed temperature");
+  });
   begin_ = film.begin() == 0 ? 0 : film.begin() + shape_.film_row;
   end_ = film.end() == film_.nodes_along() ? shape_.rows() : film.end() + shape_.film_row;
   place_walls();

@@ -279,7 +279,9 @@ struct Thd::Work {
       const core::WriteArray t(film_temperature.get());
       std::copy(temperature.begin(), temperature.end(), t.data());
     }
-    const EnergySolve solved = energy->solve(film_temperature.get(), finest, left);
+    solved = energy->solve(film_temperature.get(), finest, left);
+    if (solved.stuck())
+      throw core::NotConverged("the temperatures of the film were not found: its energy equation did not converge");
     cost.energy_newton += solved.newton;
     cost.energy_krylov += solved.krylov;
     {
@@ -330,6 +332,7 @@ struct Thd::Work {
   core::NonlinearSolver snes;
   core::Gate gate;
   ThdSolve cost;
+  EnergySolve solved;  // of the last round
 };
 
 namespace {
@@ -391,6 +394,7 @@ ThdSolve Thd::solve() {
   // The balances hold to rounding whatever the rounds have reached.
   w.left = 0;
   w.round(w.x.get(), w.f.get());
+  w.cost.converged = w.cost.converged && (w.solved.converged || w.solved.residual <= 1e-9 * w.solved.scale);
   w.join(false);
   w.put_state();
   MPI_Allreduce(MPI_IN_PLACE, &w.closed, 1, MPI_INT, MPI_MAX, w.rows.comm());
@@ -424,7 +428,7 @@ void Thd::start(const std::vector<double>& state) {
     for (std::size_t k = 0; k < l; ++k) w.temperature[c * l + k] = *from++;
     for (Work::Side* side : {&w.bush, &w.journal}) {
       if (side->solid) side->seen[c] = *from;
-      ++from;
+      side->behind[c] = *from++;
     }
     for (Work::Side* side : {&w.bush, &w.journal}) {
       if (!side->rise.empty()) side->rise[c / n] = *from;

@@ -62,7 +62,11 @@ struct EnergySolve {
   int newton = 0;       // Newton steps; one of first order, whose equations are linear
   int krylov = 0;       // iterations of the linear solver in all of them
   double residual = 0;  // W, Euclidean norm over cells
+  double before = 0;    // W, of the temperatures given
+  double scale = 0;     // W, of the ambient's temperature everywhere: what heats the film
   bool converged = false;
+  /// Neither converged nor nearer, and not for rounding.
+  [[nodiscard]] bool stuck() const { return !converged && residual > 1e-6 * scale && residual > 0.9 * before; }
 };
 
 class EnergyTerms;

@@ -88,6 +88,7 @@ StudyResult Thd::run(Context& context) {
   Pieces pieces(results, context.resume, true, core::size_of(context.comm));
   Sweep sweep;
   std::vector<double> last;
+  std::string lost;  // why the speeds end before the last
   if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
   for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
     const double speed = options.speeds[k].value;
@@ -96,7 +97,18 @@ StudyResult Thd::run(Context& context) {
     if (k > 0 && last.empty())
       last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
     if (k > 0) start = {sweep.place(), last};
-    const SolvedFilm solved = solve_film(context.comm, options, geometry, speed, start);
+    SolvedFilm solved;
+    try {
+      solved = solve_film(context.comm, options, geometry, speed, start);
+    } catch (const core::NotConverged& error) {
+      if (!core::is_agreed(std::current_exception()) || sweep.rows.empty()) throw;
+      lost = fmt::format("no film at {:.6g} rad/s: {}", speed, error.what());
+      break;
+    } catch (const core::DomainError& error) {
+      if (!core::is_agreed(std::current_exception()) || sweep.rows.empty()) throw;
+      lost = fmt::format("no film at {:.6g} rad/s: {}", speed, error.what());
+      break;
+    }
     ThdFilm& film = *solved.film;
     if (!solved.settled) sweep.unsettled.push_back(fmt::format("{:.6g} rad/s", speed));
     sweep.rows.push_back(thd_row(film, speed));
@@ -131,6 +143,7 @@ StudyResult Thd::run(Context& context) {
     table.put(thd_columns()[c].name, column, thd_columns()[c].unit, thd_columns()[c].description);
   }
   summary.points = static_cast<long>(sweep.rows.size());
+  if (!lost.empty()) return results.finish(lost, true);
   if (!sweep.unsettled.empty())
     return results.finish(fmt::format("temperatures did not settle within {} iterations at {}", options.most_iterations,
                                       fmt::join(sweep.unsettled, ", ")),

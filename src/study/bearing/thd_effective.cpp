@@ -94,6 +94,8 @@ void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, d
         if (wanted[k] > 0) summary.set(fmt::format("effective.{}_error", held[k].key), errors[k].back(), "1");
     } catch (const core::NotConverged& error) {
       summary.warnings.push_back(error.what());
+    } catch (const core::DomainError& error) {
+      summary.warnings.push_back(error.what());
     }
   }
   if (names.empty()) return;

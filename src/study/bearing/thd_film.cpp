@@ -47,10 +47,11 @@ thermal::FilmFlowOptions flow_of(const ThdOptions& o, const thermal::Mesh& mesh,
   return out;
 }
 
-// K [r, n], of what comes from orifices and grooves.
+// K [r, n], of what comes from orifices and grooves; oil that fills a ruptured film comes from the first groove.
 std::vector<double> supply_of(const ThdOptions& o, const thermal::Rows& rows, const thermal::FilmFlowOptions& flow) {
   const int n = rows.mesh().nodes_around();
-  std::vector<double> out(static_cast<std::size_t>(rows.count() * n), o.ambient.temperature);
+  const double elsewhere = o.grooves.empty() ? o.ambient.temperature : o.grooves.front().temperature;
+  std::vector<double> out(static_cast<std::size_t>(rows.count() * n), elsewhere);
   const auto set = [&](int i, int j, double temperature) {
     if (j >= rows.begin() && j < rows.end())
       out[static_cast<std::size_t>(rows.node(((i % n) + n) % n, j))] = temperature;

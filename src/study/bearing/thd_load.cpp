@@ -78,6 +78,7 @@ public:
       if (stale_) {
         f = left(place);
         ++films_;
+        if (!std::isfinite(size(f))) give_up(speed, "the film is lost at a place where there was one");
         continue;
       }
       // Broyden: A += (g - f - A s) s^T/(s^T s).

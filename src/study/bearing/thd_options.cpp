@@ -98,7 +98,10 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
       std::ranges::any_of(options.speeds, [](const deck::Quantity& speed) { return speed.value == 0; }))
     report.fail("speeds", "at rest nothing moves what the cavity of a film that conserves its mass holds");
   for (const thermal::OrificeRing& ring : options.orifices) {
-    if (std::abs(ring.z) >= g.length / 2) report.fail("orifices", "an orifice lies beyond the ends of the film");
+    if (std::abs(ring.z) >= g.length / 2 * (1 - 1.0 / options.cells[1]))
+      report.fail("orifices", "an orifice lies beyond the ends of the film, or within half a cell of one");
+    if (ring.inlet != options.orifices.front().inlet)
+      report.fail("orifices", "gas enters from all rings with the temperature of one 'inlet': give them the same");
     if (ring.pressure <= options.ambient.pressure)
       report.fail("orifices", "the supply has no pressure above that of the ambient");
     if (ring.inlet == thermal::OrificeRing::Inlet::bush && options.bush.type == Wall::Type::adiabatic)
@@ -110,8 +113,8 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
     report.fail("bush", "the outer 'radius' of the bush must lie beyond the film");
   if (options.journal.type == Wall::Type::solid) {
     if (options.journal.radius >= g.radius) report.fail("journal", "the bore's 'radius' must lie within the journal");
-    const double length = options.journal.shaft_length;
-    if (length != 0 && options.journal.shaft_before + g.length > length * (1 + 1e-12))
+    const double length = options.journal.shaft_length > 0 ? options.journal.shaft_length : g.length;
+    if (options.journal.shaft_before + g.length > length * (1 + 1e-12))
       report.fail("journal", "'shaft_before' and the bearing reach beyond 'shaft_length'");
   }
 }
