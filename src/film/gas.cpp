@@ -20,10 +20,8 @@ void describe(deck::Description<OrificeRow>& d) {
   d.add("count", &OrificeRow::count, deck::in(1, 1000), "number of orifices, evenly spaced around the bore");
   d.add("z", &OrificeRow::z, "m", deck::any, "place along the shaft, from the mid-plane; moved to the nearest node");
   d.add("angle", &OrificeRow::angle, "rad", deck::any, "of the first one, from +x; a line of nodes is there");
-  d.add("diameter", &OrificeRow::diameter, "m", deck::positive, "diameter").required().continuable();
-  d.add("supply", &OrificeRow::supply, "Pa", deck::positive, "pressure of the supply, absolute")
-      .required()
-      .continuable();
+  d.add("diameter", &OrificeRow::diameter, "m", deck::positive, "diameter").required();
+  d.add("supply", &OrificeRow::supply, "Pa", deck::positive, "pressure of the supply, absolute").required();
 }
 
 void describe(deck::Description<Gas>& d) {

@@ -9,8 +9,8 @@ namespace {
 
 using namespace whirl;
 
-// Place, stiffness and damping of bearing A at 0.6 MPa, 2000 rad/s and 49.05 N by an independent computation on 192 x 64
-// cells, whose first axis points against the load.
+// Place, stiffness and damping of bearing A at 0.6 MPa, 2000 rad/s and 49.05 N by an independent computation on 192 x
+// 64 cells, whose first axis points against the load.
 TEST(Aerostatic, BearingACarriesItsRotor) {
   study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/aerostatic/bearing_a.yaml",
                                  {"bearings.A.film.cells=[48, 16]", "studies=[{static: {speed: 2000 rad/s}}]"});

@@ -211,11 +211,11 @@ TEST(ErrorBar, HasEachMeshOnce) {
     }
     return out;
   };
-  EXPECT_EQ(cells({60, 16}), (std::array{std::vector{30, 45, 90, 120}, std::vector{8, 12, 24, 32}}));
-  EXPECT_EQ(cells({4, 5}), (std::array{std::vector{6, 8}, std::vector{4, 8, 10}}));
+  EXPECT_EQ(cells({60, 16}), (std::array{std::vector{32, 43, 82, 112}, std::vector{8, 11, 22, 30}}));
+  EXPECT_EQ(cells({4, 5}), (std::array{std::vector{5, 7}, std::vector{4, 7, 9}}));
   // More states than the deck lets bars refine (60 x 8 on half of an aligned pad): coarser ones only, as many.
   film.states = film::States::dynamic;
-  EXPECT_EQ(cells({60, 16})[0].back(), 120);
+  EXPECT_EQ(cells({60, 16})[0].back(), 112);
   layout.refined_states = 400;
   EXPECT_EQ(cells({60, 16})[0], (std::vector{30, 38, 45, 53}));
 }

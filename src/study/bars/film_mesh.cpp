@@ -39,7 +39,7 @@ std::vector<FilmMesh> film_meshes(const system::Machine& machine, const LayoutOp
   if (states > layout.refined_states)
     factors = kinks ? std::vector{0.5, 0.625, 0.75, 0.875} : std::vector{0.5, 2.0 / 3};
   else if (kinks)
-    factors = {0.53, 0.71, 1.37, 1.87};
+    factors = {0.53, 0.71, 1.37, 1.87};  // meshes without common divisors: others see the same kinks alike
   std::vector<FilmMesh> out;
   for (std::size_t d = 0; d < 2; ++d) {
     const auto cells_of = [&](const std::array<double, 2>& factor) {
