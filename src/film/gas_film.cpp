@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <string>
 
+#include "film/gas_inverse.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/thickness.hpp"
 
@@ -48,7 +48,6 @@ GasFilm::GasFilm(const Geometry& geometry, const Gas& options, const Lubricant& 
   mean_ = 2.0 * std::sin(0.5 * dtheta_) / dtheta_;
   nodes_ = static_cast<std::size_t>(lines_) * static_cast<std::size_t>(inner_);
   place_orifices();
-  for (std::vector<double>* v : {&centre_, &after_, &before_, &above_, &below_}) v->resize(nodes_);
 }
 
 // At the nearest nodes of a mesh that begins at the first one.
@@ -78,35 +77,45 @@ std::vector<StateField> GasFilm::state_fields() const {
   return out;
 }
 
+// At whole lines; the rank that holds the last one holds the pressures behind the orifices too.
 int GasFilm::cut(int near) const {
-  return 2 * static_cast<std::size_t>(near) > states() ? static_cast<int>(states()) : 0;
+  const int line = (near + inner_ / 2) / inner_;
+  return line < lines_ ? line * inner_ : static_cast<int>(states());
 }
 
-// Entries of nodes by diagonals: each of the five runs over the rows in their order.
+// Lines held and those beside them, then the pressures behind all orifices and at their nodes. The entries between
+// nodes are a Stencil, with the zeros at the ends of lines; those of orifices follow.
 Share GasFilm::share(int begin, int end) const {
   Share out{begin, end, {}, {}, {}};
   if (begin == end) return out;
-  core::require(begin == 0 && end == static_cast<int>(states()), "a film of gas is held by one rank");
-  out.seen.resize(static_cast<std::size_t>(end));
-  std::iota(out.seen.begin(), out.seen.end(), 0);
-  const int n = static_cast<int>(nodes_), m = inner_;
-  out.d_states.add({0, 0, n});
-  out.d_states.add({0, m, n - m});
-  out.d_states.add({n - m, 0, m});
-  out.d_states.add({0, n - m, m});
-  out.d_states.add({m, 0, n - m});
-  if (n > 1) {
-    out.d_states.add({0, 1, n - 1});
-    out.d_states.add({1, 0, n - 1});
+  const int nodes = static_cast<int>(nodes_), held = std::min(end, nodes), n = held - begin;
+  core::require(begin % inner_ == 0 && (end == static_cast<int>(states()) || (end < nodes && end % inner_ == 0)),
+                "a film that is cut at whole lines");
+  for (int k = begin - inner_; k < held + inner_; ++k) out.seen.push_back((k % nodes + nodes) % nodes);
+  const int first = n + 2 * inner_, count = static_cast<int>(orifices_.size());
+  for (int k = 0; k < count; ++k) out.seen.push_back(nodes + k);
+  for (const Orifice& o : orifices_) out.seen.push_back(static_cast<int>(at(o.line, o.place)));
+  for (const int offset : {0, -inner_, inner_, -1, 1}) out.d_states.add({0, inner_ + offset, n});
+  for (int k = 0; k < count; ++k) {
+    const Orifice& o = orifices_[static_cast<std::size_t>(k)];
+    const int node = static_cast<int>(at(o.line, o.place));
+    if (node >= begin && node < held) out.d_states.add(node - begin, first + k);
+    if (end == held) continue;
+    out.d_states.add(n + k, first + count + k);
+    out.d_states.add(n + k, first + k);
   }
-  for (std::size_t k = 0; k < orifices_.size(); ++k) {
-    const int node = static_cast<int>(at(orifices_[k].line, orifices_[k].place)), own = n + static_cast<int>(k);
-    out.d_states.add(node, own);
-    out.d_states.add(own, node);
-    out.d_states.add(own, own);
-  }
-  out.d_rates.add({0, 0, n});
+  out.d_rates.add({0, inner_, n});
   return out;
+}
+
+std::unique_ptr<StatePreconditioner> GasFilm::preconditioner(MPI_Comm comm, const Share& share) const {
+  const Lines here = lines_of(share);
+  int least = here.count();
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, comm);
+  if (least < 2) return nullptr;
+  std::vector<int> nodes;
+  for (const Orifice& o : orifices_) nodes.push_back(static_cast<int>(at(o.line, o.place)));
+  return std::make_unique<GasInverse>(comm, lines_, inner_, share, std::move(nodes));
 }
 
 JournalMotion GasFilm::seen(JournalMotion motion) const {
@@ -129,15 +138,174 @@ GasFilm::Flow GasFilm::flow(const Orifice& o, double pressure, double thickness)
   return {area * c * jet.value, area * c * jet.slope, area * slope * jet.value};
 }
 
-void GasFilm::evaluate(const JournalMotion& motion_given, const Share& share, std::span<const double> states,
+struct GasFilm::Part {
+  JournalMotion motion;
+  Lines lines;
+  std::span<const double> states;
+  bool tangents;
+  StateResponse& response;
+  std::size_t rows;  // of nodes
+  double *centre = nullptr, *before = nullptr, *after = nullptr, *below = nullptr, *above = nullptr;
+
+  // dh/d(position) at an angle, for all ports.
+  using Levers = std::array<double, 4>;
+  static Levers levers(double c, double s, double along) { return {-c, -s, -along * c, -along * s}; }
+  [[nodiscard]] double turn(const Levers& w) const {
+    return motion.position[0] * w[0] + motion.position[1] * w[1] + motion.position[2] * w[2] +
+           motion.position[3] * w[3];
+  }
+  [[nodiscard]] double grows(const Levers& w) const {
+    return motion.velocity[0] * w[0] + motion.velocity[1] * w[1] + motion.velocity[2] * w[2] +
+           motion.velocity[3] * w[3];
+  }
+  void add_position(std::size_t row, double by_h, const Levers& w) const {
+    for (std::size_t n = 0; n < response.d_position.size(); ++n) response.d_position[n][row] += by_h * w[n];
+  }
+};
+
+// Flow per width times r T through the faces along theta, from line i to the next one.
+void GasFilm::around(const Part& part) const {
+  const double drag = 0.5 * geometry_.radius, couette = drag * part.motion.speed;
+  const double by_x = 1.0 / (24.0 * viscosity_ * dx_);
+  double* g = part.response.residual.data();
+  double* d_speed = part.response.d_speed.data();
+  for (int i = part.lines.begin - 1; i < part.lines.end; ++i) {
+    const double c = std::cos(angle(i + 0.5)), s = std::sin(angle(i + 0.5));
+    const bool left = i >= part.lines.begin, right = i + 1 < part.lines.end;
+    const double* low = &part.states[seen_at(part.lines, i)];
+    const double* high = low + inner_;
+    for (int j = 0; j < inner_; ++j) {
+      const std::size_t l = left ? row(part.lines, i, j) : 0, r = right ? row(part.lines, i + 1, j) : 0;
+      const Part::Levers w = Part::levers(c, s, z(j));
+      const double h = geometry_.clearance + part.turn(w), h2 = h * h;
+      const double p = 0.5 * (low[j] + high[j]), fall = by_x * (high[j] * high[j] - low[j] * low[j]);
+      const double q = (couette * h * p - h2 * h * fall) / dx_;
+      if (left) g[l] += q;
+      if (right) g[r] -= q;
+      if (!part.tangents) continue;
+      const double half = 0.5 * couette * h, cube = 2.0 * by_x * h2 * h;
+      const double by_low = (half + cube * low[j]) / dx_, by_high = (half - cube * high[j]) / dx_;
+      const double by_h = (couette * p - 3.0 * h2 * fall) / dx_, by_speed = drag * h * p / dx_;
+      if (left) {
+        part.centre[l] += by_low;
+        part.after[l] += by_high;
+        d_speed[l] += by_speed;
+        part.add_position(l, by_h, w);
+      }
+      if (right) {
+        part.before[r] -= by_low;
+        part.centre[r] -= by_high;
+        d_speed[r] -= by_speed;
+        part.add_position(r, -by_h, w);
+      }
+    }
+  }
+}
+
+// The same along z, from node j to j + 1; the pressure of the ends is given.
+void GasFilm::along(const Part& part) const {
+  const double by_z = 1.0 / (24.0 * viscosity_ * dz_);
+  double* g = part.response.residual.data();
+  for (int i = part.lines.begin; i < part.lines.end; ++i) {
+    const double c = std::cos(angle(i)), s = std::sin(angle(i));
+    const double* line = &part.states[seen_at(part.lines, i)];
+    for (int j = -1; j < inner_; ++j) {
+      const bool lower = j >= 0, upper = j + 1 < inner_;
+      const std::size_t l = lower ? row(part.lines, i, j) : 0, r = upper ? row(part.lines, i, j + 1) : 0;
+      const Part::Levers w = Part::levers(c, s, z(j + 0.5));
+      const double h = geometry_.clearance + part.turn(w), h2 = h * h;
+      const double low = lower ? line[j] : options_.ambient, high = upper ? line[j + 1] : options_.ambient;
+      const double fall = by_z * (high * high - low * low), q = -h2 * h * fall / dz_;
+      if (lower) g[l] += q;
+      if (upper) g[r] -= q;
+      if (!part.tangents) continue;
+      const double cube = 2.0 * by_z * h2 * h / dz_, by_h = -3.0 * h2 * fall / dz_;
+      if (lower) {
+        part.centre[l] += cube * low;
+        if (upper) part.above[l] -= cube * high;
+        part.add_position(l, by_h, w);
+      }
+      if (upper) {
+        part.centre[r] += cube * high;
+        if (lower) part.below[r] -= cube * low;
+        part.add_position(r, -by_h, w);
+      }
+    }
+  }
+}
+
+// What orifices give to their nodes, and the rows of the pressures behind them.
+void GasFilm::through_orifices(const Part& part, const Share& share) const {
+  const double warmth = options_.gas_constant * options_.temperature;
+  const double to_cell = warmth / (dx_ * dz_), mesh = 0.25 * std::exp(-std::numbers::egamma) * std::hypot(dx_, dz_);
+  const std::size_t count = orifices_.size(), first = part.states.size() - 2 * count;
+  const bool owns = static_cast<std::size_t>(share.rows()) > part.rows;
+  StateResponse& response = part.response;
+  double* entry = part.tangents ? response.d_states.data() + 5 * part.rows : nullptr;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Orifice& o = orifices_[k];
+    const bool here = o.line >= part.lines.begin && o.line < part.lines.end;
+    if (!here && !owns) continue;
+    const Part::Levers w = Part::levers(std::cos(angle(o.line)), std::sin(angle(o.line)), z(o.place));
+    const double turn = part.turn(w), h = geometry_.clearance + turn;
+    const double behind = part.states[first + k], p = part.states[first + count + k];
+    const Flow m = flow(o, behind, h);
+    if (here) {
+      const std::size_t node = row(part.lines, o.line, o.place);
+      response.residual[node] -= to_cell * m.mass;
+      if (part.tangents) {
+        part.add_position(node, -to_cell * m.by_thickness, w);
+        *entry++ = -to_cell * m.by_pressure / (geometry_.clearance + mean_ * turn);
+      }
+    }
+    if (!owns) continue;
+    const double distance = options_.source == Gas::Source::rim ? std::log(0.5 * o.diameter / mesh) : 0.0;
+    const double resists = 12.0 * viscosity_ * warmth / (pi * h * h * h) * distance, unit = 0.5 / o.supply;
+    const std::size_t own = part.rows + k;
+    response.residual[own] = unit * (behind * behind - p * p + resists * m.mass);
+    if (!part.tangents) continue;
+    part.add_position(own, unit * resists * (m.by_thickness - 3.0 * m.mass / h), w);
+    *entry++ = -2.0 * unit * p;
+    *entry++ = unit * (2.0 * behind + resists * m.by_pressure);
+  }
+}
+
+// Balance over what a pascal adds to the cell, squeeze, and the force.
+void GasFilm::close(const Part& part, std::span<const double> rates) const {
+  StateResponse& response = part.response;
+  const double area = dx_ * dz_;
+  for (int i = part.lines.begin; i < part.lines.end; ++i) {
+    const double c = std::cos(angle(i)), s = std::sin(angle(i));
+    for (int j = 0; j < inner_; ++j) {
+      const std::size_t k = row(part.lines, i, j), own = seen_at(part.lines, i) + static_cast<std::size_t>(j);
+      const Part::Levers w = Part::levers(c, s, z(j));
+      const double grows = mean_ * part.grows(w), p = part.states[own];
+      const double over = 1.0 / (geometry_.clearance + mean_ * part.turn(w));
+      const double balance = (response.residual[k] + p * grows) * over;
+      response.residual[k] = rates[own] + balance;
+      for (std::size_t n = 0; n < ports().size(); ++n) {
+        response.journal.force[static_cast<std::size_t>(ports()[n])] += (p - options_.ambient) * area * w[n];
+        if (!part.tangents) continue;
+        response.force_d_states[n][k] = area * w[n];
+        response.d_position[n][k] = (response.d_position[n][k] - balance * mean_ * w[n]) * over;
+        response.d_velocity[n][k] = p * mean_ * w[n] * over;
+      }
+      if (!part.tangents) continue;
+      response.d_speed[k] *= over;
+      part.centre[k] = (part.centre[k] + grows) * over;
+      for (double* v : {part.before, part.after, part.below, part.above}) v[k] *= over;
+    }
+  }
+}
+
+void GasFilm::evaluate(const JournalMotion& motion, const Share& share, std::span<const double> states,
                        std::span<const double> rates, Need need, StateResponse& response) {
   core::require(states.size() == share.seen.size() && rates.size() == states.size(), "what a share of a film sees");
-  const JournalMotion motion = seen(motion_given);
   const bool tangents = need == Need::tangents;
   const auto rows = static_cast<std::size_t>(share.rows());
   response.journal = {};
   response.residual.assign(rows, 0.0);
-  response.d_states.resize(tangents ? share.d_states.size() : 0);
+  response.d_states.assign(tangents ? share.d_states.size() : 0, 0.0);
   response.d_rates.assign(tangents ? share.d_rates.size() : 0, 1.0);
   response.d_speed.assign(tangents ? rows : 0, 0.0);
   response.force_d_rates.clear();
@@ -151,140 +319,20 @@ void GasFilm::evaluate(const JournalMotion& motion_given, const Share& share, st
   for (const double p : states)
     if (!(p > 0.0)) throw core::DomainError("film of gas: the pressure must be positive");
 
-  const std::size_t count = ports().size();
-  // dh/d(position) at an angle, for all ports.
-  const auto lever = [](double c, double s, double along) {
-    return std::array<double, 4>{-c, -s, -along * c, -along * s};
-  };
-  std::vector<double>& g = response.residual;
-  if (tangents)
-    for (std::vector<double>* v : {&centre_, &after_, &before_, &above_, &below_}) std::fill(v->begin(), v->end(), 0.0);
-
-  // Flow per width times r T through faces: along theta from line i to the next one, then along z.
-  const double drag = 0.5 * geometry_.radius, couette = drag * motion.speed;
-  const double by_x = 1.0 / (24.0 * viscosity_ * dx_), by_z = 1.0 / (24.0 * viscosity_ * dz_);
-  for (int i = 0; i < lines_; ++i) {
-    const int next = (i + 1) % lines_;
-    const double c = std::cos(angle(i + 0.5)), s = std::sin(angle(i + 0.5));
-    for (int j = 0; j < inner_; ++j) {
-      const std::size_t l = at(i, j), r = at(next, j);
-      const std::array<double, 4> w = lever(c, s, z(j));
-      const double h = geometry_.clearance + motion.position[0] * w[0] + motion.position[1] * w[1] +
-                       motion.position[2] * w[2] + motion.position[3] * w[3];
-      const double p = 0.5 * (states[l] + states[r]), h2 = h * h;
-      const double fall = by_x * (states[r] * states[r] - states[l] * states[l]);
-      const double q = (couette * h * p - h2 * h * fall) / dx_;
-      g[l] += q;
-      g[r] -= q;
-      if (!tangents) continue;
-      const double half = 0.5 * couette * h, cube = 2.0 * by_x * h2 * h;
-      const double by_l = (half + cube * states[l]) / dx_, by_r = (half - cube * states[r]) / dx_;
-      centre_[l] += by_l;
-      after_[l] += by_r;
-      before_[r] -= by_l;
-      centre_[r] -= by_r;
-      const double by_h = (couette * p - 3.0 * h2 * fall) / dx_, by_speed = drag * h * p / dx_;
-      response.d_speed[l] += by_speed;
-      response.d_speed[r] -= by_speed;
-      for (std::size_t n = 0; n < count; ++n) {
-        response.d_position[n][l] += by_h * w[n];
-        response.d_position[n][r] -= by_h * w[n];
-      }
-    }
+  Part part{seen(motion), lines_of(share), states, tangents, response, 0};
+  part.rows = static_cast<std::size_t>(part.lines.count()) * static_cast<std::size_t>(inner_);
+  if (tangents) {
+    const auto entries = [&](Stencil::Place place) { return Stencil::at(place, part.rows, response.d_states.data()); };
+    part.centre = entries(Stencil::centre);
+    part.before = entries(Stencil::before);
+    part.after = entries(Stencil::after);
+    part.below = entries(Stencil::below);
+    part.above = entries(Stencil::above);
   }
-  for (int i = 0; i < lines_; ++i) {
-    const double c = std::cos(angle(i)), s = std::sin(angle(i));
-    for (int j = -1; j < inner_; ++j) {  // from node j to j + 1
-      const std::array<double, 4> w = lever(c, s, z(j + 0.5));
-      const double h = geometry_.clearance + motion.position[0] * w[0] + motion.position[1] * w[1] +
-                       motion.position[2] * w[2] + motion.position[3] * w[3];
-      const double low = pressure(states, i, j), high = pressure(states, i, j + 1), h2 = h * h;
-      const double fall = by_z * (high * high - low * low), q = -h2 * h * fall / dz_;
-      const bool has_low = j >= 0, has_high = j + 1 < inner_;
-      const std::size_t l = has_low ? at(i, j) : 0, r = has_high ? at(i, j + 1) : 0;
-      if (has_low) g[l] += q;
-      if (has_high) g[r] -= q;
-      if (!tangents) continue;
-      const double cube = 2.0 * by_z * h2 * h / dz_, by_h = -3.0 * h2 * fall / dz_;
-      if (has_low) centre_[l] += cube * low;
-      if (has_low && has_high) above_[l] -= cube * high;
-      if (has_high) centre_[r] += cube * high;
-      if (has_low && has_high) below_[r] -= cube * low;
-      for (std::size_t n = 0; n < count; ++n) {
-        if (has_low) response.d_position[n][l] += by_h * w[n];
-        if (has_high) response.d_position[n][r] -= by_h * w[n];
-      }
-    }
-  }
-
-  // Orifices.
-  const double warmth = options_.gas_constant * options_.temperature;
-  const double to_cell = warmth / (dx_ * dz_), mesh = 0.25 * std::exp(-std::numbers::egamma) * std::hypot(dx_, dz_);
-  std::vector<double> by_flow(orifices_.size());
-  for (std::size_t k = 0; k < orifices_.size(); ++k) {
-    const Orifice& o = orifices_[k];
-    const std::size_t node = at(o.line, o.place), own = nodes_ + k;
-    const double h = thickness(motion, o.line, o.place), p = states[node], behind = states[own];
-    const Flow m = flow(o, behind, h);
-    const double distance = options_.source == Gas::Source::rim ? std::log(0.5 * o.diameter / mesh) : 0.0;
-    const double resists = 12.0 * viscosity_ * warmth / (pi * h * h * h) * distance, unit = 0.5 / o.supply;
-    g[node] -= to_cell * m.mass;
-    g[own] = unit * (behind * behind - p * p + resists * m.mass);
-    if (!tangents) continue;
-    by_flow[k] = -to_cell * m.by_pressure;
-    const std::array<double, 4> w = lever(std::cos(angle(o.line)), std::sin(angle(o.line)), z(o.place));
-    for (std::size_t n = 0; n < count; ++n) {
-      response.d_position[n][node] -= to_cell * m.by_thickness * w[n];
-      response.d_position[n][own] = unit * resists * (m.by_thickness - 3.0 * m.mass / h) * w[n];
-    }
-    double* entry = response.d_states.data() + share.d_states.size() - 3 * (orifices_.size() - k);
-    entry[1] = -2.0 * unit * p;
-    entry[2] = unit * (2.0 * behind + resists * m.by_pressure);
-  }
-
-  // Balance over what a pascal adds to the cell, squeeze, and the force.
-  const double area = dx_ * dz_;
-  for (int i = 0; i < lines_; ++i) {
-    const double c = std::cos(angle(i)), s = std::sin(angle(i));
-    for (int j = 0; j < inner_; ++j) {
-      const std::size_t k = at(i, j);
-      const std::array<double, 4> w = lever(c, s, z(j));
-      double turn = 0.0, grows = 0.0;
-      for (std::size_t n = 0; n < 4; ++n) {
-        turn += motion.position[n] * w[n];
-        grows += motion.velocity[n] * w[n];
-      }
-      const double h = geometry_.clearance + mean_ * turn, over = 1.0 / h, p = states[k];
-      const double balance = (g[k] + p * mean_ * grows) * over;
-      g[k] = rates[k] + balance;
-      for (std::size_t n = 0; n < count; ++n) {
-        const auto force = static_cast<std::size_t>(ports()[n]);
-        response.journal.force[force] += (p - options_.ambient) * area * w[n];
-        if (!tangents) continue;
-        response.force_d_states[n][k] = area * w[n];
-        response.d_position[n][k] = (response.d_position[n][k] - balance * mean_ * w[n]) * over;
-        response.d_velocity[n][k] = p * mean_ * w[n] * over;
-      }
-      if (!tangents) continue;
-      response.d_speed[k] *= over;
-      centre_[k] = (centre_[k] + mean_ * grows) * over;
-      for (std::vector<double>* v : {&after_, &before_, &above_, &below_}) (*v)[k] *= over;
-    }
-  }
-  if (!tangents) return;
-  auto out = response.d_states.begin();
-  out = std::copy(centre_.begin(), centre_.end(), out);
-  out = std::copy(after_.begin(), after_.end(), out);
-  out = std::copy(before_.begin(), before_.end(), out);
-  if (nodes_ > 1) {
-    out = std::copy(above_.begin(), above_.end() - 1, out);
-    out = std::copy(below_.begin() + 1, below_.end(), out);
-  }
-  for (std::size_t k = 0; k < orifices_.size(); ++k) {
-    const Orifice& o = orifices_[k];
-    const double turn = thickness(motion, o.line, o.place) - geometry_.clearance;
-    out[static_cast<std::ptrdiff_t>(3 * k)] = by_flow[k] / (geometry_.clearance + mean_ * turn);
-  }
+  around(part);
+  along(part);
+  through_orifices(part, share);
+  close(part, rates);
 }
 
 double GasFilm::least_thickness(const JournalMotion& motion, std::span<const double> /*states*/) {

@@ -1,9 +1,12 @@
 #pragma once
 // Film of gas: mesh, equations and what they answer.
 
+#include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "film/stencil.hpp"
 #include "whirl/film/film.hpp"
 
 namespace whirl::film {
@@ -26,6 +29,8 @@ public:
   [[nodiscard]] std::vector<StateField> state_fields() const override;
   [[nodiscard]] int cut(int near) const override;
   [[nodiscard]] Share share(int begin, int end) const override;
+  /// A V-cycle; none where a rank holds less than two lines.
+  [[nodiscard]] std::unique_ptr<StatePreconditioner> preconditioner(MPI_Comm comm, const Share& share) const override;
   /// Line by line the film between two plates as thick as here that a row of orifices feeds as a slit, in closed form
   /// but for the pressure behind the orifices.
   void unloaded(const JournalMotion& motion, std::span<double> states) const override;
@@ -48,6 +53,21 @@ private:
   struct Flow {
     double mass, by_pressure, by_thickness;
   };
+  struct Part;  // what an evaluation of a share takes and gives
+  void around(const Part& part) const;
+  void along(const Part& part) const;
+  void through_orifices(const Part& part, const Share& share) const;
+  void close(const Part& part, std::span<const double> rates) const;
+  // Lines that a share holds; where one of them, or one beside them, begins among the states seen; the row of a node.
+  [[nodiscard]] Lines lines_of(const Share& share) const {
+    return {share.begin / inner_, std::min(share.end / inner_, lines_)};
+  }
+  [[nodiscard]] std::size_t seen_at(const Lines& lines, int line) const {
+    return static_cast<std::size_t>(line - lines.begin + 1) * static_cast<std::size_t>(inner_);
+  }
+  [[nodiscard]] std::size_t row(const Lines& lines, int line, int place) const {
+    return static_cast<std::size_t>((line - lines.begin) * inner_ + place);
+  }
   void place_orifices();
   [[nodiscard]] Flow flow(const Orifice& o, double pressure, double thickness) const;
   [[nodiscard]] std::size_t at(int line, int place) const {
@@ -71,8 +91,6 @@ private:
   double mean_;  // of cos(theta) over a cell, over its value in the middle
   std::size_t nodes_;
   std::vector<Orifice> orifices_;
-  // Workspace: entries of dg/ds by place.
-  std::vector<double> centre_, after_, before_, above_, below_;
 };
 
 }  // namespace whirl::film

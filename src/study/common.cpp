@@ -63,9 +63,11 @@ bool Walker::attempt(double speed) {
   check(VecCopy(x_.get(), trial_.get()));
   solve::NewtonOptions options;
   options.max_iterations = 30;
+  const bool has_parts = problem::parts_of(system_.fields()).size() > 0;
+  if (has_parts) options.patience = 4;
   system_.set_forcing(false);
   auto result = solve::find_equilibrium(system_, trial_.get(), options);
-  if (!result.converged && problem::parts_of(system_.fields()).size() > 0) {
+  if (!result.converged && has_parts) {
     // A film that starts without its pressure (orifices) has residuals that grow before they fall: no line search lets
     // them, and whole steps get through.
     check(VecCopy(x_.get(), trial_.get()));

@@ -25,6 +25,7 @@ struct SolveContext {
   Journal* journal = nullptr;
   std::vector<double> earlier;    // norms of the residuals before those of this solve
   std::vector<double> residuals;  // of the last nonlinear solve, which writes them
+  int patience = 0, small_falls = 0;
 };
 
 void bordered_residual(SolveContext& c, Vec u, Vec r) {
@@ -53,6 +54,19 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
     c.problem.linearise(u, c.row);
   });
   return c.gate.domain_error() ? SNESSetJacobianDomainError(snes) : code;
+}
+
+// PETSc's own test, and the end of a search that crawls.
+PetscErrorCode arrived(SNES snes, PetscInt iteration, PetscReal x_norm, PetscReal step_norm, PetscReal norm,
+                       SNESConvergedReason* reason, void* raw) {
+  auto& c = *static_cast<SolveContext*>(raw);
+  constexpr double least_fall = 0.9;
+  PetscCall(SNESConvergedDefault(snes, iteration, x_norm, step_norm, norm, reason, nullptr));
+  if (*reason != SNES_CONVERGED_ITERATING || c.patience == 0) return 0;
+  const bool small = iteration > 0 && norm > least_fall * c.residuals[static_cast<std::size_t>(iteration) - 1];
+  c.small_falls = small ? c.small_falls + 1 : 0;
+  if (c.small_falls >= c.patience) *reason = SNES_DIVERGED_LINE_SEARCH;
+  return 0;
 }
 
 PetscErrorCode settle_before_search(SNESLineSearch search, Vec u, Vec step, PetscBool* changed, void* raw) {
@@ -210,9 +224,13 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   auto& norms = context.residuals;
   norms.resize(static_cast<std::size_t>(options.max_iterations) + 2);
   check(SNESSetConvergenceHistory(snes.get(), norms.data(), nullptr, static_cast<PetscInt>(norms.size()), PETSC_TRUE));
+  context.patience = options.patience;
+  check(SNESSetConvergenceTest(snes.get(), arrived, &context, nullptr));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes.get(), &search));
   check(SNESLineSearchSetType(search, options.searches ? SNESLINESEARCHBT : SNESLINESEARCHBASIC));
+  // Residuals that may rise before they fall rise the more the finer the mesh.
+  if (!options.searches) check(SNESSetDivergenceTolerance(snes.get(), -1));
   if (context.problem.settles()) {
     check(SNESLineSearchSetPreCheck(search, settle_before_search, &context));
     // It has asked for a fall of the residual already. The slope along a step that settles is none of a smooth

@@ -15,6 +15,8 @@ struct NewtonOptions {
   double step_tolerance = 1e-11;  ///< relative size of a step below which Newton stops
   int max_iterations = 12;
   bool searches = true;  ///< false: whole steps, which end at the first domain error
+  /// Ends where so many steps in turn have lowered the residual by less than a tenth each; zero: never.
+  int patience = 0;
   std::string prefix = "newton_", linear_prefix = "tangent_";  ///< of the PETSc options
   Journal* journal = nullptr;  ///< keeps solutions and iterates; the problem may then be linearised anywhere
 };
