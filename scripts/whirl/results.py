@@ -12,7 +12,8 @@ from .table import Table
 
 # The table that a kind of study is about.
 MAIN_TABLE = {"static": "bearings", "modes": "spectrum", "bearing_map": "locus", "unbalance_response": "response",
-              "equilibrium_branch": "branch", "cycle_branch": "branch", "locus": "locus", "run_up": "run_up", "motion": "spectrum"}
+              "equilibrium_branch": "branch", "cycle_branch": "branch", "locus": "locus", "run_up": "run_up", "motion": "spectrum",
+              "dynamic_coefficients": "places", "gas_bearing": "curves"}
 
 
 class Error(Exception):

@@ -11,6 +11,19 @@ Facts facts(const Options& options, const Geometry& geometry) {
   return std::visit([&](const auto& k) { return facts_of(k, geometry); }, options.kind);
 }
 
+std::optional<Options> tilting(Options options) {
+  const bool can = std::visit(
+      [](auto& k) {
+        constexpr bool knows = requires {
+          k.tilt = true;
+        };
+        if constexpr (knows) k.tilt = true;
+        return knows;
+      },
+      options.kind);
+  return can ? std::optional(std::move(options)) : std::nullopt;
+}
+
 Options refined(Options options, const std::array<double, 2>& factor) {
   std::visit(
       [&](auto& k) {
