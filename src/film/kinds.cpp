@@ -11,19 +11,6 @@ Facts facts(const Options& options, const Geometry& geometry) {
   return std::visit([&](const auto& k) { return facts_of(k, geometry); }, options.kind);
 }
 
-std::optional<Options> tilting(Options options) {
-  const bool can = std::visit(
-      [](auto& k) {
-        constexpr bool knows = requires {
-          k.tilt = true;
-        };
-        if constexpr (knows) k.tilt = true;
-        return knows;
-      },
-      options.kind);
-  return can ? std::optional(std::move(options)) : std::nullopt;
-}
-
 Options refined(Options options, const std::array<double, 2>& factor) {
   std::visit(
       [&](auto& k) {
@@ -31,6 +18,20 @@ Options refined(Options options, const std::array<double, 2>& factor) {
       },
       options.kind);
   return options;
+}
+
+std::optional<Options> tilting(Options options) {
+  const bool can = std::visit(
+      [](auto& k) {
+        if constexpr (requires { k.tilt; }) {
+          k.tilt = true;
+          return true;
+        } else {
+          return false;
+        }
+      },
+      options.kind);
+  return can ? std::optional(std::move(options)) : std::nullopt;
 }
 
 bool same_kind(const Options& a, const Options& b) {

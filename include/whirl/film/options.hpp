@@ -54,7 +54,7 @@ template <class T>
 /// asks for it; itself if it has no mesh.
 [[nodiscard]] Options refined(Options options, const std::array<double, 2>& factor);
 
-/// The film that follows the slopes of its journal; nothing of a kind that knows none.
+/// The same film where it follows the tilt of its journal; empty if films of this kind cannot.
 [[nodiscard]] std::optional<Options> tilting(Options options);
 
 /// True if both are of the same kind, whatever their options.

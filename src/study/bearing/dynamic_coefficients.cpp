@@ -1,12 +1,14 @@
 #include "whirl/study/bearing/dynamic_coefficients.hpp"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/held_film.hpp"
+#include "study/bearing/journal_place.hpp"
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -14,154 +16,181 @@
 namespace whirl::study {
 namespace {
 
-// Of what a force or moment answers to what motion.
-struct Entry {
-  std::size_t i, j;
-  std::string name, stiffness_unit, damping_unit;
+/// A journal at rest at one speed, and its coefficients at all frequencies.
+struct AtSpeed {
+  JournalPlace place;
+  double thickness = 0;
+  std::vector<film::PortCoefficients> coefficients;
 };
 
-std::vector<Entry> entries_of(std::size_t ports) {
-  constexpr std::array<const char*, 4> names = {"x", "y", "tilt_x", "tilt_y"};
-  constexpr std::array<const char*, 3> stiffness = {"N/m", "N", "N m"}, damping = {"N s/m", "N s", "N m s"};
-  std::vector<Entry> out;
-  for (std::size_t i = 0; i < ports; ++i)
-    for (std::size_t j = 0; j < ports; ++j) {
-      const std::size_t slopes = (i > 1 ? 1U : 0U) + (j > 1 ? 1U : 0U);
-      out.push_back(
-          {i, j, fmt::format("{}{}{}", names[i], slopes > 0 ? "_" : "", names[j]), stiffness[slopes], damping[slopes]});
-    }
-  return out;
+// Names of the entries: xx, xy, ..., and with slopes x.slope_x, ...; `slopes` counts those in a pair.
+constexpr std::array<const char*, 4> port_words = {"x", "y", "slope_x", "slope_y"};
+constexpr std::array<const char*, 3> stiffness_units = {"N/m", "N", "N m"}, damping_units = {"N s/m", "N s", "N m s"};
+
+std::size_t slopes_in(std::size_t i, std::size_t j) {
+  return (i > 1 ? 1U : 0U) + (j > 1 ? 1U : 0U);
+}
+std::string pair_name(std::size_t i, std::size_t j, const char* between) {
+  return std::string(port_words[i]) + (slopes_in(i, j) == 0 ? "" : between) + port_words[j];
 }
 
-struct Measured {
-  FilmAtRest::Pair place{}, force{};
-  double min_thickness = 0;
-  std::vector<film::PortCoefficients> at;  // frequencies
-};
+std::array<double, 2> load_of(const DynamicCoefficientsOptions& o) {
+  const auto& f = o.load.values;
+  if (f.empty()) return {};
+  return f.size() == 1 ? std::array<double, 2>{0, -f[0]} : std::array<double, 2>{f[0], f[1]};
+}
 
-// What one rank computes; all do it alike.
-std::vector<Measured> measure(const DynamicCoefficientsOptions& o, const system::Support& support) {
-  std::vector<Measured> out;
-  for (const deck::Quantity& speed : o.speeds) {
-    FilmAtRest film(support, speed.value);
-    put_journal(film, o, support.geometry.clearance);
-    Measured p{film.place(), film.force(), film.answer().min_thickness, {}};
-    for (const double ratio : o.frequencies) p.at.push_back(film.coefficients(ratio * speed.value));
-    out.push_back(std::move(p));
+// What one rank computes; all do it alike. Every speed starts from the one before.
+std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, const system::Support& support) {
+  film::Options kind = support.film;
+  if (options.tilt) kind = film::tilting(kind).value();
+  const auto film = film::make_film(support.geometry, kind, support.lubricant);
+  const double c = support.geometry.clearance;
+  std::vector<AtSpeed> out;
+  JournalPlace start;
+  if (options.load.values.empty()) {
+    const double e = options.eccentricity.value_or(0.0) * c, angle = options.attitude.value_or(0.0);
+    start.motion.position = {e * std::cos(angle), e * std::sin(angle), 0, 0};
+  }
+  for (const deck::Quantity& speed : options.speeds) {
+    start.motion.speed = speed.value;
+    AtSpeed now;
+    now.place = options.load.values.empty() ? rest_at(*film, start.motion, start.states)
+                                            : carry(*film, c, load_of(options), start);
+    now.thickness = film->least_thickness(now.place.motion, now.place.states);
+    for (const double ratio : options.all_frequencies())
+      now.coefficients.push_back(
+          film::port_coefficients(*film, now.place.motion, now.place.states, ratio * speed.value));
+    start = now.place;
+    out.push_back(std::move(now));
   }
   return out;
 }
 
-// All entries [speed][frequency][K, then B], for their bars.
-std::vector<double> entries_in_order(const std::vector<Measured>& points) {
+// Every number that may have a bar, in the order of the tables: places, then entries of K and B.
+std::vector<double> numbers_of(const std::vector<AtSpeed>& found) {
   std::vector<double> out;
-  for (const Measured& p : points)
-    for (const film::PortCoefficients& c : p.at)
-      for (const auto* matrix : {&c.stiffness, &c.damping})
-        for (std::size_t i = 0; i < c.ports; ++i)
-          for (std::size_t j = 0; j < c.ports; ++j) out.push_back((*matrix)[i][j]);
+  for (const AtSpeed& a : found) out.insert(out.end(), {a.place.motion.position[0], a.place.motion.position[1]});
+  if (found.empty()) return out;
+  const std::size_t n = found.front().coefficients.front().ports;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      for (const AtSpeed& a : found)
+        for (const film::PortCoefficients& c : a.coefficients)
+          out.insert(out.end(), {c.stiffness[i][j], c.damping[i][j]});
   return out;
 }
 
-// Those of the first speed at the first frequency, and the place.
-void put_first(io::StudySummary& summary, const std::vector<Measured>& points, double clearance) {
-  const Measured& p = points.front();
-  summary.set("x", p.place[0], "m");
-  summary.set("y", p.place[1], "m");
-  summary.set("eccentricity", std::hypot(p.place[0], p.place[1]) / clearance, "1");
-  summary.set("load", std::hypot(p.force[0], p.force[1]), "N");
-  summary.set("min_thickness", p.min_thickness, "m");
-  const film::PortCoefficients& c = p.at.front();
-  for (const Entry& e : entries_of(c.ports)) {
-    summary.set("K." + e.name, c.stiffness[e.i][e.j], e.stiffness_unit);
-    summary.set("B." + e.name, c.damping[e.i][e.j], e.damping_unit);
+void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& options, double clearance,
+                 const std::vector<AtSpeed>& found) {
+  for (std::size_t s = 0; s < found.size(); ++s) {
+    const AtSpeed& a = found[s];
+    const std::string head = fmt::format("speed.{}.", number_text(options.speeds[s].value, options.speeds[s].unit));
+    const auto& at = a.place.motion.position;
+    summary.set(head + "x", at[0], "m");
+    summary.set(head + "y", at[1], "m");
+    summary.set(head + "eccentricity", std::hypot(at[0], at[1]) / clearance, "1");
+    summary.set(head + "min_thickness", a.thickness, "m");
+    summary.set(head + "force.x", a.place.force[0], "N");
+    summary.set(head + "force.y", a.place.force[1], "N");
+    for (std::size_t f = 0; f < options.frequencies.size(); ++f) {
+      const film::PortCoefficients& c = a.coefficients[f];
+      const std::string at_ratio = fmt::format("{}ratio.{:.6g}.", head, options.frequencies[f]);
+      for (std::size_t i = 0; i < c.ports; ++i)
+        for (std::size_t j = 0; j < c.ports; ++j) {
+          summary.set(at_ratio + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
+          summary.set(at_ratio + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
+        }
+    }
   }
 }
 
-void put_places(io::Group& group, const std::vector<Measured>& points, const std::vector<deck::Quantity>& speeds) {
-  auto& table = group.child("places");
-  const auto put = [&](const char* name, const char* unit, const char* text,
-                       const std::function<double(std::size_t)>& value) {
-    std::vector<double> column;
-    for (std::size_t k = 0; k < points.size(); ++k) column.push_back(value(k));
-    table.put(name, std::move(column), unit, text);
-  };
-  put("speed", "rad/s", "of the shaft", [&](std::size_t k) { return speeds[k].value; });
-  put("x", "m", "of the journal, from the centre of the bearing", [&](std::size_t k) { return points[k].place[0]; });
-  put("y", "m", "of the journal, from the centre of the bearing", [&](std::size_t k) { return points[k].place[1]; });
-  put("force_x", "N", "of the film on the journal", [&](std::size_t k) { return points[k].force[0]; });
-  put("force_y", "N", "of the film on the journal", [&](std::size_t k) { return points[k].force[1]; });
-  put("min_thickness", "m", "least thickness of the film", [&](std::size_t k) { return points[k].min_thickness; });
-}
-
-// `bars` of entries_in_order(), or none.
-void put_coefficients(io::Group& group, const std::vector<Measured>& points, const DynamicCoefficientsOptions& o,
-                      const Bars* bars) {
+// One table of K or B entries [speed][frequency] with bars.
+void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, double clearance,
+                const std::vector<AtSpeed>& found, const Bars* bars) {
+  const std::vector<double> ratios = options.all_frequencies();
+  std::vector<double> speeds, x, y, e, thickness, force_x, force_y;
+  for (const AtSpeed& a : found) {
+    const auto& at = a.place.motion.position;
+    speeds.push_back(a.place.motion.speed);
+    x.push_back(at[0]);
+    y.push_back(at[1]);
+    e.push_back(std::hypot(at[0], at[1]) / clearance);
+    thickness.push_back(a.thickness);
+    force_x.push_back(a.place.force[0]);
+    force_y.push_back(a.place.force[1]);
+  }
+  auto& places = group.child("places");
+  places.put("speed", speeds, "rad/s", "shaft speed");
+  places.put("x", x, "m", "place of the journal, to the right of the bearing centre");
+  places.put("y", y, "m", "place of the journal, above the bearing centre");
+  places.put("eccentricity", e, "1", "in clearances");
+  places.put("min_thickness", thickness, "m", "least thickness of the film");
+  places.put("force_x", force_x, "N", "of the film on the journal");
+  places.put("force_y", force_y, "N", "of the film on the journal");
   auto& table = group.child("coefficients");
-  std::vector<double> speeds;
-  for (const deck::Quantity& s : o.speeds) speeds.push_back(s.value);
-  table.put("speed", speeds, "rad/s", "of the shaft, Omega");
-  table.put("ratio", o.frequencies, "1", "frequency of the motion omega over Omega");
-  const io::Shape shape{points.size(), o.frequencies.size()};
-  const std::size_t ports = points.front().at.front().ports, each = ports * ports;
-  for (const Entry& e : entries_of(ports))
-    for (const bool stiffness : {true, false}) {
-      std::vector<double> values, errors;
-      for (std::size_t s = 0; s < points.size(); ++s)
-        for (std::size_t f = 0; f < o.frequencies.size(); ++f) {
-          const film::PortCoefficients& c = points[s].at[f];
-          values.push_back((stiffness ? c.stiffness : c.damping)[e.i][e.j]);
-          const std::size_t at = ((s * o.frequencies.size() + f) * 2 + (stiffness ? 0 : 1)) * each + e.i * ports + e.j;
-          if (bars) errors.push_back((*bars)[at].total());
+  table.put("speed", speeds, "rad/s", "shaft speed");
+  table.put("ratio", ratios, "1", "frequency over speed, omega/Omega");
+  const io::Shape shape{speeds.size(), ratios.size()};
+  const std::size_t n = found.front().coefficients.front().ports;
+  std::size_t next = 2 * found.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      std::array<std::vector<double>, 2> values, errors;
+      for (const AtSpeed& a : found)
+        for (const film::PortCoefficients& c : a.coefficients) {
+          values[0].push_back(c.stiffness[i][j]);
+          values[1].push_back(c.damping[i][j]);
+          for (std::size_t k = 0; k < 2; ++k, ++next)
+            if (bars) errors[k].push_back((*bars)[next].total());
         }
-      const std::string name = (stiffness ? "k_" : "b_") + e.name, unit = stiffness ? e.stiffness_unit : e.damping_unit;
-      table.put(name, shape, values, unit,
-                std::string(stiffness ? "stiffness" : "damping") + " [speed][frequency], minus force by motion; x, y " +
-                    "displacements, tilt_x = dx/dz, tilt_y = dy/dz slopes of the journal, and their moments");
-      if (bars) table.put(name + "_uncertainty", shape, errors, unit, "estimated error from the film mesh");
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::string name = (k == 0 ? "k_" : "b_") + pair_name(i, j, "_");
+        const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
+        const char* what = k == 0 ? "stiffness" : "damping";
+        table.put(name, shape, values[k], unit, fmt::format("{} [speed][frequency]", what));
+        if (bars)
+          table.put(name + "_uncertainty", shape, errors[k], unit,
+                    fmt::format("estimated error of {} from the film mesh", name));
+      }
     }
 }
 
 }  // namespace
 
 StudyResult DynamicCoefficients::run(Context& context) {
-  system::Train train = system::train_of(context.machine);
+  const system::Train train = system::train_of(context.machine);
   const std::size_t which = options.bearing.empty() ? 0 : *system::find_bearing(context.machine, options.bearing);
-  if (options.tilt) train.supports[which].film = *film::tilting(train.supports[which].film);
-  auto& results = context.results;
-  auto& summary = results.summary();
   const double clearance = train.supports[which].geometry.clearance;
-  std::vector<Measured> points;
-  core::agree(context.comm, [&] { points = measure(options, train.supports[which]); });
-  put_first(summary, points, clearance);
+  auto& summary = context.results.summary();
+  auto& group = context.results.group();
 
-  Bars bars(entries_in_order(points), law_of(context.machine));
-  SummaryBars of_summary(summary, law_of(context.machine));
+  std::vector<AtSpeed> found;
+  core::agree(context.comm, [&] { found = computed(options, train.supports[which]); });
+  put_summary(summary, options, clearance, found);
+
+  const MeshLaw law = law_of(context.machine);
+  Bars bars(numbers_of(found), law);
+  SummaryBars of_summary(summary, law);
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
   for (const FilmMesh& mesh : meshes) {
-    std::vector<double> numbers;
-    io::StudySummary there;
+    std::vector<AtSpeed> other;
     core::agree(context.comm, [&] {
-      const bool answered = has_answer([&] {
-        const system::Train other = with_film_mesh(train, mesh.factor);
-        const std::vector<Measured> found = measure(options, other.supports[which]);
-        numbers = entries_in_order(found);
-        put_first(there, found, clearance);
-      });
-      if (!answered) numbers.clear();
+      const bool answered =
+          has_answer([&] { other = computed(options, with_film_mesh(train, mesh.factor).supports[which]); });
+      if (!answered) other.clear();
     });
-    bars.add(mesh.axis, mesh.spacing, numbers);
+    io::StudySummary there;
+    put_summary(there, options, clearance, other);
+    bars.add(mesh.axis, mesh.spacing, numbers_of(other));
     of_summary.add(mesh.axis, mesh.spacing, there);
   }
-  constexpr double location = 1e-9;  // of the load that is balanced
-  of_summary.write(location);
-  auto& group = results.group();
+  of_summary.write(place_tolerance);
+
   group.set("bearing", context.machine.bearings[which].name);
-  group.set("clearance", clearance);
-  put_places(group, points, options.speeds);
-  put_coefficients(group, points, options, meshes.empty() ? nullptr : &bars);
-  summary.points = static_cast<long>(points.size() * options.frequencies.size());
-  return results.finish("completed", true);
+  put_tables(group, options, clearance, found, meshes.empty() ? nullptr : &bars);
+  summary.points = static_cast<long>(found.size());
+  return context.results.finish("completed", true);
 }
 
 }  // namespace whirl::study

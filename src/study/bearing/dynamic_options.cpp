@@ -1,4 +1,8 @@
-#include "study/bearing/held_film.hpp"
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "whirl/film/options.hpp"
 #include "whirl/study/bearing/dynamic_coefficients.hpp"
 
@@ -15,33 +19,50 @@ void describe(deck::Description<DynamicCoefficientsOptions>& d) {
   d.add("load", &O::load, "N", deck::any,
         "on the journal, instead of its place: one number, positive down, or [x, y]; the journal is where the force of "
         "the film balances it");
-  d.add("frequencies", &O::frequencies, deck::positive,
-        "frequencies of the motion over that of the shaft; a film without own states has the same coefficients at all");
-  d.add("tilt", &O::tilt,
-        "coefficients of the slopes of the journal and their moments too: 4 x 4 of each kind, whatever the film of the "
-        "deck follows");
-  d.check([](const O& o, const deck::Report& r) { check_place_or_load(o, r); });
+  d.add("tilt", &O::tilt, "4 x 4 coefficients: slopes dx/dz, dy/dz and their moments beside x and y");
+  d.add("frequencies", &O::frequencies, deck::positive, "frequencies omega/Omega, shown in the summary");
+  d.add("frequency_range", &O::frequency_range, deck::positive,
+        "lowest and highest of more frequencies omega/Omega, which only the tables and the pictures show");
+  d.add("points", &O::points, deck::in(2, 1e6), "frequencies in that range, evenly spaced in their logarithm");
+  d.check([](const O& o, const deck::Report& r) {
+    if (o.frequency_range && !((*o.frequency_range)[0] < (*o.frequency_range)[1]))
+      r.fail("frequency_range", "'frequency_range' goes from the lowest to the highest frequency");
+    if (o.load.values.empty()) return;
+    for (const auto& [key, given] :
+         {std::pair{"eccentricity", o.eccentricity.has_value()}, std::pair{"attitude", o.attitude.has_value()}})
+      if (given) r.fail(key, fmt::format("the journal is where the film carries its 'load': leave '{}' out", key));
+    if (o.load.values.size() > 2) return r.fail("load", "'load' must be one number, positive down, or [x, y]");
+    if (std::ranges::all_of(o.load.values, [](double f) { return f == 0; })) r.fail("load", "'load' must not be zero");
+  });
 }
 
-double DynamicCoefficients::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
-  // A sparse LU of one film, real and complex.
-  double states = 0;
-  for (const system::Bearing& b : machine.bearings) states = std::max(states, 1.0 * film::facts(b.film).states);
-  return 5000.0 * states;
+std::vector<double> DynamicCoefficientsOptions::all_frequencies() const {
+  std::vector<double> out = frequencies;
+  if (!frequency_range) return out;
+  const auto [low, high] = *frequency_range;
+  for (int i = 0; i < points; ++i) out.push_back(low * std::pow(high / low, static_cast<double>(i) / (points - 1)));
+  return out;
+}
+
+double DynamicCoefficients::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
+  return 600.0 * static_cast<double>(options.all_frequencies().size() * options.speeds.size());
 }
 
 void DynamicCoefficients::validate(const system::Machine& machine, const deck::Report& report) const {
-  const auto found = film_to_look_at(machine, options.bearing, report);
+  const auto found =
+      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
+  if (!found)
+    return report.fail("bearing",
+                       fmt::format("there is no bearing '{}'{}", options.bearing,
+                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
   if (options.speeds.empty()) report.fail("speeds", "the list is empty");
   if (options.frequencies.empty()) report.fail("frequencies", "the list is empty");
-  if (!found) return;
-  if (options.tilt && !film::tilting(machine.bearings[*found].film))
-    report.fail("tilt", "a film of this kind knows no slope of its journal");
-  const film::Facts film = film::facts(machine.bearings[*found].film);
-  if (!film.own_states && options.frequencies.size() > 1)
-    report.fail("frequencies",
-                "stiffness and damping of a film without own states do not depend on the frequency: one is enough; a "
-                "film of gas follows it with 'states: dynamic'");
+  if (machine.bearings.empty()) return;
+  const film::Options& film = machine.bearings[*found].film;
+  if (film::facts(film).coefficients)
+    report.fail(options.bearing.empty() ? "" : "bearing", "the coefficients of a linear film are those of its deck");
+  else if (options.tilt && !film::tilting(film))
+    report.fail("tilt", "a film of this kind does not follow the tilt of its journal: leave 'tilt' out");
 }
 
 }  // namespace whirl::study

@@ -15,8 +15,7 @@ using Pair = FilmAtRest::Pair;
 
 FilmAtRest::FilmAtRest(const system::Support& support, double speed)
     : clearance_(support.geometry.clearance),
-      steady_(film::condense(film::make_film(support.geometry, support.film, support.lubricant))),
-      film_(film::make_film(support.geometry, support.film, support.lubricant)) {
+      film_(film::condense(film::make_film(support.geometry, support.film, support.lubricant))) {
   motion_.speed = speed;
 }
 
@@ -24,36 +23,9 @@ void FilmAtRest::hold(const Pair& place) {
   film::JournalMotion there = motion_;
   there.position = {place[0], place[1], 0, 0};
   film::Response answer;
-  steady_->evaluate(there, film::Need::tangents, answer);
+  film_->evaluate(there, film::Need::tangents, answer);
   motion_ = there;
   answer_ = answer;
-  relaxed_ = false;
-}
-
-film::Film& FilmAtRest::film() {
-  if (relaxed_) return *film_;
-  if (states_.size() != film_->states()) {
-    states_.resize(film_->states());
-    film_->unloaded(motion_, states_);
-  }
-  try {
-    film::relax(*film_, motion_, states_);
-  } catch (const core::NotConverged&) {  // the last place was far from here
-    film_->unloaded(motion_, states_);
-    film::relax(*film_, motion_, states_);
-  }
-  relaxed_ = true;
-  return *film_;
-}
-
-const std::vector<double>& FilmAtRest::states() {
-  (void)film();
-  return states_;
-}
-
-film::PortCoefficients FilmAtRest::coefficients(double omega) {
-  film::Film& here = film();
-  return film::port_coefficients(here, motion_, states_, omega);
 }
 
 // Newton's method with the film's own stiffness, in steps of at most a quarter of the clearance, which are halved where

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <memory>
-#include <vector>
 
 #include "whirl/film/film.hpp"
 #include "whirl/system/train.hpp"
@@ -36,12 +35,6 @@ public:
   /// Of the film on the journal [N].
   [[nodiscard]] Pair force() const { return {answer_.force[0], answer_.force[1]}; }
   [[nodiscard]] const film::Response& answer() const { return answer_; }
-  /// The film with its states, relaxed at the place.
-  [[nodiscard]] film::Film& film();
-  [[nodiscard]] const std::vector<double>& states();
-  /// K [N/m, N, N m] and B (times s) of all ports at `omega` [rad/s].
-  [[nodiscard]] film::PortCoefficients coefficients(double omega);
-  [[nodiscard]] film::FilmReport report() { return film().summary(motion_, states_); }
 
 private:
   [[nodiscard]] bool try_to_carry(const Pair& load);
@@ -50,11 +43,9 @@ private:
   [[nodiscard]] double lifted(const Pair& load, double eccentricity, double& from);
 
   double clearance_;
-  std::unique_ptr<film::Film> steady_, film_;  // the states of the first one are condensed
+  std::unique_ptr<film::Film> film_;  // its states are condensed
   film::JournalMotion motion_;
   film::Response answer_;
-  std::vector<double> states_;
-  bool relaxed_ = false;
 };
 
 }  // namespace whirl::study

@@ -64,7 +64,7 @@ std::vector<GasPoint> gas_equilibria(const GasBearingOptions& o, const system::S
   std::vector<GasPoint> out;
   for (const deck::Quantity& speed : o.speeds) {
     FilmAtRest film(s, speed.value);
-    film.carry(load_of(o.load));
+    film.carry(load_along(o.load));
     out.push_back(gas_at(s, speed.value, film.place()));
   }
   return out;
@@ -210,7 +210,7 @@ StudyResult GasBearing::run(Context& context) {
       equilibria = gas_equilibria(options, support);
     } catch (const core::NotConverged& error) {
       none = error.what();
-      most = FilmAtRest(support, options.speeds.front().value).capacity(load_of(options.load));
+      most = FilmAtRest(support, options.speeds.front().value).capacity(load_along(options.load));
     }
   });
   put_gas_summary(summary, curves, "");
@@ -230,7 +230,8 @@ StudyResult GasBearing::run(Context& context) {
         (void)has_answer(
             [&] { put_gas_summary(there, gas_equilibria(options, other.supports[which]), "equilibrium"); });
       if (!none.empty()) {
-        const auto c = FilmAtRest(other.supports[which], options.speeds.front().value).capacity(load_of(options.load));
+        const auto c =
+            FilmAtRest(other.supports[which], options.speeds.front().value).capacity(load_along(options.load));
         there.set("capacity.load", c.load, "N");
         there.set("capacity.eccentricity", c.eccentricity, "1");
       }

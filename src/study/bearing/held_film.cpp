@@ -1,6 +1,6 @@
 #include "study/bearing/held_film.hpp"
 
-#include <variant>
+#include <fmt/core.h>
 
 #include "whirl/film/options.hpp"
 

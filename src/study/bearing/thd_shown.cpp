@@ -13,7 +13,7 @@ namespace {
 using thermal::Rows;
 
 constexpr double magnified = 100;  // the film where it is unwrapped
-constexpr double whole_turn = 2 * std::numbers::pi;
+constexpr double turn = 2 * std::numbers::pi;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void show_film(Context& context, ThdFilm& film, const film::Geometry& geometry) 
   const thermal::Mesh& mesh = rows.mesh();
   const auto n = static_cast<std::size_t>(mesh.nodes_around()), l = static_cast<std::size_t>(mesh.across);
   io::Group& group = context.results.group().child("film");
-  const std::vector<double> ends = thermal::cell_ends(group.reals("theta"), whole_turn),
+  const std::vector<double> ends = thermal::cell_ends(group.reals("theta"), turn),
                             rims = thermal::cell_ends(group.reals("z"));
   const double bore = geometry.radius + geometry.clearance;
   // m, depth of a corner below the bush; corners between two rows have the thickness of the one behind.
@@ -78,7 +78,7 @@ void put_solid(Context& context, const ThdFilm& film, const thermal::Solid& soli
     }));
     return;
   }
-  const std::vector<double> ends = thermal::cell_ends(shape.theta, whole_turn);
+  const std::vector<double> ends = thermal::cell_ends(shape.theta, turn);
   cells.insert(cells.begin() + 1, static_cast<std::size_t>(shape.columns()));
   context.results.show(io::cell_grid(group, name, name, "corners", cells, [&](const io::Shape& c) {
     const double radius = shape.r[c[2]] + (shape.outside ? geometry.clearance : 0);

@@ -1,6 +1,7 @@
 #pragma once
-// Stiffness and damping of one film at any frequency: of two translations and, where the film follows them, two tilts.
+// Stiffness and damping of the film of one bearing over speed and frequency, of two translations and two tilts.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,13 +17,16 @@ struct DynamicCoefficientsOptions {
   std::optional<double> eccentricity;  ///< of the journal, in clearances; 0 if neither it nor a load is given
   std::optional<double> attitude;      ///< of the journal, from +x counter-clockwise [rad]; 0 likewise
   deck::OneOrMore load;                ///< on the journal [N]: one number downwards, or x and y; empty: a given place
-  std::vector<double> frequencies{1};  ///< omega/Omega
-  bool tilt = false;                   ///< of both slopes too, whatever the film of the deck follows
+  bool tilt = false;                   ///< tilts and moments as well
+  std::vector<double> frequencies{1};  ///< omega/Omega, in the summary and the tables
+  std::optional<std::array<double, 2>> frequency_range;  ///< omega/Omega, lowest and highest, in the tables only
+  int points = 30;                                       ///< frequencies in that range
+
+  /// Those of the list, then those of the range.
+  [[nodiscard]] std::vector<double> all_frequencies() const;
 };
 void describe(deck::Description<DynamicCoefficientsOptions>& d);
 
-/// K(omega) and B(omega): minus the force on the journal by its motion is K + i omega B, the states of the film
-/// eliminated at this frequency.
 class DynamicCoefficients final : public StudyWith<DynamicCoefficientsOptions> {
 public:
   static constexpr std::string_view key = "dynamic_coefficients";
