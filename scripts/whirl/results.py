@@ -11,8 +11,10 @@ import numpy as np
 from .table import Table
 
 # The table that a kind of study is about.
-MAIN_TABLE = {"static": "bearings", "modes": "spectrum", "bearing_map": "locus", "unbalance_response": "response",
-              "equilibrium_branch": "branch", "cycle_branch": "branch", "locus": "locus", "run_up": "run_up", "motion": "spectrum"}
+MAIN_TABLE = {"static": "bearings", "modes": "spectrum", "bearing_map": "locus", "dynamic_coefficients": "places",
+              "unbalance_response": "response",
+              "equilibrium_branch": "branch", "cycle_branch": "branch", "locus": "locus", "run_up": "run_up", "motion": "spectrum",
+              "gas_bearing": "curves"}
 
 
 class Error(Exception):

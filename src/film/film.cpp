@@ -48,10 +48,12 @@ void Film::evaluate(const JournalMotion& motion, Need need, Response& response) 
   response = all.journal;
 }
 
-void relax(Film& film, const JournalMotion& motion, std::vector<double>& states) {
-  if (film.states() == 0) return;
+long relax(Film& film, const JournalMotion& motion, std::vector<double>& states) {
+  if (film.states() == 0) return 0;
   const std::vector<double> rest(states.size(), 0.0);
-  Steady(film).solve(motion, rest, Steady::Until::small_step, Need::force, states);
+  Steady steady(film);
+  steady.solve(motion, rest, Steady::Until::small_step, Need::force, states);
+  return steady.factorisations();
 }
 
 // s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.

@@ -20,6 +20,20 @@ Options refined(Options options, const std::array<double, 2>& factor) {
   return options;
 }
 
+std::optional<Options> tilting(Options options) {
+  const bool can = std::visit(
+      [](auto& k) {
+        if constexpr (requires { k.tilt; }) {
+          k.tilt = true;
+          return true;
+        } else {
+          return false;
+        }
+      },
+      options.kind);
+  return can ? std::optional(std::move(options)) : std::nullopt;
+}
+
 bool same_kind(const Options& a, const Options& b) {
   return a.kind.index() == b.kind.index();
 }

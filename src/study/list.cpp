@@ -1,4 +1,6 @@
 #include "whirl/study/bearing/bearing_map.hpp"
+#include "whirl/study/bearing/dynamic_coefficients.hpp"
+#include "whirl/study/bearing/gas_bearing.hpp"
 #include "whirl/study/bearing/thd.hpp"
 #include "whirl/study/convergence/mesh_convergence.hpp"
 #include "whirl/study/cycle/cycle_branch.hpp"
@@ -28,6 +30,10 @@ const std::vector<deck::Kind<Study>>& kinds() {
   static const std::vector<deck::Kind<Study>> all{
       kind<Static>("where the journals sit in their films at one speed, loads, coefficients, film fields"),
       kind<BearingMap>("one bearing: impedance, locus, stiffness and damping over eccentricity, Routh's threshold"),
+      kind<GasBearing>(
+          "one film of gas: load, flow and losses over eccentricity and under a load, meshes, design maps"),
+      kind<DynamicCoefficients>(
+          "one bearing: stiffness and damping of its film over speed and frequency, with tilts if wanted"),
       kind<Thd>("one film with heat: pressure, temperature in film and solids, power and heat over the speed"),
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),

@@ -31,6 +31,18 @@ TEST(Facts, SmoothnessOfEveryFilm) {
   EXPECT_EQ(smoothness(liner).derivatives, 0);
 }
 
+TEST(Facts, TiltingFilms) {
+  for (const Options& o : {Options(Reynolds{}), Options(Gas{})}) {
+    ASSERT_FALSE(facts(o).tilts);
+    const std::optional<Options> tilted = tilting(o);
+    ASSERT_TRUE(tilted);
+    EXPECT_TRUE(facts(*tilted).tilts);
+    EXPECT_TRUE(same_kind(*tilted, o));
+  }
+  EXPECT_FALSE(tilting(Short{}));
+  EXPECT_FALSE(tilting(CompliantShort{}));
+}
+
 TEST(Facts, OfEveryKind) {
   const Facts linear = facts(Linear{}), closed = facts(LongInlet{}), reynolds = facts(Reynolds{});
   EXPECT_TRUE(linear.coefficients);

@@ -135,8 +135,8 @@ private:
 std::unique_ptr<Film> make_film(const Geometry& geometry, const Options& options, const Lubricant& lubricant);
 
 /// Own states at which g(motion, s, 0) = 0, by Newton from `states`; those of a film without states are none. Throws
-/// core::NotConverged or core::DomainError.
-void relax(Film& film, const JournalMotion& motion, std::vector<double>& states);
+/// core::NotConverged or core::DomainError. Returns how many factorisations that took.
+long relax(Film& film, const JournalMotion& motion, std::vector<double>& states);
 
 /// The film without its states, itself if it has none: they take the values at which nothing that the film remembers
 /// changes, whatever the motion, g(motion, s, s') = 0 with s' = carried_rates() times the velocity, found by Newton's

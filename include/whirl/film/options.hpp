@@ -2,6 +2,7 @@
 // What a fluid film is made of: bore, lubricant, and how its pressure is computed. Plain data, SI and radians.
 
 #include <concepts>
+#include <optional>
 #include <type_traits>
 
 #include "whirl/core/error.hpp"
@@ -52,6 +53,9 @@ template <class T>
 /// The film with `factor` times as many cells around and along the bearing, at least 4 and even where its quadrature
 /// asks for it; itself if it has no mesh.
 [[nodiscard]] Options refined(Options options, const std::array<double, 2>& factor);
+
+/// The same film where it follows the tilt of its journal; empty if films of this kind cannot.
+[[nodiscard]] std::optional<Options> tilting(Options options);
 
 /// True if both are of the same kind, whatever their options.
 [[nodiscard]] bool same_kind(const Options& a, const Options& b);

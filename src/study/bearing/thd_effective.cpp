@@ -27,7 +27,7 @@ Values values_of(const thermal::FlowReport& report) {
 }
 
 // Angle from one force to another, rad.
-double turn(const double (&from)[2], const double (&to)[2]) {
+double turn_between(const double (&from)[2], const double (&to)[2]) {
   return std::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
 }
 
@@ -85,7 +85,7 @@ void put_effective(io::Group& group, io::StudySummary& summary, ThdFilm& film, d
       summary.set(fmt::format("temperature.effective.{}", held[q].key), *found, "K");
       names.emplace_back(held[q].key);
       temperatures.push_back(*found);
-      angles.push_back(turn(wanted_report.force, report.force));
+      angles.push_back(turn_between(wanted_report.force, report.force));
       for (std::size_t k = 0; k < held.size(); ++k)
         errors[k].push_back(wanted[k] > 0 ? values[k] / wanted[k] - 1 : std::numeric_limits<double>::quiet_NaN());
       if (q != 0) continue;

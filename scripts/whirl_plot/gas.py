@@ -1,0 +1,97 @@
+"""A film of gas: load, flow and losses over the eccentricity, isobars, meshes, maps of a design, rarefaction."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .style import COLOURS, GREY, INK, save
+
+CURVES = (("load", 1, "load [N]"), ("attitude", 180 / np.pi, "attitude angle [deg]"), ("normal_flow", 1, "flow [l/min, normal]"), ("power_loss", 1, "power loss [W]"),
+          ("knudsen", 1, "Knudsen number"), ("factorisations", 1, "factorisations"))
+
+
+def draw_curves(study):
+    """What the film carries, takes and loses over the eccentricity, a curve for each speed."""
+    if not study.has("curves/speed", "curves/eccentricity", "curves/load") or len(study.get("curves/eccentricity")) < 2:
+        return []
+    e, speeds = study.get("curves/eccentricity"), study.get("curves/speed")
+    figure, axes = plt.subplots(2, 3, figsize=(11.2, 6.2), sharex=True)
+    for axis, (name, factor, label) in zip(axes.ravel(), CURVES):
+        values = study.get(f"curves/{name}")
+        for k, speed in enumerate(speeds):
+            axis.plot(e, factor * values[k], "-o", markersize=3.5, color=COLOURS[k % len(COLOURS)], label=f"{speed:.4g} rad/s")
+        axis.set_ylabel(label)
+        if factor == 1 and name != "factorisations":
+            axis.set_ylim(bottom=0)
+        if name == "factorisations":
+            axis.set_ylim(0, values.max() + 1)
+    for axis in axes[-1]:
+        axis.set_xlabel("eccentricity, in clearances")
+    return save(figure, study, "gas-curves", "journal held in the given direction; attitude from the load, with the rotation", handles=axes[0, 0].get_legend_handles_labels()[0])
+
+
+def draw_isobars(study):
+    """Pressure over the unwrapped film at the last eccentricity, first and last speed."""
+    if not study.has("fields/pressure", "fields/theta", "fields/z"):
+        return []
+    theta, z, p = np.degrees(study.get("fields/theta")), 1e3 * study.get("fields/z"), 1e-6 * study.get("fields/pressure")
+    speeds, e = study.get("curves/speed"), study.get("curves/eccentricity")
+    shown = [0] if len(speeds) == 1 else [0, len(speeds) - 1]
+    figure, axes = plt.subplots(len(shown), 1, figsize=(9.6, 2.9 * len(shown)), squeeze=False, sharex=True)
+    levels = np.linspace(p[shown].min(), p[shown].max(), 22)
+    for axis, k in zip(axes[:, 0], shown):
+        filled = axis.contourf(theta, z, p[k].T, levels, cmap="viridis")
+        lines = axis.contour(theta, z, p[k].T, levels[1:-1:2], colors="white", linewidths=0.6)
+        axis.clabel(lines, fmt="%.2f", fontsize=6.5)
+        axis.set_title(f"{speeds[k]:.4g} rad/s", fontsize=9)
+        axis.set_ylabel("z [mm]")
+        axis.set_xticks(np.arange(np.ceil(theta[0] / 45) * 45, theta[-1] + 1, 45))
+        figure.colorbar(filled, ax=axis, label="pressure [MPa, absolute]", pad=0.015)
+    axes[-1, 0].set_xlabel(r"$\theta$ from $+x$, with the rotation [deg]")
+    return save(figure, study, "gas-isobars", f"eccentricity {e[-1]:.3g} clearances; linear between nodes; the dip in the jet behind an orifice is not modelled")
+
+
+def draw_meshes(study):
+    """Load over the mesh, with the pressure at the rim of the orifices and with that of the nodes."""
+    if not study.has("meshes/load", "meshes/around", "meshes/load_of_node_source") or len(study.get("meshes/load")) < 2:
+        return []
+    n, rim, node = (study.get(f"meshes/{k}") for k in ("around", "load", "load_of_node_source"))
+    figure, axis = plt.subplots(figsize=(7.2, 4.0))
+    axis.plot(n, rim, "-o", color=INK, markersize=4, label="pressure at the rim of the orifice")
+    axis.plot(n, node, "--s", color="#c0392b", markersize=4, label="pressure of the node: never converges")
+    axis.set_xscale("log")
+    axis.set_xticks(n, [f"{a:.0f} x {b:.0f}" for a, b in zip(n, study.get("meshes/along"))])
+    axis.minorticks_off()
+    axis.set_xlabel("cells around and along")
+    axis.set_ylabel("load [N]")
+    return save(figure, study, "gas-meshes", handles=axis.get_legend_handles_labels()[0])
+
+
+def draw_map(study):
+    """Load and flow over clearance and diameter of the orifices."""
+    if not study.has("map/load", "map/clearance", "map/diameter"):
+        return []
+    c, d = 1e6 * study.get("map/clearance"), 1e3 * study.get("map/diameter")
+    figure, axes = plt.subplots(1, 2, figsize=(10.4, 3.9))
+    for axis, (name, factor, label) in zip(axes, (("load", 1, "load [N]"), ("mass_flow", 1e6, "flow [mg/s]"))):
+        values = factor * study.get(f"map/{name}")
+        for k, diameter in enumerate(d):
+            axis.plot(c, values[:, k], "-o", markersize=3.5, color=COLOURS[k % len(COLOURS)], label=f"{diameter:.3g} mm")
+        axis.set_xlabel("clearance [µm]")
+        axis.set_ylabel(label)
+        axis.set_ylim(bottom=0)
+    return save(figure, study, "gas-map", f"at an eccentricity of {study.group['map'].attrs['eccentricity']:.3g} clearances; colours: diameter of the orifices",
+                handles=axes[0].get_legend_handles_labels()[0])
+
+
+def draw_knudsen(study):
+    """How thin a film must be for a Knudsen number, over the pressure, and what is the least film of this one."""
+    if not study.has("knudsen/pressure"):
+        return []
+    p = 1e-6 * study.get("knudsen/pressure")
+    figure, axis = plt.subplots(figsize=(7.2, 4.2))
+    for (name, label), colour in zip((("slip_begins", "Kn = 0.01: slip begins to show"), ("transition", "Kn = 0.1: slip has to be counted"), ("free_molecules", "Kn = 10: free molecules")), COLOURS):
+        axis.loglog(p, 1e6 * study.get(f"knudsen/{name}"), color=colour, label=label)
+    least = 1e6 * study.get("curves/min_thickness").min()
+    axis.axhline(least, color=GREY, linestyle="--", label=f"least film of this study, {least:.3g} µm")
+    axis.set_xlabel("pressure [MPa, absolute]")
+    axis.set_ylabel("film thickness [µm]")
+    return save(figure, study, "gas-knudsen", "no slip is modelled", handles=axis.get_legend_handles_labels()[0], columns=2)

@@ -1,0 +1,196 @@
+#include "whirl/study/bearing/dynamic_coefficients.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
+#include "study/bearing/journal_place.hpp"
+#include "study/common.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+namespace {
+
+/// A journal at rest at one speed, and its coefficients at all frequencies.
+struct AtSpeed {
+  JournalPlace place;
+  double thickness = 0;
+  std::vector<film::PortCoefficients> coefficients;
+};
+
+// Names of the entries: xx, xy, ..., and with slopes x.slope_x, ...; `slopes` counts those in a pair.
+constexpr std::array<const char*, 4> port_words = {"x", "y", "slope_x", "slope_y"};
+constexpr std::array<const char*, 3> stiffness_units = {"N/m", "N", "N m"}, damping_units = {"N s/m", "N s", "N m s"};
+
+std::size_t slopes_in(std::size_t i, std::size_t j) {
+  return (i > 1 ? 1U : 0U) + (j > 1 ? 1U : 0U);
+}
+std::string pair_name(std::size_t i, std::size_t j, const char* between) {
+  return std::string(port_words[i]) + (slopes_in(i, j) == 0 ? "" : between) + port_words[j];
+}
+
+std::array<double, 2> load_of(const DynamicCoefficientsOptions& o) {
+  const auto& f = o.load.values;
+  if (f.empty()) return {};
+  return f.size() == 1 ? std::array<double, 2>{0, -f[0]} : std::array<double, 2>{f[0], f[1]};
+}
+
+// What one rank computes; all do it alike. Every speed starts from the one before.
+std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, const system::Support& support) {
+  film::Options kind = support.film;
+  if (options.tilt) kind = film::tilting(kind).value();
+  const auto film = film::make_film(support.geometry, kind, support.lubricant);
+  const double c = support.geometry.clearance;
+  std::vector<AtSpeed> out;
+  JournalPlace start;
+  if (options.load.values.empty()) {
+    const double e = options.eccentricity.value_or(0.0) * c, angle = options.attitude.value_or(0.0);
+    start.motion.position = {e * std::cos(angle), e * std::sin(angle), 0, 0};
+  }
+  for (const deck::Quantity& speed : options.speeds) {
+    start.motion.speed = speed.value;
+    AtSpeed now;
+    now.place = options.load.values.empty() ? rest_at(*film, start.motion, start.states)
+                                            : carry(*film, c, load_of(options), start);
+    now.thickness = film->least_thickness(now.place.motion, now.place.states);
+    for (const double ratio : options.all_frequencies())
+      now.coefficients.push_back(
+          film::port_coefficients(*film, now.place.motion, now.place.states, ratio * speed.value));
+    start = now.place;
+    out.push_back(std::move(now));
+  }
+  return out;
+}
+
+// Every number that may have a bar, in the order of the tables: places, then entries of K and B.
+std::vector<double> numbers_of(const std::vector<AtSpeed>& found) {
+  std::vector<double> out;
+  for (const AtSpeed& a : found) out.insert(out.end(), {a.place.motion.position[0], a.place.motion.position[1]});
+  if (found.empty()) return out;
+  const std::size_t n = found.front().coefficients.front().ports;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      for (const AtSpeed& a : found)
+        for (const film::PortCoefficients& c : a.coefficients)
+          out.insert(out.end(), {c.stiffness[i][j], c.damping[i][j]});
+  return out;
+}
+
+void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& options, double clearance,
+                 const std::vector<AtSpeed>& found) {
+  for (std::size_t s = 0; s < found.size(); ++s) {
+    const AtSpeed& a = found[s];
+    const std::string head = fmt::format("speed.{}.", number_text(options.speeds[s].value, options.speeds[s].unit));
+    const auto& at = a.place.motion.position;
+    summary.set(head + "x", at[0], "m");
+    summary.set(head + "y", at[1], "m");
+    summary.set(head + "eccentricity", std::hypot(at[0], at[1]) / clearance, "1");
+    summary.set(head + "min_thickness", a.thickness, "m");
+    summary.set(head + "force.x", a.place.force[0], "N");
+    summary.set(head + "force.y", a.place.force[1], "N");
+    for (std::size_t f = 0; f < options.frequencies.size(); ++f) {
+      const film::PortCoefficients& c = a.coefficients[f];
+      const std::string at_ratio = fmt::format("{}ratio.{:.6g}.", head, options.frequencies[f]);
+      for (std::size_t i = 0; i < c.ports; ++i)
+        for (std::size_t j = 0; j < c.ports; ++j) {
+          summary.set(at_ratio + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
+          summary.set(at_ratio + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
+        }
+    }
+  }
+}
+
+// One table of K or B entries [speed][frequency] with bars.
+void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, double clearance,
+                const std::vector<AtSpeed>& found, const Bars* bars) {
+  const std::vector<double> ratios = options.all_frequencies();
+  std::vector<double> speeds, x, y, e, thickness, force_x, force_y;
+  for (const AtSpeed& a : found) {
+    const auto& at = a.place.motion.position;
+    speeds.push_back(a.place.motion.speed);
+    x.push_back(at[0]);
+    y.push_back(at[1]);
+    e.push_back(std::hypot(at[0], at[1]) / clearance);
+    thickness.push_back(a.thickness);
+    force_x.push_back(a.place.force[0]);
+    force_y.push_back(a.place.force[1]);
+  }
+  auto& places = group.child("places");
+  places.put("speed", speeds, "rad/s", "shaft speed");
+  places.put("x", x, "m", "place of the journal, to the right of the bearing centre");
+  places.put("y", y, "m", "place of the journal, above the bearing centre");
+  places.put("eccentricity", e, "1", "in clearances");
+  places.put("min_thickness", thickness, "m", "least thickness of the film");
+  places.put("force_x", force_x, "N", "of the film on the journal");
+  places.put("force_y", force_y, "N", "of the film on the journal");
+  auto& table = group.child("coefficients");
+  table.put("speed", speeds, "rad/s", "shaft speed");
+  table.put("ratio", ratios, "1", "frequency over speed, omega/Omega");
+  const io::Shape shape{speeds.size(), ratios.size()};
+  const std::size_t n = found.front().coefficients.front().ports;
+  std::size_t next = 2 * found.size();
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      std::array<std::vector<double>, 2> values, errors;
+      for (const AtSpeed& a : found)
+        for (const film::PortCoefficients& c : a.coefficients) {
+          values[0].push_back(c.stiffness[i][j]);
+          values[1].push_back(c.damping[i][j]);
+          for (std::size_t k = 0; k < 2; ++k, ++next)
+            if (bars) errors[k].push_back((*bars)[next].total());
+        }
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::string name = (k == 0 ? "k_" : "b_") + pair_name(i, j, "_");
+        const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
+        const char* what = k == 0 ? "stiffness" : "damping";
+        table.put(name, shape, values[k], unit, fmt::format("{} [speed][frequency]", what));
+        if (bars)
+          table.put(name + "_uncertainty", shape, errors[k], unit,
+                    fmt::format("estimated error of {} from the film mesh", name));
+      }
+    }
+}
+
+}  // namespace
+
+StudyResult DynamicCoefficients::run(Context& context) {
+  const system::Train train = system::train_of(context.machine);
+  const std::size_t which = options.bearing.empty() ? 0 : *system::find_bearing(context.machine, options.bearing);
+  const double clearance = train.supports[which].geometry.clearance;
+  auto& summary = context.results.summary();
+  auto& group = context.results.group();
+
+  std::vector<AtSpeed> found;
+  core::agree(context.comm, [&] { found = computed(options, train.supports[which]); });
+  put_summary(summary, options, clearance, found);
+
+  const MeshLaw law = law_of(context.machine);
+  Bars bars(numbers_of(found), law);
+  SummaryBars of_summary(summary, law);
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  for (const FilmMesh& mesh : meshes) {
+    std::vector<AtSpeed> other;
+    core::agree(context.comm, [&] {
+      const bool answered =
+          has_answer([&] { other = computed(options, with_film_mesh(train, mesh.factor).supports[which]); });
+      if (!answered) other.clear();
+    });
+    io::StudySummary there;
+    put_summary(there, options, clearance, other);
+    bars.add(mesh.axis, mesh.spacing, numbers_of(other));
+    of_summary.add(mesh.axis, mesh.spacing, there);
+  }
+  of_summary.write(place_tolerance);
+
+  group.set("bearing", context.machine.bearings[which].name);
+  put_tables(group, options, clearance, found, meshes.empty() ? nullptr : &bars);
+  summary.points = static_cast<long>(found.size());
+  return context.results.finish("completed", true);
+}
+
+}  // namespace whirl::study

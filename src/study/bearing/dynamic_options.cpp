@@ -1,0 +1,68 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/film/options.hpp"
+#include "whirl/study/bearing/dynamic_coefficients.hpp"
+
+namespace whirl::study {
+
+void describe(deck::Description<DynamicCoefficientsOptions>& d) {
+  using O = DynamicCoefficientsOptions;
+  d.add("name", &O::name, "name in the results; the kind if not given");
+  d.add("bearing", &O::bearing, "bearing to look at; the first of the deck if not given");
+  d.add("speeds", &O::speeds, "rad/s", deck::positive, "shaft speeds, one after the other").required();
+  d.add("eccentricity", &O::eccentricity, deck::Check{.min = 0, .max = 1, .max_open = true},
+        "distance of the journal from the bearing centre, in clearances");
+  d.add("attitude", &O::attitude, "rad", deck::any, "direction of the journal from there, from +x counter-clockwise");
+  d.add("load", &O::load, "N", deck::any,
+        "on the journal, instead of its place: one number, positive down, or [x, y]; the journal is where the force of "
+        "the film balances it");
+  d.add("tilt", &O::tilt, "4 x 4 coefficients: slopes dx/dz, dy/dz and their moments beside x and y");
+  d.add("frequencies", &O::frequencies, deck::positive, "frequencies omega/Omega, shown in the summary");
+  d.add("frequency_range", &O::frequency_range, deck::positive,
+        "lowest and highest of more frequencies omega/Omega, which only the tables and the pictures show");
+  d.add("points", &O::points, deck::in(2, 1e6), "frequencies in that range, evenly spaced in their logarithm");
+  d.check([](const O& o, const deck::Report& r) {
+    if (o.frequency_range && !((*o.frequency_range)[0] < (*o.frequency_range)[1]))
+      r.fail("frequency_range", "'frequency_range' goes from the lowest to the highest frequency");
+    if (o.load.values.empty()) return;
+    for (const auto& [key, given] :
+         {std::pair{"eccentricity", o.eccentricity.has_value()}, std::pair{"attitude", o.attitude.has_value()}})
+      if (given) r.fail(key, fmt::format("the journal is where the film carries its 'load': leave '{}' out", key));
+    if (o.load.values.size() > 2) return r.fail("load", "'load' must be one number, positive down, or [x, y]");
+    if (std::ranges::all_of(o.load.values, [](double f) { return f == 0; })) r.fail("load", "'load' must not be zero");
+  });
+}
+
+std::vector<double> DynamicCoefficientsOptions::all_frequencies() const {
+  std::vector<double> out = frequencies;
+  if (!frequency_range) return out;
+  const auto [low, high] = *frequency_range;
+  for (int i = 0; i < points; ++i) out.push_back(low * std::pow(high / low, static_cast<double>(i) / (points - 1)));
+  return out;
+}
+
+double DynamicCoefficients::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
+  return 600.0 * static_cast<double>(options.all_frequencies().size() * options.speeds.size());
+}
+
+void DynamicCoefficients::validate(const system::Machine& machine, const deck::Report& report) const {
+  const auto found =
+      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
+  if (!found)
+    return report.fail("bearing",
+                       fmt::format("there is no bearing '{}'{}", options.bearing,
+                                   deck::did_you_mean_one_of(options.bearing, system::bearing_names(machine))));
+  if (options.speeds.empty()) report.fail("speeds", "the list is empty");
+  if (options.frequencies.empty()) report.fail("frequencies", "the list is empty");
+  if (machine.bearings.empty()) return;
+  const film::Options& film = machine.bearings[*found].film;
+  if (film::facts(film).coefficients)
+    report.fail(options.bearing.empty() ? "" : "bearing", "the coefficients of a linear film are those of its deck");
+  else if (options.tilt && !film::tilting(film))
+    report.fail("tilt", "a film of this kind does not follow the tilt of its journal: leave 'tilt' out");
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,149 @@
+#include "study/bearing/film_at_rest.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "whirl/core/error.hpp"
+
+namespace whirl::study {
+
+using Pair = FilmAtRest::Pair;
+
+FilmAtRest::FilmAtRest(const system::Support& support, double speed)
+    : clearance_(support.geometry.clearance),
+      film_(film::condense(film::make_film(support.geometry, support.film, support.lubricant))) {
+  motion_.speed = speed;
+}
+
+void FilmAtRest::hold(const Pair& place) {
+  film::JournalMotion there = motion_;
+  there.position = {place[0], place[1], 0, 0};
+  film::Response answer;
+  film_->evaluate(there, film::Need::tangents, answer);
+  motion_ = there;
+  answer_ = answer;
+}
+
+// Newton's method with the film's own stiffness, in steps of at most a quarter of the clearance, which are halved where
+// there is no film or the force that is left does not fall.
+bool FilmAtRest::try_to_carry(const Pair& load) {
+  constexpr double tolerance = 1e-9;
+  constexpr int most_steps = 60, most_halvings = 12;
+  const Eigen::Vector2d wanted(load[0], load[1]);
+  const auto left = [&] { return Eigen::Vector2d(Eigen::Vector2d(answer_.force[0], answer_.force[1]) + wanted); };
+  for (int step = 0; step < most_steps; ++step) {
+    const Eigen::Vector2d before = left();
+    if (before.norm() <= tolerance * wanted.norm()) return true;
+    Eigen::Matrix2d slope;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        slope(i, j) = answer_.d_position[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    Eigen::Vector2d move = -slope.partialPivLu().solve(before);
+    if (!move.allFinite()) return false;
+    move *= std::min(1.0, 0.25 * clearance_ / move.norm());
+    const Pair from = place();
+    bool closer = false;
+    for (int k = 0; k < most_halvings && !closer; ++k, move *= 0.5) {
+      try {
+        hold({from[0] + move(0), from[1] + move(1)});
+        closer = left().norm() < before.norm();
+      } catch (const core::DomainError&) {
+      } catch (const core::NotConverged&) {
+      }
+    }
+    if (closer) continue;
+    hold(from);
+    return before.norm() <= 100 * tolerance * wanted.norm();
+  }
+  return false;
+}
+
+void FilmAtRest::carry(const Pair& load) {
+  const double size = std::hypot(load[0], load[1]);
+  // From the last place, or else from ones on the way of the load: at the centre some films have no stiffness.
+  for (const double part : {0.0, 0.1, 0.4, 0.7}) {
+    try {
+      if (part > 0 || !(answer_.force[0] != 0 || answer_.force[1] != 0))
+        hold({part * clearance_ * load[0] / size, part * clearance_ * load[1] / size});
+      if (try_to_carry(load)) return;
+    } catch (const core::DomainError&) {
+    } catch (const core::NotConverged&) {
+    }
+  }
+  const Capacity most = capacity(load);
+  throw core::NotConverged(fmt::format(
+      "no equilibrium: no place of the journal was found where the film carries {:.6g} N at {:.6g} rad/s. Where it "
+      "pushes to no side it carries at most {:.6g} N, at an eccentricity of {:.3g} clearances{}",
+      size, motion_.speed, most.load, most.eccentricity, most.rises ? ", and more closer to the wall" : ""));
+}
+
+double FilmAtRest::lifted(const Pair& load, double eccentricity, double& from) {
+  const double size = std::hypot(load[0], load[1]);
+  const Pair along = {load[0] / size, load[1] / size}, aside = {-along[1], along[0]};
+  double up = 0;
+  const auto miss = [&](double angle) {
+    const double u = eccentricity * clearance_ * std::cos(angle), v = eccentricity * clearance_ * std::sin(angle);
+    hold({u * along[0] + v * aside[0], u * along[1] + v * aside[1]});
+    up = -(answer_.force[0] * along[0] + answer_.force[1] * along[1]);
+    return std::atan2(-(answer_.force[0] * aside[0] + answer_.force[1] * aside[1]), up);
+  };
+  constexpr double none = std::numeric_limits<double>::quiet_NaN(), straight = 1e-6;
+  try {
+    double before = from, d_before = miss(before), angle = before + std::clamp(-d_before, -0.3, 0.3);
+    for (int k = 0; k < 40; ++k) {
+      const double d = miss(angle);
+      if (std::abs(d) < straight) {
+        from = angle;
+        return up;
+      }
+      if (angle == before) return none;
+      const double slope = (d - d_before) / (angle - before);
+      const double step = slope != 0 ? std::clamp(-d / slope, -0.3, 0.3) : -d;
+      before = angle;
+      d_before = d;
+      angle += step;
+    }
+  } catch (const core::DomainError&) {
+  } catch (const core::NotConverged&) {
+  }
+  return none;
+}
+
+FilmAtRest::Capacity FilmAtRest::capacity(const Pair& load) {
+  constexpr double first = 0.05, last = 0.95, step = 0.05;
+  Capacity out;
+  double angle = 0;
+  for (double e = first; e < last + 0.5 * step; e += step) {
+    const double up = lifted(load, e, angle);
+    if (!(up > out.load)) continue;
+    out = {up, e, e > last - 0.5 * step};
+  }
+  if (out.rises || !(out.load > 0)) return out;
+  // Golden section about the largest.
+  constexpr double golden = 0.3819660112501051, narrow = 1e-4;
+  double low = out.eccentricity - step, high = out.eccentricity + step;
+  double a = low + golden * (high - low), b = high - golden * (high - low);
+  double at_a = lifted(load, a, angle), at_b = lifted(load, b, angle);
+  while (high - low > narrow) {
+    if (at_a > at_b) {
+      high = std::exchange(b, a);
+      at_b = at_a;
+      a = low + golden * (high - low);
+      at_a = lifted(load, a, angle);
+    } else {
+      low = std::exchange(a, b);
+      at_a = at_b;
+      b = high - golden * (high - low);
+      at_b = lifted(load, b, angle);
+    }
+  }
+  for (const auto& [e, up] : {std::pair{a, at_a}, {b, at_b}})
+    if (up > out.load) out = {up, e, false};
+  return out;
+}
+
+}  // namespace whirl::study

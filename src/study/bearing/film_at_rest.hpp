@@ -1,0 +1,51 @@
+#pragma once
+// The film of one bearing with its journal at rest: held at a place, or where it carries a load.
+
+#include <array>
+#include <memory>
+
+#include "whirl/film/film.hpp"
+#include "whirl/system/train.hpp"
+
+namespace whirl::study {
+
+/// At one speed. Not collective; not thread-safe.
+class FilmAtRest {
+public:
+  using Pair = std::array<double, 2>;
+
+  /// @param speed shaft speed [rad/s]
+  FilmAtRest(const system::Support& support, double speed);
+  /// The journal at `place` (x, y) [m] from the centre of the bearing, without tilt. Throws core::DomainError where the
+  /// surfaces touch, core::NotConverged where the film is not found.
+  void hold(const Pair& place);
+  /// The journal where the film balances `load` [N] on it, to 1e-9 of it, sought from the last place. Throws
+  /// core::NotConverged if there is none, and says what the film can carry in that direction.
+  void carry(const Pair& load);
+  /// The most that it carries in the direction of `load`, up to 0.95 clearances.
+  struct Capacity {
+    double load = 0;          ///< N
+    double eccentricity = 0;  ///< there, in clearances
+    bool rises = false;       ///< it still grows with the eccentricity where the search ended
+  };
+  [[nodiscard]] Capacity capacity(const Pair& load);
+
+  [[nodiscard]] const film::JournalMotion& motion() const { return motion_; }
+  [[nodiscard]] Pair place() const { return {motion_.position[0], motion_.position[1]}; }
+  /// Of the film on the journal [N].
+  [[nodiscard]] Pair force() const { return {answer_.force[0], answer_.force[1]}; }
+  [[nodiscard]] const film::Response& answer() const { return answer_; }
+
+private:
+  [[nodiscard]] bool try_to_carry(const Pair& load);
+  // The share of the load's direction in the film's force against it at `eccentricity` in clearances, where the film
+  // pushes to no side, sought from the angle `from`, which it changes. Not a number where there is no film.
+  [[nodiscard]] double lifted(const Pair& load, double eccentricity, double& from);
+
+  double clearance_;
+  std::unique_ptr<film::Film> film_;  // its states are condensed
+  film::JournalMotion motion_;
+  film::Response answer_;
+};
+
+}  // namespace whirl::study

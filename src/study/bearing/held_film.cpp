@@ -1,0 +1,27 @@
+#include "study/bearing/held_film.hpp"
+
+#include <fmt/core.h>
+
+#include "whirl/film/options.hpp"
+
+namespace whirl::study {
+
+std::optional<std::size_t> film_to_look_at(const system::Machine& machine, const std::string& name,
+                                           const deck::Report& report) {
+  const auto found = name.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, name);
+  if (!found) {
+    report.fail("bearing", fmt::format("there is no bearing '{}'{}", name,
+                                       deck::did_you_mean_one_of(name, system::bearing_names(machine))));
+    return std::nullopt;
+  }
+  if (machine.bearings.empty()) return std::nullopt;
+  const system::Bearing& bearing = machine.bearings[*found];
+  const std::string key = name.empty() ? "" : "bearing";
+  if (film::facts(bearing.film).coefficients) {
+    report.fail(key, "a linear film has the coefficients that the deck gives it");
+    return std::nullopt;
+  }
+  return found;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Runs decks of inputs/aerostatic and compares stiffness and damping with those computed independently.
+
+dynamic.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
+"""
+import json
+import subprocess
+import sys
+
+import numpy as np
+from harness import Harness, value
+
+AXES = ("x", "y", "slope_x", "slope_y")
+LOAD = "studies=[{dynamic_coefficients: {name: c, load: 49.05 N, speeds: [2000 rad/s]%s}}]"
+
+
+def matrix(study, letter, ratio, ports):
+    """K or B of a study at 2000 rad/s."""
+    pair = lambda a, b: a + ("." if "slope" in a + b else "") + b  # noqa: E731
+    return np.array([[value(study, f"speed.2000.ratio.{ratio:g}.{letter}.{pair(a, b)}") for b in AXES[:ports]] for a in AXES[:ports]])
+
+
+def bars(study, letter, ratio, ports):
+    pair = lambda a, b: a + ("." if "slope" in a + b else "") + b  # noqa: E731
+    return np.array([[study["values"][f"speed.2000.ratio.{ratio:g}.{letter}.{pair(a, b)}"]["uncertainty"] for b in AXES[:ports]]
+                     for a in AXES[:ports]])
+
+
+def turned(m):
+    """From the axes of the reference: the first is y, the second -x; shifts and rotations apart."""
+    m = np.array(m)
+    turn = np.zeros((4, 4))
+    turn[0, 1], turn[1, 0], turn[2, 2], turn[3, 3] = -1, 1, 1, 1
+    return turn @ m @ turn.T
+
+
+def coefficients(h):
+    reference = json.loads((h.source / "tests/reference/aerostatic/bearing_b.json").read_text())
+    deck = h.source / "inputs/aerostatic/bearing_b.yaml"
+    found = h.run(deck, "whole", launcher=[])
+    study = found["four by four"]
+    same = next(r for r in reference["synchronous"] if r["cells"] == [96, 32])
+    finest = max(reference["synchronous"], key=lambda r: r["cells"][0])
+    h.close("y [um]", 1e6 * value(study, "speed.2000.y"), same["place_um"][0], 1e-4)
+    h.close("x [um]", 1e6 * value(study, "speed.2000.x"), -same["place_um"][1], 1e-4)
+    h.close("y [um], against the finest", 1e6 * value(study, "speed.2000.y"), finest["place_um"][0],
+            1e6 * study["values"]["speed.2000.y"]["uncertainty"])
+    for letter in "KB":
+        m, wanted, error = matrix(study, letter, 1, 4), turned(same[letter]), bars(study, letter, 1, 4)
+        best = turned(finest[letter])
+        for name, block in (("translation", np.s_[:2, :2]), ("tilt", np.s_[2:, 2:])):
+            size = np.abs(wanted[block]).max()
+            for (i, j), w in np.ndenumerate(wanted[block]):
+                h.close(f"{letter} {name} {i}{j}, same mesh", m[block][i, j], w, 1e-3 * size)
+                h.close(f"{letter} {name} {i}{j}, finest, within its bar", m[block][i, j], best[block][i, j], error[block][i, j] + 1e-3 * size)
+            if name == "translation":
+                h.true(f"{letter} {name}: within 0.5 % of the finest", np.abs(m[block] - best[block]).max() < 5e-3 * size)
+        # The film is its own mirror image in the middle plane.
+        mixed = max(np.abs(m[:2, 2:]).max(), np.abs(m[2:, :2]).max())
+        h.close(f"{letter}: translation by tilt over what could be", mixed / np.sqrt(np.abs(m[:2, :2]).max() * np.abs(m[2:, 2:]).max()), 0, 1e-9)
+    # Damping falls and stiffness rises with the frequency, as in the reference on a finer mesh.
+    ratios = [r["ratio"] for r in reference["over_frequency"]]
+    s = h.run(deck, "frequencies", [LOAD % f", frequencies: [{', '.join(map(str, ratios))}]"], launcher=[])["c"]
+    for r in reference["over_frequency"]:
+        for letter in "KB":
+            m, wanted = matrix(s, letter, r["ratio"], 2), turned(r[letter])[:2, :2]
+            size = np.abs(wanted).max()
+            h.close(f"{letter} at {r['ratio']:g} of the speed: largest difference", np.abs(m - wanted).max() / size, 0, 5e-3)
+    damping = [matrix(s, "B", r, 2)[1, 1] for r in sorted(ratios)]
+    h.true("damping falls with the frequency", all(a > b for a, b in zip(damping, damping[1:])), f"{damping[0]:.0f} to {damping[-1]:.0f} N s/m")
+    over = found["over speed"]
+    h.close("K.yy as over speeds", value(over, "speed.2000.ratio.1.K.yy"), value(study, "speed.2000.ratio.1.K.yy"), 10)
+
+
+def same_everywhere(h):
+    """Two ranks; a film with and without tilt; the study `static` at the same load; an oil film; a load too large."""
+    deck = h.source / "inputs/aerostatic/bearing_b.yaml"
+    few = "bearings.A.film.cells=[48, 16]"
+    tilted = h.run(deck, "tilted", [few, LOAD % ", tilt: true"], launcher=[])["c"]
+    both = "studies=[{dynamic_coefficients: {name: c, load: 49.05 N, speeds: [2000 rad/s]}}, {static: {name: s, speed: 2000 rad/s}}]"
+    plain = h.run(deck, "plain", [few, both], launcher=[*h.launcher, "-n", "2"])
+    for pair in ("xx", "xy", "yx", "yy"):
+        k = value(tilted, f"speed.2000.ratio.1.K.{pair}")
+        h.close(f"K.{pair}, two ranks and no tilt", value(plain["c"], f"speed.2000.ratio.1.K.{pair}"), k, 1e-8 * 1.2e7)
+        h.close(f"K.{pair}, static", value(plain["s"], f"bearing.A.K.{pair}"), k, 1e-5 * 1.2e7)
+        b = value(tilted, f"speed.2000.ratio.1.B.{pair}")
+        h.close(f"B.{pair}, static", value(plain["s"], f"bearing.A.C.{pair}"), b, 1e-5 * 9e2)
+    # An oil film has no frequency: its coefficients are those of `static` at any.
+    oil = h.run(h.source / "inputs/pump/pump.yaml", "oil", ["studies=[{dynamic_coefficients: {name: c, bearing: dry, eccentricity: 0.5, "
+                "attitude: -60 deg, speeds: [2950 rpm], frequencies: [0.1, 3], tilt: false}}]"], launcher=[])["c"]
+    for letter in "KB":
+        one, three = (value(oil, f"speed.2950.ratio.{r}.{letter}.yy") for r in ("0.1", "3"))
+        h.close(f"oil: {letter}.yy at two frequencies", three / one, 1, 1e-9)
+    load = "studies=[{dynamic_coefficients: {name: c, load: 5000 N, speeds: [2000 rad/s]}}]"
+    out = h.work / "heavy"
+    done = subprocess.run(h.command(deck, out, [few, load], (), []), capture_output=True, text=True)
+    status = h.studies("heavy")["c"]["status"]
+    h.true("a load too large is no equilibrium, with the capacity", done.returncode == 3 and "no equilibrium" in status and "carries" in status, status)
+
+
+if __name__ == "__main__":
+    harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    {"coefficients": coefficients, "same": same_everywhere}[sys.argv[3]](harness)
+    harness.finish()

@@ -1,0 +1,89 @@
+// A film with its journal held, or where it carries a load.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "film/gas_cases.hpp"
+#include "study/bearing/film_at_rest.hpp"
+#include "study/bearing/gas_point.hpp"
+#include "whirl/core/error.hpp"
+
+using namespace whirl;
+using study::FilmAtRest;
+
+namespace {
+
+system::Support aerostatic(double supply) {
+  system::Support s;
+  s.geometry = film::testing::spindle();
+  s.film = film::testing::aerostatic(1, supply, {48, 16});
+  s.lubricant = film::testing::air();
+  return s;
+}
+
+system::Support oil(bool compliant) {
+  system::Support s;
+  s.geometry = {film::Geometry::Bore::cylindrical, 0.05, 0.05, 100e-6, 0, 0, 0};
+  s.lubricant = {0.02, 870};
+  if (!compliant) {
+    s.film = film::Short{};
+    return s;
+  }
+  film::CompliantShort film;
+  film.compliance = 0.01;
+  film.reference_speed = 300;
+  s.film = film;
+  return s;
+}
+
+void balances(const system::Support& s, double speed, const FilmAtRest::Pair& load) {
+  FilmAtRest film(s, speed);
+  film.carry(load);
+  EXPECT_NEAR(film.force()[0], -load[0], 1e-8 * std::hypot(load[0], load[1]));
+  EXPECT_NEAR(film.force()[1], -load[1], 1e-8 * std::hypot(load[0], load[1]));
+}
+
+TEST(FilmAtRest, CarriesALoadInAnyDirection) {
+  for (const double angle : {-1.5, 0.4, 2.8}) {
+    balances(aerostatic(6e5), 2000, {49 * std::cos(angle), 49 * std::sin(angle)});
+    for (const bool compliant : {false, true})
+      balances(oil(compliant), 300, {2000 * std::cos(angle), 2000 * std::sin(angle)});
+  }
+}
+
+TEST(FilmAtRest, KnowsTheMostThatAFilmCarries) {
+  FilmAtRest film(aerostatic(3e5), 0);
+  const FilmAtRest::Capacity most = film.capacity({0, -49});
+  EXPECT_FALSE(most.rises);
+  EXPECT_GT(most.load, 25);
+  EXPECT_LT(most.load, 35);
+  film.carry({0, -0.98 * most.load});
+  EXPECT_NEAR(film.force()[1], 0.98 * most.load, 1e-6);
+  try {
+    film.carry({0, -1.05 * most.load});
+    FAIL() << "there is no such place";
+  } catch (const core::NotConverged& error) {
+    EXPECT_NE(std::string(error.what()).find("no equilibrium"), std::string::npos) << error.what();
+  }
+  // A film of oil carries the more the closer to the wall.
+  EXPECT_TRUE(FilmAtRest(oil(false), 300).capacity({0, -1}).rises);
+}
+
+TEST(GasPoint, MeanFreePathOfAir) {
+  // 18.46 uPa s, 300 K, 101325 Pa: 67 nm.
+  film::Gas gas;
+  EXPECT_NEAR(study::mean_free_path(gas, 1.846e-5, 101325), 66.97e-9, 0.02e-9);
+  EXPECT_NEAR(study::mean_free_path(gas, 1.846e-5, 2 * 101325.0), 33.48e-9, 0.01e-9);
+}
+
+TEST(GasPoint, ReportsAttitudeWithTheRotation) {
+  const study::GasPoint p = study::gas_at(aerostatic(5e5), 1000, {10e-6, 0});
+  EXPECT_NEAR(p.eccentricity, 0.5, 1e-12);
+  EXPECT_GT(p.attitude, 0);
+  EXPECT_LT(p.attitude, 0.3);
+  EXPECT_NEAR(p.report.power_loss, p.report.drag_torque * 1000, 1e-12);
+  EXPECT_NEAR(study::gas_at(aerostatic(5e5), 0, {10e-6, 0}).attitude, 0, 1e-9);
+}
+
+}  // namespace
