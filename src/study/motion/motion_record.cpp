@@ -19,9 +19,10 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, Vec like)
+MotionRecord::MotionRecord(const MotionOptions& options, const system::Plant& system, Vec like)
     : options_(options),
-      places_(std::move(places)),
+      forced_(!options.unbalance.empty() || system.forced()),
+      places_(system.places()),
       like_(like),
       period_(2 * std::numbers::pi / options.speed.value),
       exponents_(options.exponents) {}
@@ -55,7 +56,7 @@ void MotionRecord::close(const std::vector<double>& growth, double duration) {
 
 transient::Evidence MotionRecord::evidence() const {
   transient::Evidence e;
-  e.forced = !options_.unbalance.empty();
+  e.forced = forced_;
   const double count = static_cast<double>(points_.size()) * options_.samples;
   double of_all[] = {0, squares_};  // square of the mean, sum of the squares
   for (const double s : sum_) of_all[0] += (s / count) * (s / count);
