@@ -72,6 +72,24 @@ def coefficients(h):
     h.close("K.yy as over speeds", value(over, "speed.2000.ratio.1.K.yy"), value(study, "speed.2000.ratio.1.K.yy"), 10)
 
 
+ONE_RING = "bearings.A.film.orifices=[{count: 8, diameter: 0.2 mm, supply: 0.6 MPa}]"
+
+
+def threshold(h, bearing, cells):
+    """Where a rigid rotor of 5 kg begins to whirl at 0.6 MPa."""
+    wanted = next(t for t in json.loads((h.source / "tests/reference/aerostatic/bearing_b.json").read_text())["thresholds"]
+                  if (t["bearing"], t["ps"], t["N"]) == (bearing, 6e5, cells))
+    speed = wanted["omega_threshold"]
+    changes = [f"bearings.A.film.cells=[{cells}, {cells // 3}]",
+               f"studies.*.equilibrium_branch.range={{from: {0.97 * speed} rad/s, to: {1.03 * speed} rad/s}}"]
+    study = h.run(h.source / "inputs/aerostatic/threshold.yaml", "threshold", changes + ([ONE_RING] if bearing == "A" else []), launcher=[])["threshold"]
+    hopf = [b for b in study["bifurcations"] if b["type"] == "hopf"]
+    h.true("one Hopf point", len(hopf) == 1 and len(study["bifurcations"]) == 1)
+    h.close(f"{bearing}, {cells} cells around: threshold [rad/s]", hopf[0]["value"], speed, 3e-3 * speed)
+    h.close("    its whirl [rad/s]", hopf[0]["whirl_frequency_rad_s"], wanted["whirl_frequency"], 3e-3 * wanted["whirl_frequency"])
+    h.true("    before which it is stable", hopf[0]["others_unstable"] == 0)
+
+
 def same_everywhere(h):
     """Two ranks; a film with and without tilt; the study `static` at the same load; an oil film; a load too large."""
     deck = h.source / "inputs/aerostatic/bearing_b.yaml"
@@ -100,5 +118,9 @@ def same_everywhere(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"coefficients": coefficients, "same": same_everywhere}[sys.argv[3]](harness)
+    if ":" in sys.argv[3]:
+        where, around = sys.argv[3].split(":")
+        threshold(harness, where, int(around))
+    else:
+        {"coefficients": coefficients, "same": same_everywhere}[sys.argv[3]](harness)
     harness.finish()
