@@ -72,6 +72,37 @@ def coefficients(h):
     h.close("K.yy as over speeds", value(over, "speed.2000.ratio.1.K.yy"), value(study, "speed.2000.ratio.1.K.yy"), 10)
 
 
+def pressures(h):
+    """At the threshold a rigid rotor of 5 kg whirls freely in the film's stiffness and damping: m w^2 is an eigenvalue of K + i w B."""
+    deck = h.source / "inputs/aerostatic/pressures.yaml"
+    for t in json.loads((h.source / "tests/reference/aerostatic/bearing_b.json").read_text())["thresholds"]:
+        if t["N"] != 96:
+            continue
+        name = f"{t['bearing']}, {t['ps'] / 1e6:g} MPa"
+        speed, ratio = t["omega_threshold"], t["whirl_frequency"] / t["omega_threshold"]
+        rings = "{count: 8, diameter: 0.2 mm, supply: %g Pa%s}"
+        places = [""] if t["bearing"] == "A" else [", z: -7.5 mm", ", z: 7.5 mm"]
+        s = h.run(deck, name, ["bearings.A.film.orifices=[%s]" % ", ".join(rings % (t["ps"], z) for z in places),
+                  f"studies=[{{dynamic_coefficients: {{name: c, load: 49.05 N, speeds: [{speed!r} rad/s], frequencies: [{ratio!r}]}}}}]"], launcher=[])["c"]
+        head = next(k for k in s["values"] if k.endswith("K.xx"))[:-4]
+        k, b = ([[value(s, f"{head}{letter}.{i}{j}") for j in "xy"] for i in "xy"] for letter in "KB")
+        w = t["whirl_frequency"]
+        found = np.linalg.eigvals(np.array(k) + 1j * w * np.array(b))
+        free = min(found, key=lambda e: abs(e - 5 * w * w))
+        h.close(f"{name}: stiffness of the free whirl over m w^2", free.real / (5 * w * w), 1, 5e-3)
+        h.close("    its damping, likewise", free.imag / (5 * w * w), 0, 5e-3)
+        h.close("    eccentricity", next(v["value"] for n, v in s["values"].items() if n.endswith("eccentricity")), t["ecc"], 2e-3)
+    # All that 0.3 MPa press on bearing A at rest is less than the load; a turning shaft carries the rest by its wedge.
+    out = h.work / "slow"
+    slow = ["bearings.A.film.orifices=[{count: 8, diameter: 0.2 mm, supply: 0.3 MPa}]",
+            "studies=[{dynamic_coefficients: {name: c, load: 49.05 N, speeds: [1 rad/s]}}]"]
+    done = subprocess.run(h.command(deck, out, slow, (), []), capture_output=True, text=True)
+    status = h.studies("slow")["c"]["status"]
+    h.true("bearing A, 0.3 MPa, a shaft that hardly turns: no equilibrium", done.returncode == 3 and "no equilibrium" in status, status)
+    # As the deck is.
+    h.true("sweep ends", len(h.run(deck, "sweep", launcher=[])["supply"]["variants"]) == 6)
+
+
 ONE_RING = "bearings.A.film.orifices=[{count: 8, diameter: 0.2 mm, supply: 0.6 MPa}]"
 
 
@@ -122,5 +153,5 @@ if __name__ == "__main__":
         where, around = sys.argv[3].split(":")
         threshold(harness, where, int(around))
     else:
-        {"coefficients": coefficients, "same": same_everywhere}[sys.argv[3]](harness)
+        {"coefficients": coefficients, "same": same_everywhere, "pressures": pressures}[sys.argv[3]](harness)
     harness.finish()
