@@ -19,10 +19,10 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, const system::Plant& system, Vec like)
+MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like)
     : options_(options),
-      forced_(!options.unbalance.empty() || system.forced()),
-      places_(system.places()),
+      forced_(forced),
+      places_(std::move(places)),
       like_(like),
       period_(2 * std::numbers::pi / options.speed.value),
       exponents_(options.exponents) {}

@@ -19,7 +19,8 @@ class MotionRecord {
 public:
   /// States are laid out as `like`, which outlives this.
   /// `forced` by the system itself, beside the unbalance of the options.
-  MotionRecord(const MotionOptions& options, const system::Plant& system, Vec like);
+  /// `forced`: by an unbalance, or the system by itself.
+  MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like);
 
   /// A sample at a state; `scaled` is it over its scales. Not collective.
   void sample(const std::vector<system::PlaceState>& shown, Vec scaled);
@@ -46,7 +47,7 @@ private:
   void write_exponents(io::Group& group, io::StudySummary& summary) const;
 
   const MotionOptions& options_;
-  bool forced_;  // by an unbalance, or the system by itself
+  bool forced_;
   system::ShownPlaces places_;
   Vec like_;
   double period_;                // of a revolution [s]
