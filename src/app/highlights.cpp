@@ -260,6 +260,23 @@ std::string of_bearing_map(const io::StudySummary& s, const Values& v) {
   return out + grid.text();
 }
 
+// A row for each speed and frequency of the summary; tilts stand in the tables.
+std::string of_coefficients(const io::StudySummary& s, const Values& v) {
+  Grid grid({"speed", "eccentricity", "omega/Omega", "K xx [N/m]", "K xy", "K yx", "K yy", "B xx [N s/m]", "B xy",
+             "B yx", "B yy"});
+  for (const std::string& speed : Values::between(s, "speed.", ".eccentricity")) {
+    const std::string head = "speed." + speed + ".";
+    for (const std::string& ratio : Values::between(s, head + "ratio.", ".K.xx")) {
+      std::vector<std::string> row{speed, v.cell(head + "eccentricity"), ratio};
+      for (const char* letter : {".K.", ".B."})
+        for (const char* pair : {"xx", "xy", "yx", "yy"})
+          row.push_back(number(v.get(head + "ratio." + ratio + letter + pair)));
+      grid.add(std::move(row));
+    }
+  }
+  return grid.text();
+}
+
 // Variants down, values across, those with bars first; the rest is in the tables.
 std::string of_sweep(const io::StudySummary& s) {
   constexpr std::size_t most = 6;
@@ -343,6 +360,7 @@ std::string highlights(const io::StudySummary& s) {
   if (s.kind == "run_up") return of_run_up(s, v);
   if (s.kind == "motion") return of_motion(s, v);
   if (s.kind == "bearing_map") return of_bearing_map(s, v);
+  if (s.kind == "dynamic_coefficients") return of_coefficients(s, v);
   if (s.kind == "sweep") return of_sweep(s);
   return {};
 }

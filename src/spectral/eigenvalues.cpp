@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "spectral/pencil_search.hpp"
@@ -27,9 +28,18 @@ Eigen::MatrixXd entries(Mat dense) {
   return out;
 }
 
-// What a solver has found, at least `wanted` of them; `scale` makes the shapes SI.
+// Size beyond which an eigenvalue of a u = lambda b u is infinite: b is singular where a row holds at every moment, and
+// LAPACK takes a diagonal entry of its triangle below eps |b| as zero, for which SLEPc answers the largest double.
+double infinite_from(Mat a, Mat b) {
+  double left = 0, right = 0;
+  check(MatNorm(a, NORM_FROBENIUS, &left));
+  check(MatNorm(b, NORM_FROBENIUS, &right));
+  return left / (std::numeric_limits<double>::epsilon() * right);
+}
+
+// What a solver has found, at least `wanted` of them, below `infinite`; `scale` makes the shapes SI.
 std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<double>& scale, PetscInt wanted,
-                           const EigenOptions& options, DensePencil* pencil) {
+                           const EigenOptions& options, DensePencil* pencil, double infinite) {
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
   if (converged < wanted)
@@ -40,8 +50,9 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<doub
   std::vector<PetscInt> place;
   for (PetscInt i = 0; i < converged; ++i) {
     const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes || pencil);
-    if (pencil) pencil->add(p.value, p.real, p.imaginary);
-    if (p.value.imag() < 0 || !std::isfinite(p.value.real())) continue;
+    const bool finite = std::abs(p.value) < infinite;
+    if (pencil) pencil->add(finite ? p.value : std::numeric_limits<double>::infinity(), p.real, p.imaginary);
+    if (p.value.imag() < 0 || !finite) continue;
     Mode m{p.value, {}};
     // What a search by iteration leaves.
     if (options.rounding && !pencil) m.rounding = search_tolerance * std::abs(p.value);
@@ -116,16 +127,18 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
       shell->gate.rethrow(EPSSolve(eps.get()));
     else
       check(EPSSolve(eps.get()));
-    return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr);
+    return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr,
+                    std::numeric_limits<double>::infinity());
   }
   // One rank's answer for all: how many modes there are, and which of them are unstable, decides what comes next.
   core::agree(system.comm(), [&] {
     if (core::rank_of(system.comm()) != 0) return;
     std::optional<DensePencil> pencil;
     if (options.rounding) pencil.emplace(entries(a.get()), entries(b.get()));
+    const double infinite = infinite_from(a.get(), b.get());  // before b is overwritten
     solve_dense(eps, a.get(), b.get());
     out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options,
-                   pencil ? &*pencil : nullptr);
+                   pencil ? &*pencil : nullptr, infinite);
   });
   if (core::size_of(system.comm()) == 1) return out;
   std::vector<Complex> values;

@@ -25,13 +25,17 @@ std::vector<double> DensePencil::rounding() const {
     if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
   const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= 1e-9 * largest; };
   if (std::none_of(values_.begin(), values_.end(), asked)) return out;
-  // With all eigenvectors X the rows of (B X)^-1 are the left ones, scaled so that y* B x = 1.
+  // With all eigenvectors X the rows of (B X)^-1 are the left ones, scaled so that y* B x = 1. Of an infinite
+  // eigenvalue B x is zero, and A x takes its place.
   const Eigen::Index n = a_.rows();
   Eigen::MatrixXcd left;
   if (static_cast<Eigen::Index>(values_.size()) == n) {
     Eigen::MatrixXcd x(n, n);
     for (Eigen::Index k = 0; k < n; ++k) x.col(k) = vectors_[static_cast<std::size_t>(k)];
-    left = (b_ * x).partialPivLu().inverse();
+    Eigen::MatrixXcd images = b_ * x;
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (!std::isfinite(std::abs(values_[static_cast<std::size_t>(k)]))) images.col(k) = a_ * x.col(k);
+    left = images.partialPivLu().inverse();
   }
   for (std::size_t k = 0; k < values_.size(); ++k) {
     if (!asked(values_[k])) continue;

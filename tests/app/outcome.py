@@ -87,6 +87,10 @@ if "mode at 500 rpm" not in text or "    3 more, better damped, stand in summary
 text, s = run(rigid / "bearing_map.yaml", "map")
 if "stable up to 437.64" not in text:
     failures.append("what a bearing map says of the rotor:\n" + text)
+text, s = run(rigid / "bearing_map.yaml", "coefficients", "--set", "studies=[{dynamic_coefficients: {name: c, eccentricity: 0.5, speeds: [160 rad/s]}}]")
+kxx = json.loads((work / "coefficients" / "summary.json").read_text())["studies"][0]["values"]["speed.160.ratio.1.K.xx"]["value"]
+if not any(line.split()[:4] == ["160", "0.5000", "1", f"{kxx:.0f}"] for line in text.splitlines()):
+    failures.append("stiffness and damping of a bearing by itself:\n" + text)
 text, s = run(rigid / "short_f1.yaml", "more", "--set", "studies=[{motion: {name: free, speed: 200 rad/s, discard: 20, revolutions: 4}}]")
 if "motion: fixed point" not in text:
     failures.append("the kind of a motion:\n" + text)

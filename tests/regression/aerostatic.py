@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs decks of inputs/aerostatic and compares loads, flows and thresholds with those computed independently.
+"""Runs decks of inputs/aerostatic and compares loads and flows with those computed independently.
 
 aerostatic.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
@@ -46,22 +46,7 @@ def loads(h):
     h.true("    which is below its load", at_most < 49.05)
 
 
-def threshold(h, heavy=False):
-    deck = h.source / "inputs/aerostatic/threshold.yaml"
-    known = reference(h, "thresholds.json")
-    for e in known[2:] if heavy else known[:2]:
-        row = "[{count: 8, angle: -90 deg, diameter: 0.2 mm, supply: %g Pa}]" % e["ps"]
-        pair = "[{count: 8, z: -7.5 mm, angle: -90 deg, diameter: 0.2 mm, supply: %g Pa}, {count: 8, z: 7.5 mm, angle: -90 deg, diameter: 0.2 mm, supply: %g Pa}]"
-        more = [f"bearings.B.film.orifices={row if e['bearing'] == 'A' else pair % (e['ps'], e['ps'])}", f"bearings.B.film.cells=[{e['N']}, {e['M']}]",
-                f"studies.1.equilibrium_branch.range={{from: {0.98 * e['omega_threshold']} rad/s, to: {1.02 * e['omega_threshold']} rad/s}}"]
-        name = f"{e['bearing']} at {e['ps'] / 1e6:g} MPa, {e['N']} x {e['M']}"
-        s = h.run(deck, name, more, launcher=[])["whirl"]
-        points = [b for b in s["bifurcations"] if b["type"] == "hopf"]
-        h.true(f"{name}: one Hopf point", len(points) == 1)
-        h.close(f"{name}: threshold [rad/s]", points[0]["value"], e["omega_threshold"], 0.003 * e["omega_threshold"])
-
-
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"loads": loads, "threshold": threshold, "thresholds": lambda h: threshold(h, True)}[sys.argv[3]](harness)
+    {"loads": loads}[sys.argv[3]](harness)
     harness.finish()

@@ -72,6 +72,55 @@ def coefficients(h):
     h.close("K.yy as over speeds", value(over, "speed.2000.ratio.1.K.yy"), value(study, "speed.2000.ratio.1.K.yy"), 10)
 
 
+def pressures(h):
+    """At the threshold a rigid rotor of 5 kg whirls freely in the film's stiffness and damping: m w^2 is an eigenvalue of K + i w B."""
+    deck = h.source / "inputs/aerostatic/pressures.yaml"
+    for t in json.loads((h.source / "tests/reference/aerostatic/bearing_b.json").read_text())["thresholds"]:
+        if t["N"] != 96:
+            continue
+        name = f"{t['bearing']}, {t['ps'] / 1e6:g} MPa"
+        speed, ratio = t["omega_threshold"], t["whirl_frequency"] / t["omega_threshold"]
+        rings = "{count: 8, diameter: 0.2 mm, supply: %g Pa%s}"
+        places = [""] if t["bearing"] == "A" else [", z: -7.5 mm", ", z: 7.5 mm"]
+        s = h.run(deck, name, ["bearings.A.film.orifices=[%s]" % ", ".join(rings % (t["ps"], z) for z in places),
+                  f"studies=[{{dynamic_coefficients: {{name: c, load: 49.05 N, speeds: [{speed!r} rad/s], frequencies: [{ratio!r}]}}}}]"], launcher=[])["c"]
+        head = next(k for k in s["values"] if k.endswith("K.xx"))[:-4]
+        k, b = ([[value(s, f"{head}{letter}.{i}{j}") for j in "xy"] for i in "xy"] for letter in "KB")
+        w = t["whirl_frequency"]
+        found = np.linalg.eigvals(np.array(k) + 1j * w * np.array(b))
+        free = min(found, key=lambda e: abs(e - 5 * w * w))
+        h.close(f"{name}: stiffness of the free whirl over m w^2", free.real / (5 * w * w), 1, 5e-3)
+        h.close("    its damping, likewise", free.imag / (5 * w * w), 0, 5e-3)
+        h.close("    eccentricity", next(v["value"] for n, v in s["values"].items() if n.endswith("eccentricity")), t["ecc"], 2e-3)
+    # All that 0.3 MPa press on bearing A at rest is less than the load; a turning shaft carries the rest by its wedge.
+    out = h.work / "slow"
+    slow = ["bearings.A.film.orifices=[{count: 8, diameter: 0.2 mm, supply: 0.3 MPa}]",
+            "studies=[{dynamic_coefficients: {name: c, load: 49.05 N, speeds: [1 rad/s]}}]"]
+    done = subprocess.run(h.command(deck, out, slow, (), []), capture_output=True, text=True)
+    status = h.studies("slow")["c"]["status"]
+    h.true("bearing A, 0.3 MPa, a shaft that hardly turns: no equilibrium", done.returncode == 3 and "no equilibrium" in status, status)
+    # As the deck is.
+    h.true("sweep ends", len(h.run(deck, "sweep", launcher=[])["supply"]["variants"]) == 6)
+
+
+ONE_RING = "bearings.A.film.orifices=[{count: 8, diameter: 0.2 mm, supply: 0.6 MPa}]"
+
+
+def threshold(h, bearing, cells):
+    """Where a rigid rotor of 5 kg begins to whirl at 0.6 MPa."""
+    wanted = next(t for t in json.loads((h.source / "tests/reference/aerostatic/bearing_b.json").read_text())["thresholds"]
+                  if (t["bearing"], t["ps"], t["N"]) == (bearing, 6e5, cells))
+    speed = wanted["omega_threshold"]
+    changes = [f"bearings.A.film.cells=[{cells}, {cells // 3}]",
+               f"studies.*.equilibrium_branch.range={{from: {0.97 * speed} rad/s, to: {1.03 * speed} rad/s}}"]
+    study = h.run(h.source / "inputs/aerostatic/threshold.yaml", "threshold", changes + ([ONE_RING] if bearing == "A" else []), launcher=[])["threshold"]
+    hopf = [b for b in study["bifurcations"] if b["type"] == "hopf"]
+    h.true("one Hopf point", len(hopf) == 1 and len(study["bifurcations"]) == 1)
+    h.close(f"{bearing}, {cells} cells around: threshold [rad/s]", hopf[0]["value"], speed, 3e-3 * speed)
+    h.close("    its whirl [rad/s]", hopf[0]["whirl_frequency_rad_s"], wanted["whirl_frequency"], 3e-3 * wanted["whirl_frequency"])
+    h.true("    before which it is stable", hopf[0]["others_unstable"] == 0)
+
+
 def same_everywhere(h):
     """Two ranks; a film with and without tilt; the study `static` at the same load; an oil film; a load too large."""
     deck = h.source / "inputs/aerostatic/bearing_b.yaml"
@@ -100,5 +149,9 @@ def same_everywhere(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"coefficients": coefficients, "same": same_everywhere}[sys.argv[3]](harness)
+    if ":" in sys.argv[3]:
+        where, around = sys.argv[3].split(":")
+        threshold(harness, where, int(around))
+    else:
+        {"coefficients": coefficients, "same": same_everywhere, "pressures": pressures}[sys.argv[3]](harness)
     harness.finish()

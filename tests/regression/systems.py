@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The Brusselator through decks: Hopf point, cycles by every method, a motion, and what a deck of it must not ask.
+"""The Brusselator and small flows through decks: Hopf point, cycles by every method, a motion, and what a deck of it must not ask.
 
 systems.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
@@ -110,9 +110,39 @@ def refused(h):
 def main():
     h = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
     {"whole": lambda: whole(h), "refused": lambda: refused(h),
-     "direct": lambda: cycles(h, ["collocation", "shooting"], 16),
+     "flows": lambda: flows(h), "direct": lambda: cycles(h, ["collocation", "shooting"], 16),
      "others": lambda: cycles(h, ["multiple_shooting", "finite_difference", "newton_picard"], 8)}[sys.argv[3]]()
     h.finish()
+
+
+# Amplitude of the force on Duffing's oscillator and what its motion is then (Holmes 1979; Jordan and Smith 2007, sec. 13.3).
+DUFFING = {0.2: "period-1", 0.28: "period-2", 0.29: "period-4", 0.37: "period-5", 0.5: "chaotic", 0.65: "period-2"}
+
+
+def flows(h):
+    """Motions whose kind and exponents are known."""
+    inputs = h.source / "inputs/other_systems"
+    attractor = h.run(inputs / "lorenz.yaml", "lorenz", launcher=[])["attractor"]
+    for k, wanted in enumerate((0.9056, 0.0, -14.572), 1):
+        bar = value(attractor, f"lyapunov.{k}.uncertainty")
+        h.true(f"Lorenz, exponent {k}: a small bar", bar < 0.06)
+        h.close(f"Lorenz, exponent {k}", value(attractor, f"lyapunov.{k}"), wanted, 1.5 * bar)
+    h.close("    their sum", sum(value(attractor, f"lyapunov.{k}") for k in (1, 2, 3)), -(10 + 1 + 8 / 3), 1e-3)
+    h.true("    chaotic", "motion.chaotic" in attractor["values"])
+    h.close("    dimension of Kaplan and Yorke", value(attractor, "dimension.kaplan_yorke"), 2.062, 0.005)
+    spiral = h.run(inputs / "rossler.yaml", "rossler", ["studies.1.motion.revolutions=400"], launcher=[])["attractor"]
+    for k, wanted in enumerate((0.0714, 0.0, -5.3943), 1):
+        h.close(f"Rossler, exponent {k}", value(spiral, f"lyapunov.{k}"), wanted, 1.5 * value(spiral, f"lyapunov.{k}.uncertainty"))
+    h.true("    chaotic", "motion.chaotic" in spiral["values"])
+    for c, kind in ((2.5, "limit_cycle"), (3.5, "limit_cycle")):
+        s = h.run(inputs / "rossler.yaml", f"rossler {c}", [f"rossler.c={c}", "studies.1.motion.revolutions=150"], launcher=[])["attractor"]
+        h.true(f"Rossler, c = {c}: {kind}", f"motion.{kind}" in s["values"])
+    for amplitude, kind in DUFFING.items():
+        s = h.run(inputs / "duffing.yaml", f"duffing {amplitude}", [f"duffing.amplitude={amplitude}", "studies.1.motion.revolutions=300"], launcher=[])["chaos"]
+        h.true(f"Duffing, amplitude {amplitude}: {kind}", f"motion.{kind}" in s["values"])
+        h.close("    sum of the exponents", value(s, "lyapunov.1") + value(s, "lyapunov.2"), -0.3, 1e-4)
+    wrong = subprocess.run([h.program, "check", str(inputs / "duffing.yaml"), "--set", "duffing.frequency=1.3 rad/s"], capture_output=True, text=True)
+    h.true("another speed than that of the force is refused", wrong.returncode != 0 and "its speed is 1.3 rad/s" in wrong.stderr, wrong.stderr)
 
 
 if __name__ == "__main__":

@@ -71,6 +71,40 @@ TEST(Modes, DenseAndKrylovFindTheChainsFrequencies) {
   }
 }
 
+// Ports of a chain that hold at every moment, z = (1 + k) q, and act back on it: their rows have no rates, and their
+// eigenvalues are infinite. What is left is the chain with stiffer ends.
+struct ConstrainedChain {
+  int ports;
+  double damping;
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T) const {
+    Column<T> f(2 + ports);
+    f(0) = xdot(0) - x(1);
+    f(1) = xdot(1) + damping * x(1) + x(0);
+    for (int k = 0; k < ports; ++k) {
+      f(1) += x(2 + k);
+      f(2 + k) = x(2 + k) - (1.0 + k) * x(0);
+    }
+    return f;
+  }
+};
+
+TEST(Modes, InfiniteEigenvaluesAreNone) {
+  for (const double damping : {0.0, 0.1}) {
+    test::SmallSystem s(MPI_COMM_WORLD, 5, 0, 1, ConstrainedChain{3, damping});
+    const core::Vector x = s.vector(Eigen::VectorXd::Zero(5));
+    spectral::EigenOptions o;
+    o.rounding = true;
+    const auto modes = spectral::modes(s, x.get(), o);
+    ASSERT_EQ(modes.size(), 1U);
+    EXPECT_NEAR(modes[0].lambda.real(), -0.5 * damping, 1e-12);
+    EXPECT_NEAR(modes[0].lambda.imag(), std::sqrt(7 - 0.25 * damping * damping), 1e-12);  // 1 + 1 + 2 + 3
+    // They say nothing of how exact the others are.
+    EXPECT_LE(modes[0].rounding, 1e-12);
+    EXPECT_EQ(modes[0].rounding > 0, damping == 0);
+  }
+}
+
 // By LAPACK, and by Krylov-Schur, which has to ask three times until it has found one beyond the radius.
 TEST(Modes, WithinARadiusNoneIsMissing) {
   for (const int masses : {20, 320}) {

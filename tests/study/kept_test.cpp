@@ -59,7 +59,7 @@ TEST(Kept, AMotionKnowsWholeRevolutionsOnly) {
   options.orbit = 5;
   const auto played = [&](bool runs_away) {
     const core::Vector state = core::make_vector(PETSC_COMM_SELF, 2, 2);
-    MotionRecord record(options, {{"B"}, {1e-4}, "m", "m/s", "place"}, state.get());
+    MotionRecord record(options, {{"B"}, {1e-4}, "m", "m/s", "place"}, true, state.get());
     for (int turn = 0; turn < (runs_away ? 3 : 2); ++turn) {
       for (int k = 1; k <= (turn < 2 ? 16 : 8); ++k) {
         const double angle = 2 * 3.14159265358979 * k / 16, r = turn < 2 ? 1e-5 : 9e-5;

@@ -9,6 +9,7 @@
 #include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/system/brusselator.hpp"
+#include "whirl/system/flows.hpp"
 #include "whirl/system/rotor_system.hpp"
 
 using namespace whirl;
@@ -62,6 +63,53 @@ TEST(Plant, DerivativesOfTheBrusselatorPassTheTaylorTest) {
     EXPECT_GE(r.rate_order, 1.9);
     EXPECT_GE(r.parameter_order, 1.9);
   }
+}
+
+// A flow as a function of one of its options.
+template <class Options>
+std::unique_ptr<system::Plant> flow(double Options::*option) {
+  const Options o;
+  const auto at = [o, option](double p) {
+    Options changed = o;
+    changed.*option = p;
+    return changed;
+  };
+  return system::make_system(MPI_COMM_WORLD, system::Along<Options>{at, o.*option, 1});
+}
+
+template <class Options>
+void passes_taylor(std::initializer_list<double Options::*> options) {
+  for (const auto option : options) {
+    const auto s = flow<Options>(option);
+    const auto x = filled(*s, [](double k) { return 2 + std::sin(k); }),
+               rate = filled(*s, [](double k) { return std::cos(2 * k); });
+    const auto r = problem::taylor_test(*s, 0.7, x.get(), rate.get(), 1e-3);
+    EXPECT_GT(r.first_difference, 1e-6);
+    EXPECT_GE(r.state_order, 1.9);
+    EXPECT_GE(r.rate_order, 1.9);
+    EXPECT_GE(r.parameter_order, 1.9);
+  }
+}
+
+TEST(Plant, DerivativesOfTheFlowsPassTheTaylorTest) {
+  using namespace system;
+  passes_taylor<Lorenz>({&Lorenz::sigma, &Lorenz::rho, &Lorenz::beta});
+  passes_taylor<Rossler>({&Rossler::a, &Rossler::b, &Rossler::c});
+  passes_taylor<Duffing>({&Duffing::damping, &Duffing::linear, &Duffing::cubic, &Duffing::amplitude});
+}
+
+TEST(Plant, FlowsRestWhereTheySay) {
+  for (const auto& s : {flow(&system::Lorenz::rho), flow(&system::Rossler::c), flow(&system::Duffing::damping)}) {
+    s->set_forcing(false);
+    const core::Vector x = s->guess(), rest = core::duplicate(x.get()), f = core::duplicate(x.get());
+    core::check(VecSet(rest.get(), 0));
+    s->residual(0, x.get(), rest.get(), f.get());
+    double norm = 1;
+    core::check(VecNorm(f.get(), NORM_INFINITY, &norm));
+    EXPECT_LE(norm, 1e-13);
+  }
+  EXPECT_TRUE(flow(&system::Duffing::damping)->forced());
+  EXPECT_FALSE(flow(&system::Lorenz::rho)->forced());
 }
 
 TEST(Plant, TheBrusselatorRestsAtItsUniformState) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "whirl/system/brusselator.hpp"
+#include "whirl/system/flows.hpp"
 
 namespace whirl::system {
 
@@ -19,7 +20,7 @@ struct Slots : Slot<Options>... {};
 
 /// All of them, by their options. A new one has a header with options (`key`, `text`, describe()) and make_system(), a
 /// .cpp, and its name here.
-using Others = Slots<Brusselator>;
+using Others = Slots<Brusselator, Lorenz, Rossler, Duffing>;
 
 /// What the equations of a deck are those of: `rotor`, or the key of one of Others.
 struct SystemName {

@@ -58,6 +58,8 @@ public:
   /// Switches periodic forcing off (and on again): an equilibrium is that of the system without. On at the start. Not
   /// collective.
   virtual void set_forcing(bool /*on*/) {}
+  /// Whether something of its own forces it at the angle of its speed, beside what a study applies. Not collective.
+  [[nodiscard]] virtual bool forced() const { return false; }
   /// dF/d(dx/dt) depends on nothing but the parameter. Not collective.
   [[nodiscard]] virtual bool constant_rates() const = 0;
   /// Whether it has meshes of films that may be halved for an estimate of their error. Not collective.

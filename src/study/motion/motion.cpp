@@ -43,7 +43,7 @@ public:
         integrator_(system_, {options_.speed.value}, start_.x.get(),
                     {.tolerance = options_.tolerance,
                      .after_step = [this](double time, double step) { progress(time, step); }}),
-        record_(options_, system_.places(), integrator_.scaled()),
+        record_(options_, system_.places(), system_.forced() || !options_.unbalance.empty(), integrator_.scaled()),
         films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }

@@ -51,6 +51,11 @@ void Motion::validate(const system::Machine& machine, const deck::Report& report
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+  const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
+  if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
+    report.fail(
+        "speed",
+        fmt::format("a motion of 'duffing' goes by the periods of its force: its speed is {:.12g} rad/s", forcing));
 }
 
 double Motion::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
