@@ -5,7 +5,7 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
                style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
 from .subject import Drawn, said_in_a_sentence
 
@@ -17,6 +17,7 @@ PICTURES = {
     "gas_bearing": [gas.draw_curves, gas.draw_isobars, gas.draw_meshes, gas.draw_map, gas.draw_knudsen],
     "dynamic_coefficients": [dynamic.draw],
     "modes": [campbell.draw, shapes.draw_modes],
+    "critical_speed_map": [critical.draw_map],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
