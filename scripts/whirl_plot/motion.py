@@ -93,3 +93,24 @@ def draw(study):
             row[3].set_visible(False)
     turns = int(round(x.shape[0] / study.attribute("samples", 1)))
     return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: shaft angle 0; {ROTATION}")
+
+
+def draw_full_spectrum(study, top=4.0):
+    """The circles that the orbits are made of, over the frequency with its sign: forward to the right, backward to the left."""
+    if not study.has("full_spectrum/order", "full_spectrum/amplitude") or study.attribute("motion", "") == "fixed_point":
+        return []
+    scale, unit = study.micro
+    order, amplitude = study.get("full_spectrum/order"), study.get("full_spectrum/amplitude") * scale
+    names = study.bearings(amplitude.shape[1])
+    rows = distinct(study, names)
+    shown = (np.abs(order) <= top) & (order != 0)
+    figure, axes = plt.subplots(len(rows), 1, figsize=(8.6, 2.6 * len(rows) + 0.8), squeeze=False, sharex=True)
+    for axis, b in zip(axes[:, 0], rows):
+        values = amplitude[shown, b]
+        axis.semilogy(order[shown], np.maximum(values, max(1e-9, 1e-8 * values.max())), color=INK, linewidth=0.8)
+        axis.axvline(0, color=GREY, linewidth=0.8)
+        axis.set_ylabel(f"radius, 0-peak [{unit}]")
+        axis.set_title(names[b])
+    axes[-1, 0].set_xlim(-top, top)
+    axes[-1, 0].set_xlabel("frequency / running speed; backward whirl below zero")
+    return save(figure, study, "full-spectrum", f"circles of z = x + i y; {ROTATION}")

@@ -12,6 +12,24 @@
 
 namespace whirl::transient {
 
+namespace {
+
+// What sample k of n is multiplied by.
+double weight(Window window, std::size_t k, std::size_t n) {
+  if (window == Window::none) return 1;
+  return (1 - std::cos(2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n))) / 2;
+}
+
+using Plan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, decltype(&fftw_destroy_plan)>;
+
+void execute(fftw_plan made) {
+  const Plan plan(made, &fftw_destroy_plan);
+  core::require(plan != nullptr, "FFTW makes a plan for every length");
+  fftw_execute(plan.get());
+}
+
+}  // namespace
+
 Spectrum amplitude_spectrum(std::span<const double> samples, double interval, Window window) {
   const std::size_t n = samples.size();
   core::require(n >= 2, "a spectrum needs samples");
@@ -20,23 +38,42 @@ Spectrum amplitude_spectrum(std::span<const double> samples, double interval, Wi
   std::vector<double> in(n);
   double gain = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double phase = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
-    const double w = window == Window::hann ? (1 - std::cos(phase)) / 2 : 1;
+    const double w = weight(window, k, n);
     in[k] = w * (samples[k] - mean);
     gain += w;
   }
   std::vector<std::complex<double>> out(n / 2 + 1);
-  const std::unique_ptr<std::remove_pointer_t<fftw_plan>, decltype(&fftw_destroy_plan)> plan(
-      fftw_plan_dft_r2c_1d(static_cast<int>(n), in.data(), reinterpret_cast<fftw_complex*>(out.data()), FFTW_ESTIMATE),
-      &fftw_destroy_plan);
-  core::require(plan != nullptr, "FFTW makes a plan for every length");
-  fftw_execute(plan.get());
+  execute(
+      fftw_plan_dft_r2c_1d(static_cast<int>(n), in.data(), reinterpret_cast<fftw_complex*>(out.data()), FFTW_ESTIMATE));
   Spectrum s{1 / (static_cast<double>(n) * interval), {}, window};
   for (std::size_t k = 0; k < out.size(); ++k) {
     const bool once = k == 0 || 2 * k == n;  // the mean and the highest line of an even record have no mirror image
     s.amplitude.push_back((once ? 1 : 2) * std::abs(out[k]) / gain);
   }
   s.amplitude[0] = std::abs(mean);
+  return s;
+}
+
+FullSpectrum full_spectrum(std::span<const double> x, std::span<const double> y, double interval, Window window) {
+  using Complex = std::complex<double>;
+  const std::size_t n = x.size();
+  core::require(n >= 2 && y.size() == n, "a full spectrum needs samples of x and y");
+  Complex mean = 0;
+  for (std::size_t k = 0; k < n; ++k) mean += Complex(x[k], y[k]) / static_cast<double>(n);
+  std::vector<Complex> in(n), out(n);
+  double gain = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double w = weight(window, k, n);
+    in[k] = w * (Complex(x[k], y[k]) - mean);
+    gain += w;
+  }
+  execute(fftw_plan_dft_1d(static_cast<int>(n), reinterpret_cast<fftw_complex*>(in.data()),
+                           reinterpret_cast<fftw_complex*>(out.data()), FFTW_FORWARD, FFTW_ESTIMATE));
+  FullSpectrum s{1 / (static_cast<double>(n) * interval), -static_cast<int>((n - 1) / 2), {}};
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto line = static_cast<std::size_t>(s.first + static_cast<int>(k + n)) % n;
+    s.amplitude.push_back(line == 0 ? std::abs(mean) : std::abs(out[line]) / gain);
+  }
   return s;
 }
 

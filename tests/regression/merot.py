@@ -4,6 +4,7 @@
 merot.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
 import json
+import math
 import sys
 
 from harness import Harness, value
@@ -79,7 +80,27 @@ def reduction(h):
     h.true("sweep ends", "reductions" in h.run(deck, "sweep", launcher=[]))
 
 
+def critical_speeds(h):
+    deck = h.source / "inputs/merot/critical_speeds.yaml"
+    s = h.run(deck, "whole", launcher=[])["map"]
+    # At the springs of the Campbell diagram: the forward one is known, and both are where that diagram meets the speed.
+    at = ["studies=[{critical_speed_map: {name: map, stiffness: {from: 1e7 N/m, to: 2e7 N/m}, points: 2}}]"]
+    same = h.run(deck, "same", at, launcher=[])["map"]
+    campbell = h.run(h.source / "inputs/merot/disc_rotor.yaml", "campbell", launcher=[])["Campbell"]
+    h.close("first forward critical speed [rad/s]", value(same, "softest.forward.1"), 1240.8416, 0.02)
+    for k, name in ((1, "backward"), (2, "forward")):
+        wanted = value(campbell, f"critical.{k}.speed")
+        h.close(f"    {name}, of the Campbell diagram", value(same, f"softest.{name}.1"), wanted, 1e-5 * wanted)
+    # Soft springs of 1000 N/m: a rigid body, whose bounce the disc beside the middle couples to its pitch a little.
+    bounce = (2e3 / (7860 * math.pi * 0.0075**2 * 0.3 + 0.5)) ** 0.5
+    h.close("bounce on soft springs [rad/s]", value(s, "softest.forward.1"), bounce, 0.1 * bounce)
+    for k in (1, 2, 3):
+        h.true(f"stiff springs: forward {k} lies above backward {k}", value(s, f"stiffest.forward.{k}") > value(s, f"stiffest.backward.{k}"))
+    two = h.run(deck, "ranks", launcher=[*h.launcher, "-n", "2"])["map"]
+    h.close("two ranks", value(two, "stiffest.forward.1"), value(s, "stiffest.forward.1"), 1e-9)
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"disc_rotor": disc_rotor, "internal_damping": internal_damping, "reduction": reduction}[sys.argv[3]](harness)
+    {"critical_speeds": critical_speeds, "disc_rotor": disc_rotor, "internal_damping": internal_damping, "reduction": reduction}[sys.argv[3]](harness)
     harness.finish()

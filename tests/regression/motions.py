@@ -161,6 +161,19 @@ SHORT = """
 """
 
 
+def growing(h):
+    """The train at G6.3 and 2650 rpm: from its unstable cycle a whirl at 766 +- 12 rpm grows (independent computation, Guyan, 30 x 10)."""
+    s = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", launcher=[])["G6.3 at 2650 rpm"]
+    h.true("the cycle is unstable", value(s, "cycle.multiplier.1.modulus") > 1)
+    whirl = value(s, "cycle.multiplier.1.angle") / TWO_PI * 2650
+    h.close("its whirl [rpm]", whirl, 766, 12)
+    for bearing in ("B2", "B3", "B4"):
+        found = [value(s, f"tone.{bearing}.y.{k}.frequency") * 60 for k in range(1, 6)]
+        h.close(f"the growing tone in {bearing} [rpm]", min(found, key=lambda f: abs(f - 766)), whirl, 3)
+        h.close("    and its mirror beside the shaft's speed", min(found, key=lambda f: abs(f - 1884)), 2650 - whirl, 3)
+    h.true("quasi-periodic", kind(s) == "quasi_periodic", kind(s))
+
+
 def ranks(h):
     path = deck(h, "short", SHORT)
     for n in (1, 2, 3):
@@ -229,5 +242,5 @@ def pump(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "ranks": ranks, "resume": resume, "shared": shared, "pump": pump}[sys.argv[3]](harness)
+    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "growing": growing, "ranks": ranks, "resume": resume, "shared": shared, "pump": pump}[sys.argv[3]](harness)
     harness.finish()

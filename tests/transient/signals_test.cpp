@@ -22,6 +22,45 @@ std::vector<double> sampled(int n, double interval, F f) {
   return out;
 }
 
+// Forward and backward circles of an ellipse, and which of them turns which way.
+TEST(FullSpectrum, PartsAnEllipseIntoCircles) {
+  for (const int n : {96, 97}) {
+    std::vector<double> x, y;
+    const double forward = 3, backward = 1, turns = 6;
+    for (int k = 0; k < n; ++k) {
+      const double phase = 2 * std::numbers::pi * turns * k / n;
+      x.push_back(0.3 + (forward + backward) * std::cos(phase));
+      y.push_back(-0.4 + (forward - backward) * std::sin(phase));
+    }
+    const double interval = 0.01;
+    const FullSpectrum s = full_spectrum(x, y, interval, Window::none);
+    ASSERT_EQ(s.amplitude.size(), x.size());
+    for (int k = 0; k < n; ++k) {
+      const int line = s.first + k;
+      const double wanted = line == 6 ? forward : line == -6 ? backward : line == 0 ? 0.5 : 0;
+      EXPECT_NEAR(s.amplitude[static_cast<std::size_t>(k)], wanted, 1e-13) << line;
+    }
+    EXPECT_NEAR(s.resolution, 1 / (n * interval), 1e-14);
+    EXPECT_EQ(s.first, -((n - 1) / 2));
+    const FullSpectrum soft = full_spectrum(x, y, interval, Window::hann);
+    EXPECT_NEAR(soft.amplitude[static_cast<std::size_t>(6 - s.first)], forward, 1e-12);
+    EXPECT_NEAR(soft.amplitude[static_cast<std::size_t>(5 - s.first)], forward / 2, 1e-12);
+  }
+}
+
+// On a line both circles are equal, and half of what the spectrum of one coordinate shows.
+TEST(FullSpectrum, OfALineIsSymmetric) {
+  std::vector<double> x, y(64, 0.0);
+  for (int k = 0; k < 64; ++k) x.push_back(std::sin(0.7 * k) + 0.2 * std::cos(2.1 * k));
+  const FullSpectrum both = full_spectrum(x, y, 1, Window::hann);
+  const Spectrum one = amplitude_spectrum(x, 1, Window::hann);
+  for (int k = 1; k < 32; ++k) {
+    const double up = both.amplitude[static_cast<std::size_t>(k - both.first)];
+    EXPECT_NEAR(up, both.amplitude[static_cast<std::size_t>(-k - both.first)], 1e-14);
+    EXPECT_NEAR(2 * up, one.amplitude[static_cast<std::size_t>(k)], 1e-14);
+  }
+}
+
 }  // namespace
 
 TEST(Spectrum, TonesOnLinesHaveTheirAmplitudes) {

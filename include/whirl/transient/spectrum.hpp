@@ -22,6 +22,19 @@ struct Spectrum {
 /// Spectrum of n equidistant samples: a tone a cos(2 pi f t) on a line of the spectrum has the amplitude a.
 [[nodiscard]] Spectrum amplitude_spectrum(std::span<const double> samples, double interval, Window window);
 
+/// Amplitudes 0-peak of the circles that an orbit is made of, over the frequency with its sign: positive ones turn from
+/// x to y. An ellipse of one frequency has two lines, whose sum and difference are its semi-axes. Source: Goldman and
+/// Muszynska (1999).
+struct FullSpectrum {
+  double resolution = 0;          ///< between lines [1/unit of the sampling interval]
+  int first = 0;                  ///< number of the first line, -n/2 rounded up: its frequency over the resolution
+  std::vector<double> amplitude;  ///< [n], ascending in frequency; that of zero is the distance of the mean from (0, 0)
+};
+
+/// Of n equidistant samples of x and y.
+[[nodiscard]] FullSpectrum full_spectrum(std::span<const double> x, std::span<const double> y, double interval,
+                                         Window window);
+
 /// A tone read off a spectrum.
 struct Tone {
   double frequency = 0, amplitude = 0;

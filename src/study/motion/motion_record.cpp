@@ -169,6 +169,25 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
   g.put("order", order, "1", "frequency per running speed");
   g.put("x", shape, x, places_.unit, "amplitude 0-peak of x [line][bearing]");
   g.put("y", shape, y, places_.unit, "amplitude 0-peak of y [line][bearing]");
+  write_full_spectrum(group, window);
+}
+
+void MotionRecord::write_full_spectrum(io::Group& group, transient::Window window) const {
+  const std::size_t n = places_.names.size();
+  std::vector<transient::FullSpectrum> all;
+  for (std::size_t b = 0; b < n; ++b)
+    all.push_back(transient::full_spectrum(signal(b, 0), signal(b, 1), period_ / options_.samples, window));
+  std::vector<double> frequency, order, amplitude;
+  for (std::size_t k = 0; k < all[0].amplitude.size(); ++k) {
+    frequency.push_back((all[0].first + static_cast<double>(k)) * all[0].resolution);
+    order.push_back(frequency.back() * period_);
+    for (const transient::FullSpectrum& s : all) amplitude.push_back(s.amplitude[k]);
+  }
+  auto& g = group.child("full_spectrum");
+  const io::Shape shape{frequency.size(), n};
+  g.put("frequency", frequency, "Hz", "of the lines; positive turns from x to y, as the shaft does");
+  g.put("order", order, "1", "frequency per running speed");
+  g.put("amplitude", shape, amplitude, places_.unit, "radius 0-peak of the circle of this frequency [line][bearing]");
 }
 
 void MotionRecord::write_exponents(io::Group& group, io::StudySummary& summary) const {

@@ -10,6 +10,7 @@
 #include "whirl/system/plant.hpp"
 #include "whirl/transient/classify.hpp"
 #include "whirl/transient/exponents.hpp"
+#include "whirl/transient/spectrum.hpp"
 
 namespace whirl::study {
 
@@ -44,6 +45,7 @@ private:
   void write_orbit(io::Group& group) const;
   void write_points(io::Group& group) const;
   void write_spectrum(io::Group& group, io::StudySummary& summary) const;
+  void write_full_spectrum(io::Group& group, transient::Window window) const;
   void write_exponents(io::Group& group, io::StudySummary& summary) const;
 
   const MotionOptions& options_;

@@ -1,0 +1,25 @@
+"""Undamped critical speeds over the stiffness of the bearings."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .style import COLOURS, INK, save
+
+LINES = (("forward", "-"), ("backward", (0, (4, 2))))
+
+
+def draw_map(study):
+    """Critical speeds of forward and backward whirl, both axes logarithmic."""
+    if not study.has("map/stiffness", "map/forward", "map/backward"):
+        return []
+    k = study.get("map/stiffness")
+    figure, axis = plt.subplots(figsize=(8.6, 5.2))
+    for name, line in LINES:
+        speeds = np.atleast_2d(study.get(f"map/{name}"))
+        for n in range(speeds.shape[1]):
+            if np.isfinite(speeds[:, n]).any():
+                axis.loglog(k, speeds[:, n], color=COLOURS[n % len(COLOURS)], linestyle=line, linewidth=1.4)
+    axis.set_xlabel("stiffness of each bearing [N/m]")
+    axis.set_ylabel("undamped critical speed [rad/s]")
+    handles = [Line2D([], [], color=INK, linestyle=line, label=f"{name} whirl") for name, line in LINES]
+    return save(figure, study, "critical-speeds", "equal springs at all bearings; no damping, films or pedestals", handles=handles)

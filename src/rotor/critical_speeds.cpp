@@ -1,0 +1,58 @@
+#include "whirl/rotor/critical_speeds.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "planar.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/rotor/shaft.hpp"
+
+namespace whirl::rotor {
+namespace {
+
+Eigen::MatrixXd dense(Mat sparse) {
+  PetscInt n = 0;
+  core::check(MatGetSize(sparse, &n, nullptr));
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+  for (PetscInt r = 0; r < n; ++r) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    core::check(MatGetRow(sparse, r, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k) out(r, columns[k]) = values[k];
+    core::check(MatRestoreRow(sparse, r, &count, &columns, &values));
+  }
+  return out;
+}
+
+}  // namespace
+
+// K is definite, M -+ G may be not: of (M -+ G) v = K v/Omega^2 the positive eigenvalues count.
+std::vector<double> critical_speeds(const Options& options, const std::vector<int>& nodes, double stiffness,
+                                    Whirl whirl, int count) {
+  validate(options);
+  if (nodes.size() < 2) throw core::InputError("rotor: a shaft on springs needs two of them");
+  if (!(stiffness > 0)) throw core::InputError("rotor: the stiffness of springs must be positive");
+  const Planar planar = assemble_planar(PETSC_COMM_SELF, options);
+  Eigen::MatrixXd k = dense(planar.stiffness.get());
+  for (const int node : nodes) {
+    if (node < 1 || node > n_nodes(options))
+      throw core::InputError(fmt::format("rotor: node {} is not in 1..{}", node, n_nodes(options)));
+    k(2 * (node - 1), 2 * (node - 1)) += stiffness;
+  }
+  const double sign = whirl == Whirl::forward ? -1 : 1;
+  const Eigen::MatrixXd inertia = dense(planar.mass.get()) + sign * dense(planar.gyroscopic.get());
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(inertia, k, Eigen::EigenvaluesOnly);
+  std::vector<double> out;
+  if (solver.info() != Eigen::Success) throw core::NotConverged("critical speeds: the springs do not hold the shaft");
+  const Eigen::VectorXd& inverse = solver.eigenvalues();  // ascending
+  const double rounding = 1e-14 * inverse.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = inverse.size() - 1; i >= 0 && static_cast<int>(out.size()) < count; --i)
+    if (inverse(i) > rounding) out.push_back(1 / std::sqrt(inverse(i)));
+  return out;
+}
+
+}  // namespace whirl::rotor
