@@ -27,6 +27,13 @@ constexpr int max_rejections = 20;
 // pessimistic for a solution of order four.
 constexpr double deviation_tolerance = 100;
 
+// -PREFIXassembled takes the other path: for comparison, and for what needs a matrix (TSIRK).
+Algebra algebra_of(const IntegratorOptions& o) {
+  PetscBool assembled = o.algebra == Algebra::assembled ? PETSC_TRUE : PETSC_FALSE;
+  check(PetscOptionsGetBool(nullptr, o.prefix.c_str(), "-assembled", &assembled, nullptr));
+  return assembled ? Algebra::assembled : Algebra::automatic;
+}
+
 // PETSc keeps schemes by name for the life of the process.
 void register_scheme(const solve::Tableau& t) {
   static const bool done = [&] {
@@ -45,12 +52,16 @@ void register_scheme(const solve::Tableau& t) {
 
 struct Integrator::Parts {
   Parts(problem::System& system, const problem::Drive& given, const IntegratorOptions& o)
-      : drive(given), options(o), equations(system, given), gate(system.comm()), tableau(solve::sdirk(4)) {}
+      : drive(given),
+        options(o),
+        equations(system, given, algebra_of(o)),
+        gate(equations.gate()),
+        tableau(solve::sdirk(4)) {}
 
   problem::Drive drive;
   IntegratorOptions options;
   Equations equations;
-  core::Gate gate;
+  core::Gate& gate;
   solve::Tableau tableau;
   core::Vector u, before;
   core::Matrix jacobian;
