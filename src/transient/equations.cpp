@@ -132,6 +132,11 @@ void Equations::thin_residual(double t, Vec u, Vec udot) {
 }
 
 void Equations::residual(double t, Vec u, Vec udot, Vec f) {
+  free_residual(t, u, udot, f);
+  if (forces_) forces_->subtract(t, inverse_.get(), f);
+}
+
+void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
   turn(t);
   if (thin_) {
     f_.resize(system_.size());

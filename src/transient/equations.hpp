@@ -36,16 +36,21 @@ public:
   void unscale(Vec u, Vec x) const;
   /// Throws core::DomainError (agreed) outside the validity of a film.
   void residual(double t, Vec u, Vec udot, Vec f);
+  /// F - B f(t) from now on; null: none. They outlive their use here.
+  void act(const Forces* forces) { forces_ = forces; }
   /// j = alpha dF/du + sigma dF/d(du/dt)
   void jacobian(double t, Vec u, Vec udot, double alpha, double sigma, Mat j);
 
 private:
   void turn(double t);
+  /// Without external forces.
+  void free_residual(double t, Vec u, Vec udot, Vec f);
   [[nodiscard]] ThinOperator& operator_of(Mat m);
   void thin_residual(double t, Vec u, Vec udot);
 
   problem::System& system_;
   problem::Drive drive_;
+  const Forces* forces_ = nullptr;
   core::Gate gate_;
   bool thin_ = false;
   core::Vector state_scale_, residual_scale_, inverse_, x_, xdot_;

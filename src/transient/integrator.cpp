@@ -118,6 +118,7 @@ Integrator::Integrator(problem::System& system, problem::Drive drive, Vec x, Int
   p.jacobian = p.equations.make_matrix();
   p.step = options.first_step > 0 ? options.first_step : 2e-3 * std::numbers::pi / std::abs(system.speed());
   p.equations.scale(x, p.u.get());
+  p.equations.act(options.forces);
 
   TS* made = p.ts.put();
   check(TSCreate(system.comm(), made));
@@ -181,10 +182,17 @@ void Integrator::advance(double time) {
   TS ts = p.ts.get();
   check(TSRestartStep(ts));
   while (p.time < time) {
-    const double left = time - p.time;
+    // A step ends at a break of the forces; one that is nearer than rounding is none.
+    double end = time;
+    if (p.options.forces) {
+      const double slack = 1e-9 * p.step, next = p.options.forces->next_break(p.time + slack);
+      if (next < time - slack) end = next;
+    }
+    const double left = end - p.time;
     // Equal steps to the end, so that none of them is short for nothing.
     const double parts = std::max(1.0, std::ceil(left / p.step * (1 - 1e-9)));
     const double wanted = left / parts;
+    if (p.options.forces) p.options.forces->enter(p.time, p.time + wanted);
     check(TSSetTime(ts, p.time));
     check(TSSetTimeStep(ts, wanted));
     check(VecCopy(p.u.get(), p.before.get()));
@@ -219,7 +227,8 @@ void Integrator::advance(double time) {
     }
     // Growth stops at a factor of ten: a step cut short for the end of the interval then says nothing.
     p.step = proposed > 9.9 * length ? std::max(p.step, proposed) : proposed;
-    p.time = whole && parts == 1 ? time : now;
+    p.time = whole && parts == 1 ? end : now;
+    if (p.time == end && end < time) check(TSRestartStep(ts));  // for schemes that remember what was before the break
     ++p.work.steps;
     if (p.options.after_step) p.options.after_step(p.time, length);
   }

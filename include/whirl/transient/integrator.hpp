@@ -7,6 +7,7 @@
 
 #include "whirl/problem/drive.hpp"
 #include "whirl/problem/system.hpp"
+#include "whirl/transient/force.hpp"
 #include "whirl/transient/tangents.hpp"
 
 namespace whirl::transient {
@@ -23,6 +24,8 @@ struct IntegratorOptions {
   double first_step = 0;           ///< [s]; 0: a thousandth of a revolution
   std::string prefix = "motion_";  ///< of the PETSc options
   Algebra algebra = Algebra::automatic;
+  /// External forces, which outlive the integrator; null: none. Steps end at their breaks.
+  Forces* forces = nullptr;
   /// Called after every step with the time reached [s] and the length of the step [s]; on every rank.
   std::function<void(double time, double step)> after_step{};
 };

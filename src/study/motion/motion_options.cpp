@@ -32,6 +32,7 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; none for the balanced machine");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.named("forces", &O::forces, &ForceOptions::name, "external forces over the time since the beginning, by name");
   d.add("start", &O::start, "state at the beginning");
   d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
   d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
@@ -51,6 +52,7 @@ void Motion::validate(const system::Machine& machine, const deck::Report& report
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+  check_forces("forces", options.forces, machine, report);
   const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
   if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
     report.fail(

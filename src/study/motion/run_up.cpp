@@ -82,7 +82,8 @@ public:
         layout_(plan(context, sharing_of(options.start))),
         system_(layout_.space, system::train_of(context.machine, options.unbalance), drive_.speed),
         x_(start_state(system_, options.start).x),
-        integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),
+        forces_(make_forces(options.forces, context.machine, system_)),
+        integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance, .forces = acting(forces_)}),
         places_(system_.places()),
         films_(places_),
         table_(columns(unit_, places_.names.size(), options.nodes.size())) {
@@ -238,6 +239,7 @@ private:
   Layout layout_;
   system::RotorSystem system_;
   core::Vector x_;
+  transient::Forces forces_;
   transient::Integrator integrator_;
   system::ShownPlaces places_;
   FilmLimit films_;

@@ -25,6 +25,7 @@ void describe(deck::Description<RunUpOptions>& d) {
   d.add("acceleration", &O::acceleration, "rad/s^2", deck::positive,
         "size of the shaft's angular acceleration, the same all the time");
   d.add("duration", &O::duration, "s", deck::positive, "time from the first to the second speed, instead");
+  d.named("forces", &O::forces, &ForceOptions::name, "external forces over the time since the beginning, by name");
   d.add("start", &O::start, "state at the beginning");
   d.add("nodes", &O::nodes, deck::positive, "nodes of the shaft to report beside the bearings");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, among which extremes are looked for");
@@ -47,6 +48,7 @@ void describe(deck::Description<RunUpOptions>& d) {
 void RunUp::validate(const system::Machine& machine, const deck::Report& report) const {
   check_unbalance(options.unbalance, machine, report);
   check_nodes("nodes", options.nodes, machine, report);
+  check_forces("forces", options.forces, machine, report);
 }
 
 double RunUp::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "whirl/study/motion/forces.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
@@ -21,6 +22,7 @@ struct MotionOptions {
   std::string name;
   std::vector<std::string> unbalance;  ///< names of the machine's unbalances, applied together; none: balanced
   deck::Quantity speed;                ///< [rad/s]
+  std::vector<ForceOptions> forces;    ///< external, over the time since the motion began
   MotionStart start;
   int discard = 200;      ///< revolutions before anything is recorded
   int revolutions = 400;  ///< recorded
