@@ -20,6 +20,13 @@ def shade_resonance(study, axis):
     axis.axvspan(study.attribute("resonance_from"), study.attribute("resonance_to"), color=SHADE, zorder=0)
 
 
+def phase(angle, known):
+    """In degrees, without lines across the border at 180 and where nothing is known."""
+    degrees = np.where(known, np.degrees(angle), np.nan)
+    degrees[1:][np.abs(np.diff(degrees)) > 180] = np.nan
+    return degrees
+
+
 def draw_transfer(study):
     """|H1| with its band and its phase; dashed: of the linearised film."""
     if not study.has("levels/force", "linear/frequency"):
@@ -34,9 +41,9 @@ def draw_transfer(study):
             above.fill_between(frequency, np.maximum(size - radius, 1e-30), size + radius, color=colour, alpha=0.25, linewidth=0)
             above.plot(frequency, size, color=colour, linewidth=1.1)
             known = radius < 0.5 * size  # the phase of what is no larger than its bound is any
-            below.plot(frequency, np.where(known, np.degrees(study.get(f"{group}/h1_{pair}_phase")), np.nan), color=colour, linewidth=1.1, marker=".", markersize=2)
+            below.plot(frequency, phase(study.get(f"{group}/h1_{pair}_phase"), known), color=colour, linewidth=1.1, marker=".", markersize=2)
         above.plot(at, study.get(f"linear/g_{pair}"), color=INK, linestyle=DASHED, linewidth=1.2)
-        below.plot(at, np.degrees(study.get(f"linear/g_{pair}_phase")), color=INK, linestyle=DASHED, linewidth=1.2)
+        below.plot(at, phase(study.get(f"linear/g_{pair}_phase"), True), color=INK, linestyle=DASHED, linewidth=1.2)
         above.set_xscale("log")
         above.set_yscale("log")
         above.set_ylim(1e-6 * largest, 3 * largest)
