@@ -5,7 +5,7 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, line, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
                style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
 from .subject import Drawn, said_in_a_sentence
 
@@ -16,7 +16,7 @@ PICTURES = {
     "bearing_map": [bearing_map.draw_impedance, bearing_map.draw_frequencies],
     "gas_bearing": [gas.draw_curves, gas.draw_isobars, gas.draw_meshes, gas.draw_map, gas.draw_knudsen],
     "dynamic_coefficients": [dynamic.draw],
-    "modes": [campbell.draw, shapes.draw_modes],
+    "modes": [campbell.draw, shapes.draw_modes, line.draw],
     "critical_speed_map": [critical.draw_map],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],

@@ -30,7 +30,9 @@ void describe(deck::Description<MotionStart>& d) {
 void describe(deck::Description<MotionOptions>& d) {
   using O = MotionOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; none for the balanced machine");
+  d.add("unbalance", &O::unbalance,
+        "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do; none for "
+        "the balanced machine");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
   d.add("start", &O::start, "state at the beginning");
   d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");

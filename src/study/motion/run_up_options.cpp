@@ -18,7 +18,9 @@ double revolutions(const RunUpOptions& o) {
 void describe(deck::Description<RunUpOptions>& d) {
   using O = RunUpOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once").required();
+  d.add("unbalance", &O::unbalance,
+        "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do")
+      .required();
   d.add("range", &O::range, "rad/s", deck::positive,
         "speeds at the beginning and at the end; falling for a coast-down; results carry its unit")
       .required();
