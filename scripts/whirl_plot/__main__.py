@@ -5,8 +5,8 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, line, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
-               style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, film, gas, line, locus, machine, motion, multipliers, orbits,
+               response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections, transfer, whirl_map)
 from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -16,8 +16,10 @@ PICTURES = {
     "bearing_map": [bearing_map.draw_impedance, bearing_map.draw_frequencies],
     "gas_bearing": [gas.draw_curves, gas.draw_isobars, gas.draw_meshes, gas.draw_map, gas.draw_knudsen],
     "dynamic_coefficients": [dynamic.draw],
-    "modes": [campbell.draw, shapes.draw_modes, line.draw],
+    "modes": [campbell.draw, shapes.draw_modes, whirl_map.draw, line.draw],
     "critical_speed_map": [critical.draw_map],
+    "element_convergence": [elements.draw_errors, elements.draw_shifts, elements.draw_conditions],
+    "frequency_response": [transfer.draw],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],

@@ -41,6 +41,9 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("operating", &ModesOptions::operating, "rad/s", deck::positive,
         "operating speeds, lowest to highest, from which separation margins of critical speeds are counted",
         "API 617, API 684");
+  d.add("condition", &ModesOptions::condition,
+        "condition number of every eigenvalue, by right and left vectors, and whether multiple ones have as many "
+        "vectors; of large machines it takes a second search");
   d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
         "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
   d.check([](const ModesOptions& o, const deck::Report& r) {

@@ -22,6 +22,7 @@ struct ModesOptions {
   int count = 14;                         ///< modes to find, those of lowest frequency
   std::optional<double> max_frequency;    ///< |imaginary part| up to which modes are reported [rad/s]
   std::optional<deck::Range> operating;   ///< [rad/s] from which separation margins are counted
+  bool condition = false;                 ///< condition numbers of the eigenvalues, by left vectors
   std::vector<deck::Quantity> shapes_at;  ///< speeds at which shapes are kept [rad/s]; the last one if empty
 
   /// Those of `shapes_at` in rad/s, or the last of all speeds.
