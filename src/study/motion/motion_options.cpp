@@ -13,14 +13,6 @@ std::span<const deck::Name<MotionStart::From>> names(MotionStart::From) {
   return table;
 }
 
-std::span<const deck::Name<MotionOptions::Window>> names(MotionOptions::Window) {
-  using enum MotionOptions::Window;
-  static constexpr deck::Name<MotionOptions::Window> table[] = {
-      {none, "none", "exact for motions that repeat themselves within the record"},
-      {hann, "hann", "Hann's: leaks little where tones lie between the lines"}};
-  return table;
-}
-
 void describe(deck::Description<MotionStart>& d) {
   d.add("from", &MotionStart::from, "where the motion begins");
   d.add("offset", &MotionStart::offset, "1", deck::in(-1, 1),
@@ -46,6 +38,12 @@ void describe(deck::Description<MotionOptions>& d) {
         "distance between Poincare points, relative to the size of the motion, below which it repeats itself");
   d.add("window", &O::window, "what multiplies the record before its Fourier transform");
   d.add("orbit", &O::orbit, deck::non_negative, "revolutions whose orbit is stored, the last ones");
+  d.add(
+      "section", &O::section,
+      "Poincare section by a plane in the states; without it the points of a motion that nothing forces lie where the "
+      "coordinate that travels most passes its mean");
+  d.add("orders", &O::orders, "amplitude and phase of orders of the speed over the course of the motion");
+  d.add("waterfall", &O::waterfall, "spectra over the course of the motion");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
 }
 
@@ -53,6 +51,9 @@ void Motion::validate(const system::Machine& machine, const deck::Report& report
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+  if (options.section) check_section("section", *options.section, machine, report);
+  if (options.orders) check_orders("orders", *options.orders, options.revolutions, options.samples, report);
+  if (options.waterfall) check_waterfall("waterfall", *options.waterfall, options.revolutions, options.samples, report);
   const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
   if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
     report.fail(
