@@ -8,11 +8,11 @@ namespace whirl::thermal {
 
 // Where a node stands for its pressure the derivative is that of the pressure's flow; where it stands for the empty
 // share, that of the drag if the node lies upstream.
-Flux FilmFlow::Work::through_partly(double gradient, double drag, double u, double v) const {
-  const bool from_u = drag > 0;
-  const double upstream = from_u ? u : v, fill = upstream < 0 ? 1 + upstream / scale : 1;
-  Flux out{gradient * (std::max(v, 0.0) - std::max(u, 0.0)) + drag * fill, u < 0 ? 0 : -gradient, v < 0 ? 0 : gradient};
-  if (upstream < 0) (from_u ? out.before : out.behind) += drag / scale;
+Flux FilmFlow::Work::through_partly(double gradient, double drag, double p, double q) const {
+  const bool from_p = drag > 0;
+  const double upstream = from_p ? p : q, fill = upstream < 0 ? 1 + upstream / scale : 1;
+  Flux out{gradient * (std::max(q, 0.0) - std::max(p, 0.0)) + drag * fill, p < 0 ? 0 : -gradient, q < 0 ? 0 : gradient};
+  if (upstream < 0) (from_p ? out.before : out.behind) += drag / scale;
   return out;
 }
 

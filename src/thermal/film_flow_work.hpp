@@ -54,7 +54,7 @@ struct FilmFlow::Work {
   [[nodiscard]] Flux through(const Face& face, const Resistance& law, double width, double step, double p,
                              double q) const;
   /// The same of a film that conserves its mass, in the states of both nodes.
-  [[nodiscard]] Flux through_partly(double gradient, double drag, double u, double v) const;
+  [[nodiscard]] Flux through_partly(double gradient, double drag, double p, double q) const;
   void choose_scale();
   [[nodiscard]] MassFlow through_hole(std::size_t k, double p) const;
 
