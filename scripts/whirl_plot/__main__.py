@@ -5,7 +5,7 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, enforced, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
                style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
 from .subject import Drawn, said_in_a_sentence
 
@@ -15,7 +15,7 @@ PICTURES = {
     "alignment": [shapes.draw_sag],
     "bearing_map": [bearing_map.draw_impedance, bearing_map.draw_frequencies],
     "gas_bearing": [gas.draw_curves, gas.draw_isobars, gas.draw_meshes, gas.draw_map, gas.draw_knudsen],
-    "dynamic_coefficients": [dynamic.draw],
+    "dynamic_coefficients": [dynamic.draw, enforced.draw],
     "modes": [campbell.draw, shapes.draw_modes],
     "critical_speed_map": [critical.draw_map],
     "unbalance_response": [response.draw],
