@@ -128,7 +128,9 @@ TEST(Enforced, OfALargeAmplitudeIsTheLimitOfStepsInTime) {
       error =
           std::max(error, std::hypot(s.stiffness[i] - found.stiffness[i], omega * (s.damping[i] - found.damping[i])));
     error /= found.stiffness[1];
-    if (before > 0) EXPECT_NEAR(std::log2(before / error), 2, 0.15) << steps;
+    if (before > 0) {
+      EXPECT_NEAR(std::log2(before / error), 2, 0.15) << steps;
+    }
     before = error;
   }
   EXPECT_LT(before, 1e-3);

@@ -14,6 +14,7 @@
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/coefficients.hpp"
 
 namespace whirl::study {
 namespace {
@@ -48,9 +49,10 @@ std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, system:
     now.place = rest_at(*film, motion, states);
     states = now.place.states;
     now.thickness = film->least_thickness(motion, states);
+    film::FrequencyCoefficients by_frequency(*film, motion, states);
     for (const double ratio : options.all_frequencies()) {
       const double omega = ratio * speed.value;
-      now.coefficients.push_back(film::port_coefficients(*film, motion, states, omega));
+      now.coefficients.push_back(by_frequency.at(omega));
       if (!options.amplitudes.empty())
         now.enforced.push_back(
             enforced_at(*film, support.geometry, now.place, omega, options.amplitudes, now.coefficients.back()));
