@@ -5,8 +5,8 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, film, gas, line, locus, machine, motion, multipliers, orbits,
-               orders, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections, transfer, whirl_map)
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, enforced, film, gas, line, locus, machine, motion,
+               multipliers, orbits, orders, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections, transfer, whirl_map)
 from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -15,7 +15,7 @@ PICTURES = {
     "alignment": [shapes.draw_sag],
     "bearing_map": [bearing_map.draw_impedance, bearing_map.draw_frequencies],
     "gas_bearing": [gas.draw_curves, gas.draw_isobars, gas.draw_meshes, gas.draw_map, gas.draw_knudsen],
-    "dynamic_coefficients": [dynamic.draw],
+    "dynamic_coefficients": [dynamic.draw, enforced.draw],
     "modes": [campbell.draw, shapes.draw_modes, whirl_map.draw, line.draw],
     "critical_speed_map": [critical.draw_map],
     "element_convergence": [elements.draw_errors, elements.draw_shifts, elements.draw_conditions],

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include "study/cost.hpp"
+#include "study/motion/motion_start.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/study/motion/motion.hpp"
 
 namespace whirl::study {
@@ -9,7 +11,8 @@ std::span<const deck::Name<MotionStart::From>> names(MotionStart::From) {
   using enum MotionStart::From;
   static constexpr deck::Name<MotionStart::From> table[] = {
       {equilibrium, "equilibrium", "where the balanced machine sits"},
-      {cycle, "cycle", "the synchronous cycle of the unbalanced machine, stable or not, with its multipliers"}};
+      {cycle, "cycle", "the synchronous cycle of the unbalanced machine, stable or not, with its multipliers"},
+      {centre, "centre", "the journal of a rigid rotor on one bearing, at rest in the centre of it"}};
   return table;
 }
 
@@ -47,7 +50,18 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
 }
 
+void check_start(const MotionStart& start, const system::Machine& machine, const deck::Report& report) {
+  if (start.from != MotionStart::From::centre) return;
+  if (machine.bearings.size() != 1 || machine.rotor.type != rotor::Options::Type::rigid)
+    return report.fail("start.from",
+                       "only a rigid rotor on one bearing can be let go from the centre of its bearing: begin at the "
+                       "equilibrium, with an 'offset'");
+  if (film::facts(machine.bearings.front().film).coefficients)
+    report.fail("start.from", "a linear film knows no centre of its bearing: begin at the equilibrium");
+}
+
 void Motion::validate(const system::Machine& machine, const deck::Report& report) const {
+  check_start(options.start, machine, report);
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");

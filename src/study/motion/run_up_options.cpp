@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "study/cost.hpp"
+#include "study/motion/motion_start.hpp"
 
 namespace whirl::study {
 
@@ -50,6 +51,7 @@ void describe(deck::Description<RunUpOptions>& d) {
 
 void RunUp::validate(const system::Machine& machine, const deck::Report& report) const {
   check_unbalance(options.unbalance, machine, report);
+  check_start(options.start, machine, report);
   check_nodes("nodes", options.nodes, machine, report);
   const double turns = revolutions(options);
   if (options.orders) check_orders("orders", *options.orders, turns, options.samples, report);

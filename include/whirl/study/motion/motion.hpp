@@ -10,7 +10,7 @@ namespace whirl::study {
 
 /// Where a motion begins.
 struct MotionStart {
-  enum class From { equilibrium, cycle };
+  enum class From { equilibrium, cycle, centre };
   From from = From::equilibrium;
   std::array<double, 2> offset{};  ///< of every journal in x and y, per clearance
 };
