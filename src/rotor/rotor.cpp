@@ -25,7 +25,7 @@ Planar rigid_planar(MPI_Comm comm, double mass) {
     check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
     return m;
   };
-  Planar p{matrix(mass), matrix(0), matrix(0), core::make_vector(comm, local, 1)};
+  Planar p{matrix(mass), matrix(0), matrix(0), core::make_vector(comm, local, 1), {}};
   check(VecSet(p.weight.get(), mass));
   return p;
 }
@@ -54,16 +54,22 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
     small.gyroscopic = project(planar.gyroscopic.get(), basis);
     small.stiffness = project(planar.stiffness.get(), basis);
     small.weight = project(planar.weight.get(), basis);
+    if (planar.damping) small.damping = project(planar.damping.get(), basis);
     planar = std::move(small);
   }
   matrices_.mass = doubled(planar.mass.get(), both_planes);
   matrices_.gyroscopic = doubled(planar.gyroscopic.get(), across_planes);
   matrices_.stiffness = doubled(planar.stiffness.get(), both_planes);
   check(MatDuplicate(matrices_.stiffness.get(), MAT_DO_NOT_COPY_VALUES, matrices_.damping.put()));
-  if (!rigid_ && options.internal_damping > 0) {
+  if (!rigid_ && (options.internal_damping > 0 || options.loss_factor > 0 || planar.damping)) {
     internal_damping_ = options.internal_damping;
     matrices_.circulatory = doubled(planar.stiffness.get(), across_planes);
     check(MatScale(matrices_.circulatory.get(), internal_damping_));
+  }
+  if (planar.damping) {
+    couplings_ = doubled(planar.damping.get(), both_planes);
+    check(MatAXPY(matrices_.circulatory.get(), 1, doubled(planar.damping.get(), across_planes).get(),
+                  SUBSET_NONZERO_PATTERN));
   }
   set_stiffness_damping(options.stiffness_damping);
   matrices_.gravity = doubled_vertical(planar.weight.get(), -1);
@@ -73,6 +79,7 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
 void Rotor::set_stiffness_damping(double value) {
   check(MatCopy(matrices_.stiffness.get(), matrices_.damping.get(), SAME_NONZERO_PATTERN));
   check(MatScale(matrices_.damping.get(), value + internal_damping_));
+  if (couplings_) check(MatAXPY(matrices_.damping.get(), 1, couplings_.get(), SUBSET_NONZERO_PATTERN));
 }
 
 PetscInt Rotor::coordinate(int node, Freedom freedom) const {

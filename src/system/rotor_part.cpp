@@ -82,6 +82,11 @@ std::unique_ptr<rotor::Rotor> RotorPart::make_rotor(const rotor::Options& option
   return std::make_unique<rotor::Rotor>(comm_, options);
 }
 
+void RotorPart::check_pattern(const rotor::Rotor& rotor) const {
+  if (rotor.matrices().circulatory && !matrices_.circulatory)
+    throw core::InputError("'rotor.internal_damping' varies from a positive value on, not from none");
+}
+
 void RotorPart::take(const Change& change, std::unique_ptr<rotor::Rotor> rotor) {
   if (rotor)
     rotor_ = std::move(rotor);
@@ -187,8 +192,8 @@ RotorPart::Unbalances RotorPart::unbalance_of(const rotor::Rotor& rotor,
   check(VecSet(ts, 0.0));
   if (core::rank_of(comm_) == 0)
     for (const UnbalanceMass& u : masses) {
-      const PetscInt x = reduced ? rotor::full_coordinate(u.node, rotor::Freedom::x)
-                                 : rotor.coordinate(u.node, rotor::Freedom::x),
+      const rotor::Freedom freedom = u.couple ? rotor::Freedom::slope_x : rotor::Freedom::x;
+      const PetscInt x = reduced ? rotor::full_coordinate(u.node, freedom) : rotor.coordinate(u.node, freedom),
                      y = x + 1;
       check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
       check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
@@ -355,9 +360,27 @@ void RotorPart::add(Mat j, double at_rest, double gyroscopic, double rates) cons
   add(matrices_.gyroscopic.get(), 1, gyroscopic);
   if (matrices_.circulatory) add(matrices_.circulatory.get(), 0, gyroscopic);
   add(matrices_.mass.get(), 1, rates);
+  if (loss_ != std::array<double, 2>{}) add_loss(j, at_rest);
   for (PetscInt i = begin_; i < end_; ++i) {
     check(MatSetValue(j, 2 * i + 1, 2 * i, rates, ADD_VALUES));
     check(MatSetValue(j, 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
+  }
+}
+
+// Of the rotor alone: pedestals behind it have no loss.
+void RotorPart::add_loss(Mat j, double at_rest) const {
+  for (PetscInt i = begin_; i < std::min(end_, n_rotor_); ++i) {
+    PetscInt n = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrices_.stiffness.get(), i, &n, &columns, &values));
+    for (PetscInt e = 0; e < n; ++e) {
+      const double k = at_rest * values[e];
+      check(MatSetValue(j, 2 * i, 2 * columns[e] + 1, loss_[0] * k, ADD_VALUES));
+      // The other plane: +K y in rows of x, -K x in rows of y.
+      check(MatSetValue(j, 2 * i, 2 * (columns[e] ^ 1), (i % 2 == 0 ? 1 : -1) * loss_[1] * k, ADD_VALUES));
+    }
+    check(MatRestoreRow(matrices_.stiffness.get(), i, &n, &columns, &values));
   }
 }
 
