@@ -12,7 +12,7 @@ def ways_of(response):
     """(group, words) of the machine, and of machines with stiffness and damping in place of their films."""
     for name in sorted((n for n in response if "frequency" in response[n].attrs), key=lambda n: (n != "machine", n)):
         at = response[name].attrs["frequency"]
-        yield name, {"machine": "machine", "coefficients": "K, C at each frequency"}.get(name, f"K, C at {at:.5g} rad/s")
+        yield name, {"machine": "machine", "coefficients": "K, C at each frequency", "given": "K, C as given"}.get(name, f"K, C at {at:.5g} rad/s")
 
 
 def turned(phase):
