@@ -87,7 +87,7 @@ def response(h):
 
     h.run(deck, "whole", launcher=[])
     with h5py.File(h.work / "whole" / "results.h5") as f:
-        units = [f[f"disc/response/machine/{p}/amplitude"].attrs["units"] for p in ("node.7.x.from.node.7.x", "node.7.slope_x.from.node.7.x", "node.7.slope_x.from.node.7.slope_x", "bearing.left.x.from.node.7.slope_x")]
+        units = [f[f"disc/response/machine/{p}/amplitude"].attrs["unit"] for p in ("node.7.x.from.node.7.x", "node.7.slope_x.from.node.7.x", "node.7.slope_x.from.node.7.slope_x", "bearing.left.x.from.node.7.slope_x")]
     h.true("units", [u.decode() if isinstance(u, bytes) else u for u in units] == ["m/N", "1/N", "1/(N m)", "m/(N m)"], str(units))
     whole = matrix("whole")
     few = "studies.1.frequency_response.points=40"
