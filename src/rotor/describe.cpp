@@ -241,8 +241,8 @@ void describe(deck::Description<Options>& d) {
       .continuable()
       .only(&Options::type, {shaft});
   d.add("loss_factor", &Options::loss_factor, deck::in(0, 1),
-        "eta of hysteretic damping, K (1 + i eta): of vibration with one frequency alone, so that 'modes' and "
-        "'unbalance_response' take it and studies in time refuse it",
+        "eta of hysteretic damping, K (1 + i eta): of vibration with one frequency alone, so that 'modes', "
+        "'unbalance_response' and 'frequency_response' take it and studies in time refuse it",
         "003 (2.36)-(2.38)")
       .only(&Options::type, {shaft});
   d.add("loss_frame", &Options::loss_frame, "frame whose frequency decides the sign of the loss")
