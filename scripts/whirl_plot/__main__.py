@@ -5,8 +5,8 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
-               style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, reductions, response, run_up,
+               shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
 from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -18,6 +18,7 @@ PICTURES = {
     "dynamic_coefficients": [dynamic.draw],
     "modes": [campbell.draw, shapes.draw_modes],
     "critical_speed_map": [critical.draw_map],
+    "reduction_errors": [reductions.draw_errors, reductions.draw_orbits, reductions.draw_maps],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],

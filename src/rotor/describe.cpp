@@ -48,6 +48,9 @@ std::span<const deck::Name<Reduction::Type>> names(Reduction::Type) {
       {none, "none", "every node keeps its four freedoms"},
       {guyan, "guyan", "static condensation onto the translations of the masters"},
       {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"},
+      {craig_bampton_state, "craig_bampton_state",
+       "masters, their velocities, and the slowest complex modes of the turning shaft with its masters held: the basis "
+       "keeps gyroscopic moments and damping, at one speed"},
       {modal, "modal", "the lowest real modes of the shaft at rest, free or on springs at its masters"}};
   return table;
 }
@@ -143,11 +146,16 @@ void describe(deck::Description<Reduction>& d) {
   d.add("masters", &Reduction::masters, positive,
         "nodes whose translations are kept, and whose slopes where a film there tilts")
       .required()
-      .only(&Reduction::type, {guyan, craig_bampton, modal});
+      .only(&Reduction::type, {guyan, craig_bampton, craig_bampton_state, modal});
   d.add("modes", &Reduction::modes, positive,
-        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all")
+        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all; of "
+        "'craig_bampton_state' two pairs of complex modes for each")
       .required()
-      .only(&Reduction::type, {craig_bampton, modal});
+      .only(&Reduction::type, {craig_bampton, craig_bampton_state, modal});
+  d.add("speed", &Reduction::speed, "rad/s", non_negative,
+        "speed of the shaft while its complex modes are computed; they are kept at all speeds", "003 sec. 2.4.4")
+      .required()
+      .only(&Reduction::type, {craig_bampton_state});
   d.add("support", &Reduction::support, "N/m", non_negative,
         "springs at the masters while the modes are computed; 0: modes of the free shaft", "003 sec. 2.3")
       .only(&Reduction::type, {modal});
@@ -207,7 +215,9 @@ void describe(deck::Description<Options>& d) {
         node(o.reduction.masters[i], fmt::format("reduction.masters.{}", i + 1));
     // Each inner node has a translation and a slope in a plane, each master its slope.
     const int inner = 2 * n_nodes - static_cast<int>(o.reduction.masters.size());
-    if (o.reduction.type == Reduction::Type::craig_bampton && o.reduction.modes > inner)
+    const bool fixed_interface =
+        o.reduction.type == Reduction::Type::craig_bampton || o.reduction.type == Reduction::Type::craig_bampton_state;
+    if (fixed_interface && o.reduction.modes > inner)
       r.fail("reduction.modes",
              fmt::format("the shaft with its masters held has {} modes per plane, not {}", inner, o.reduction.modes));
     const auto& table = o.material.modulus;

@@ -79,6 +79,7 @@ void validate(const Reduction& r, int nodes) {
     refuse_unless(r.support >= 0, "the support must not be negative");
     return;
   }
+  refuse_unless(r.speed >= 0, "the speed of the modes must not be negative");
   const int slaves = 2 * nodes - static_cast<int>(r.masters.size() + r.slopes.size());
   refuse_unless(r.modes >= 0 && r.modes <= slaves,
                 fmt::format("{} fixed-interface modes per plane are not in 0..{}", r.modes, slaves));

@@ -9,6 +9,7 @@
 #include "whirl/study/equilibrium/static.hpp"
 #include "whirl/study/linear/critical_speed_map.hpp"
 #include "whirl/study/linear/modes.hpp"
+#include "whirl/study/linear/reduction_errors.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 #include "whirl/study/locus/locus.hpp"
 #include "whirl/study/motion/motion.hpp"
@@ -39,6 +40,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<CriticalSpeedMap>("undamped critical speeds of the shaft over the stiffness of its bearings"),
+      kind<ReductionErrors>("what reductions of the shaft cost: eigenvalues, eigenvectors, orbits, reduced matrices"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
