@@ -26,7 +26,7 @@ Planar rigid_planar(MPI_Comm comm, double mass) {
     check(MatAssemblyEnd(m.get(), MAT_FINAL_ASSEMBLY));
     return m;
   };
-  Planar p{matrix(mass), matrix(0), matrix(0), core::make_vector(comm, local, 1)};
+  Planar p{matrix(mass), matrix(0), matrix(0), core::make_vector(comm, local, 1), {}};
   check(VecSet(p.weight.get(), mass));
   return p;
 }
@@ -39,6 +39,21 @@ core::Matrix distributed(const Eigen::MatrixXd& first, PetscInt rows, PetscInt c
   Eigen::MatrixXd all = core::rank_of(comm) == 0 ? first : Eigen::MatrixXd(shape[0], shape[1]);
   core::share(comm, all.data(), static_cast<std::size_t>(all.size()));
   return matrix_of(all.middleRows(end - rows, rows), columns, comm);
+}
+
+// The same of a square one, zeros too: matrices of varying shafts keep their pattern.
+core::Matrix filled(const Eigen::MatrixXd& first, PetscInt local, MPI_Comm comm) {
+  PetscInt n = 0, end = 0;
+  MPI_Allreduce(&local, &n, 1, MPIU_INT, MPI_SUM, comm);
+  MPI_Scan(&local, &end, 1, MPIU_INT, MPI_SUM, comm);
+  Eigen::MatrixXd all = core::rank_of(comm) == 0 ? first : Eigen::MatrixXd(n, n);
+  core::share(comm, all.data(), static_cast<std::size_t>(all.size()));
+  core::Matrix out = core::make_matrix(comm, local, std::vector<PetscInt>(static_cast<std::size_t>(local), n));
+  for (PetscInt i = end - local; i < end; ++i)
+    for (PetscInt j = 0; j < n; ++j) check(MatSetValue(out.get(), i, j, all(i, j), INSERT_VALUES));
+  check(MatAssemblyBegin(out.get(), MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(out.get(), MAT_FINAL_ASSEMBLY));
+  return out;
 }
 
 core::Vector distributed(const Eigen::VectorXd& first, PetscInt local, MPI_Comm comm) {
@@ -80,16 +95,22 @@ Rotor::Rotor(MPI_Comm comm, const Options& options)
     small.gyroscopic = project(planar.gyroscopic.get(), basis);
     small.stiffness = project(planar.stiffness.get(), basis);
     small.weight = project(planar.weight.get(), basis);
+    if (planar.damping) small.damping = project(planar.damping.get(), basis);
     planar = std::move(small);
   }
   matrices_.mass = doubled(planar.mass.get(), both_planes);
   matrices_.gyroscopic = doubled(planar.gyroscopic.get(), across_planes);
   matrices_.stiffness = doubled(planar.stiffness.get(), both_planes);
   check(MatDuplicate(matrices_.stiffness.get(), MAT_DO_NOT_COPY_VALUES, matrices_.damping.put()));
-  if (!rigid_ && options.internal_damping > 0) {
+  if (!rigid_ && (options.internal_damping > 0 || options.loss_factor > 0 || planar.damping)) {
     internal_damping_ = options.internal_damping;
     matrices_.circulatory = doubled(planar.stiffness.get(), across_planes);
     check(MatScale(matrices_.circulatory.get(), internal_damping_));
+  }
+  if (planar.damping) {
+    couplings_ = doubled(planar.damping.get(), both_planes);
+    check(MatAXPY(matrices_.circulatory.get(), 1, doubled(planar.damping.get(), across_planes).get(),
+                  SUBSET_NONZERO_PATTERN));
   }
   set_stiffness_damping(options.stiffness_damping);
   matrices_.gravity = doubled_vertical(planar.weight.get(), -1);
@@ -115,9 +136,9 @@ void Rotor::reduce_states(MPI_Comm comm, const Options& options) {
   check(PetscSplitOwnership(comm, &pairs, &n));
   check(PetscSplitOwnership(comm, &rows, &whole));
   states_.emplace();
-  states_->rates = distributed(small.rates, 2 * pairs, 2 * pairs, comm);
-  states_->at_rest = distributed(small.at_rest, 2 * pairs, 2 * pairs, comm);
-  states_->turning = distributed(small.turning, 2 * pairs, 2 * pairs, comm);
+  states_->rates = filled(small.rates, 2 * pairs, comm);
+  states_->at_rest = filled(small.at_rest, 2 * pairs, comm);
+  states_->turning = filled(small.turning, 2 * pairs, comm);
   states_->gravity = distributed(small.gravity, 2 * pairs, comm);
   states_->displacement = distributed(basis.displacement, rows, 2 * pairs, comm);
   states_->velocity = distributed(basis.velocity, rows, 2 * pairs, comm);
@@ -132,6 +153,7 @@ void Rotor::set_stiffness_damping(double value) {
   core::require(!states_, "a rotor whose modes do not depend on its damping");
   check(MatCopy(matrices_.stiffness.get(), matrices_.damping.get(), SAME_NONZERO_PATTERN));
   check(MatScale(matrices_.damping.get(), value + internal_damping_));
+  if (couplings_) check(MatAXPY(matrices_.damping.get(), 1, couplings_.get(), SUBSET_NONZERO_PATTERN));
 }
 
 PetscInt Rotor::coordinate(int node, Freedom freedom) const {

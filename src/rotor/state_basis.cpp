@@ -42,9 +42,14 @@ struct Whole {
   MatrixXd mass, damping, gyroscopic, stiffness, circulatory;
 };
 
-Whole whole_of(const MatrixXd& m, const MatrixXd& g, const MatrixXd& k, const Options& o) {
-  return {both(m), (o.stiffness_damping + o.internal_damping) * both(k), across(g), both(k),
-          o.internal_damping * across(k)};
+// `d` is the damping of couplings.
+Whole whole_of(const MatrixXd& m, const MatrixXd& g, const MatrixXd& k, const MatrixXd& d, const Options& o) {
+  return {both(m), (o.stiffness_damping + o.internal_damping) * both(k) + both(d), across(g), both(k),
+          o.internal_damping * across(k) + across(d)};
+}
+
+MatrixXd damping_of(const Planar& planar, Index n) {
+  return planar.damping ? dense(planar.damping.get()) : MatrixXd(MatrixXd::Zero(n, n));
 }
 
 struct Mode {
@@ -213,7 +218,8 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
   for (Index j = 0; j < n_masters; ++j) t(masters[static_cast<std::size_t>(j)], j) = 1;
   const MatrixXd per_mass = t * (t.transpose() * m * t).llt().solve(MatrixXd::Identity(n_masters, n_masters));
 
-  const Whole held = whole_of(m(slaves, slaves), g(slaves, slaves), k_ss, options);
+  const Whole held =
+      whole_of(m(slaves, slaves), g(slaves, slaves), k_ss, damping_of(planar, n)(slaves, slaves), options);
   const HeldModes modes = held_modes(held, speed, states);
 
   StateBasis out;
@@ -246,8 +252,9 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
 }
 
 StateProjection project(const Planar& planar, const Options& options, const StateBasis& basis) {
+  const MatrixXd m = dense(planar.mass.get());
   const Whole a =
-      whole_of(dense(planar.mass.get()), dense(planar.gyroscopic.get()), dense(planar.stiffness.get()), options);
+      whole_of(m, dense(planar.gyroscopic.get()), dense(planar.stiffness.get()), damping_of(planar, m.rows()), options);
   const MatrixXd q = apart(basis.displacement), v = apart(basis.velocity), left_q = apart(basis.left_displacement),
                  left_v = apart(basis.left_velocity);
   StateProjection out;

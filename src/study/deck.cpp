@@ -83,6 +83,11 @@ void describe(deck::Description<Deck>& d) {
                                  deck.machine.system.name));
         continue;
       }
+      if (deck.machine.rotor.loss_factor > 0 && !s.takes_hysteresis())
+        r.fail(path,
+               fmt::format("'{}' follows the machine in time, where the force of a 'loss_factor' is not known: it "
+                           "is defined of vibration with one frequency. Take 'internal_damping', or leave it out",
+                           s.kind()));
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
       if (const double bytes = s.memory(deck.machine, deck.layout); bytes > deck.limits.memory)

@@ -8,6 +8,8 @@
 #include "whirl/study/equilibrium/equilibrium_branch.hpp"
 #include "whirl/study/equilibrium/static.hpp"
 #include "whirl/study/linear/critical_speed_map.hpp"
+#include "whirl/study/linear/element_convergence.hpp"
+#include "whirl/study/linear/frequency_response.hpp"
 #include "whirl/study/linear/modes.hpp"
 #include "whirl/study/linear/reduction_errors.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
@@ -40,6 +42,8 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<CriticalSpeedMap>("undamped critical speeds of the shaft over the stiffness of its bearings"),
+      kind<ElementConvergence>("whirl frequencies over the number of elements of the shaft, condition numbers"),
+      kind<FrequencyResponse>("transfer functions from forces to motions over the frequency, at one speed"),
       kind<ReductionErrors>("what reductions of the shaft cost: eigenvalues, eigenvectors, orbits, reduced matrices"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),

@@ -184,6 +184,8 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
     if (!s.rotor.empty() && (rotors.empty() || rotors.back() != s.rotor)) rotors.push_back(s.rotor);
   for (const Unbalance& u : m.unbalance) {
     const std::string path = "unbalance." + u.name;
+    if (u.name == unbalance_of_discs && discs_force(m))
+      r.fail(path, "'discs' is what the eccentric and skewed discs of this rotor do: give the unbalance another name");
     for (std::size_t i = 0; i < u.planes.size(); ++i)
       if (u.planes[i].eccentricity && m.rotor.type != rotor::Options::Type::rigid)
         r.fail(fmt::format("{}.planes.{}.eccentricity", path, i + 1), "only a rigid rotor has an 'eccentricity'");

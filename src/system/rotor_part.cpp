@@ -61,6 +61,11 @@ std::unique_ptr<rotor::Rotor> RotorPart::make_rotor(const rotor::Options& option
   return std::make_unique<rotor::Rotor>(comm_, options);
 }
 
+void RotorPart::check_pattern(const rotor::Rotor& rotor) const {
+  if (rotor.matrices().circulatory && !rotor_->matrices().circulatory)
+    throw core::InputError("'rotor.internal_damping' varies from a positive value on, not from none");
+}
+
 void RotorPart::take(const Change& change, std::unique_ptr<rotor::Rotor> rotor) {
   if (rotor)
     rotor_ = std::move(rotor);
@@ -183,8 +188,8 @@ RotorPart::Unbalances RotorPart::unbalance_of(const rotor::Rotor& rotor,
   for (const core::Vector& v : full) check(VecSet(v.get(), 0.0));
   if (core::rank_of(comm_) == 0)
     for (const UnbalanceMass& u : masses) {
-      const PetscInt x = through ? rotor::full_coordinate(u.node, rotor::Freedom::x)
-                                 : rotor.coordinate(u.node, rotor::Freedom::x),
+      const rotor::Freedom freedom = u.couple ? rotor::Freedom::slope_x : rotor::Freedom::x;
+      const PetscInt x = through ? rotor::full_coordinate(u.node, freedom) : rotor.coordinate(u.node, freedom),
                      y = x + 1;
       check(VecSetValue(full[0].get(), x, u.amount * std::cos(u.phase), ADD_VALUES));
       check(VecSetValue(full[1].get(), x, -u.amount * std::sin(u.phase), ADD_VALUES));
@@ -319,6 +324,17 @@ void RotorPart::add(Mat j, double at_rest, double gyroscopic, double rates) cons
     for_entries(m, [j, by = factor](PetscInt row, PetscInt column, double value) {
       check(MatSetValue(j, row, column, by * value, ADD_VALUES));
     });
+  if (loss_ != std::array<double, 2>{}) add_loss(j, at_rest);
+}
+
+// Of the rotor alone: pedestals behind it have no loss.
+void RotorPart::add_loss(Mat j, double at_rest) const {
+  for_entries(here(rotor_->matrices().stiffness.get()).get(), [&](PetscInt i, PetscInt column, double value) {
+    const double k = at_rest * value;
+    check(MatSetValue(j, 2 * i, 2 * column + 1, loss_[0] * k, ADD_VALUES));
+    // The other plane: +K y in rows of x, -K x in rows of y.
+    check(MatSetValue(j, 2 * i, 2 * (column ^ 1), (i % 2 == 0 ? 1 : -1) * loss_[1] * k, ADD_VALUES));
+  });
 }
 
 }  // namespace whirl::system

@@ -78,6 +78,9 @@ public:
   /// j += at_rest dF/dx without what grows with speed (gyroscopic, circulatory), gyroscopic times that of unit speed,
   /// rates times dF/d(dx/dt): all entries, if need be zero. Not assembled.
   void add(Mat j, double at_rest, double gyroscopic, double rates) const;
+  /// From now on add() puts the rotor's K times `damping` [s] onto velocities and K x [[0, 1], [-1, 0]] times `turning`
+  /// onto displacements: what hysteresis does to a vibration of one frequency. The rows themselves stay.
+  void set_loss(double damping, double turning) { loss_ = {damping, turning}; }
   /// Sets the entries of the pedestals in the same matrices of the whole machine, which hold them already.
   void set_pedestals(Mat at_rest, Mat rates) const;
 
@@ -85,6 +88,9 @@ public:
   [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
   /// Rotors made so far.
   [[nodiscard]] long made() const { return made_; }
+  /// Refuses a rotor that has damping which turns with it, where the first one had none: the pattern of the Jacobian is
+  /// without it. Throws core::InputError.
+  void check_pattern(const rotor::Rotor& rotor) const;
   /// Takes what differs from the train, which has changed; `rotor` is a new one if its shaft differs. Collective.
   void take(const Change& change, std::unique_ptr<rotor::Rotor> rotor);
   /// Differences of two trains over `step`. Exact where the rows are linear in a number of the train. Collective.
@@ -99,6 +105,8 @@ private:
     std::vector<double> pedestals;
   };
   [[nodiscard]] static Weights weights_of(const Train& train);
+  /// j += at_rest times what set_loss() says.
+  void add_loss(Mat j, double at_rest) const;
   /// Those of a rotor, zero at the pedestals. Collective, as are the others.
   [[nodiscard]] Matrices matrices_of(const rotor::Rotor& rotor) const;
   /// This rank's rows of a matrix of the rotor: all rows on the first rank if the rotor stands there.
@@ -122,6 +130,7 @@ private:
   Matrices matrices_;
   std::vector<double> load_;
   Unbalances unbalance_;
+  std::array<double, 2> loss_{};  // of velocities, of displacements across the planes
 };
 
 }  // namespace whirl::system

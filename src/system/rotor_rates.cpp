@@ -17,8 +17,8 @@ std::vector<UnbalanceMass> rate_of(const std::vector<UnbalanceMass>& minus, cons
   std::vector<UnbalanceMass> out;
   for (std::size_t k = 0; k < minus.size(); ++k) {
     const UnbalanceMass &a = minus[k], &b = plus[k];
-    core::require(a.node == b.node && a.phase == b.phase, "unbalances in the same planes");
-    out.push_back({a.node, (b.amount - a.amount) / step, a.phase});
+    core::require(a.node == b.node && a.phase == b.phase && a.couple == b.couple, "unbalances in the same planes");
+    out.push_back({a.node, (b.amount - a.amount) / step, a.phase, a.couple});
   }
   return out;
 }
@@ -34,6 +34,7 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
   };
   if (change.shaft) {
     const auto below = make_rotor(minus.rotor), above = make_rotor(plus.rotor);
+    check_pattern(*above);
     out.matrices = matrices_of(*above);
     const Matrices less = matrices_of(*below);
     for (const auto& [m, n] : {std::pair{out.matrices->rates.get(), less.rates.get()},

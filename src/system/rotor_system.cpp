@@ -189,6 +189,27 @@ RotorSystem::Made RotorSystem::made() const {
   return {hub_->made(), films_made_};
 }
 
+int RotorSystem::loss_sense(double frequency) const {
+  if (train_.rotor.loss_frame == rotor::LossFrame::stationary) return 1;
+  const double difference = frequency - speed_;
+  return std::abs(difference) <= 1e-12 * speed_ ? 0 : difference > 0 ? 1 : -1;
+}
+
+// i eta K (P_backward + s P_forward) = i eta (1 + s)/2 K + eta (1 - s)/2 K x [[0, 1], [-1, 0]], and i frequency q = v.
+RotorSystem::Loss RotorSystem::loss_at(double frequency) const {
+  core::require(frequency > 0, "vibration at a frequency");
+  const double eta = train_.rotor.loss_factor, s = loss_sense(frequency);
+  return {eta * (1 + s) / (2 * frequency), eta * (1 - s) / 2};
+}
+
+void RotorSystem::set_loss(const Loss& loss) {
+  hub_->set_loss(0, 0);
+  if (!j_at_rest_) make_constant_parts();  // in the pattern without
+  hub_->set_loss(loss.damping, loss.turning);
+  fill_constant_parts();
+  hub_entries_.clear();
+}
+
 PetscInt RotorSystem::local_size() const {
   return hub_->rows() + own_here_;
 }

@@ -12,7 +12,7 @@
 #include "rotor/shafts.hpp"
 #include "support/dense.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/rotor/coupling.hpp"
+#include "whirl/rotor/modal_coupling.hpp"
 #include "whirl/rotor/rotor.hpp"
 
 using namespace whirl;

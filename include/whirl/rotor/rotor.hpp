@@ -18,9 +18,10 @@ struct Matrices {
   core::Matrix mass;        // M, symmetric
   core::Matrix gyroscopic;  // G, skew, multiplied by Omega (rad/s); forward whirl is x -> y
   core::Matrix stiffness;   // K, symmetric
-  core::Matrix damping;     // C = (stiffness_damping + internal_damping) K
-  // N = internal_damping K x [[0, 1], [-1, 0]], skew: what turning with the shaft makes of its damping, which opposes
-  // q' - Omega e_z x q. It drives forward whirl slower than the shaft. Empty without internal damping.
+  core::Matrix damping;     // C = (stiffness_damping + internal_damping) K + D, D the damping of couplings
+  // N = (internal_damping K + D) x [[0, 1], [-1, 0]], skew: what turning with the shaft makes of its damping, which
+  // opposes q' - Omega e_z x q. It drives forward whirl slower than the shaft. Empty without such damping and without a
+  // loss factor, which is in none of these matrices but takes its pattern.
   core::Matrix circulatory;
   core::Vector gravity;  // kg: nodal weights along -y per unit acceleration; multiply by g
   core::Matrix basis;    // T, q_full = T q, rows of inner freedoms of elements last; empty if not reduced. Loads reduce
@@ -68,8 +69,8 @@ public:
   [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
   /// Of a rotor reduced in state space, else empty.
   [[nodiscard]] const std::optional<StateMatrices>& states() const noexcept { return states_; }
-  /// C = (`value` + internal_damping) K [s]; all else stays. Not of a rotor reduced in state space, whose modes depend
-  /// on C. Collective.
+  /// C = (`value` + internal_damping) K + D [s]; all else stays. Not of a rotor reduced in state space, whose modes
+  /// depend on C. Collective.
   void set_stiffness_damping(double value);
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
@@ -87,6 +88,7 @@ private:
 
   Matrices matrices_;
   std::optional<StateMatrices> states_;
+  core::Matrix couplings_;  // D; empty without
   PetscInt size_ = 0;
   double internal_damping_ = 0;
   int n_nodes_ = 0;

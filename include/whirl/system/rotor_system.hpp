@@ -93,6 +93,20 @@ public:
   /// The angular acceleration alpha [rad/s^2] of a shaft whose speed follows from outside; 0 at the start.
   void set_acceleration(double alpha) { acceleration_ = alpha; }
 
+  /// What the loss factor eta of the rotor adds to dF/dx of a vibration: `damping` [s] times its K on velocities and
+  /// `turning` times K x [[0, 1], [-1, 0]] on displacements.
+  struct Loss {
+    double damping = 0, turning = 0;
+  };
+  /// That of a vibration Re(z exp(i frequency t)), frequency > 0 [rad/s]: with it the Jacobian holds K (1 + i eta s), s
+  /// = 1 of backward and s = sign(frequency - Omega) of forward circular motion; in the stationary frame s = 1 of both.
+  /// Zero without a loss factor. Source: Skarolek (2011), (2.36); Genta & Amati (2010).
+  [[nodiscard]] Loss loss_at(double frequency) const;
+  /// The sense s of forward motion there: -1, 0 or 1.
+  [[nodiscard]] int loss_sense(double frequency) const;
+  /// From now on jacobian() and entries() have it; residual() never has. Collective.
+  void set_loss(const Loss& loss);
+
   [[nodiscard]] ShownPlaces places() const override;
   [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override;
   /// Of rigid bores from the place of the journal, over the whole length where the film sees its tilt; of films with

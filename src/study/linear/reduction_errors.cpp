@@ -11,7 +11,7 @@
 #include "whirl/deck/codecs.hpp"
 #include "whirl/film/describe.hpp"
 #include "whirl/problem/structure.hpp"
-#include "whirl/rotor/coupling.hpp"
+#include "whirl/rotor/modal_coupling.hpp"
 #include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {

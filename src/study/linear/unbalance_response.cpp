@@ -107,7 +107,10 @@ public:
       right[at] = speed * speed * system_.forcing_cosine()[of];
       right[at + 1] = -speed * speed * system_.forcing_sine()[of];
     }
+    const bool hysteretic = system_.train().rotor.loss_factor > 0;
+    if (hysteretic) system_.set_loss(system_.loss_at(speed));
     solver_.solve(x, speed, right, amplitude);
+    if (hysteretic) system_.set_loss({});  // equilibria know of none
     std::vector<double> state[2], shaft[2];
     for (std::size_t part = 0; part < 2; ++part) {
       core::Vector v = core::duplicate(x);
@@ -225,8 +228,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   if (nodes.empty()) {
     for (const auto& b : context.machine.bearings) wanted.insert(b.node);
     for (const auto& name : options.unbalance)
-      for (const auto& plane : context.machine.unbalance[*system::find_unbalance(context.machine, name)].planes)
-        wanted.insert(plane.node);
+      for (const int node : system::unbalance_nodes(context.machine, name)) wanted.insert(node);
     nodes.assign(wanted.begin(), wanted.end());
   }
   const std::string unit = options.range.unit;
