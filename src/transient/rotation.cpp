@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t fewest = 24;
 constexpr double most_disorder = 0.01, accident = 0.01;
-constexpr double pi = std::numbers::pi;
 
 // In [0, 1).
 double fraction(double x) {
@@ -35,7 +34,7 @@ std::vector<double> angles(const std::vector<std::array<double, 2>>& points) {
     // Axes of the box for those of the curve: a flat ellipse is seen as a circle.
     for (std::size_t d = 0; d < 2; ++d)
       z[d] = (p[d] - (low[d] + high[d]) / 2) / std::max(high[d] - low[d], std::numeric_limits<double>::min());
-    out.push_back(fraction(std::atan2(z[1], z[0]) / (2 * pi)));
+    out.push_back(fraction(std::atan2(z[1], z[0]) / (2 * std::numbers::pi)));
   }
   return out;
 }
@@ -91,7 +90,7 @@ Ratio ratio_within(double value, double bar) {
   long lp = 0, lq = 1, hp = 1, hq = 1;
   constexpr long largest = 1000;
   const auto found = [&](long p, long q) -> Ratio {
-    const double expected = 2 * bar * 3 * static_cast<double>(q * q) / (pi * pi);
+    const double expected = 2 * bar * 3 * static_cast<double>(q * q) / (std::numbers::pi * std::numbers::pi);
     if (expected > accident) return {};
     return {static_cast<int>(p + static_cast<long>(whole) * q), static_cast<int>(q)};
   };

@@ -5,11 +5,7 @@
 #include <numbers>
 
 namespace whirl::transient {
-namespace {
-
-constexpr double pi = std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 std::span<const deck::Name<Window>> names(Window) {
   using enum Window;
@@ -48,7 +44,7 @@ std::vector<double> weights(Window window, std::size_t n) {
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t j = 0; j < a.size(); ++j)
       w[k] += (j % 2 == 0 ? a[j] : -a[j]) *
-              std::cos(2 * pi * static_cast<double>(j) * static_cast<double>(k) / static_cast<double>(n));
+              std::cos(2 * std::numbers::pi * static_cast<double>(j) * static_cast<double>(k) / static_cast<double>(n));
   return w;
 }
 
@@ -63,7 +59,7 @@ double response(Window window, double offset) {
   double sum = a[0] / x;
   for (std::size_t j = 1; j < a.size(); ++j)
     sum += (j % 2 == 0 ? a[j] : -a[j]) * x / (x * x - static_cast<double>(j * j));
-  return std::abs(std::sin(pi * x) / pi * sum) / a[0];
+  return std::abs(std::sin(std::numbers::pi * x) / std::numbers::pi * sum) / a[0];
 }
 
 double offset_of(Window window, double ratio) {
