@@ -224,13 +224,23 @@ std::string of_motion(const io::StudySummary& s, const Values& v) {
     std::string name = kind;
     std::replace(name.begin(), name.end(), '_', ' ');
     out += "  motion: " + name;
-    if (const auto period = v.get("period")) out += fmt::format(", returns after {:.0f} revolutions", *period);
+    const auto period = v.get("period"), time = v.get("period.time");
+    if (period && time)
+      out += fmt::format(", returns after {:.6g} s, crossing its section {:.0f} times", *time, *period);
+    else if (period)
+      out += fmt::format(", returns after {:.0f} revolutions", *period);
     out += "\n";
   }
   if (const auto exponent = v.get("lyapunov.1.per_revolution")) {
     const auto error = v.get("lyapunov.1.uncertainty"), rate = v.get("lyapunov.1");
     const double bar = error && rate && *rate != 0 ? std::abs(*exponent * *error / *rate) : io::no_value;
     out += fmt::format("  largest Lyapunov exponent {} per revolution\n", with_uncertainty(*exponent, bar, ""));
+  }
+  if (const auto rotation = v.get("rotation")) {
+    out += fmt::format("  rotation number {} turns per return", with_uncertainty(*rotation, v.bar("rotation"), ""));
+    if (const auto p = v.get("rotation.locked.numerator"))
+      out += fmt::format(", locked at {:.0f}/{:.0f}", *p, *v.get("rotation.locked.denominator"));
+    out += "\n";
   }
   const auto places = Values::between(s, "peak_to_peak.", ".x");
   if (places.empty()) return out;

@@ -1,6 +1,11 @@
 // What the deck says of a film of gas.
 #include "whirl/film/gas.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string>
+
 #include "film/gas_film.hpp"
 #include "film/refine.hpp"
 #include "whirl/film/describe.hpp"
@@ -16,36 +21,119 @@ std::span<const deck::Name<Gas::Source>> names(Gas::Source) {
   return table;
 }
 
+std::span<const deck::Name<Gas::Slip>> names(Gas::Slip) {
+  static constexpr deck::Name<Gas::Slip> table[] = {
+      {Gas::Slip::none, "none", "the gas sticks to the walls: Kn < 0.01"},
+      {Gas::Slip::first, "first", "flow by pressure times 1 + 6 Kn (Burgdorfer 1959), for Kn < 0.1"},
+      {Gas::Slip::second, "second", "flow by pressure times 1 + 6 Kn + 6 Kn^2 (Hsia and Domoto 1983), for Kn < 1"}};
+  return table;
+}
+
+std::span<const deck::Name<OrificeRow::Law>> names(OrificeRow::Law) {
+  using enum OrificeRow::Law;
+  static constexpr deck::Name<OrificeRow::Law> table[] = {
+      {thickness, "thickness",
+       "coefficient 0.85 (1 - exp(-8.2 h_f/d)) of the orifice, h_f = h + depth of the pocket; with a pocket for h_f/d "
+       "< "
+       "0.1 (eq. 3.8)"},
+      {reynolds, "reynolds",
+       "the same times 1 - exp(-0.001 Re h_f/(h + 4 depth)), for 0.1 < h_f/d < 0.2 (eqs. 3.9-3.10; the fraction could "
+       "not be verified)"},
+      {curtain, "curtain",
+       "coefficient 1.05 (1 - exp(-0.005 Re)) of the curtain pi d h, without pocket (eqs. 3.12-3.13 at the orifice)"},
+      {two_restrictors, "two_restrictors",
+       "'reynolds' into the pocket, then 'curtain' at its rim, for h_f/d >= 0.2 (eqs. 3.9-3.13)"}};
+  return table;
+}
+
+void describe(deck::Description<Pocket>& d) {
+  d.add("diameter", &Pocket::diameter, "m", deck::positive,
+        "diameter; the film has the pressure behind the orifice at "
+        "this rim")
+      .required();
+  d.add("depth", &Pocket::depth, "m", deck::positive,
+        "below the bore; gas in this volume is compressed too, which takes damping away (pneumatic hammer)")
+      .required()
+      .continuable();
+}
+
+void describe(deck::Description<Lobes>& d) {
+  d.add("count", &Lobes::count, deck::in(2, 12), "arcs around the bore, which touch each other");
+  d.add("preload", &Lobes::preload, deck::Check{.min = 0, .max = 1, .max_open = true},
+        "1 - clearance/clearance of an arc")
+      .continuable();
+  d.add("angle", &Lobes::angle, "rad", deck::any, "middle of the first one, from +x; lines of nodes are at the joints");
+}
+
 void describe(deck::Description<OrificeRow>& d) {
   d.add("count", &OrificeRow::count, deck::in(1, 1000), "number of orifices, evenly spaced around the bore");
-  d.add("z", &OrificeRow::z, "m", deck::any, "place along the shaft, from the mid-plane; moved to the nearest node");
-  d.add("angle", &OrificeRow::angle, "rad", deck::any, "of the first one, from +x; a line of nodes is there");
-  d.add("diameter", &OrificeRow::diameter, "m", deck::positive, "diameter").required();
-  d.add("supply", &OrificeRow::supply, "Pa", deck::positive, "pressure of the supply, absolute").required();
+  d.add("z", &OrificeRow::z, "m", deck::any, "place along the shaft, from the mid-plane");
+  d.add("angle", &OrificeRow::angle, "rad", deck::any,
+        "of the first one, from +x; in a round bore a line of nodes is at that of the first row");
+  d.add("diameter", &OrificeRow::diameter, "m", deck::positive, "diameter").required().continuable();
+  d.add("supply", &OrificeRow::supply, "Pa", deck::positive, "pressure of the supply, absolute")
+      .required()
+      .continuable();
+  d.add("law", &OrificeRow::law, "how much flows", "Skarolek 2011 eqs. 3.7-3.13, after Belforte et al. 2007");
+  d.add("pocket", &OrificeRow::pocket, "round recess of the bore around each orifice", "Skarolek 2011 fig. 3.4");
+  d.check([](const OrificeRow& o, const deck::Report& r) {
+    if (o.pocket && !(o.pocket->diameter > o.diameter))
+      r.fail("pocket.diameter", "a pocket must be wider than its orifice");
+    if (o.law == OrificeRow::Law::two_restrictors && !o.pocket)
+      r.fail("law", "'two_restrictors' are an orifice and the rim of its pocket: give 'pocket'");
+    if (o.law == OrificeRow::Law::curtain && o.pocket)
+      r.fail("law", "'curtain' is that of an orifice without pocket: 'two_restrictors' has the one at a pocket's rim");
+  });
 }
 
 void describe(deck::Description<Gas>& d) {
   d.add("states", &Gas::states,
         "dynamic: the pressure is a state, and damping falls with the frequency; condensed: it is at every moment that "
-        "of "
-        "the motion at that moment, and its damping that of a pressure that stands still");
+        "of the motion at that moment, and its damping that of a pressure that stands still");
   d.add("source", &Gas::source, "what the orifices see of the pressure", "003 errata sec. 2");
+  d.add("slip", &Gas::slip, "rarefaction; Kn = mu sqrt(pi r T/2)/(p h)", "Skarolek 2011 sec. 1.3.1");
   d.add("cells", &Gas::cells, deck::in(4, 4000), "intervals around and along the bearing");
   d.add("tilt", &Gas::tilt, "follow the slope of the journal, and turn it by moments");
-  d.add("ambient", &Gas::ambient, "Pa", deck::positive, "pressure at both ends, absolute");
-  d.add("temperature", &Gas::temperature, "K", deck::positive, "of the film and of the supply");
+  d.add("ambient", &Gas::ambient, "Pa", deck::positive, "pressure at both ends, absolute").continuable();
+  d.add("temperature", &Gas::temperature, "K", deck::positive, "of the film and of the supply").continuable();
   d.add("gas_constant", &Gas::gas_constant, "J/(kg K)", deck::positive, "specific gas constant");
   d.add("heat_ratio", &Gas::heat_ratio, deck::Check{.min = 1, .max = 2, .min_open = true}, "ratio of specific heats");
-  d.add(
-      "orifices", &Gas::orifices,
-      "rows of simple orifices without pockets; without any the bearing is self-acting. The dip of the pressure in the "
-      "jet behind an orifice is not modelled",
-      "Skarolek 2011 eqs. 3.4-3.8");
+  d.add("orifices", &Gas::orifices,
+        "rows of orifices, anywhere; without any the bearing is self-acting. The dip of the pressure in the jet behind "
+        "an "
+        "orifice without pocket is not modelled",
+        "Skarolek 2011 eqs. 3.4-3.13");
+  d.add("lobes", &Gas::lobes, "arcs of a larger radius in place of the circle of a cylindrical bore");
+  d.add("grooves", &Gas::grooves,
+        "axial grooves, full of gas of a pressure; a pressure of zero, or none, is that of the ends");
 }
 
 void refine(Gas& options, const std::array<double, 2>& factor) {
   for (std::size_t d = 0; d < 2; ++d) options.cells[d] = refined(options.cells[d], factor[d], false);
 }
+
+namespace {
+
+// A pocket so deep that its rim holds back too.
+Misplaced too_deep(const Gas& o, const Geometry& geometry) {
+  for (std::size_t k = 0; k < o.orifices.size(); ++k) {
+    const OrificeRow& r = o.orifices[k];
+    const std::string path = "orifices." + std::to_string(k + 1);
+    const double rim = r.pocket ? 0.5 * r.pocket->diameter : 0.0;
+    if (std::abs(r.z) + rim >= 0.5 * geometry.length)
+      return {path + ".z", "orifices and pockets lie within the bearing"};
+    if (!r.pocket || r.law == OrificeRow::Law::two_restrictors) continue;
+    const double depth = (geometry.clearance + r.pocket->depth) / r.diameter;
+    if (depth >= 0.2)
+      return {path + ".law",
+              fmt::format("(clearance + depth)/diameter is {:.3g}: from 0.2 on the rim of a pocket holds "
+                          "back too, which 'two_restrictors' counts (Skarolek 2011, eq. 3.9)",
+                          depth)};
+  }
+  return {};
+}
+
+}  // namespace
 
 Facts facts_of(const Gas& o, const Geometry& geometry) {
   Facts f;
@@ -55,8 +143,11 @@ Facts facts_of(const Gas& o, const Geometry& geometry) {
   if (f.own_states) f.states = o.cells[0] * (o.cells[1] - 1);
   if (!o.orifices.empty())
     f.smoothness = {1, "flow through orifices has kinks in its slope where it becomes choked or nearly stops"};
-  if (geometry.type != Geometry::Bore::cylindrical && geometry.radius > 0.0)
-    f.misplaced = {"type", "a film of gas stands in a whole circle: a cylindrical bore"};
+  if (geometry.radius > 0.0) {
+    f.misplaced = too_deep(o, geometry);
+    if (o.lobes && geometry.type != Geometry::Bore::cylindrical)
+      f.misplaced = {"lobes", "lobes take the place of a circle: a cylindrical bore"};
+  }
   return f;
 }
 

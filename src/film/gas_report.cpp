@@ -23,9 +23,12 @@ void GasFilm::unloaded(const JournalMotion& motion_given, std::span<double> stat
     return 2.0 * pi / around * (std::min(z, at) + 0.5 * length) * (0.5 * length - std::max(z, at)) / length;
   };
   std::fill(states.begin(), states.end(), options_.ambient);
-  std::vector<double> mass(rows.size()), behind(rows.size());
+  std::vector<double> mass(rows.size());
+  std::vector<std::array<double, 2>> behind(rows.size());
+  std::vector<std::size_t> first(rows.size(), 0);  // feed of each row
+  for (std::size_t r = 1; r < rows.size(); ++r) first[r] = first[r - 1] + static_cast<std::size_t>(rows[r - 1].count);
   for (int i = 0; i < lines_; ++i) {
-    const double h = std::max(thickness(motion, i, 0.5 * (inner_ - 1)), 0.05 * geometry_.clearance);
+    const double h = std::max(thickness(motion, 2 * i, 0.5 * (inner_ - 1)), 0.05 * geometry_.clearance);
     const double K = 12.0 * viscosity_ * warmth / (pi * h * h * h);
     std::fill(mass.begin(), mass.end(), 0.0);
     const int sweeps = rows.size() > 1 ? 6 : 1;
@@ -35,34 +38,29 @@ void GasFilm::unloaded(const JournalMotion& motion_given, std::span<double> stat
         double others = outside;
         for (std::size_t o = 0; o < rows.size(); ++o)
           if (o != r) others += K * mass[o] * rows[o].count * slit(row.z, rows[o].z);
-        const double spread = std::max(0.0, std::log(around / (row.count * pi * row.diameter)));
-        const double resists = K * (row.count * slit(row.z, row.z) + spread);
-        const Orifice o{0, 0, row.diameter, row.supply};
-        double low = std::min(options_.ambient, row.supply), high = std::max(options_.ambient, row.supply);
-        for (int halving = 0; halving < 40; ++halving) {
-          const double p = 0.5 * (low + high);
-          (p * p < others + resists * flow(o, p, h).mass ? low : high) = p;
-        }
-        behind[r] = 0.5 * (low + high);
-        mass[r] = flow(o, behind[r], h).mass;
+        const GasFeed& f = feeds_[first[r]];
+        const double spread = std::max(0.0, std::log(around / (row.count * 2.0 * pi * f.rim())));
+        behind[r] = f.steady(others, K * (row.count * slit(row.z, row.z) + spread), h);
+        mass[r] = f.into_film(behind[r], h).mass;
       }
-    for (int j = 0; j < inner_ && !rows.empty(); ++j) {
+    for (int j = 0; j < inner_ && (!rows.empty() || bore_.held(i)); ++j) {
       double square = outside;
       for (std::size_t r = 0; r < rows.size(); ++r) {
         const double turn = angle(i) - rows[r].angle, pitch = around / rows[r].count;
         const double away = std::abs(z(j) - rows[r].z) / pitch;
         const double decay = std::exp(-2.0 * pi * away);
         const double distance2 = 1.0 - 2.0 * decay * std::cos(rows[r].count * turn) + decay * decay;
-        const double least = 2.0 * pi * mesh / pitch;
+        const double least = 2.0 * pi * std::max(mesh, feeds_[first[r]].pocket_rim()) / pitch;
         square +=
             K * mass[r] * (rows[r].count * slit(z(j), rows[r].z) - 0.5 * std::log(std::max(distance2, least * least)));
       }
-      states[at(i, j)] = std::sqrt(std::max(square, 0.25 * outside));
+      states[at(i, j)] = bore_.held(i) ? bore_.pressure(i) : std::sqrt(std::max(square, 0.25 * outside));
     }
-    std::size_t k = nodes_;
-    for (std::size_t r = 0, first = 0; r < rows.size(); first += static_cast<std::size_t>(rows[r++].count))
-      for (std::size_t n = 0; n < static_cast<std::size_t>(rows[r].count); ++n, ++k)
-        if (orifices_[first + n].line == i) states[k] = behind[r];
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t k = first[r]; k < first[r] + static_cast<std::size_t>(rows[r].count); ++k)
+        if (feeds_[k].line() == i)
+          for (int n = 0; n < feeds_[k].unknowns(); ++n)
+            states[nodes_ + unknown(k, n)] = behind[r][static_cast<std::size_t>(n)];
   }
 }
 
@@ -70,10 +68,10 @@ void GasFilm::unloaded(const JournalMotion& motion_given, std::span<double> stat
 void GasFilm::resample(const JournalMotion& /*motion*/, const Film& other, std::span<const double> from,
                        std::span<double> to) const {
   const auto* mesh = dynamic_cast<const GasFilm*>(&other);
-  core::require(mesh != nullptr && from.size() == mesh->states() && mesh->orifices_.size() == orifices_.size(),
+  core::require(mesh != nullptr && from.size() == mesh->states() && mesh->unknowns_ == unknowns_,
                 "states of another film of gas");
   for (int i = 0; i < lines_; ++i) {
-    double line = (angle(i) - mesh->start_) / mesh->dtheta_;
+    double line = (angle(i) - mesh->bore_.start()) / mesh->dtheta_;
     line -= mesh->lines_ * std::floor(line / mesh->lines_);
     const int l = static_cast<int>(line) % mesh->lines_, l_next = (l + 1) % mesh->lines_;
     const double u = line - std::floor(line);
@@ -90,37 +88,41 @@ void GasFilm::resample(const JournalMotion& /*motion*/, const Film& other, std::
             to.begin() + static_cast<std::ptrdiff_t>(nodes_));
 }
 
-// Volumes are those of the gas at the pressure outside. Torque by (3.30), which is that of the shear at the journal.
+// Volumes are those of the gas at the pressure outside. Torque by (3.30), which is that of the shear at the journal,
+// less what slip takes of it; none in grooves.
 FilmReport GasFilm::summary(const JournalMotion& motion_given, std::span<const double> states) {
   const JournalMotion motion = seen(motion_given);
   FilmReport out;
   out.min_thickness = least_thickness(motion, states);
-  out.max_pressure = *std::max_element(states.begin(), states.end());
+  out.max_pressure = *std::max_element(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(nodes_ + flows_));
   const double warmth = options_.gas_constant * options_.temperature, to_volume = warmth / options_.ambient;
   out.mass_flow = 0.0;
-  for (std::size_t k = 0; k < orifices_.size(); ++k) {
-    const Orifice& o = orifices_[k];
-    const double mass = flow(o, states[nodes_ + k], thickness(motion, o.line, o.place)).mass;
+  for (std::size_t k = 0; k < feeds_.size(); ++k) {
+    const double mass = feeds_[k].into_film(unknowns_of(k, &states[nodes_]), thickness(motion, feeds_[k])).mass;
     out.mass_flow += mass;
     out.hole_flows.push_back(mass * to_volume);
   }
   out.mean_temperature = out.max_temperature = options_.temperature;
+  out.imbalance = out.mass_flow * to_volume + from_grooves(motion, states);
+  const double slips = drive_.first / 6.0;
   double torque = 0.0;
-  out.imbalance = out.mass_flow * to_volume;
   for (int i = 0; i < lines_; ++i) {
+    const int after = (i + 1) % lines_, before = (i + lines_ - 1) % lines_;
+    const bool groove = bore_.held(i), deep = groove && bore_.held(after);
+    const double film = groove ? 1.0 - 0.5 * (bore_.held(after) + bore_.held(before)) : 1.0;
     for (int j = -1; j <= inner_; ++j) {
-      const double width = j < 0 || j == inner_ ? 0.5 * dz_ : dz_, h = thickness(motion, i, j);
-      const double rise = pressure(states, (i + 1) % lines_, j) - pressure(states, i, j);
-      torque += geometry_.radius * width *
-                (viscosity_ * geometry_.radius * motion.speed / h * dx_ + 0.5 * thickness(motion, i + 0.5, j) * rise);
+      const double width = j < 0 || j == inner_ ? 0.5 * dz_ : dz_, h = thickness(motion, 2 * i, j);
+      const double p = pressure(states, i, j), rise = deep ? 0.0 : pressure(states, after, j) - p;
+      const double shear = viscosity_ * geometry_.radius * motion.speed / (h + slips / p);
+      torque += geometry_.radius * width * (film * shear * dx_ + 0.5 * thickness(motion, 2 * i + 1, j) * rise);
     }
     for (const int end : {-1, inner_ - 1}) {
-      const double h = thickness(motion, i, end + 0.5);
-      const double low = pressure(states, i, end), high = pressure(states, i, end + 1);
-      const double q = h * h * h * (high * high - low * low) / (24.0 * viscosity_ * dz_) * dx_ / options_.ambient;
+      const double h = thickness(motion, 2 * i, end + 0.5);
+      const double rise = drive_.rise(h, pressure(states, i, end), pressure(states, i, end + 1)).value;
+      const double q = groove ? 0.0 : rise / (24.0 * viscosity_ * dz_) * dx_ / options_.ambient;
       out.side_flow += end < 0 ? q : -q;
     }
-    for (int j = 0; j < inner_; ++j) {
+    for (int j = 0; j < inner_ && !groove; ++j) {
       const double grows = -mean_ * ((motion.velocity[0] + z(j) * motion.velocity[2]) * std::cos(angle(i)) +
                                      (motion.velocity[1] + z(j) * motion.velocity[3]) * std::sin(angle(i)));
       out.imbalance -= states[at(i, j)] * grows * dx_ * dz_ / options_.ambient;
@@ -130,6 +132,28 @@ FilmReport GasFilm::summary(const JournalMotion& motion_given, std::span<const d
   out.inlet_flow = out.outlet_flow = 0.0;
   out.power_loss = torque * motion.speed;
   out.drag_torque = torque;
+  return out;
+}
+
+// Volume that the lines of nodes in grooves give to those beside them; what feeds give there leaves through the groove.
+double GasFilm::from_grooves(const JournalMotion& motion, std::span<const double> states) const {
+  double out = 0.0;
+  for (int i = 0; i < lines_ && bore_.any_held(); ++i) {
+    const int next = (i + 1) % lines_;
+    if (bore_.held(i) == bore_.held(next)) continue;
+    for (int j = 0; j < inner_; ++j) {
+      const double h = thickness(motion, 2 * i + 1, j), low = pressure(states, i, j), high = pressure(states, next, j);
+      const double q = 0.25 * geometry_.radius * motion.speed * h * (low + high) -
+                       drive_.rise(h, low, high).value / (24.0 * viscosity_ * dx_);
+      out += (bore_.held(i) ? q : -q) * dz_ / options_.ambient;
+    }
+  }
+  const double to_volume = options_.gas_constant * options_.temperature / options_.ambient;
+  for (std::size_t k = 0; k < feeds_.size(); ++k)
+    for (const GasFeed::Part& a : feeds_[k].parts())
+      if (bore_.held(a.node / inner_))
+        out -= a.weight * to_volume *
+               feeds_[k].into_film(unknowns_of(k, &states[nodes_]), thickness(motion, feeds_[k])).mass;
   return out;
 }
 
@@ -143,7 +167,7 @@ std::vector<NodalField> GasFilm::fields(const JournalMotion& motion_given, std::
     theta.values.push_back(angle(i));
     for (int j = -1; j <= inner_; ++j) {
       p.values.push_back(pressure(states, i % lines_, j));
-      h.values.push_back(thickness(motion, i, j));
+      h.values.push_back(thickness(motion, 2 * i, j));
     }
   }
   return {std::move(theta), std::move(axis), std::move(p), std::move(h)};

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -36,6 +37,24 @@ double infinite_from(Mat a, Mat b) {
   check(MatNorm(a, NORM_FROBENIUS, &left));
   check(MatNorm(b, NORM_FROBENIUS, &right));
   return left / (std::numeric_limits<double>::epsilon() * right);
+}
+
+// Rows of b that are zero.
+PetscInt zero_rows(const Eigen::MatrixXd& b) {
+  return static_cast<PetscInt>((b.cwiseAbs().rowwise().maxCoeff().array() == 0).count());
+}
+
+// The size that infinite eigenvalues have at least: there are as many as b has zero rows, and rounding makes some of
+// them finite, smaller than infinite_from() where rows differ in size.
+double least_infinite(const EigenSolver& eps, PetscInt count, double infinite) {
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  std::vector<double> size;
+  for (PetscInt i = 0; i < converged; ++i)
+    size.push_back(std::abs(pair_of(eps.get(), i, nullptr, nullptr, false).value));
+  if (count == 0 || count > converged) return infinite;
+  std::nth_element(size.begin(), size.begin() + (count - 1), size.end(), std::greater<>());
+  return std::min(infinite, size[static_cast<std::size_t>(count - 1)]);
 }
 
 // Left rows y* of the scaled pencil, y* B x = 1, as the vector that belongs to a shape of SI which is x over `largest`.
@@ -175,10 +194,12 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     if (core::rank_of(system.comm()) != 0) return;
     std::optional<DensePencil> pencil;
     if (options.rounding || options.left) pencil.emplace(entries(a.get()), entries(b.get()));
-    const double infinite = infinite_from(a.get(), b.get());  // before b is overwritten
+    // Before b is overwritten.
+    const double infinite = infinite_from(a.get(), b.get());
+    const PetscInt at_least = zero_rows(entries(b.get()));
     solve_dense(eps, a.get(), b.get());
     out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options,
-                   pencil ? &*pencil : nullptr, nullptr, infinite);
+                   pencil ? &*pencil : nullptr, nullptr, least_infinite(eps, at_least, infinite));
   });
   if (core::size_of(system.comm()) == 1) return out;
   std::vector<Complex> values;

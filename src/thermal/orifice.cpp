@@ -37,4 +37,24 @@ double discharge(double thickness, double diameter) {
   return 0.85 * (1 - std::exp(-8.2 * thickness / diameter));
 }
 
+// Newton's method from the right, where the difference is convex, within a bracket.
+Discharged discharged(double ideal, double rate, double unit) {
+  const double a = std::abs(ideal), sign = ideal < 0 ? -1 : 1;
+  double low = 0, high = a, m = a, number = 1, left = 1, slope = 1;
+  for (int step = 0; step < 100; ++step) {
+    const double re = m / unit;
+    number = std::sqrt(re * re + 1);
+    left = std::exp(-rate * number);  // what the coefficient lacks
+    slope = 1 - a * rate * left * re / (number * unit);
+    const double excess = m - a * (1 - left);
+    (excess > 0 ? high : low) = m;
+    double next = m - excess / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const bool settled = std::abs(next - m) <= 4e-16 * a;
+    m = next;
+    if (settled) break;
+  }
+  return {sign * m, (1 - left) / slope, sign * a * number * left / slope};
+}
+
 }  // namespace whirl::thermal

@@ -14,6 +14,7 @@
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
+#include "study/linear/line_modes.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
 #include "study/linear/mode_reduction.hpp"
@@ -142,6 +143,7 @@ void put_searches(io::Group& group, io::StudySummary& summary, const std::vector
 }  // namespace
 
 StudyResult Modes::run(Context& context) {
+  if (options.motion != ModesOptions::Motion::bending) return line_modes(context, options);
   if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
   const std::vector<double> speeds = options.all_speeds();
   const std::vector<double> shape_speeds = options.all_shape_speeds();

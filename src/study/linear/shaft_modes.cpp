@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/linear/mode_loss.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 
 namespace whirl::study {
@@ -37,7 +38,7 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   const auto part_taken = [&](const spectral::Mode& mode) {
     return participation(mode.shape, scale, 2 * system.coordinates());
   };
-  const solve::MachineModes found =
+  solve::MachineModes found =
       solve::machine_modes(system, equilibrium, options,
                            {std::isfinite(max_frequency) ? max_frequency : 0, count,
                             [&](const spectral::Mode& mode) { return part_taken(mode) >= least_participation; }});
@@ -50,6 +51,7 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     search.rest_multiplicity = slowest->multiplicity;
     search.rest_vectors = slowest->vectors;
   }
+  if (system.train().rotor.loss_factor > 0) found.modes = with_loss(system, equilibrium, found.modes);
   for (const auto& mode : found.modes) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
     if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;

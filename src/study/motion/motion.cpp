@@ -14,6 +14,7 @@
 #include "study/make_plant.hpp"
 #include "study/motion/motion_record.hpp"
 #include "study/motion/motion_start.hpp"
+#include "study/motion/plane.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/transient/integrator.hpp"
@@ -43,7 +44,8 @@ public:
         integrator_(system_, {options_.speed.value}, start_.x.get(),
                     {.tolerance = options_.tolerance,
                      .after_step = [this](double time, double step) { progress(time, step); }}),
-        record_(options_, system_.places(), system_.forced() || !options_.unbalance.empty(), integrator_.scaled()),
+        forced_(system_.forced() || !options_.unbalance.empty()),
+        record_(options_, system_.places(), forced_, integrator_.scaled()),
         films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
@@ -55,7 +57,9 @@ public:
     try {
       for (; done_ < total; ++done_) {
         // Directions need time to turn to those that grow most, before their growth counts.
-        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
+        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) carried_ = &*tangents_;
+        integrator_.carry(carried_);
+        if (done_ >= options_.discard && !section_) cut();
         revolve(done_ >= options_.discard);
         save();
       }
@@ -71,7 +75,11 @@ private:
     const double period = 2 * std::numbers::pi / options_.speed.value;
     std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
     for (int k = 1; k <= options_.samples; ++k) {
-      integrator_.advance(period * k / options_.samples);
+      const double time = period * k / options_.samples;
+      if (record && section_)
+        section_->advance(time, carried_);
+      else
+        integrator_.advance(time);
       if (tangents_) {
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
@@ -80,9 +88,26 @@ private:
       const system::Observed seen = system_.observe(start_.x.get());
       if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
       if (record) record_.sample(seen.shown, integrator_.scaled());
+      if (!record && !forced_ && done_ >= options_.discard - std::max(1, options_.discard / 4)) watch_.see(seen.shown);
     }
     if (record) record_.close(growth, period);
     integrator_.restart(0, integrator_.step());
+  }
+
+  // Sets up the section, if there is one.
+  void cut() {
+    if (plane_ || (!options_.section && (forced_ || !watch_.seen()))) return;
+    const system::ShownPlaces places = system_.places();
+    plane_ = options_.section ? plane_of(*options_.section, places, system_.size()) : watch_.choose(places);
+    record_.set_section(plane_->text(places));
+    const auto here = [this] {
+      integrator_.state(start_.x.get());
+      return start_.x.get();
+    };
+    section_.emplace(
+        integrator_, [this, here] { return plane_->height(system_, here()); },
+        options_.section ? options_.section->direction : transient::Sense::rising,
+        [this, here](double time) { record_.cross(time, system_.shown_at(here()), integrator_.scaled()); });
   }
 
   // A revolution may take minutes: each step says where it ended.
@@ -109,6 +134,7 @@ private:
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       put_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k), layout_.shared, "deviation");
     record_.save(state.child("record"), layout_.shared);
+    if (watch_.seen()) watch_.save(state.child("watch"));
     context_.results.save_checkpoint(state);
     last_saved_ = context_.results.seconds();
   }
@@ -120,6 +146,7 @@ private:
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       take_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k));
     record_.load(state.group("record"));
+    if (state.has_group("watch")) watch_.load(state.group("watch"));
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
@@ -152,7 +179,12 @@ private:
   StartState start_;
   transient::Integrator integrator_;
   std::optional<transient::Tangents> tangents_;
+  transient::Tangents* carried_ = nullptr;
+  bool forced_;
   MotionRecord record_;
+  Watch watch_;
+  std::optional<Plane> plane_;
+  std::optional<transient::Section> section_;
   FilmLimit films_;
   int done_ = 0;
   double last_saved_ = -1e9;

@@ -51,6 +51,7 @@ void MotionRecord::close(const std::vector<double>& growth, double duration) {
   open_ = {};
   points_.push_back(last_state_);
   ends_.insert(ends_.end(), last_.begin(), last_.end());
+  section_.close();
   if (!growth.empty()) exponents_.add(growth, duration);
 }
 
@@ -64,8 +65,10 @@ transient::Evidence MotionRecord::evidence() const {
   MPI_Allreduce(MPI_IN_PLACE, of_all, 2, MPI_DOUBLE, MPI_SUM, comm);
   e.size = std::sqrt(std::max(0.0, of_all[1] / count - of_all[0]));
   e.return_tolerance = options_.return_tolerance;
-  if (e.size >= e.rest) e.returns = transient::return_distances(points_, options_.max_period, e.size, comm);
-  e.fading = transient::fading_of_returns(points_, options_.max_period, comm);
+  // A motion that nothing forces has no angle to return at, but a section.
+  const auto& returning = forced_ ? points_ : section_.states();
+  if (e.size >= e.rest) e.returns = transient::return_distances(returning, options_.max_period, e.size, comm);
+  e.fading = transient::fading_of_returns(returning, options_.max_period, comm);
   if (options_.exponents > 0) {
     e.exponents = exponents_.values();
     e.uncertainties = exponents_.uncertainties();
@@ -135,8 +138,7 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
   const std::size_t n = places_.names.size();
   const auto e = evidence();
   const int named = e.size < e.rest ? 0 : tones_named;
-  const auto window =
-      options_.window == MotionOptions::Window::hann ? transient::Window::hann : transient::Window::none;
+  const auto window = options_.window;
   std::vector<std::vector<transient::Spectrum>> all;
   for (std::size_t b = 0; b < n; ++b) {
     all.emplace_back();
@@ -220,6 +222,9 @@ void MotionRecord::write(io::Group& group, io::StudySummary& summary) const {
   group.set("evidence", v.reason);
   group.set("samples", options_.samples);
   if (v.period > 0) summary.set("period", v.period, "1");
+  write_section(group, summary, v);
+  write_rotation(group, summary, v);
+  write_short_time(group);
   summary.set("size", e.size, "1");
   for (std::size_t k = 0; k < e.returns.size(); ++k) summary.set(fmt::format("return.{}", k + 1), e.returns[k], "1");
   write_exponents(group, summary);
@@ -245,6 +250,7 @@ void MotionRecord::save(io::Group& group, bool shared) const {
   put_columns(group, "points", points, shared ? like_ : nullptr, "1", "scaled states at the ends of revolutions");
   group.put("growth", exponents_.growth(), "1", "of deviations");
   group.put("durations", exponents_.durations(), "s", "of revolutions");
+  section_.save(group.child("section"), shared, like_);
 }
 
 void MotionRecord::load(const io::Group& group) {
@@ -264,6 +270,7 @@ void MotionRecord::load(const io::Group& group) {
     exponents_.add({growth.begin() + static_cast<std::ptrdiff_t>(i) * options_.exponents,
                     growth.begin() + static_cast<std::ptrdiff_t>(i + 1) * options_.exponents},
                    durations[i]);
+  section_.load(group.group("section"), like_);
 }
 
 }  // namespace whirl::study

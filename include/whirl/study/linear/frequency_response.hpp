@@ -68,6 +68,7 @@ class FrequencyResponse final : public StudyWith<FrequencyResponseOptions> {
 public:
   static constexpr std::string_view key = "frequency_response";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

@@ -17,6 +17,8 @@ struct RunUpOptions {
   std::vector<int> nodes;  ///< of the shaft, reported beside the bearings
   int samples = 64;        ///< per revolution, at equal angles
   double tolerance = 1e-7;
+  std::optional<OrderOptions> orders;
+  std::optional<WaterfallOptions> waterfall;
   bool checkpoint = true;
 };
 /// Revolutions of the shaft on the way.
