@@ -5,8 +5,9 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, enforced, film, gas, line, linearity, locus, machine, motion,
-               multipliers, orbits, orders, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections, transfer, whirl_map)
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, enforced, film, gas, line, linearity, locus, machine,
+               motion, multipliers, orbits, orders, reductions, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections,
+               transfer, whirl_map)
 from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -20,6 +21,7 @@ PICTURES = {
     "critical_speed_map": [critical.draw_map],
     "element_convergence": [elements.draw_errors, elements.draw_shifts, elements.draw_conditions],
     "frequency_response": [transfer.draw],
+    "reduction_errors": [reductions.draw_errors, reductions.draw_orbits, reductions.draw_maps],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],

@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullLocator
 
 from .style import COLOURS, INK, save
 
@@ -14,6 +15,13 @@ def kinds_of(study):
     if "convergence" not in study.group:
         return []
     return sorted(study.group["convergence"].items(), key=lambda item: item[1].attrs["place"])
+
+
+def count_elements(axis, elements):
+    """Names the meshes on a logarithmic axis."""
+    axis.set_xticks(elements, [f"{n:.0f}" for n in elements])
+    axis.xaxis.set_minor_locator(NullLocator())
+    axis.set_xlabel("elements")
 
 
 def draw_errors(study):
@@ -33,7 +41,7 @@ def draw_errors(study):
             if len(lines):
                 axis.loglog(elements[:-1], lines.max() * (elements[0] / elements[:-1]) ** power, color=INK, linewidth=0.8, linestyle=line)
         axis.set_title(name)
-        axis.set_xlabel("elements")
+        count_elements(axis, elements)
     axes[0, 0].set_ylabel("relative distance from the last mesh")
     count = kinds[0][1]["error"].shape[1]
     colours = plt.cm.viridis(np.linspace(0, 0.92, count))
@@ -70,7 +78,7 @@ def draw_conditions(study):
     for colour, (name, table) in zip(COLOURS, kinds):
         for key, line, _ in NUMBERS:
             axis.loglog(table["elements"][()], table[key][()], color=colour, linestyle=line, marker=".")
-    axis.set_xlabel("elements")
+    count_elements(axis, kinds[0][1]["elements"][()])
     axis.set_ylabel("condition number")
     handles = [Line2D([], [], color=c, label=name) for c, (name, _) in zip(COLOURS, kinds)]
     handles += [Line2D([], [], color=INK, linestyle=line, label=words) for _, line, words in NUMBERS]

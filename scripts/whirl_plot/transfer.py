@@ -12,7 +12,7 @@ def ways_of(response):
     """(group, words) of the machine, and of machines with stiffness and damping in place of their films."""
     for name in sorted((n for n in response if "frequency" in response[n].attrs), key=lambda n: (n != "machine", n)):
         at = response[name].attrs["frequency"]
-        yield name, {"machine": "machine", "coefficients": "K, C at each frequency"}.get(name, f"K, C at {at:.5g} rad/s")
+        yield name, {"machine": "machine", "coefficients": "K, C at each frequency", "given": "K, C as given"}.get(name, f"K, C at {at:.5g} rad/s")
 
 
 def turned(phase):
@@ -43,9 +43,12 @@ def draw(study):
                 if np.all(amplitude == 0):
                     continue
                 width = 1.6 if way == "machine" else 1.2
-                top.plot(frequency, amplitude, color=colour, linestyle=line, linewidth=width)
-                bottom.plot(frequency, turned(table["phase"][()]), color=colour, linestyle=line, linewidth=width)
-                units.append(str(table["amplitude"].attrs.get("units", "")))
+                look = {"color": colour, "linestyle": line, "linewidth": width}
+                if way == "coefficients":  # the same curve: points on it
+                    look = {"color": colour, "linestyle": "none", "marker": ".", "markersize": 5, "markevery": max(1, len(frequency) // 40)}
+                top.plot(frequency, amplitude, **look)
+                bottom.plot(frequency, turned(table["phase"][()]), **look)
+                units.append(str(table["amplitude"].attrs.get("unit", "")))
         if not units:
             plt.close(figure)
             continue
@@ -60,6 +63,7 @@ def draw(study):
         top.set_title(f"{output} per unit of input")
         handles = [Line2D([], [], color=c, label=f"from {i}") for c, i in zip(COLOURS * len(inputs), inputs)]
         if len(ways) > 1:
-            handles += [Line2D([], [], color=INK, linestyle=line, label=words) for (_, words), line in zip(ways, LINES * len(ways))]
+            handles += [Line2D([], [], color=INK, linestyle="none" if way == "coefficients" else line, marker="." if way == "coefficients" else None, label=words)
+                        for (way, words), line in zip(ways, LINES * len(ways))]
         files += save(figure, study, f"response-{output}", f"0-peak over 0-peak, phase of the output ahead of the input; {ROTATION}", handles, 4)
     return files

@@ -254,6 +254,20 @@ std::string of_motion(const io::StudySummary& s, const Values& v) {
   return out + grid.text();
 }
 
+std::string of_transfers(const io::StudySummary& s, const Values& v) {
+  std::string out;
+  for (const auto& [name, q] : s.values)
+    if (name.ends_with(".difference"))
+      out += fmt::format("  {}: at most {:.3g} of the matrix apart, at {} {}\n", name.substr(0, name.size() - 11),
+                         q.value, v.cell(name + "_at"), v.unit(name + "_at"));
+  Grid grid({"largest answer", "amplitude", "unit",
+             fmt::format("at [{}]", s.values.empty() ? "" : v.unit(s.values[1].first))});
+  for (const auto& [name, q] : s.values)
+    if (name.ends_with(".largest"))
+      grid.add({name.substr(0, name.size() - 8), number(q.value), q.unit, v.cell(name + "_at")});
+  return out + grid.text();
+}
+
 std::string of_bearing_map(const io::StudySummary& s, const Values& v) {
   std::string out;
   if (v.get("threshold.speed"))
@@ -371,6 +385,7 @@ std::string highlights(const io::StudySummary& s) {
   if (s.kind == "motion") return of_motion(s, v);
   if (s.kind == "bearing_map") return of_bearing_map(s, v);
   if (s.kind == "dynamic_coefficients") return of_coefficients(s, v);
+  if (s.kind == "frequency_response") return of_transfers(s, v);
   if (s.kind == "sweep") return of_sweep(s);
   return {};
 }

@@ -58,6 +58,9 @@ std::span<const deck::Name<Reduction::Type>> names(Reduction::Type) {
       {none, "none", "every node keeps its four freedoms"},
       {guyan, "guyan", "static condensation onto the translations of the masters"},
       {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"},
+      {craig_bampton_state, "craig_bampton_state",
+       "masters, their velocities, and the slowest complex modes of the turning shaft with its masters held: the basis "
+       "keeps gyroscopic moments and damping, at one speed"},
       {modal, "modal", "the lowest real modes of the shaft at rest, free or on springs at its masters"}};
   return table;
 }
@@ -189,11 +192,16 @@ void describe(deck::Description<Reduction>& d) {
   d.add("masters", &Reduction::masters, positive,
         "nodes whose translations are kept, and whose slopes where a film there tilts")
       .required()
-      .only(&Reduction::type, {guyan, craig_bampton, modal});
+      .only(&Reduction::type, {guyan, craig_bampton, craig_bampton_state, modal});
   d.add("modes", &Reduction::modes, positive,
-        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all")
+        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all; of "
+        "'craig_bampton_state' two pairs of complex modes for each")
       .required()
-      .only(&Reduction::type, {craig_bampton, modal});
+      .only(&Reduction::type, {craig_bampton, craig_bampton_state, modal});
+  d.add("speed", &Reduction::speed, "rad/s", non_negative,
+        "speed of the shaft while its complex modes are computed; they are kept at all speeds", "003 sec. 2.4.4")
+      .required()
+      .only(&Reduction::type, {craig_bampton_state});
   d.add("support", &Reduction::support, "N/m", non_negative,
         "springs at the masters while the modes are computed; 0: modes of the free shaft", "003 sec. 2.3")
       .only(&Reduction::type, {modal});
@@ -241,8 +249,8 @@ void describe(deck::Description<Options>& d) {
       .continuable()
       .only(&Options::type, {shaft});
   d.add("loss_factor", &Options::loss_factor, deck::in(0, 1),
-        "eta of hysteretic damping, K (1 + i eta): of vibration with one frequency alone, so that 'modes' and "
-        "'unbalance_response' take it and studies in time refuse it",
+        "eta of hysteretic damping, K (1 + i eta): of vibration with one frequency alone, so that 'modes', "
+        "'unbalance_response' and 'frequency_response' take it and studies in time refuse it",
         "003 (2.36)-(2.38)")
       .only(&Options::type, {shaft});
   d.add("loss_frame", &Options::loss_frame, "frame whose frequency decides the sign of the loss")
@@ -252,6 +260,9 @@ void describe(deck::Description<Options>& d) {
     if (o.type == rigid) return;
     if (n_inner(o.element) > 0 && o.shear == Shear::rigid)
       r.fail("element", "an element with independent shear needs a shear stiffness: 'shear' is rigid");
+    if (o.loss_factor > 0 && o.reduction.type == Reduction::Type::craig_bampton_state)
+      r.fail("loss_factor",
+             "a shaft with a loss factor has no equations of first order in time, which 'craig_bampton_state' reduces");
     const int n_nodes = static_cast<int>(o.segments.size()) + 1;
     auto node = [&](int k, const std::string& path) {
       if (k > n_nodes) r.fail(path, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", k, n_nodes));
@@ -275,7 +286,9 @@ void describe(deck::Description<Options>& d) {
         node(o.reduction.masters[i], fmt::format("reduction.masters.{}", i + 1));
     // Each inner node has a translation and a slope in a plane, each master its slope.
     const int inner = 2 * n_nodes - static_cast<int>(o.reduction.masters.size());
-    if (o.reduction.type == Reduction::Type::craig_bampton && o.reduction.modes > inner)
+    const bool fixed_interface =
+        o.reduction.type == Reduction::Type::craig_bampton || o.reduction.type == Reduction::Type::craig_bampton_state;
+    if (fixed_interface && o.reduction.modes > inner)
       r.fail("reduction.modes",
              fmt::format("the shaft with its masters held has {} modes per plane, not {}", inner, o.reduction.modes));
     const auto& table = o.material.modulus;

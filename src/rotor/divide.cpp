@@ -1,11 +1,13 @@
 #include "whirl/rotor/divide.hpp"
 
+#include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
 
 Options divided(Options options, int parts) {
   if (options.type == Options::Type::rigid) return options;
+  core::require(options.couplings.empty(), "a shaft of beams: couplings are not divided");
   std::vector<Segment> segments;
   for (const Segment& whole : options.segments)
     for (int k = 0; k < parts; ++k) {
@@ -20,7 +22,10 @@ Options divided(Options options, int parts) {
       segments.push_back(s);
     }
   options.segments = std::move(segments);
-  for (Disc& d : options.discs) d.node = node_after(d.node, parts);
+  for (Disc& d : options.discs) {
+    d.node = node_after(d.node, parts);
+    for (int& node : d.hub) node = node_after(node, parts);
+  }
   for (auto* nodes : {&options.joints, &options.reduction.masters, &options.reduction.slopes})
     for (int& node : *nodes) node = node_after(node, parts);
   return options;

@@ -97,6 +97,7 @@ void validate(const Reduction& r, int nodes) {
     refuse_unless(r.support >= 0, "the support must not be negative");
     return;
   }
+  refuse_unless(r.speed >= 0, "the speed of the modes must not be negative");
   const int slaves = 2 * nodes - static_cast<int>(r.masters.size() + r.slopes.size());
   refuse_unless(r.modes >= 0 && r.modes <= slaves,
                 fmt::format("{} fixed-interface modes per plane are not in 0..{}", r.modes, slaves));
@@ -126,6 +127,8 @@ void validate(const Options& o) {
   for (std::size_t i = 0; i < o.discs.size(); ++i) validate(o.discs[i], n_nodes(o), fmt::format("disc {}", i + 1));
   for (std::size_t i = 0; i < o.couplings.size(); ++i) validate(o.couplings[i], o, fmt::format("coupling {}", i + 1));
   refuse_unless(o.loss_factor >= 0, "the loss factor must not be negative");
+  refuse_unless(o.loss_factor == 0 || o.reduction.type != Reduction::Type::craig_bampton_state,
+                "a shaft with a loss factor has no equations of first order in time to reduce");
   validate(o.reduction, n_nodes(o));
 }
 

@@ -84,10 +84,11 @@ void describe(deck::Description<Deck>& d) {
         continue;
       }
       if (deck.machine.rotor.loss_factor > 0 && !s.takes_hysteresis())
-        r.fail(path,
-               fmt::format("'{}' follows the machine in time, where the force of a 'loss_factor' is not known: it "
-                           "is defined of vibration with one frequency. Take 'internal_damping', or leave it out",
-                           s.kind()));
+        r.fail(path, fmt::format(
+                         "'{}' cannot take a 'loss_factor': its force is defined of vibration with one frequency, not "
+                         "in time. 'modes', 'unbalance_response' and 'frequency_response' take it; here use "
+                         "'internal_damping'",
+                         s.kind()));
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
       if (const double bytes = s.memory(deck.machine, deck.layout); bytes > deck.limits.memory)

@@ -11,6 +11,7 @@
 #include "whirl/study/linear/element_convergence.hpp"
 #include "whirl/study/linear/frequency_response.hpp"
 #include "whirl/study/linear/modes.hpp"
+#include "whirl/study/linear/reduction_errors.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 #include "whirl/study/locus/locus.hpp"
 #include "whirl/study/motion/linearity.hpp"
@@ -44,6 +45,7 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<CriticalSpeedMap>("undamped critical speeds of the shaft over the stiffness of its bearings"),
       kind<ElementConvergence>("whirl frequencies over the number of elements of the shaft, condition numbers"),
       kind<FrequencyResponse>("transfer functions from forces to motions over the frequency, at one speed"),
+      kind<ReductionErrors>("what reductions of the shaft cost: eigenvalues, eigenvectors, orbits, reduced matrices"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),

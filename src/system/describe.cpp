@@ -170,7 +170,9 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
   const auto slopes =
       std::count_if(m.bearings.begin(), m.bearings.end(), [](const Bearing& b) { return film::facts(b.film).tilts; });
   const auto inner = 2 * n_nodes - static_cast<std::ptrdiff_t>(reduction.masters.size()) - slopes;
-  if (!rigid && slopes > 0 && reduction.type == rotor::Reduction::Type::craig_bampton && reduction.modes > inner)
+  const bool fixed_interface = reduction.type == rotor::Reduction::Type::craig_bampton ||
+                               reduction.type == rotor::Reduction::Type::craig_bampton_state;
+  if (!rigid && slopes > 0 && fixed_interface && reduction.modes > inner)
     r.fail("rotor.reduction.modes",
            fmt::format("the shaft with its masters and the slopes of {} journals held has {} modes per plane, not {}",
                        slopes, inner, reduction.modes));

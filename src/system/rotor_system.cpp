@@ -177,11 +177,11 @@ const rotor::Rotor& RotorSystem::rotor() const {
   return hub_->rotor();
 }
 
-const std::vector<double>& RotorSystem::unbalance_cosine() const {
+const std::vector<double>& RotorSystem::forcing_cosine() const {
   return hub_->unbalance().cosine;
 }
 
-const std::vector<double>& RotorSystem::unbalance_sine() const {
+const std::vector<double>& RotorSystem::forcing_sine() const {
   return hub_->unbalance().sine;
 }
 
@@ -232,7 +232,8 @@ std::vector<double> RotorSystem::shaft(Vec x, int component, bool with_gravity) 
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {
   const rotor::Matrices& m = rotor().matrices();
-  if (!m.basis) {
+  const auto& states = rotor().states();
+  if (!states && !m.basis) {
     const PetscInt n = hub_->rotor_coordinates();
     std::vector<double> out(static_cast<std::size_t>(n));
     for (PetscInt i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
@@ -240,16 +241,18 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
                0.0);  // a rigid rotor does not tilt
     return out;
   }
+  const Mat basis = !states ? m.basis.get() : component == 0 ? states->displacement.get() : states->velocity.get();
+  const Vec offset = states ? states->offset.get() : m.offset.get();
   core::Vector q, full;
-  check(MatCreateVecs(m.basis.get(), q.put(), full.put()));
+  check(MatCreateVecs(basis, q.put(), full.put()));
   {
     PetscInt begin = 0;
     check(VecGetOwnershipRange(q.get(), &begin, nullptr));
     const core::WriteArray qa(q.get());
-    for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = x[2 * (begin + i) + component];
+    for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = states ? x[begin + i] : x[2 * (begin + i) + component];
   }
-  check(MatMult(m.basis.get(), q.get(), full.get()));
-  if (with_gravity && m.offset) check(VecAXPY(full.get(), train_.gravity, m.offset.get()));
+  check(MatMult(basis, q.get(), full.get()));
+  if (with_gravity) check(VecAXPY(full.get(), train_.gravity, offset));
   std::vector<double> out = core::gather(full.get());
   out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor().n_nodes()));  // without inner freedoms
   return out;

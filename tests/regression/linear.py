@@ -38,7 +38,7 @@ def whirl_map(h):
     with h5py.File(h.work / "isotropic" / "results.h5") as f:
         speed, turning = f["map/spectrum/speed"][()], f["map/whirl_map/turning"][()]
         moving = turning[speed > 0]
-        h.true("circles", np.all(np.abs(np.abs(moving[np.abs(moving) > 0]) - 1) < 1e-6))
+        h.close("circles", np.abs(np.abs(moving[np.abs(moving) > 0]) - 1).max(), 0, 1e-3)
     springs = "bearings.*.film.stiffness=[1e7 N/m, 0 N/m, 0 N/m, 2e7 N/m]"
     s = h.run(deck, "springs", [study, springs], launcher=[])["map"]
     h.true("at rest every mode is planar by both rules", all(m["whirl"] == m["whirl_rule"] == "planar" for m in s["modes"] if m["speed"] == 0))
@@ -56,21 +56,21 @@ def convergence(h):
     """Frequencies against the independent computation, orders, and the condition number that grows with the elements."""
     cases = {c["name"]: c for c in json.loads((h.source / "tests/reference/rotor/trial_rotor.json").read_text())["cases"]}
     deck = h.source / "inputs/merot/convergence.yaml"
-    s = h.run(deck, "plain", ["studies.1.element_convergence.parts=[5, 10, 20, 40]"], launcher=[])["elements"]
-    for element, name, order, part in (("rayleigh", "rayleigh", 4, 2e-5), ("timoshenko_linear", "timoshenko", 4, 2e-5), ("timoshenko", "timoshenko", 2, 5e-4)):
+    s = h.run(deck, "plain", ["studies.1.element_convergence.parts=[7, 14, 28]"], launcher=[])["elements"]
+    for element, name, order, part in (("rayleigh", "rayleigh", 4, 6e-5), ("timoshenko_linear", "timoshenko", 4, 6e-5), ("timoshenko", "timoshenko", 2, 1.1e-3)):
         case = cases[f"{name}|plain|omega0=10000"]
         for k, wanted in enumerate(case["frequency"], 1):
             h.close(f"{element}, {k} [rad/s]", value(s, f"{element}.frequency.{k}"), abs(wanted), part * abs(wanted) + case["uncertainty"][k - 1])
-        for k in (3, 6, 10):
+        for k in (1, 3, 5):
             h.close(f"    order, {k}", value(s, f"{element}.order.{k}"), order, 0.15 * order)
     shift = abs(cases["timoshenko|plain|omega0=10000"]["frequency"][9] / cases["rayleigh|plain|omega0=10000"]["frequency"][9]) - 1
-    h.close("shift by shear, 10", value(s, "timoshenko_linear.shift.10"), shift, 5e-5)
+    h.close("shift by shear, 10", value(s, "timoshenko_linear.shift.10"), shift, 1e-4)
     with h5py.File(h.work / "plain" / "results.h5") as f:
         for element in ("rayleigh", "timoshenko_linear"):
             table = f[f"elements/convergence/{element}"]
             h.true(f"{element}: vectors worse conditioned with more elements", np.all(np.diff(table["condition_vectors"][()]) > 0))
             growth = np.diff(np.log2(table["condition_stiffness"][()]))
-            h.true("    stiffness by the fourth power", element != "rayleigh" or np.all(np.abs(growth[1:] - 4) < 1), np.array2string(growth, precision=2))
+            h.true("    stiffness by the fourth power", element != "rayleigh" or np.all(np.abs(growth - 4) < 1), np.array2string(growth, precision=2))
     one, two = (h.run(deck, f"ranks {n}", ["studies.1.element_convergence.parts=[2, 4]"], launcher=[*h.launcher, "-n", str(n)] if n > 1 else [])["elements"] for n in (1, 2))
     for k in (1, 5):
         wanted = value(one, f"timoshenko.frequency.{k}")
@@ -87,7 +87,7 @@ def response(h):
 
     h.run(deck, "whole", launcher=[])
     with h5py.File(h.work / "whole" / "results.h5") as f:
-        units = [f[f"disc/response/machine/{p}/amplitude"].attrs["units"] for p in ("node.7.x.from.node.7.x", "node.7.slope_x.from.node.7.x", "node.7.slope_x.from.node.7.slope_x", "bearing.left.x.from.node.7.slope_x")]
+        units = [f[f"disc/response/machine/{p}/amplitude"].attrs["unit"] for p in ("node.7.x.from.node.7.x", "node.7.slope_x.from.node.7.x", "node.7.slope_x.from.node.7.slope_x", "bearing.left.x.from.node.7.slope_x")]
     h.true("units", [u.decode() if isinstance(u, bytes) else u for u in units] == ["m/N", "1/N", "1/(N m)", "m/(N m)"], str(units))
     whole = matrix("whole")
     few = "studies.1.frequency_response.points=40"
@@ -100,6 +100,18 @@ def response(h):
     h.close("at rest it is symmetric", (np.abs(rest - rest.transpose(1, 0, 2)) / scale).max(), 0, 1e-9)
     # An isotropic rotor: what a force along x does along y, a force along y does against x.
     h.close("isotropic: G_yx = -G_xy", np.abs(whole[1, 0] / whole[0, 1] + 1).max(), 0, 1e-6)
+    # Coefficients given over the frequency: those of the deck say the same, others what they say.
+    row = "{frequency: %g rad/s, k_xx: %g N/m, k_yy: %g N/m, b_xx: 100 N s/m, b_yy: 100 N s/m}"
+    study = "studies.1.frequency_response+={given: {left: {table: [%s, %s]}}}"
+    same = h.run(deck, "given", [few, study % (row % (1, 1e7, 1e7), row % (3e4, 1e7, 1e7))], launcher=[])["disc"]
+    h.close("given: those of the deck", value(same, "given.difference"), 0, 1e-9)
+    one = "studies=[{frequency_response: {name: disc, speed: 0 rad/s, range: {from: 2 rad/s, to: 3 rad/s}, points: 2, inputs: [{bearing: left, direction: x}], given: {left: {table: [%s, %s]}}}}]"
+    rows = [row % (1, 1e3, 1e7), row % (4, 4e3, 1e7)]
+    h.run(deck, "rising", [one % tuple(r.replace("b_xx: 100", "b_xx: 0") for r in rows), "rotor.discs=[]", "rotor.material.density=1 kg/m^3"], launcher=[])
+    with h5py.File(h.work / "rising" / "results.h5") as f:
+        found = f["disc/response/given/bearing.left.x.from.bearing.left.x/real"][()]
+    for w, g in zip((2, 3), found):
+        h.close(f"given: a spring of {w} kN/m [m/N]", g, 1e-3 / w, 1e-5 / w)
     # Far below all resonances: the springs, and the shaft's own compliance.
     stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}]}",
              "bearings.*.film.stiffness=1e3 N/m"]

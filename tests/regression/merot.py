@@ -80,7 +80,8 @@ def reduction(h):
     for k, (f, wanted) in enumerate(zip(whole, reference["frequency"])):
         h.close(f"whole, {k + 1}", f, wanted, 1e-7 * wanted)
     words = {"modal_supported": "{type: modal, masters: [1, 21], modes: 8, support: 1e7 N/m}",
-             "modal_free": "{type: modal, masters: [1, 21], modes: 8}", "cb_real": "{type: craig_bampton, masters: [1, 21], modes: 6}"}
+             "modal_free": "{type: modal, masters: [1, 21], modes: 8}", "cb_real": "{type: craig_bampton, masters: [1, 21], modes: 6}",
+             "cb_state": "{type: craig_bampton_state, masters: [1, 21], modes: 6, speed: 10000 rad/s}"}
     for name, word in words.items():
         for ranks in (1, 2):
             launcher = [*h.launcher, "-n", "2"] if ranks == 2 else []
@@ -89,6 +90,48 @@ def reduction(h):
                 h.close(f"{name}, {k + 1}, ranks {ranks}", abs(m["imag"] / f - 1), error, 2e-3 * error + 1e-8)
     # As the deck is.
     h.true("sweep ends", "reductions" in h.run(deck, "sweep", launcher=[]))
+
+
+def reduction_errors(h):
+    """The study of reductions: errors of frequencies as computed independently, its own of vectors and orbits, all studies with a
+    rotor reduced in state space."""
+    reference = json.loads((h.source / "tests/reference/rotor/reduction_trial_rotor.json").read_text())
+    deck = h.source / "inputs/merot/reduction_errors.yaml"
+    s = h.run(deck, "whole", launcher=[])["reductions"]
+    names = {"modal_supported": "modal_supported", "modal_free": "modal_free", "craig_bampton": "cb_real", "craig_bampton_state": "cb_state"}
+    for freedoms, errors in reference["error"].items():
+        for own, theirs in names.items():
+            wanted = max(errors[theirs])
+            h.close(f"{own}, {freedoms} freedoms, frequencies", value(s, f"{own}.{freedoms}.frequency_error"), wanted, 2e-3 * wanted + 1e-9)
+    at = lambda name, freedoms, what: value(s, f"{name}.{freedoms}.{what}_error")
+    for freedoms in reference["error"]:
+        h.true(f"supported modes are the best, {freedoms} freedoms",
+               min(names, key=lambda n: at(n, freedoms, "frequency")) == "modal_supported")
+        if int(freedoms) >= 16:
+            h.true(f"free modes are the worst, {freedoms} freedoms", max(names, key=lambda n: at(n, freedoms, "frequency")) == "modal_free")
+    for name in names:
+        h.true(f"{name}: vectors converge", at(name, 40, "vector") < 0.1 * at(name, 10, "vector"))
+        ten, twenty = (value(s, f"orbit.{name}.{k}.error") for k in (10, 20))
+        h.true(f"{name}: orbits converge", twenty < 0.2 * ten, f"{ten:.3g}, {twenty:.3g}")
+        h.true(f"{name}: orbit with 20 freedoms within 1 %", twenty < 0.01, f"{twenty:.3g}")
+    # The orbit of the whole shaft is that of other studies' equations: its size with a tolerance a hundred times larger, and on two ranks.
+    few = ["studies.1.reduction_errors.freedoms=[12]", "studies.1.reduction_errors.methods=[craig_bampton_state]",
+           "studies.1.reduction_errors.orbits.tolerance=1e-8", "studies.1.reduction_errors.maps=0"]
+    two = h.run(deck, "ranks", few, launcher=[*h.launcher, "-n", "2"])["reductions"]
+    size = value(s, "orbit.size")
+    h.close("size of the orbit [m]", value(two, "orbit.size"), size, 1e-4 * size)
+    h.close("two ranks", value(two, "craig_bampton_state.12.frequency_error"), at("craig_bampton_state", 12, "frequency"), 1e-6)
+    # Other studies take such a rotor: its response to the unbalance is that of the whole shaft, at another speed than that of its modes too.
+    response = "studies=[{unbalance_response: {name: response, unbalance: [disc], range: {from: 500 rad/s, to: 1500 rad/s}, points: 41, nodes: [11]}}]"
+    damped = "bearings.*.film.damping=200 N s/m"
+    state = "rotor.reduction={type: craig_bampton_state, masters: [1, 21], modes: 6, speed: 1200 rad/s}"
+    full, small, spread = (h.run(deck, name, [response, damped, *more], launcher=launcher)["response"] for name, more, launcher in
+                           (("full", [], []), ("small", [state], []), ("spread", [state], [*h.launcher, "-n", "2"])))
+    keys = [k for k in full["values"] if k.startswith("peak") and k.endswith((".speed", ".amplitude"))]
+    h.true("peaks", len(keys) > 1, keys)
+    for k in keys:
+        h.close(f"response: {k}", value(small, k), value(full, k), 1e-4 * value(full, k))
+        h.close("    on two ranks", value(spread, k), value(small, k), 1e-8 * value(full, k))
 
 
 def critical_speeds(h):
@@ -292,5 +335,6 @@ def coupled_shafts(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {f.__name__: f for f in (coupled_shafts, critical_speeds, disc_rotor, hysteresis, internal_damping, reduction, skewed_disc)}[sys.argv[3]](harness)
+    {f.__name__: f for f in (coupled_shafts, critical_speeds, disc_rotor, hysteresis, internal_damping, reduction, reduction_errors,
+                             skewed_disc)}[sys.argv[3]](harness)
     harness.finish()

@@ -90,13 +90,15 @@ enum class LossFrame { shaft, stationary };
 
 /// Reduction of the coordinates. Masters are both translations of each master node, and both slopes of some of them.
 struct Reduction {
-  enum class Type { none, guyan, craig_bampton, modal };
+  enum class Type { none, guyan, craig_bampton, craig_bampton_state, modal };
   Type type = Type::none;
   std::vector<int> masters;  // 1-based nodes, at least two, any order
-  // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate). modal: real modes of the shaft
-  // at rest per plane, at least as many as masters, whose motions are among theirs.
+  // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate). craig_bampton_state: half as
+  // many as pairs of complex modes of both planes. modal: real modes of the shaft at rest per plane, at least as many
+  // as masters, whose motions are among theirs.
   int modes = 0;
   double support = 0;         // N/m, modal: springs at the masters while its modes are computed; 0: the free shaft
+  double speed = 0;           // rad/s, craig_bampton_state: of the shaft while its modes are computed
   std::vector<int> slopes{};  // those of the masters whose slopes are masters too; no key of a deck
   friend bool operator==(const Reduction&, const Reduction&) = default;
 };

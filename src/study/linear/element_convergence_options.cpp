@@ -29,6 +29,7 @@ void describe(deck::Description<ElementConvergenceOptions>& d) {
 
 void ElementConvergence::validate(const system::Machine& machine, const deck::Report& report) const {
   if (machine.rotor.type == rotor::Options::Type::rigid) report.fail("", "a rigid rotor has no elements");
+  if (!machine.rotor.couplings.empty()) report.fail("", "a shaft with couplings is not cut into shorter elements");
   if (machine.rotor.reduction.type != rotor::Reduction::Type::none)
     report.fail("",
                 "the shaft is reduced, whose errors would be counted as those of the elements: "

@@ -33,10 +33,11 @@ system::Train with_coefficients(system::Train train, const std::vector<FilmCoeff
   return train;
 }
 
-// What is computed: by the films as they are, by their coefficients at the same or at one other frequency.
+// What is computed: by the films as they are, by their coefficients at the same or at one other frequency, by those
+// that the user gives.
 struct Way {
   std::string name;
-  enum class Films { whole, at_each, constant } films = Films::whole;
+  enum class Films { whole, at_each, constant, given } films = Films::whole;
   double frequency = 0;  // [rad/s] of constant coefficients
 };
 
@@ -60,8 +61,10 @@ public:
     }
     if (way.films == Way::Films::whole) return matrix_.at(omega);
     const double frequency = way.films == Way::Films::constant ? way.frequency : omega;
-    if (frequency != last_) {
-      const system::Train train = with_coefficients(train_, film_coefficients(system_, whole_, frequency));
+    if (frequency != last_ || way.films != last_films_) {
+      std::vector<FilmCoefficients> films = film_coefficients(system_, whole_, frequency);
+      if (way.films == Way::Films::given) put_given(films, frequency);
+      const system::Train train = with_coefficients(train_, films);
       if (linear_) {
         linear_->set_train(train);
       } else {
@@ -72,12 +75,22 @@ public:
       core::check(VecSet(rest.get(), 0));
       linear_matrix_->linearise(rest.get());
       last_ = frequency;
+      last_films_ = way.films;
     }
     return linear_matrix_->at(omega);
   }
   [[nodiscard]] Trail trail() { return walker_.trail(); }
 
 private:
+  void put_given(std::vector<FilmCoefficients>& films, double frequency) const {
+    for (std::size_t b = 0; b < films.size(); ++b)
+      for (const GivenCoefficients& g : options_.given) {
+        if (g.bearing != train_.supports[b].name) continue;
+        const CoefficientsAt c = interpolated(g.table, frequency);
+        films[b].stiffness = {{{c.k_xx, c.k_xy}, {c.k_yx, c.k_yy}}};
+        films[b].damping = {{{c.b_xx, c.b_xy}, {c.b_yx, c.b_yy}}};
+      }
+  }
   // Forces may make the shear force jump, where an element asks for the place.
   static system::Train with_joints(system::Train train, const FrequencyResponseOptions& options) {
     for (const TransferInput& input : options.inputs)
@@ -96,6 +109,7 @@ private:
   std::unique_ptr<system::RotorSystem> linear_;
   std::unique_ptr<TransferMatrix> linear_matrix_;
   double last_ = 0;
+  Way::Films last_films_ = Way::Films::whole;
 };
 
 // Largest difference over the frequencies, relative to the matrix of the whole machine there, and where it is.
@@ -134,6 +148,7 @@ StudyResult FrequencyResponse::run(Context& context) {
   if (options.coefficients) ways.push_back({"coefficients", Way::Films::at_each});
   for (const deck::Quantity& q : options.constant_at)
     ways.push_back({fmt::format("constant.{}", ways.size() - options.coefficients), Way::Films::constant, q.value});
+  if (!options.given.empty()) ways.push_back({"given", Way::Films::given});
 
   const Layout layout = plan(context, Sharing::speeds);
   Transfers machine(context, layout, options, outputs);

@@ -78,6 +78,43 @@ void describe(deck::Description<TransferOutput>& d) {
   check_place(d);
 }
 
+void describe(deck::Description<CoefficientsAt>& d) {
+  using P = CoefficientsAt;
+  d.add("frequency", &P::frequency, "rad/s", deck::non_negative, "at which they hold").required();
+  d.add("k_xx", &P::k_xx, "N/m", deck::any, "stiffness, force along x by a motion along x").required();
+  d.add("k_xy", &P::k_xy, "N/m", deck::any, "force along x by a motion along y");
+  d.add("k_yx", &P::k_yx, "N/m", deck::any, "force along y by a motion along x");
+  d.add("k_yy", &P::k_yy, "N/m", deck::any, "force along y by a motion along y").required();
+  d.add("b_xx", &P::b_xx, "N s/m", deck::any, "damping, likewise");
+  d.add("b_xy", &P::b_xy, "N s/m", deck::any, "likewise");
+  d.add("b_yx", &P::b_yx, "N s/m", deck::any, "likewise");
+  d.add("b_yy", &P::b_yy, "N s/m", deck::any, "likewise");
+}
+
+void describe(deck::Description<GivenCoefficients>& d) {
+  using P = GivenCoefficients;
+  d.table("table", &P::table, "stiffness and damping over the frequency, linear between the rows").required();
+  d.check([](const P& p, const deck::Report& r) {
+    for (std::size_t i = 1; i < p.table.size(); ++i)
+      if (!(p.table[i].frequency > p.table[i - 1].frequency))
+        return r.fail("table", fmt::format("frequencies rise: row {} does not", i + 1));
+    if (p.table.empty()) r.fail("table", "'table' is empty");
+  });
+}
+
+CoefficientsAt interpolated(const std::vector<CoefficientsAt>& table, double frequency) {
+  std::size_t i = 1;
+  while (i + 1 < table.size() && table[i].frequency < frequency) ++i;
+  if (table.size() == 1) return table.front();
+  const CoefficientsAt &a = table[i - 1], &b = table[i];
+  const double part = (frequency - a.frequency) / (b.frequency - a.frequency);
+  CoefficientsAt out{.frequency = frequency};
+  for (const auto member : {&CoefficientsAt::k_xx, &CoefficientsAt::k_xy, &CoefficientsAt::k_yx, &CoefficientsAt::k_yy,
+                            &CoefficientsAt::b_xx, &CoefficientsAt::b_xy, &CoefficientsAt::b_yx, &CoefficientsAt::b_yy})
+    out.*member = a.*member + part * (b.*member - a.*member);
+  return out;
+}
+
 void describe(deck::Description<FrequencyResponseOptions>& d) {
   using O = FrequencyResponseOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
@@ -91,6 +128,9 @@ void describe(deck::Description<FrequencyResponseOptions>& d) {
         "also the response of a machine whose films are stiffness and damping at each frequency, which is the same");
   d.add("constant_at", &O::constant_at, "rad/s", deck::positive,
         "also the responses of machines whose films are stiffness and damping at these frequencies");
+  d.named(
+      "given", &O::given, &GivenCoefficients::bearing,
+      "a map BEARING: {table: CSV}: also the response with these coefficients in place of the films of the bearings");
   d.check([](const O& o, const deck::Report& r) {
     if (o.inputs.empty()) r.fail("inputs", "'inputs' is empty");
     if (!(o.range.from < o.range.to)) r.fail("range", "the range rises: give the lower frequency as 'from'");
@@ -100,13 +140,25 @@ void describe(deck::Description<FrequencyResponseOptions>& d) {
 void FrequencyResponse::validate(const system::Machine& machine, const deck::Report& report) const {
   check_points("inputs", options.inputs, machine, report);
   check_points("outputs", options.outputs, machine, report);
+  for (const GivenCoefficients& g : options.given) {
+    const std::string path = "given." + g.bearing;
+    if (!system::find_bearing(machine, g.bearing))
+      return report.fail(path, fmt::format("there is no bearing '{}'", g.bearing));
+    if (g.table.size() > 1 &&
+        (options.range.from < g.table.front().frequency || options.range.to > g.table.back().frequency))
+      return report.fail(
+          path + ".table",
+          fmt::format("the table reaches from {:.6g} to {:.6g} rad/s and the frequencies of the study from "
+                      "{:.6g} to {:.6g} rad/s",
+                      g.table.front().frequency, g.table.back().frequency, options.range.from, options.range.to));
+  }
   for (const system::Bearing& b : machine.bearings) {
     const film::Facts facts = film::facts(b.film);
     if (options.speed.value <= 0 && !facts.coefficients)
       return report.fail("speed", fmt::format("the film of bearing {} carries no load at rest: the speed must be "
                                               "positive (linear films have coefficients at rest, too)",
                                               b.name));
-    if (facts.tilts && (options.coefficients || !options.constant_at.empty()))
+    if (facts.tilts && (options.coefficients || !options.constant_at.empty() || !options.given.empty()))
       return report.fail(
           options.coefficients ? "coefficients" : "constant_at",
           fmt::format("the film of bearing {} tilts: a linear film has no moments to take its place", b.name));

@@ -108,7 +108,20 @@ std::vector<double> TransferMatrix::load(const TransferInput& input) const {
   return out;
 }
 
+void TransferMatrix::linearise(Vec x) {
+  x_ = core::duplicate(x);
+  check(VecCopy(x, x_.get()));
+  solver_.linearise(x);
+}
+
+void TransferMatrix::linearise_with_loss(double omega) {
+  system_.set_loss(omega > 0 ? system_.loss_at(omega) : system::RotorSystem::Loss{});
+  solver_.linearise(x_.get());
+  system_.set_loss({});
+}
+
 std::vector<Complex> TransferMatrix::at(double omega) {
+  if (system_.train().rotor.loss_factor > 0) linearise_with_loss(omega);
   solver_.factorise(omega);
   const std::size_t inputs = loads_.size();
   std::vector<Complex> out(outputs_.size() * inputs);

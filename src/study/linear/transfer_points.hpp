@@ -26,13 +26,16 @@ public:
   TransferMatrix(system::RotorSystem& system, const std::vector<TransferInput>& inputs,
                  const std::vector<TransferOutput>& outputs);
   /// Takes the derivatives at the equilibrium x and the system's speed.
-  void linearise(Vec x) { solver_.linearise(x); }
+  void linearise(Vec x);
   /// G(i omega) [output][input], all of an output behind each other; the same on all ranks. Throws core::NotConverged
   /// at an undamped resonance.
   [[nodiscard]] std::vector<std::complex<double>> at(double omega);
 
 private:
+  /// With what a loss factor of the rotor is at this frequency.
+  void linearise_with_loss(double omega);
   [[nodiscard]] std::vector<double> load(const TransferInput& input) const;
+  core::Vector x_;  // where it is linearised
   system::RotorSystem& system_;
   solve::FrequencyResponse solver_;
   std::vector<TransferOutput> outputs_;

@@ -99,13 +99,13 @@ public:
     Vec x = walker_.at(speed);
     PetscInt begin = 0, end = 0;
     core::check(VecGetOwnershipRange(x, &begin, &end));
-    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum
-    // rows; own states of films, behind all pairs of coordinate and rate, are not forced.
+    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on the
+    // rotor's rows; own states of films, behind all pairs of coordinate and rate, are not forced.
     std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
-    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); row += 2) {
-      const auto q = static_cast<std::size_t>(row / 2), at = static_cast<std::size_t>(2 * (row - begin));
-      right[at] = speed * speed * system_.unbalance_cosine()[q];
-      right[at + 1] = -speed * speed * system_.unbalance_sine()[q];
+    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); ++row) {
+      const auto of = static_cast<std::size_t>(row), at = static_cast<std::size_t>(2 * (row - begin));
+      right[at] = speed * speed * system_.forcing_cosine()[of];
+      right[at + 1] = -speed * speed * system_.forcing_sine()[of];
     }
     const bool hysteretic = system_.train().rotor.loss_factor > 0;
     if (hysteretic) system_.set_loss(system_.loss_at(speed));

@@ -31,6 +31,23 @@ struct TransferOutput {
 [[nodiscard]] std::span<const deck::Name<TransferOutput::Quantity>> names(TransferOutput::Quantity);
 void describe(deck::Description<TransferOutput>& d);
 
+/// Stiffness [N/m] and damping [N s/m] at one frequency [rad/s]: force = -k d - b d', first letter the force's.
+struct CoefficientsAt {
+  double frequency = 0;
+  double k_xx = 0, k_xy = 0, k_yx = 0, k_yy = 0;
+  double b_xx = 0, b_xy = 0, b_yx = 0, b_yy = 0;
+};
+void describe(deck::Description<CoefficientsAt>& d);
+
+/// Those of a bearing that the user knows, linear between the frequencies.
+struct GivenCoefficients {
+  std::string bearing;
+  std::vector<CoefficientsAt> table;
+};
+void describe(deck::Description<GivenCoefficients>& d);
+/// Within the table.
+[[nodiscard]] CoefficientsAt interpolated(const std::vector<CoefficientsAt>& table, double frequency);
+
 struct FrequencyResponseOptions {
   enum class Spacing { linear, log };
   std::string name;
@@ -42,6 +59,7 @@ struct FrequencyResponseOptions {
   std::vector<TransferOutput> outputs;      ///< displacements of the inputs if empty
   bool coefficients = false;                ///< also by stiffness and damping of the films at each frequency
   std::vector<deck::Quantity> constant_at;  ///< also by those at these frequencies [rad/s]
+  std::vector<GivenCoefficients> given;     ///< also with these in place of the films of some bearings
 };
 [[nodiscard]] std::span<const deck::Name<FrequencyResponseOptions::Spacing>> names(FrequencyResponseOptions::Spacing);
 void describe(deck::Description<FrequencyResponseOptions>& d);
@@ -50,6 +68,7 @@ class FrequencyResponse final : public StudyWith<FrequencyResponseOptions> {
 public:
   static constexpr std::string_view key = "frequency_response";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
