@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -208,7 +209,9 @@ void Integrator::advance(double time) {
       if (!p.gate.domain_text().empty()) throw core::DomainError(where + ": " + p.gate.domain_text());
       throw core::NotConverged(fmt::format("{}: {}", where, TSConvergedReasons[reason]));
     }
-    const bool whole = std::abs(now - p.time - wanted) < 1e-9 * wanted;
+    // Late in a motion the time itself is rounded by more than a part of a short step.
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(end);
+    const bool whole = std::abs(now - p.time - wanted) <= 1e-9 * wanted + rounding;
     if (!whole) ++p.work.rejected;
     const double length = whole ? wanted : now - p.time;
     if (p.tangents) {
