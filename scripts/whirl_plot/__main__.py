@@ -5,8 +5,9 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, film, gas, locus, machine, motion, multipliers, orbits, response, run_up, shapes,
-               style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections)
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, enforced, film, gas, line, linearity, locus, machine,
+               motion, multipliers, orbits, orders, reductions, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections,
+               transfer, whirl_map)
 from .subject import Drawn, said_in_a_sentence
 
 # Which pictures a kind of study gets, in the order of the report.
@@ -15,13 +16,18 @@ PICTURES = {
     "alignment": [shapes.draw_sag],
     "bearing_map": [bearing_map.draw_impedance, bearing_map.draw_frequencies],
     "gas_bearing": [gas.draw_curves, gas.draw_isobars, gas.draw_meshes, gas.draw_map, gas.draw_knudsen],
-    "dynamic_coefficients": [dynamic.draw],
-    "modes": [campbell.draw, shapes.draw_modes],
+    "dynamic_coefficients": [dynamic.draw, enforced.draw],
+    "modes": [campbell.draw, shapes.draw_modes, whirl_map.draw, line.draw],
     "critical_speed_map": [critical.draw_map],
+    "element_convergence": [elements.draw_errors, elements.draw_shifts, elements.draw_conditions],
+    "frequency_response": [transfer.draw],
+    "reduction_errors": [reductions.draw_errors, reductions.draw_orbits, reductions.draw_maps],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
-    "motion": [motion.draw, motion.draw_full_spectrum],
+    "linearity": [linearity.draw_transfer, linearity.draw_coherence, linearity.draw_excitation],
+    "motion": [motion.draw, motion.draw_full_spectrum, orders.draw_waterfall, orders.draw_orders],
+    "run_up": [orders.draw_waterfall, orders.draw_orders],
     "thd": [thd_maps.draw_maps, thd_maps.draw_velocity, thd_maps.draw_fluid, thd_maps.draw_heat, thd_cuts.draw_profiles, thd_sections.draw_film, thd_cuts.draw_radial,
             thd_cuts.draw_axial, thd_sections.draw_axial, thd.draw_iterations, thd.draw_meshes, thd.draw_budget, thd_compare.draw_effective, thd_compare.draw_properties],
     "sweep": [sweep.draw_trends, sweep.draw_branches, sweep.draw_response, sweep.draw_stability_factors, sweep.draw_films, sweep.draw_coefficients],

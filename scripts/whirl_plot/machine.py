@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from .style import BAD, COLOURS, GREY, INK, save
 from .units import number, quantity
@@ -20,7 +20,7 @@ def planes_of(deck):
 
 
 def discs_of(deck, shaft):
-    """(node, radius, thickness, whether the deck gives its size) of each disc; one given by its mass alone is drawn as high as the
+    """(node, radius, thickness, whether the deck gives its size, offset of its centre) of each disc; one given by its mass alone is drawn as high as the
     cube root of it goes, up to three radii of the shaft."""
     found = deck.get("rotor", {}).get("discs") or []
     heaviest = max((number(d.get("mass")) or 0.0 for d in found), default=0.0)
@@ -29,7 +29,8 @@ def discs_of(deck, shaft):
         radius = (number(d.get("outer_diameter")) or 0.0) / 2
         mass = number(d.get("mass")) or 0.0
         if isinstance(d.get("node"), int):
-            out.append((d["node"], radius or shaft * (1 + 2 * (mass / heaviest)**(1 / 3) if heaviest else 2), number(d.get("thickness")) or 0.0, radius > 0))
+            out.append((d["node"], radius or shaft * (1 + 2 * (mass / heaviest)**(1 / 3) if heaviest else 2), number(d.get("thickness")) or 0.0, radius > 0,
+                        number(d.get("offset")) or 0.0))
     return out
 
 
@@ -50,27 +51,54 @@ def draw_bearings(axis, deck, place, low, high):
         axis.annotate(name, (at, low), xytext=(0, -8), textcoords="offset points", ha="center", va="top", fontsize=8.5, color=INK)
 
 
+def right_radius(segment, key, left):
+    """Radius at the right end of a segment that may be tapered."""
+    given = number(segment.get(key))
+    return left if given is None else given / 2
+
+
+def outline(axis, a, b, left, right, **how):
+    """A segment from z = a to b with these radii at its ends."""
+    axis.add_patch(Polygon([(a, -left), (b, -right), (b, right), (a, left)], closed=True, **how))
+
+
+def draw_coupling(axis, a, b, radius):
+    """Two halves with a gap between them, joined by a spring."""
+    gap = (b - a) / 6
+    for left, right in ((a, (a + b) / 2 - gap), ((a + b) / 2 + gap, b)):
+        axis.add_patch(Rectangle((left, -radius), right - left, 2 * radius, facecolor=STEEL, edgecolor=GREY, linewidth=0.6, zorder=2))
+    z = np.linspace((a + b) / 2 - gap, (a + b) / 2 + gap, 9)
+    for side in (-0.6, 0.6):
+        axis.plot(z, side * radius + 0.2 * radius * np.array([0, 0, 1, -1, 1, -1, 1, 0, 0]), color=COLOURS[0], linewidth=0.8, zorder=3)
+
+
 def draw_shaft(results, deck, segments):
     lengths = [number(s.get("length")) or 0.0 for s in segments]
     z = np.concatenate([[0.0], np.cumsum(lengths)])
     outer = [max(number(s.get("outer_mass_diameter")) or 0.0, number(s.get("outer_stiffness_diameter")) or 0.0) / 2 for s in segments]
     added = [(number(s.get("added_mass_outer_diameter")) or 0.0) / 2 if (number(s.get("added_mass")) or 0) > 0 else 0.0 for s in segments]
     discs = discs_of(deck, max(*outer, *added))
-    high = max([*outer, *added, *(radius for _, radius, _, _ in discs), 1e-9])
+    right = [right_radius(s, "right_outer_diameter", r) for s, r in zip(segments, outer)]
+    coupled = {c.get("segment") for c in deck.get("rotor", {}).get("couplings") or []}
+    high = max([*outer, *right, *added, *(radius for _, radius, *_ in discs), 1e-9])
     # Radii are drawn larger than lengths where the shaft is slender.
     width = 10.4 / (1.04 * z[-1])  # inches per metre of length
     stretch = min(4.0, max(1.0, 2.0 / (3.85 * high * width)))
     figure, axis = plt.subplots(figsize=(11.2, min(6.0, 3.85 * high * width * stretch) + 1.7))
-    for a, b, r, m, s in zip(z, z[1:], outer, added, segments):
+    for k, (a, b, r, end, m, s) in enumerate(zip(z, z[1:], outer, right, added, segments), 1):
         inner = (number(s.get("inner_mass_diameter")) or 0.0) / 2
+        bore = right_radius(s, "right_inner_diameter", inner)
+        if k in coupled:
+            draw_coupling(axis, a, b, r)
+            continue
         if m > r:
             axis.add_patch(Rectangle((a, -m), b - a, 2 * m, facecolor=ADDED, edgecolor="none", zorder=1))
-        axis.add_patch(Rectangle((a, -r), b - a, 2 * r, facecolor=STEEL, edgecolor=GREY, linewidth=0.3, zorder=2))
-        if inner:
-            axis.add_patch(Rectangle((a, -inner), b - a, 2 * inner, facecolor="white", edgecolor=GREY, linewidth=0.3, zorder=3))
-    for node, radius, thickness, _ in discs:
+        outline(axis, a, b, r, end, facecolor=STEEL, edgecolor=GREY, linewidth=0.3, zorder=2)
+        if inner or bore:
+            outline(axis, a, b, inner, bore, facecolor="white", edgecolor=GREY, linewidth=0.3, zorder=3)
+    for node, radius, thickness, _, offset in discs:
         if 1 <= node <= len(z):
-            at, thickness = z[node - 1], thickness or 0.012 * z[-1]
+            at, thickness = z[node - 1] + offset, thickness or 0.012 * z[-1]
             axis.add_patch(Rectangle((at - thickness / 2, -radius), thickness, 2 * radius, facecolor=ADDED, edgecolor=GREY, linewidth=0.4, zorder=2.5))
     axis.plot([z[0], z[-1]], [0, 0], color=INK, linewidth=0.6, linestyle=(0, (9, 2, 2, 2)), zorder=5)
     place = lambda node: z[node - 1] if isinstance(node, int) and 1 <= node <= len(z) else None  # noqa: E731
@@ -102,7 +130,7 @@ def draw_shaft(results, deck, segments):
     if planes:
         handles.append(Line2D([], [], color=BAD, marker="v", linestyle="none", label="plane of unbalance, with its node"))
     note = f"{len(segments)} elements, nodes 1 to {len(z)} from left to right"
-    if any(not known for *_, known in discs):
+    if any(not known for *_, known, _ in discs):
         note += "; discs given by mass are drawn by its size, not to scale"
     if stretch > 1.05:
         note += f"; radii drawn {stretch:.1f} times larger than lengths"

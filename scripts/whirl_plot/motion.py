@@ -71,7 +71,10 @@ def draw(study):
     if not study.has("orbit/x", "poincare/x", "spectrum/x"):
         return []
     scale, unit = study.micro
-    x, y, px, py = (study.get(p) * scale for p in ("orbit/x", "orbit/y", "poincare/x", "poincare/y"))
+    # A motion that nothing forces has a section in place of a shaft angle.
+    cut = "section" if study.has("section/x", "section/y") else "poincare"
+    where = "on the section" if cut == "section" else "once per revolution"
+    x, y, px, py = (study.get(p) * scale for p in ("orbit/x", "orbit/y", f"{cut}/x", f"{cut}/y"))
     order, sx, sy = study.get("spectrum/order"), study.get("spectrum/x") * scale, study.get("spectrum/y") * scale
     names = study.bearings(x.shape[1])
     rows = distinct(study, names)
@@ -82,7 +85,7 @@ def draw(study):
         draw_orbit(row[0], study, b, x[:, b], y[:, b], px[:, b], py[:, b], unit)
         row[0].set_title("orbit" if len(rows) == 1 else f"orbit, {names[b]}")
         draw_points(row[1], px[:, b], py[:, b], unit)
-        row[1].set_title("once per revolution")
+        row[1].set_title(where)
         draw_spectrum(row[2], order, sx[:, b], sy[:, b], unit)
         row[2].set_title("spectrum")
         if exponents and b == rows[0]:
@@ -92,7 +95,8 @@ def draw(study):
         elif exponents:
             row[3].set_visible(False)
     turns = int(round(x.shape[0] / study.attribute("samples", 1)))
-    return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: shaft angle 0; {ROTATION}")
+    mark = "shaft angle 0" if cut == "poincare" else str(study.group["section"].attrs["plane"])
+    return save(figure, study, "motion", f"{study.attribute('evidence', '')}; last {turns} revolutions, black: {mark}; {ROTATION}")
 
 
 def draw_full_spectrum(study, top=4.0):

@@ -224,13 +224,23 @@ std::string of_motion(const io::StudySummary& s, const Values& v) {
     std::string name = kind;
     std::replace(name.begin(), name.end(), '_', ' ');
     out += "  motion: " + name;
-    if (const auto period = v.get("period")) out += fmt::format(", returns after {:.0f} revolutions", *period);
+    const auto period = v.get("period"), time = v.get("period.time");
+    if (period && time)
+      out += fmt::format(", returns after {:.6g} s, crossing its section {:.0f} times", *time, *period);
+    else if (period)
+      out += fmt::format(", returns after {:.0f} revolutions", *period);
     out += "\n";
   }
   if (const auto exponent = v.get("lyapunov.1.per_revolution")) {
     const auto error = v.get("lyapunov.1.uncertainty"), rate = v.get("lyapunov.1");
     const double bar = error && rate && *rate != 0 ? std::abs(*exponent * *error / *rate) : io::no_value;
     out += fmt::format("  largest Lyapunov exponent {} per revolution\n", with_uncertainty(*exponent, bar, ""));
+  }
+  if (const auto rotation = v.get("rotation")) {
+    out += fmt::format("  rotation number {} turns per return", with_uncertainty(*rotation, v.bar("rotation"), ""));
+    if (const auto p = v.get("rotation.locked.numerator"))
+      out += fmt::format(", locked at {:.0f}/{:.0f}", *p, *v.get("rotation.locked.denominator"));
+    out += "\n";
   }
   const auto places = Values::between(s, "peak_to_peak.", ".x");
   if (places.empty()) return out;
@@ -241,6 +251,20 @@ std::string of_motion(const io::StudySummary& s, const Values& v) {
     grid.add({p, v.cell("peak_to_peak." + p + ".x", length ? 1e6 : 1),
               v.cell("peak_to_peak." + p + ".y", length ? 1e6 : 1), v.cell("tone." + p + ".y.1.frequency"),
               v.cell("tone." + p + ".y.1.order")});
+  return out + grid.text();
+}
+
+std::string of_transfers(const io::StudySummary& s, const Values& v) {
+  std::string out;
+  for (const auto& [name, q] : s.values)
+    if (name.ends_with(".difference"))
+      out += fmt::format("  {}: at most {:.3g} of the matrix apart, at {} {}\n", name.substr(0, name.size() - 11),
+                         q.value, v.cell(name + "_at"), v.unit(name + "_at"));
+  Grid grid({"largest answer", "amplitude", "unit",
+             fmt::format("at [{}]", s.values.empty() ? "" : v.unit(s.values[1].first))});
+  for (const auto& [name, q] : s.values)
+    if (name.ends_with(".largest"))
+      grid.add({name.substr(0, name.size() - 8), number(q.value), q.unit, v.cell(name + "_at")});
   return out + grid.text();
 }
 
@@ -361,6 +385,7 @@ std::string highlights(const io::StudySummary& s) {
   if (s.kind == "motion") return of_motion(s, v);
   if (s.kind == "bearing_map") return of_bearing_map(s, v);
   if (s.kind == "dynamic_coefficients") return of_coefficients(s, v);
+  if (s.kind == "frequency_response") return of_transfers(s, v);
   if (s.kind == "sweep") return of_sweep(s);
   return {};
 }

@@ -1,12 +1,10 @@
 #include "whirl/film/film.hpp"
 
-#include <Eigen/SparseLU>
-#include <cmath>
 #include <complex>
 
 #include "film/steady.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/film/film_matrix.hpp"
+#include "whirl/film/coefficients.hpp"
 
 namespace whirl::film {
 using Complex = std::complex<double>;
@@ -56,49 +54,9 @@ long relax(Film& film, const JournalMotion& motion, std::vector<double>& states)
   return steady.factorisations();
 }
 
-// s = -(dg/ds + i w dg/ds')^-1 (dg/dx + i w dg/dv) x, force = (df/dx + i w df/dv) x + (df/ds + i w df/ds') s.
 PortCoefficients port_coefficients(Film& film, const JournalMotion& motion, std::span<const double> states,
                                    double omega) {
-  if (!(omega > 0.0)) throw core::InputError("film: the frequency of stiffness and damping must be positive");
-  const std::vector<double> rest(states.size(), 0.0);
-  StateResponse r;
-  film.evaluate(motion, states, rest, Need::tangents, r);
-  const auto ports = film.ports();
-  const auto n = static_cast<Eigen::Index>(states.size()), count = static_cast<Eigen::Index>(ports.size());
-  const auto columns = [&](const PortColumns& of) {
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, count);
-    for (std::size_t j = 0; j < of.size(); ++j)
-      out.col(static_cast<Eigen::Index>(j)) = Eigen::Map<const Eigen::VectorXd>(of[j].data(), n);
-    return out;
-  };
-  // What the states do to the force, all ports at once: transfer = f_s A^-1 g_x, A and g_x at the frequency.
-  Eigen::MatrixXcd of_states = Eigen::MatrixXcd::Zero(count, count);
-  if (n > 0) {
-    const Complex iw(0.0, omega);
-    const Share& all = film.whole();
-    FilmMatrix<Complex> matrix(all, all.d_states, &all.d_rates);
-    Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu;
-    lu.compute(matrix.filled(r.d_states, r.d_rates, 1.0, iw));
-    if (lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
-    Eigen::MatrixXcd moved(n, count);
-    moved.real() = columns(r.d_position);
-    moved.imag() = omega * columns(r.d_velocity);
-    const Eigen::MatrixXcd s = lu.solve(moved);
-    const Eigen::MatrixXd force = columns(r.force_d_states).transpose();
-    of_states.real() = force * s.real();
-    of_states.imag() = force * s.imag();
-    if (!r.force_d_rates.empty()) of_states += iw * (columns(r.force_d_rates).transpose().cast<Complex>() * s);
-  }
-  PortCoefficients out;
-  out.ports = ports.size();
-  for (std::size_t j = 0; j < ports.size(); ++j)
-    for (std::size_t i = 0; i < ports.size(); ++i) {
-      const auto of = static_cast<std::size_t>(ports[i]), to = static_cast<std::size_t>(ports[j]);
-      const Complex states_do = of_states(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      out.stiffness[i][j] = states_do.real() - r.journal.d_position[of][to];
-      out.damping[i][j] = states_do.imag() / omega - r.journal.d_velocity[of][to];
-    }
-  return out;
+  return FrequencyCoefficients(film, motion, states).at(omega);
 }
 
 Coefficients coefficients(Film& film, const JournalMotion& motion, std::span<const double> states, double omega) {

@@ -15,21 +15,21 @@
 namespace whirl::film {
 namespace {
 
-void demand(bool condition, const char* what) {
+void check_that(bool condition, const char* what) {
   if (!condition) throw core::InputError(std::string("film: ") + what);
 }
 
 void check(const Geometry& g, const Thd& o, const Lubricant& l) {
-  demand(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
-  demand(g.type != Geometry::Bore::cylindrical, "a film with heat stands on pads: a partial arc or a lemon bore");
+  check_that(g.radius > 0.0 && g.length > 0.0 && g.clearance > 0.0, "radius, length and clearance must be positive");
+  check_that(g.type != Geometry::Bore::cylindrical, "a film with heat stands on pads: a partial arc or a lemon bore");
   const double limit = (g.type == Geometry::Bore::lemon_bore ? 1.0 : 2.0) * std::numbers::pi;
-  demand(g.arc > 0.0 && g.arc <= limit, "the arc must be positive and its pads must not overlap");
-  demand(g.preload < 1.0, "the preload must be below 1");
-  demand(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
-  demand(o.cells[0] >= 4 && o.cells[1] >= 2, "at least 4 x 2 cells per pad");
-  demand(o.layers >= 1, "at least one layer");
-  demand(l.viscosity > 0.0 && l.density > 0.0, "viscosity and density must be positive");
-  demand(o.heat_capacity > 0.0 && o.conductivity >= 0.0, "heat capacity and conductivity must be positive");
+  check_that(g.arc > 0.0 && g.arc <= limit, "the arc must be positive and its pads must not overlap");
+  check_that(g.preload < 1.0, "the preload must be below 1");
+  check_that(g.type == Geometry::Bore::lemon_bore || g.offset == 0.0, "only a lemon bore has an offset");
+  check_that(o.cells[0] >= 4 && o.cells[1] >= 2, "at least 4 x 2 cells per pad");
+  check_that(o.layers >= 1, "at least one layer");
+  check_that(l.viscosity > 0.0 && l.density > 0.0, "viscosity and density must be positive");
+  check_that(o.heat_capacity > 0.0 && o.conductivity >= 0.0, "heat capacity and conductivity must be positive");
 }
 
 template <class HeatedPad>

@@ -179,6 +179,7 @@ Json to_json(const StudySummary& s) {
                      {"log_decrement", number(m.log_decrement)},
                      {"whirl", text_or_null(m.whirl)}});
     if (!m.stability.empty()) modes.back()["stability"] = m.stability;
+    if (!m.whirl_rule.empty()) modes.back()["whirl_rule"] = m.whirl_rule;
     for (const auto& [key, value] : m.more) modes.back()[key] = number(value);
   }
   Json j = {{"name", s.name},
@@ -217,11 +218,11 @@ StudySummary study(const Json& j) {
   for (const Json& x : j.value("suspected", Json::array()))
     s.suspected.push_back({number(x.at("from")), number(x.at("to")), x.at("unit"), x.at("reason")});
   for (const Json& m : j.at("modes"))
-    s.modes.push_back({number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
-                       m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>(),
-                       m.value("speed_unit", std::string()),
-                       others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability"}),
-                       m.value("stability", std::string())});
+    s.modes.push_back(
+        {number(m.at("speed")), number(m.at("real")), number(m.at("imag")), number(m.at("log_decrement")),
+         m.at("whirl").is_null() ? "" : m.at("whirl").get<std::string>(), m.value("speed_unit", std::string()),
+         others(m, {"speed", "speed_unit", "real", "imag", "log_decrement", "whirl", "stability", "whirl_rule"}),
+         m.value("stability", std::string()), m.value("whirl_rule", std::string())});
   s.layout = j.value("layout", std::string());
   s.stability = j.value("stability", std::string());
   s.warnings = j.value("warnings", std::vector<std::string>());

@@ -87,8 +87,7 @@ private:
   std::vector<double> moments(const RigidStatic& r, double gravity) const {
     std::vector<double> m;
     for (std::size_t e = 0; e < options_.segments.size(); ++e) {
-      const ElementMatrices element =
-          element_matrices(options_.segments[e], options_.material, shear_of(options_), of_statics(options_).element);
+      const ElementMatrices element = element_matrices(of_statics(options_), e);
       const Eigen::Matrix4d k = element.stiffness;
       const Eigen::Vector4d w = element.weight;
       const Eigen::Vector4d u(r.deflection[e], r.slope[e], r.deflection[e + 1], r.slope[e + 1]);

@@ -6,29 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dense.hpp"
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
-namespace {
-
-Eigen::MatrixXd dense(Mat sparse) {
-  PetscInt n = 0;
-  core::check(MatGetSize(sparse, &n, nullptr));
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
-  for (PetscInt r = 0; r < n; ++r) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    core::check(MatGetRow(sparse, r, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k) out(r, columns[k]) = values[k];
-    core::check(MatRestoreRow(sparse, r, &count, &columns, &values));
-  }
-  return out;
-}
-
-}  // namespace
 
 // K is definite, M -+ G may be not: of (M -+ G) v = K v/Omega^2 the positive eigenvalues count.
 std::vector<double> critical_speeds(const Options& options, const std::vector<int>& nodes, double stiffness,

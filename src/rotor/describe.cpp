@@ -42,12 +42,25 @@ std::span<const deck::Name<Element>> names(Element) {
   return table;
 }
 
+std::span<const deck::Name<LossFrame>> names(LossFrame) {
+  static constexpr deck::Name<LossFrame> table[] = {
+      {LossFrame::shaft, "shaft",
+       "that of the shaft, as of its material: forward whirl slower than the shaft is driven, synchronous forward "
+       "whirl "
+       "untouched"},
+      {LossFrame::stationary, "stationary", "the stationary one: every whirl is damped"}};
+  return table;
+}
+
 std::span<const deck::Name<Reduction::Type>> names(Reduction::Type) {
   using enum Reduction::Type;
   static constexpr deck::Name<Reduction::Type> table[] = {
       {none, "none", "every node keeps its four freedoms"},
       {guyan, "guyan", "static condensation onto the translations of the masters"},
       {craig_bampton, "craig_bampton", "masters and the lowest modes of the shaft with its masters held"},
+      {craig_bampton_state, "craig_bampton_state",
+       "masters, their velocities, and the slowest complex modes of the turning shaft with its masters held: the basis "
+       "keeps gyroscopic moments and damping, at one speed"},
       {modal, "modal", "the lowest real modes of the shaft at rest, free or on springs at its masters"}};
   return table;
 }
@@ -103,18 +116,54 @@ void describe(deck::Description<Disc>& d) {
   d.add("node", &Disc::node, positive, "node that carries the disc").required();
   d.add("mass", &Disc::mass, "kg", non_negative, "mass, beside that of the geometry").continuable();
   d.add("polar_inertia", &Disc::polar_inertia, "kg m^2", non_negative, "moment of inertia about the shaft axis");
-  d.add("diametral_inertia", &Disc::diametral_inertia, "kg m^2", non_negative, "moment of inertia about a diameter");
+  d.add("diametral_inertia", &Disc::diametral_inertia, "kg m^2", non_negative,
+        "moment of inertia about a diameter through the centre of mass");
   d.add("outer_diameter", &Disc::outer_diameter, "m", non_negative, "outer diameter; 0: no geometry").alias("diameter");
   d.add("inner_diameter", &Disc::inner_diameter, "m", non_negative, "diameter of the bore").alias("bore");
   d.add("thickness", &Disc::thickness, "m", non_negative, "axial thickness");
   d.add("density", &Disc::density, "kg/m^3", non_negative, "density; 0: that of the shaft");
+  d.add("offset", &Disc::offset, "m", deck::any, "how far along the shaft the centre of mass lies beyond the node",
+        "003 (1.72)")
+      .continuable();
+  d.add("eccentricity", &Disc::eccentricity, "m", non_negative,
+        "distance of the centre of mass from the axis of the shaft; acts where a study names the unbalance 'discs'",
+        "003 (1.75)")
+      .continuable();
+  d.add("eccentricity_phase", &Disc::eccentricity_phase, "rad", deck::any,
+        "angle of the centre of mass from +x at shaft angle zero, counter-clockwise");
+  d.add("skew", &Disc::skew, "rad", deck::in(0, 0.1),
+        "angle between the axis of the disc and that of the shaft; acts as the eccentricity does", "003 (1.75)")
+      .continuable();
+  d.add("skew_phase", &Disc::skew_phase, "rad", deck::any,
+        "angle of the direction from +x in which the axis of the disc leans, at shaft angle zero, counter-clockwise");
+  d.add("hub", &Disc::hub, positive,
+        "nodes at both ends of the hub: the disc tilts as the line through them, the mean slope of the deflection; not "
+        "given: as the section of the shaft at its node",
+        "003 sec. 2.2.1");
   d.check([](const Disc& x, const deck::Report& r) {
+    if (!x.hub.empty() && (x.hub.size() != 2 || x.hub[0] > x.node || x.hub[1] < x.node || x.hub[0] == x.hub[1]))
+      r.fail("hub", "'hub' is two nodes, ascending, with that of the disc between them or at one of them");
     if (x.outer_diameter > 0 && x.inner_diameter >= x.outer_diameter)
       r.fail("inner_diameter", "'inner_diameter' must be smaller than 'outer_diameter'");
     if (x.outer_diameter > 0 && x.thickness <= 0)
       r.fail("thickness", "'thickness' must be positive for a disc with a diameter");
     if (x.outer_diameter <= 0 && x.mass <= 0) r.fail("", "a disc needs a mass, or a diameter and a thickness");
   });
+}
+
+void describe(deck::Description<Coupling>& d) {
+  d.add("segment", &Coupling::segment, positive,
+        "segment in whose place it stands: two rigid halves with the mass of its outline, springs half way")
+      .required();
+  d.add("stiffness", &Coupling::stiffness, "N/m", positive, "of the offset of the axes").required().continuable();
+  d.add("tilt_stiffness", &Coupling::tilt_stiffness, "N m/rad", non_negative, "of the angle between the axes")
+      .continuable();
+  d.add("damping", &Coupling::damping, "N s/m", non_negative, "of the offset of the axes; turns with the shaft");
+  d.add("tilt_damping", &Coupling::tilt_damping, "N m s/rad", non_negative,
+        "of the angle between the axes; turns with the shaft");
+  d.add("torsional_stiffness", &Coupling::torsional_stiffness, "N m/rad", non_negative,
+        "of the twist, for torsional modes");
+  d.add("axial_stiffness", &Coupling::axial_stiffness, "N/m", non_negative, "along the shaft, for axial modes");
 }
 
 void describe(deck::Description<Material>& d) {
@@ -143,11 +192,16 @@ void describe(deck::Description<Reduction>& d) {
   d.add("masters", &Reduction::masters, positive,
         "nodes whose translations are kept, and whose slopes where a film there tilts")
       .required()
-      .only(&Reduction::type, {guyan, craig_bampton, modal});
+      .only(&Reduction::type, {guyan, craig_bampton, craig_bampton_state, modal});
   d.add("modes", &Reduction::modes, positive,
-        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all")
+        "modes per plane: of the shaft with its masters held beside these, or of type 'modal' in all; of "
+        "'craig_bampton_state' two pairs of complex modes for each")
       .required()
-      .only(&Reduction::type, {craig_bampton, modal});
+      .only(&Reduction::type, {craig_bampton, craig_bampton_state, modal});
+  d.add("speed", &Reduction::speed, "rad/s", non_negative,
+        "speed of the shaft while its complex modes are computed; they are kept at all speeds", "003 sec. 2.4.4")
+      .required()
+      .only(&Reduction::type, {craig_bampton_state});
   d.add("support", &Reduction::support, "N/m", non_negative,
         "springs at the masters while the modes are computed; 0: modes of the free shaft", "003 sec. 2.3")
       .only(&Reduction::type, {modal});
@@ -178,6 +232,7 @@ void describe(deck::Description<Options>& d) {
       .required()
       .only(&Options::type, {shaft});
   d.add("discs", &Options::discs, "rigid discs at nodes").alias("disks").only(&Options::type, {shaft});
+  d.add("couplings", &Options::couplings, "flexible couplings in the place of segments").only(&Options::type, {shaft});
   d.add("material", &Options::material, "material of the shaft").required().only(&Options::type, {shaft});
   d.add("shear", &Options::shear, "shear coefficient of the Timoshenko element", "004 errata 5")
       .only(&Options::type, {shaft});
@@ -191,23 +246,49 @@ void describe(deck::Description<Options>& d) {
         "drives "
         "forward whirl below it",
         "003 (2.29)-(2.35)")
+      .continuable()
+      .only(&Options::type, {shaft});
+  d.add("loss_factor", &Options::loss_factor, deck::in(0, 1),
+        "eta of hysteretic damping, K (1 + i eta): of vibration with one frequency alone, so that 'modes', "
+        "'unbalance_response' and 'frequency_response' take it and studies in time refuse it",
+        "003 (2.36)-(2.38)")
+      .only(&Options::type, {shaft});
+  d.add("loss_frame", &Options::loss_frame, "frame whose frequency decides the sign of the loss")
       .only(&Options::type, {shaft});
   d.add("reduction", &Options::reduction, "reduction of the shaft's freedoms").only(&Options::type, {shaft});
   d.check([](const Options& o, const deck::Report& r) {
     if (o.type == rigid) return;
     if (n_inner(o.element) > 0 && o.shear == Shear::rigid)
       r.fail("element", "an element with independent shear needs a shear stiffness: 'shear' is rigid");
+    if (o.loss_factor > 0 && o.reduction.type == Reduction::Type::craig_bampton_state)
+      r.fail("loss_factor",
+             "a shaft with a loss factor has no equations of first order in time, which 'craig_bampton_state' reduces");
     const int n_nodes = static_cast<int>(o.segments.size()) + 1;
     auto node = [&](int k, const std::string& path) {
       if (k > n_nodes) r.fail(path, fmt::format("node {} does not exist: the shaft has nodes 1 to {}", k, n_nodes));
     };
-    for (std::size_t i = 0; i < o.discs.size(); ++i) node(o.discs[i].node, fmt::format("discs.{}.node", i + 1));
+    for (std::size_t i = 0; i < o.discs.size(); ++i) {
+      node(o.discs[i].node, fmt::format("discs.{}.node", i + 1));
+      if (!o.discs[i].hub.empty()) node(o.discs[i].hub.back(), fmt::format("discs.{}.hub", i + 1));
+    }
+    for (std::size_t i = 0; i < o.couplings.size(); ++i) {
+      const std::string path = fmt::format("couplings.{}.segment", i + 1);
+      const int k = o.couplings[i].segment;
+      if (k >= n_nodes)
+        r.fail(path, fmt::format("segment {} does not exist: the shaft has segments 1 to {}", k, n_nodes - 1));
+      else if (tapered(o.segments[static_cast<std::size_t>(k - 1)]))
+        r.fail(path, fmt::format("segment {} is tapered: a coupling has an outline of constant diameters", k));
+      for (std::size_t j = 0; j < i; ++j)
+        if (o.couplings[j].segment == k) r.fail(path, fmt::format("segment {} has a coupling already", k));
+    }
     if (o.reduction.type != Reduction::Type::none)
       for (std::size_t i = 0; i < o.reduction.masters.size(); ++i)
         node(o.reduction.masters[i], fmt::format("reduction.masters.{}", i + 1));
     // Each inner node has a translation and a slope in a plane, each master its slope.
     const int inner = 2 * n_nodes - static_cast<int>(o.reduction.masters.size());
-    if (o.reduction.type == Reduction::Type::craig_bampton && o.reduction.modes > inner)
+    const bool fixed_interface =
+        o.reduction.type == Reduction::Type::craig_bampton || o.reduction.type == Reduction::Type::craig_bampton_state;
+    if (fixed_interface && o.reduction.modes > inner)
       r.fail("reduction.modes",
              fmt::format("the shaft with its masters held has {} modes per plane, not {}", inner, o.reduction.modes));
     const auto& table = o.material.modulus;

@@ -26,11 +26,15 @@ Inner inner_freedoms(const Options& o) {
   const int per_segment = n_inner(o.element);
   if (per_segment == 0) return out;
   std::set<int> split(o.joints.begin(), o.joints.end());
-  for (const Disc& d : o.discs) split.insert(d.node);
+  for (const Disc& d : o.discs) {
+    split.insert(d.node);
+    split.insert(d.hub.begin(), d.hub.end());
+  }
   for (std::size_t k = 0; k < o.segments.size(); ++k) {
     std::vector<int>& mine = out.of_segment.emplace_back();
+    if (coupling_at(o, k)) continue;
     if (o.element == Element::timoshenko_hermitian && k > 0 && !split.contains(static_cast<int>(k) + 1) &&
-        same_stiffness(o, k - 1)) {
+        !coupling_at(o, k - 1) && same_stiffness(o, k - 1)) {
       const std::vector<int>& before = out.of_segment[k - 1];
       mine.assign(before.end() - 2, before.end());
     }

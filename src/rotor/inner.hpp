@@ -11,6 +11,9 @@ namespace whirl::rotor {
 struct Inner {
   int count = 0;
   std::vector<std::vector<int>> of_segment;  // [segment][inner freedom of the element]; empty if there are none
+  [[nodiscard]] std::vector<int> of(std::size_t segment) const {
+    return of_segment.empty() ? std::vector<int>() : of_segment[segment];
+  }
 };
 
 /// Those of a shaft. Neighbours of timoshenko_hermitian share shear angle and curvature at a node where both sections

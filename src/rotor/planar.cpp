@@ -1,5 +1,6 @@
 #include "planar.hpp"
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <vector>
@@ -36,17 +37,25 @@ std::vector<PetscInt> freedoms_of(PetscInt node, PetscInt nodal, const std::vect
   return at;
 }
 
+// The planar freedoms that a disc moves with: of its node, then of the ends of its hub.
+std::vector<PetscInt> freedoms_of(const Disc& disc) {
+  if (disc.hub.empty()) return {2 * (disc.node - 1), 2 * (disc.node - 1) + 1};
+  return {2 * (disc.node - 1), 2 * (disc.hub[0] - 1), 2 * (disc.hub[1] - 1)};
+}
+
 core::Matrix make_enriched_matrix(MPI_Comm comm, PetscInt local_nodes, PetscInt first, PetscInt nodes,
-                                  PetscInt inner_here, const Inner& inner) {
+                                  PetscInt inner_here, const Inner& inner, const std::vector<Disc>& discs) {
   const PetscInt begin = 2 * first, local = 2 * local_nodes + inner_here;
   std::vector<std::set<PetscInt>> columns(static_cast<std::size_t>(local));
   for (PetscInt i = 0; i < local; ++i) columns[static_cast<std::size_t>(i)].insert(begin + i);
-  for (PetscInt node = 0; node < nodes - 1; ++node) {
-    const auto at = freedoms_of(node, 2 * nodes, inner.of_segment[static_cast<std::size_t>(node)]);
+  const auto join = [&](const std::vector<PetscInt>& at) {
     for (const PetscInt row : at)
       if (row >= begin && row < begin + local)
         columns[static_cast<std::size_t>(row - begin)].insert(at.begin(), at.end());
-  }
+  };
+  for (PetscInt node = 0; node < nodes - 1; ++node)
+    join(freedoms_of(node, 2 * nodes, inner.of(static_cast<std::size_t>(node))));
+  for (const Disc& d : discs) join(freedoms_of(d));
   std::vector<PetscInt> here, elsewhere;
   for (const std::set<PetscInt>& c : columns) {
     const auto inside = std::distance(c.lower_bound(begin), c.lower_bound(begin + local));
@@ -70,7 +79,34 @@ void add_general(const Planar& p, const ElementMatrices& e, PetscInt node, Petsc
   put(p.mass, e.translational_mass + e.rotary_mass);
   put(p.gyroscopic, 2 * e.rotary_mass);
   put(p.stiffness, e.stiffness);
+  if (e.damping.size() > 0) put(p.damping, e.damping);
   check(VecSetValues(p.weight.get(), n, at.data(), e.weight.data(), ADD_VALUES));
+}
+
+// Displacement of the centre of mass u + offset t and tilt t of the disc, in planar freedoms; t is the slope of the
+// section, or that of the line through the ends of the hub.
+void add(const Planar& p, const Options& o, const Disc& given) {
+  const Disc disc = resolved(given, o.material);
+  const std::vector<PetscInt> at = freedoms_of(disc);
+  const auto n = static_cast<PetscInt>(at.size());
+  Eigen::VectorXd tilt = Eigen::VectorXd::Zero(n);
+  if (disc.hub.empty()) {
+    tilt(1) = 1;
+  } else {
+    const double length = hub_length(disc, o);
+    tilt(1) = -1 / length;
+    tilt(2) = 1 / length;
+  }
+  Eigen::VectorXd centre = disc.offset * tilt;
+  centre(0) += 1;
+  // Symmetric: rows or columns first is the same.
+  const auto put = [&](const core::Matrix& m, const Eigen::MatrixXd& values) {
+    check(MatSetValues(m.get(), n, at.data(), n, at.data(), values.data(), ADD_VALUES));
+  };
+  put(p.mass, disc.mass * centre * centre.transpose() + disc.diametral_inertia * tilt * tilt.transpose());
+  put(p.gyroscopic, disc.polar_inertia * tilt * tilt.transpose());
+  const Eigen::VectorXd weight = disc.mass * centre;
+  check(VecSetValues(p.weight.get(), n, at.data(), weight.data(), ADD_VALUES));
 }
 
 void add(Mat m, const std::array<PetscInt, 4>& at, const Eigen::Matrix4d& values) {
@@ -89,16 +125,21 @@ Planar assemble_planar(MPI_Comm comm, const Options& o) {
   Planar p;
   const Inner inner = inner_freedoms(o);
   const PetscInt inner_here = core::rank_of(comm) == core::size_of(comm) - 1 ? inner.count : 0;
-  for (core::Matrix* m : {&p.mass, &p.gyroscopic, &p.stiffness})
-    *m = inner.count == 0 ? make_chain_matrix(comm, local, first, nodes)
-                          : make_enriched_matrix(comm, local, first, nodes, inner_here, inner);
+  const bool chain =
+      inner.count == 0 && std::all_of(o.discs.begin(), o.discs.end(), [](const Disc& d) { return d.hub.empty(); });
+  const bool damped = std::any_of(o.couplings.begin(), o.couplings.end(),
+                                  [](const Coupling& c) { return c.damping > 0 || c.tilt_damping > 0; });
+  std::vector<core::Matrix*> all{&p.mass, &p.gyroscopic, &p.stiffness};
+  if (damped) all.push_back(&p.damping);
+  for (core::Matrix* m : all)
+    *m = chain ? make_chain_matrix(comm, local, first, nodes)
+               : make_enriched_matrix(comm, local, first, nodes, inner_here, inner, o.discs);
   p.weight = core::make_vector(comm, 2 * local + inner_here, 2 * nodes + inner.count);
 
   for (PetscInt node = first; node < end && node < nodes - 1; ++node) {
     const auto k = static_cast<std::size_t>(node);
-    if (!inner.of_segment.empty() || tapered(o.segments[k])) {
-      add_general(p, element_matrices(o.segments[k], o.material, shear_of(o), o.element), node, 2 * nodes,
-                  inner.of_segment.empty() ? std::vector<int>() : inner.of_segment[k]);
+    if (!inner.of_segment.empty() || tapered(o.segments[k]) || coupling_at(o, k)) {
+      add_general(p, element_matrices(o, k), node, 2 * nodes, inner.of(k));
       continue;
     }
     const Beam beam = make_beam(o.segments[k], o.material, shear_of(o));
@@ -110,16 +151,9 @@ Planar assemble_planar(MPI_Comm comm, const Options& o) {
     const Eigen::Vector4d f = weight(beam);
     check(VecSetValues(p.weight.get(), 4, at.data(), f.data(), ADD_VALUES));
   }
-  for (const Disc& given : o.discs) {
-    const PetscInt node = given.node - 1;
-    if (node < first || node >= end) continue;
-    const Disc disc = resolved(given, o.material);
-    check(MatSetValue(p.mass.get(), 2 * node, 2 * node, disc.mass, ADD_VALUES));
-    check(MatSetValue(p.mass.get(), 2 * node + 1, 2 * node + 1, disc.diametral_inertia, ADD_VALUES));
-    check(MatSetValue(p.gyroscopic.get(), 2 * node + 1, 2 * node + 1, disc.polar_inertia, ADD_VALUES));
-    check(VecSetValue(p.weight.get(), 2 * node, disc.mass, ADD_VALUES));
-  }
-  for (core::Matrix* m : {&p.mass, &p.gyroscopic, &p.stiffness}) {
+  for (const Disc& disc : o.discs)
+    if (disc.node > first && disc.node <= end) add(p, o, disc);
+  for (const core::Matrix* m : all) {
     check(MatAssemblyBegin(m->get(), MAT_FINAL_ASSEMBLY));
     check(MatAssemblyEnd(m->get(), MAT_FINAL_ASSEMBLY));
   }

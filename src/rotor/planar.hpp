@@ -12,7 +12,8 @@ namespace whirl::rotor {
 /// its moments act across the planes.
 struct Planar {
   core::Matrix mass, gyroscopic, stiffness;
-  core::Vector weight;  // consistent nodal forces per unit acceleration along the plane, kg and kg m
+  core::Vector weight;     // consistent nodal forces per unit acceleration along the plane, kg and kg m
+  core::Matrix damping{};  // of couplings, which turns with the shaft; empty without
 };
 
 /// Assembles the elements and discs of one plane; each rank computes the elements whose left node it owns. Collective.

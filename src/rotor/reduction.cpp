@@ -163,28 +163,34 @@ PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
   return basis;
 }
 
-core::Matrix to_matrix(const PlanarBasis& basis, MPI_Comm comm) {
-  PetscInt local = PETSC_DECIDE, n = basis.rows.cols(), begin = 0, column_end = 0;
-  check(PetscSplitOwnership(comm, &local, &n));
-  MPI_Scan(&local, &column_end, 1, MPIU_INT, MPI_SUM, comm);
+core::Matrix matrix_of(const Eigen::MatrixXd& rows, PetscInt columns, MPI_Comm comm) {
+  PetscInt begin = 0, column_end = 0;
+  MPI_Scan(&columns, &column_end, 1, MPIU_INT, MPI_SUM, comm);
   std::vector<PetscInt> here, elsewhere;
-  for (Eigen::Index i = 0; i < basis.rows.rows(); ++i) {
-    const auto inside = basis.rows.row(i).segment(column_end - local, local).array() != 0;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const auto inside = rows.row(i).segment(column_end - columns, columns).array() != 0;
     const PetscInt n_inside = static_cast<PetscInt>(inside.count());
     here.push_back(n_inside);
-    elsewhere.push_back(static_cast<PetscInt>((basis.rows.row(i).array() != 0).count()) - n_inside);
+    elsewhere.push_back(static_cast<PetscInt>((rows.row(i).array() != 0).count()) - n_inside);
   }
   core::Matrix t;
-  check(MatCreateAIJ(comm, static_cast<PetscInt>(basis.rows.rows()), local, PETSC_DETERMINE, n, 0, here.data(), 0,
-                     elsewhere.data(), t.put()));
+  check(MatCreateAIJ(comm, static_cast<PetscInt>(rows.rows()), columns, PETSC_DETERMINE,
+                     static_cast<PetscInt>(rows.cols()), 0, here.data(), 0, elsewhere.data(), t.put()));
   check(MatGetOwnershipRange(t.get(), &begin, nullptr));
-  for (Eigen::Index i = 0; i < basis.rows.rows(); ++i)
-    for (PetscInt j = 0; j < n; ++j)
-      if (basis.rows(i, j) != 0)
-        check(MatSetValue(t.get(), begin + static_cast<PetscInt>(i), j, basis.rows(i, j), INSERT_VALUES));
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    for (Eigen::Index j = 0; j < rows.cols(); ++j)
+      if (rows(i, j) != 0)
+        check(MatSetValue(t.get(), begin + static_cast<PetscInt>(i), static_cast<PetscInt>(j), rows(i, j),
+                          INSERT_VALUES));
   check(MatAssemblyBegin(t.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(t.get(), MAT_FINAL_ASSEMBLY));
   return t;
+}
+
+core::Matrix to_matrix(const PlanarBasis& basis, MPI_Comm comm) {
+  PetscInt local = PETSC_DECIDE, n = basis.rows.cols();
+  check(PetscSplitOwnership(comm, &local, &n));
+  return matrix_of(basis.rows, local, comm);
 }
 
 Eigen::MatrixXd sum_over_ranks(const Eigen::MatrixXd& mine, MPI_Comm comm) {

@@ -37,6 +37,9 @@ struct PlanarBasis {
 /// The modal basis, whose offset is not set.
 [[nodiscard]] PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction);
 
+/// `rows` of this rank and `columns` here as a distributed matrix; exact zeros are left out. Collective.
+[[nodiscard]] core::Matrix matrix_of(const Eigen::MatrixXd& rows, PetscInt columns, MPI_Comm comm);
+
 /// T as a distributed matrix: rows as the plane, columns split by PETSc; exact zeros are left out. Collective.
 [[nodiscard]] core::Matrix to_matrix(const PlanarBasis& basis, MPI_Comm comm);
 

@@ -57,6 +57,24 @@ void validate(const Disc& d, int nodes, const std::string& name) {
   if (d.outer_diameter != 0)
     refuse_unless(d.inner_diameter >= 0 && d.outer_diameter > d.inner_diameter && d.thickness > 0,
                   name + ": geometry must satisfy outer > inner >= 0 and thickness > 0");
+  refuse_unless(d.eccentricity >= 0 && d.skew >= 0, name + ": eccentricity and skew must not be negative");
+  if (!d.hub.empty())
+    refuse_unless(d.hub.size() == 2 && d.hub[0] >= 1 && d.hub[0] <= d.node && d.node <= d.hub[1] &&
+                      d.hub[0] < d.hub[1] && d.hub[1] <= nodes,
+                  name + ": the hub must be two nodes of the shaft, ascending, around that of the disc");
+}
+
+void validate(const Coupling& c, const Options& o, const std::string& name) {
+  const int segments = static_cast<int>(o.segments.size());
+  refuse_unless(c.segment >= 1 && c.segment <= segments,
+                fmt::format("{}: segment {} is not in 1..{}", name, c.segment, segments));
+  refuse_unless(c.stiffness > 0 && c.tilt_stiffness >= 0 && c.damping >= 0 && c.tilt_damping >= 0 &&
+                    c.torsional_stiffness >= 0 && c.axial_stiffness >= 0,
+                name + ": the stiffness must be positive, all else not negative");
+  refuse_unless(!tapered(o.segments[static_cast<std::size_t>(c.segment - 1)]), name + ": its segment is tapered");
+  refuse_unless(std::count_if(o.couplings.begin(), o.couplings.end(),
+                              [&](const Coupling& x) { return x.segment == c.segment; }) == 1,
+                fmt::format("{}: segment {} has two", name, c.segment));
 }
 
 void validate(const Reduction& r, int nodes) {
@@ -79,6 +97,7 @@ void validate(const Reduction& r, int nodes) {
     refuse_unless(r.support >= 0, "the support must not be negative");
     return;
   }
+  refuse_unless(r.speed >= 0, "the speed of the modes must not be negative");
   const int slaves = 2 * nodes - static_cast<int>(r.masters.size() + r.slopes.size());
   refuse_unless(r.modes >= 0 && r.modes <= slaves,
                 fmt::format("{} fixed-interface modes per plane are not in 0..{}", r.modes, slaves));
@@ -106,6 +125,10 @@ void validate(const Options& o) {
     }
   }
   for (std::size_t i = 0; i < o.discs.size(); ++i) validate(o.discs[i], n_nodes(o), fmt::format("disc {}", i + 1));
+  for (std::size_t i = 0; i < o.couplings.size(); ++i) validate(o.couplings[i], o, fmt::format("coupling {}", i + 1));
+  refuse_unless(o.loss_factor >= 0, "the loss factor must not be negative");
+  refuse_unless(o.loss_factor == 0 || o.reduction.type != Reduction::Type::craig_bampton_state,
+                "a shaft with a loss factor has no equations of first order in time to reduce");
   validate(o.reduction, n_nodes(o));
 }
 
@@ -157,11 +180,8 @@ double segment_mass(const Segment& s, const Material& m) {
 }
 
 Disc resolved(const Disc& d, const Material& m) {
-  Disc r;
-  r.node = d.node;
-  r.mass = d.mass;
-  r.polar_inertia = d.polar_inertia;
-  r.diametral_inertia = d.diametral_inertia;
+  Disc r = d;
+  r.outer_diameter = r.inner_diameter = r.thickness = r.density = 0;
   if (d.outer_diameter == 0) return r;
   const double outer2 = d.outer_diameter * d.outer_diameter, inner2 = d.inner_diameter * d.inner_diameter;
   const double mass = (d.density > 0 ? d.density : m.density) * pi / 4 * (outer2 - inner2) * d.thickness;
@@ -170,6 +190,31 @@ Disc resolved(const Disc& d, const Material& m) {
   r.polar_inertia += polar;
   r.diametral_inertia += polar / 2 + mass * d.thickness * d.thickness / 12;
   return r;
+}
+
+double hub_length(const Disc& d, const Options& o) {
+  double length = 0;
+  for (int k = d.hub.at(0); k < d.hub.at(1); ++k) length += o.segments.at(static_cast<std::size_t>(k - 1)).length;
+  return length;
+}
+
+std::vector<TurningForce> disc_forces(const Options& o) {
+  std::vector<TurningForce> out;
+  const auto moment = [&](const Disc& d, double amount, double phase) {
+    if (d.hub.empty()) return out.push_back({d.node, Freedom::slope_x, amount, phase});
+    const double force = amount / hub_length(d, o);
+    out.push_back({d.hub[0], Freedom::x, -force, phase});
+    out.push_back({d.hub[1], Freedom::x, force, phase});
+  };
+  for (const Disc& given : o.discs) {
+    const Disc d = resolved(given, o.material);
+    if (d.eccentricity > 0) {
+      out.push_back({d.node, Freedom::x, d.mass * d.eccentricity, d.eccentricity_phase});
+      if (d.offset != 0) moment(d, d.mass * d.eccentricity * d.offset, d.eccentricity_phase);
+    }
+    if (d.skew > 0) moment(d, (d.diametral_inertia - d.polar_inertia) * d.skew, d.skew_phase);
+  }
+  return out;
 }
 
 double total_mass(const Options& o) {

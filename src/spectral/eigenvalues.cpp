@@ -5,9 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
+#include "spectral/left_vectors.hpp"
 #include "spectral/pencil_search.hpp"
 #include "spectral/rounding.hpp"
 #include "whirl/core/agree.hpp"
@@ -37,9 +39,41 @@ double infinite_from(Mat a, Mat b) {
   return left / (std::numeric_limits<double>::epsilon() * right);
 }
 
-// What a solver has found, at least `wanted` of them, below `infinite`; `scale` makes the shapes SI.
-std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<double>& scale, PetscInt wanted,
-                           const EigenOptions& options, DensePencil* pencil, double infinite) {
+// Rows of b that are zero.
+PetscInt zero_rows(const Eigen::MatrixXd& b) {
+  return static_cast<PetscInt>((b.cwiseAbs().rowwise().maxCoeff().array() == 0).count());
+}
+
+// The size that infinite eigenvalues have at least: there are as many as b has zero rows, and rounding makes some of
+// them finite, smaller than infinite_from() where rows differ in size.
+double least_infinite(const EigenSolver& eps, PetscInt count, double infinite) {
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  std::vector<double> size;
+  for (PetscInt i = 0; i < converged; ++i)
+    size.push_back(std::abs(pair_of(eps.get(), i, nullptr, nullptr, false).value));
+  if (count == 0 || count > converged) return infinite;
+  std::nth_element(size.begin(), size.begin() + (count - 1), size.end(), std::greater<>());
+  return std::min(infinite, size[static_cast<std::size_t>(count - 1)]);
+}
+
+// Left rows y* of the scaled pencil, y* B x = 1, as the vector that belongs to a shape of SI which is x over `largest`.
+std::vector<Complex> in_si(const std::vector<Complex>& row, const std::vector<double>& row_scale, Complex largest) {
+  std::vector<Complex> out(row.size());
+  for (std::size_t k = 0; k < row.size(); ++k) out[k] = std::conj(row[k] * largest) / row_scale[k];
+  return out;
+}
+
+// The scales of states and rows, whole.
+struct Scales {
+  std::vector<double> states, rows;
+};
+
+// What a solver has found, at least `wanted` of them, below `infinite`; `scales` make the vectors SI.
+std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const Scales& scales, PetscInt wanted,
+                           const EigenOptions& options, DensePencil* pencil, LeftVectors* search, double infinite) {
+  const std::vector<double>& scale = scales.states;
+  const bool vectors = options.shapes || options.left;
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
   if (converged < wanted)
@@ -48,15 +82,18 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<doub
   check(MatCreateVecs(a, re.put(), im.put()));
   std::vector<Mode> out;
   std::vector<PetscInt> place;
+  std::vector<Complex> sizes;
   for (PetscInt i = 0; i < converged; ++i) {
-    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), options.shapes || pencil);
+    const Pair p = pair_of(eps.get(), i, re.get(), im.get(), vectors || pencil);
     const bool finite = std::abs(p.value) < infinite;
     if (pencil) pencil->add(finite ? p.value : std::numeric_limits<double>::infinity(), p.real, p.imaginary);
     if (p.value.imag() < 0 || !finite) continue;
-    Mode m{p.value, {}};
+    Mode m;
+    m.lambda = p.value;
     // What a search by iteration leaves.
     if (options.rounding && !pencil) m.rounding = search_tolerance * std::abs(p.value);
-    if (options.shapes) {
+    sizes.emplace_back(1);
+    if (vectors) {
       m.shape.resize(p.real.size());
       Complex largest = 0;
       for (std::size_t k = 0; k < p.real.size(); ++k) {
@@ -65,14 +102,34 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const std::vector<doub
         m.shape[k] = value * scale[k];
       }
       for (Complex& v : m.shape) v /= largest;
+      sizes.back() = largest;
     }
-    if (pencil) place.push_back(i);
+    place.push_back(i);
     out.push_back(std::move(m));
   }
   if (pencil) {
-    const std::vector<double> rounding = pencil->rounding();
-    for (std::size_t k = 0; k < out.size(); ++k) out[k].rounding = rounding[static_cast<std::size_t>(place[k])];
+    const std::vector<double> rounding = options.rounding ? pencil->rounding() : std::vector<double>{};
+    for (std::size_t k = 0; k < out.size() && options.rounding; ++k)
+      out[k].rounding = rounding[static_cast<std::size_t>(place[k])];
   }
+  if (pencil && options.left) {
+    const DensePencil::Conditioning of = pencil->conditioning();
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const auto i = static_cast<std::size_t>(place[k]);
+      out[k].condition = of.condition[i];
+      out[k].multiplicity = of.multiplicity[i];
+      out[k].vectors = of.vectors[i];
+      if (of.left.size() == 0) continue;
+      const Eigen::RowVectorXcd row = of.left.row(place[k]);
+      out[k].left = in_si({row.begin(), row.end()}, scales.rows, sizes[k]);
+    }
+  }
+  if (search)
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const LeftVectors::Vector of = search->of(eps.get(), place[k]);
+      out[k].condition = of.condition;
+      if (!of.row.empty()) out[k].left = in_si(of.row, scales.rows, sizes[k]);
+    }
   std::sort(out.begin(), out.end(), [](const Mode& m, const Mode& n) {
     return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
   });
@@ -93,7 +150,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
   core::Vector rest = core::duplicate(x), xs = core::duplicate(x), fs = core::duplicate(x);
   check(VecSet(rest.get(), 0.0));
   system.scales(xs.get(), fs.get());
-  const std::vector<double> scale = core::gather(xs.get());
+  const Scales scale{core::gather(xs.get()), core::gather(fs.get())};
   check(VecReciprocal(fs.get()));
   core::Matrix a = system.make_jacobian(), b = system.make_jacobian();
   system.jacobian(0, x, rest.get(), 1, 0, a.get());
@@ -127,33 +184,43 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
       shell->gate.rethrow(EPSSolve(eps.get()));
     else
       check(EPSSolve(eps.get()));
+    std::optional<LeftVectors> left;
+    if (options.left && !shell) left.emplace(a.get(), b.get(), options);
     return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr,
-                    std::numeric_limits<double>::infinity());
+                    left ? &*left : nullptr, std::numeric_limits<double>::infinity());
   }
   // One rank's answer for all: how many modes there are, and which of them are unstable, decides what comes next.
   core::agree(system.comm(), [&] {
     if (core::rank_of(system.comm()) != 0) return;
     std::optional<DensePencil> pencil;
-    if (options.rounding) pencil.emplace(entries(a.get()), entries(b.get()));
-    const double infinite = infinite_from(a.get(), b.get());  // before b is overwritten
+    if (options.rounding || options.left) pencil.emplace(entries(a.get()), entries(b.get()));
+    // Before b is overwritten.
+    const double infinite = infinite_from(a.get(), b.get());
+    const PetscInt at_least = zero_rows(entries(b.get()));
     solve_dense(eps, a.get(), b.get());
     out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options,
-                   pencil ? &*pencil : nullptr, infinite);
+                   pencil ? &*pencil : nullptr, nullptr, least_infinite(eps, at_least, infinite));
   });
   if (core::size_of(system.comm()) == 1) return out;
   std::vector<Complex> values;
-  std::vector<Complex> rounding;
+  std::vector<Complex> rounding, multiple;
   for (const Mode& m : out) {
     values.push_back(m.lambda);
-    rounding.emplace_back(m.rounding);
+    rounding.emplace_back(m.rounding, m.condition);
+    multiple.emplace_back(m.multiplicity, m.vectors);
   }
   share(system.comm(), values);
   share(system.comm(), rounding);
+  share(system.comm(), multiple);
   out.resize(values.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     out[k].lambda = values[k];
     out[k].rounding = rounding[k].real();
+    out[k].condition = rounding[k].imag();
+    out[k].multiplicity = static_cast<int>(multiple[k].real());
+    out[k].vectors = static_cast<int>(multiple[k].imag());
     share(system.comm(), out[k].shape);
+    if (options.left) share(system.comm(), out[k].left);
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #include "spectral/rounding.hpp"
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,6 +18,17 @@ void DensePencil::add(std::complex<double> value, const std::vector<double>& rea
   vectors_.push_back(std::move(x));
 }
 
+Eigen::MatrixXcd DensePencil::left() const {
+  const Eigen::Index n = a_.rows();
+  if (static_cast<Eigen::Index>(values_.size()) != n) return {};
+  Eigen::MatrixXcd x(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) x.col(k) = vectors_[static_cast<std::size_t>(k)];
+  Eigen::MatrixXcd images = b_ * x;
+  for (Eigen::Index k = 0; k < n; ++k)
+    if (!std::isfinite(std::abs(values_[static_cast<std::size_t>(k)]))) images.col(k) = a_ * x.col(k);
+  return images.partialPivLu().inverse();
+}
+
 std::vector<double> DensePencil::rounding() const {
   constexpr double eps = std::numeric_limits<double>::epsilon();
   std::vector<double> out(values_.size(), 0.0);
@@ -25,18 +37,7 @@ std::vector<double> DensePencil::rounding() const {
     if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
   const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= 1e-9 * largest; };
   if (std::none_of(values_.begin(), values_.end(), asked)) return out;
-  // With all eigenvectors X the rows of (B X)^-1 are the left ones, scaled so that y* B x = 1. Of an infinite
-  // eigenvalue B x is zero, and A x takes its place.
-  const Eigen::Index n = a_.rows();
-  Eigen::MatrixXcd left;
-  if (static_cast<Eigen::Index>(values_.size()) == n) {
-    Eigen::MatrixXcd x(n, n);
-    for (Eigen::Index k = 0; k < n; ++k) x.col(k) = vectors_[static_cast<std::size_t>(k)];
-    Eigen::MatrixXcd images = b_ * x;
-    for (Eigen::Index k = 0; k < n; ++k)
-      if (!std::isfinite(std::abs(values_[static_cast<std::size_t>(k)]))) images.col(k) = a_ * x.col(k);
-    left = images.partialPivLu().inverse();
-  }
+  const Eigen::MatrixXcd left = this->left();
   for (std::size_t k = 0; k < values_.size(); ++k) {
     if (!asked(values_[k])) continue;
     const double size = a_.norm() + std::abs(values_[k]) * b_.norm(), most = std::sqrt(eps) * size / b_.norm();
@@ -44,6 +45,34 @@ std::vector<double> DensePencil::rounding() const {
                              ? eps * size * vectors_[k].norm() * left.row(static_cast<Eigen::Index>(k)).norm()
                              : 1e-11 * largest;
     out[k] = std::isfinite(first) ? std::min(first, most) : most;
+  }
+  return out;
+}
+
+DensePencil::Conditioning DensePencil::conditioning() const {
+  const std::size_t n = values_.size();
+  Conditioning out{std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()), std::vector<int>(n, 1),
+                   std::vector<int>(n, 1), left()};
+  double largest = 0;
+  for (const auto& v : values_)
+    if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
+  const double reach = std::sqrt(std::numeric_limits<double>::epsilon()) * largest;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!std::isfinite(std::abs(values_[k]))) continue;
+    if (out.left.size() > 0) {
+      const double c = vectors_[k].norm() * (out.left.row(static_cast<Eigen::Index>(k)) * b_).norm();
+      out.condition[k] = std::isfinite(c) ? c : std::numeric_limits<double>::infinity();
+    }
+    std::vector<std::size_t> alike;
+    for (std::size_t i = 0; i < n; ++i)
+      if (std::isfinite(std::abs(values_[i])) && std::abs(values_[i] - values_[k]) <= reach) alike.push_back(i);
+    out.multiplicity[k] = static_cast<int>(alike.size());
+    if (alike.size() == 1) continue;
+    Eigen::MatrixXcd x(a_.rows(), static_cast<Eigen::Index>(alike.size()));
+    for (std::size_t i = 0; i < alike.size(); ++i)
+      x.col(static_cast<Eigen::Index>(i)) = vectors_[alike[i]].normalized();
+    const Eigen::VectorXd sizes = Eigen::JacobiSVD<Eigen::MatrixXcd>(x).singularValues();
+    out.vectors[k] = static_cast<int>((sizes.array() > 1e-3 * sizes(0)).count());
   }
   return out;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// How far rounding may move the eigenvalues of a dense pencil.
+// Left vectors of a dense pencil: condition numbers, and how far rounding may move its eigenvalues.
 
 #include <Eigen/Core>
 #include <complex>
@@ -20,7 +20,22 @@ public:
   /// Source: Stewart and Sun (1990), Matrix Perturbation Theory, sec. VI.2; Frobenius norms.
   [[nodiscard]] std::vector<double> rounding() const;
 
+  /// What Mode tells of the same name, for each eigenvalue added.
+  struct Conditioning {
+    std::vector<double> condition;
+    std::vector<int> multiplicity, vectors;
+    Eigen::MatrixXcd left;  ///< rows y* with y* B x = 1; empty if not all eigenvalues were added
+  };
+  /// An eigenvalue is multiple where another one lies within sqrt(eps) of the largest, as far as rounding parts a
+  /// double one with one vector. Vectors of length one count as dependent below 1e-3 of their largest singular value:
+  /// those of a double eigenvalue that rounding parts differ by that part over the scale of the rates. Source:
+  /// Wilkinson (1965), The Algebraic Eigenvalue Problem, ch. 2.
+  [[nodiscard]] Conditioning conditioning() const;
+
 private:
+  /// With all eigenvectors X the rows of (B X)^-1 are the left ones, scaled so that y* B x = 1. Of an infinite
+  /// eigenvalue B x is zero, and A x takes its place. Empty if not all eigenvalues were added.
+  [[nodiscard]] Eigen::MatrixXcd left() const;
   Eigen::MatrixXd a_, b_;
   std::vector<std::complex<double>> values_;
   std::vector<Eigen::VectorXcd> vectors_;

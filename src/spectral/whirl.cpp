@@ -1,5 +1,6 @@
 #include "whirl/spectral/whirl.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +10,7 @@ namespace whirl::spectral {
 namespace {
 
 constexpr double planar_below = 0.1, clear_share = 0.9;
+constexpr double still = 1e-6;
 
 }  // namespace
 
@@ -53,6 +55,24 @@ Sense sense_of_whirl(const WhirlEnergy& energy) {
 Sense sense_of_whirl(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y,
                      const std::vector<double>& mass) {
   return sense_of_whirl(whirl_energy(x, y, mass));
+}
+
+std::vector<double> turning(const std::vector<std::complex<double>>& x, const std::vector<std::complex<double>>& y) {
+  double most = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) most = std::max(most, std::norm(x[k]) + std::norm(y[k]));
+  std::vector<double> out;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double size = std::norm(x[k]) + std::norm(y[k]);
+    out.push_back(size > still * still * most ? 2 * (std::conj(y[k]) * x[k]).imag() / size : 0.0);
+  }
+  return out;
+}
+
+Sense sense_by_nodes(const std::vector<double>& turning) {
+  const bool forward = std::any_of(turning.begin(), turning.end(), [](double t) { return t > straight; });
+  const bool backward = std::any_of(turning.begin(), turning.end(), [](double t) { return t < -straight; });
+  if (forward && backward) return Sense::mixed;
+  return forward ? Sense::forward : backward ? Sense::backward : Sense::planar;
 }
 
 double log_decrement(std::complex<double> lambda) {

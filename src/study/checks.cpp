@@ -14,7 +14,10 @@ void check_unbalance(const std::vector<std::string>& names, const system::Machin
                      const deck::Report& report) {
   if (names.empty()) report.fail("unbalance", "'unbalance' is empty");
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (!system::find_unbalance(machine, names[i]))
+    if (names[i] == system::unbalance_of_discs && !system::find_unbalance(machine, names[i])) {
+      if (!system::discs_force(machine))
+        report.fail(fmt::format("unbalance.{}", i + 1), "no disc has an 'eccentricity' or a 'skew'");
+    } else if (!system::find_unbalance(machine, names[i]))
       report.fail(fmt::format("unbalance.{}", i + 1),
                   fmt::format("there is no unbalance '{}'{}", names[i],
                               deck::did_you_mean_one_of(names[i], system::unbalance_names(machine))));

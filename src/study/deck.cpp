@@ -83,6 +83,12 @@ void describe(deck::Description<Deck>& d) {
                                  deck.machine.system.name));
         continue;
       }
+      if (deck.machine.rotor.loss_factor > 0 && !s.takes_hysteresis())
+        r.fail(path, fmt::format(
+                         "'{}' cannot take a 'loss_factor': its force is defined of vibration with one frequency, not "
+                         "in time. 'modes', 'unbalance_response' and 'frequency_response' take it; here use "
+                         "'internal_damping'",
+                         s.kind()));
       s.validate(deck.machine, r.below(path));
       s.validate_among({deck.studies.data(), i}, r.below(path));
       if (const double bytes = s.memory(deck.machine, deck.layout); bytes > deck.limits.memory)

@@ -8,9 +8,13 @@
 #include "whirl/study/equilibrium/equilibrium_branch.hpp"
 #include "whirl/study/equilibrium/static.hpp"
 #include "whirl/study/linear/critical_speed_map.hpp"
+#include "whirl/study/linear/element_convergence.hpp"
+#include "whirl/study/linear/frequency_response.hpp"
 #include "whirl/study/linear/modes.hpp"
+#include "whirl/study/linear/reduction_errors.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 #include "whirl/study/locus/locus.hpp"
+#include "whirl/study/motion/linearity.hpp"
 #include "whirl/study/motion/motion.hpp"
 #include "whirl/study/motion/run_up.hpp"
 #include "whirl/study/sweep/sweep.hpp"
@@ -39,11 +43,16 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<Alignment>("bearing elevations that give zero coupling moments and wanted loads on rigid supports"),
       kind<Modes>("eigenvalues over speed: damping, whirl direction, critical speeds, Campbell diagram"),
       kind<CriticalSpeedMap>("undamped critical speeds of the shaft over the stiffness of its bearings"),
+      kind<ElementConvergence>("whirl frequencies over the number of elements of the shaft, condition numbers"),
+      kind<FrequencyResponse>("transfer functions from forces to motions over the frequency, at one speed"),
+      kind<ReductionErrors>("what reductions of the shaft cost: eigenvalues, eigenvectors, orbits, reduced matrices"),
       kind<UnbalanceResponse>("linear response to unbalance: amplitude, phase, peaks, separation margins"),
       kind<EquilibriumBranch>("equilibria over a parameter with folds and Hopf bifurcations"),
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
       kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
       kind<RunUp>("a rotor whose speed rises or falls evenly: amplitude in every revolution on the way"),
+      kind<Linearity>(
+          "whether a rotor answers random forces as its linearisation: transfer functions, coherence, bounds"),
       kind<Locus>("curve of one bifurcation of a branch in two parameters, with points of codimension two"),
       kind<MeshConvergence>("bifurcations of a branch of cycles on finer and finer film meshes: order, limit, error"),
       kind<Sweep>("the same studies for variants of the machine: one table of all values, trends"),

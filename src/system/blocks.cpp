@@ -6,6 +6,7 @@
 #include "film_part.hpp"
 #include "rotor_part.hpp"
 #include "slope.hpp"
+#include "states.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -21,19 +22,13 @@ problem::SparseBlock block(Eigen::Index rows, Eigen::Index columns, const Entrie
   return out;
 }
 
-// Appends the entries (i, j) of this rank's rows of m as (2 i, 2 j + rate): a matrix of coordinates on states.
-void add_entries(Mat m, PetscInt rate, Entries& out) {
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(m, &begin, &end));
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &k, &columns, &values));
-    for (PetscInt e = 0; e < k; ++e)
-      if (values[e] != 0) out.emplace_back(2 * i, 2 * columns[e] + rate, values[e]);
-    check(MatRestoreRow(m, i, &k, &columns, &values));
-  }
+// Entries of the hub, zeros left out.
+problem::SparseBlock block(Eigen::Index n, Mat m) {
+  Entries entries;
+  for_entries(m, [&](PetscInt row, PetscInt column, double value) {
+    if (value != 0) entries.emplace_back(row, column, value);
+  });
+  return block(n, n, entries);
 }
 
 }  // namespace
@@ -47,16 +42,7 @@ void RotorSystem::MachineBlocks::rebuild() {
   const RotorSystem& system = system_;
   const RotorPart::Matrices& m = system.hub_->matrices();
   const Eigen::Index n = 2 * system.coordinates(), bearings = system.n_bearings();
-  Entries rates, at_rest, gyroscopic, b, c;
-  add_entries(m.mass.get(), 1, rates);
-  add_entries(m.stiffness.get(), 0, at_rest);
-  add_entries(m.damping.get(), 1, at_rest);
-  add_entries(m.gyroscopic.get(), 1, gyroscopic);
-  if (m.circulatory) add_entries(m.circulatory.get(), 0, gyroscopic);
-  for (int i = 0; i < static_cast<int>(n / 2); ++i) {
-    rates.emplace_back(2 * i + 1, 2 * i, 1);
-    at_rest.emplace_back(2 * i + 1, 2 * i + 1, -1);
-  }
+  Entries b, c;
   Eigen::Index ports = 0;
   ports_.clear();
   for (int i = 0; i < bearings; ++i) {
@@ -71,9 +57,9 @@ void RotorSystem::MachineBlocks::rebuild() {
       }
     ports += k;
   }
-  l1_ = block(n, n, rates);
-  l0_at_rest_ = block(n, n, at_rest);
-  gyroscopic_ = block(n, n, gyroscopic);
+  l1_ = block(n, m.rates.get());
+  l0_at_rest_ = block(n, m.at_rest.get());
+  gyroscopic_ = block(n, m.turning.get());
   b_ = block(n, ports, b);
   c_ = block(2 * ports, n, c);
   l0_speed_ = -1;
@@ -105,9 +91,9 @@ void RotorSystem::MachineBlocks::load(double angle, Eigen::VectorXd& load) {
   const RotorPart& hub = *system_.hub_;
   const auto [c, s] = RotorPart::unbalance_factors(system_.moment(angle, nullptr, nullptr));
   load.setZero(size());
-  for (Eigen::Index i = 0; i < size() / 2; ++i) {
+  for (Eigen::Index i = 0; i < size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    load(2 * i) = hub.load()[k] + c * hub.unbalance().cosine[k] + s * hub.unbalance().sine[k];
+    load(i) = hub.load()[k] + c * hub.unbalance().cosine[k] + s * hub.unbalance().sine[k];
   }
 }
 
@@ -198,9 +184,9 @@ void RotorSystem::MachineBlocks::parameter_derivative(double angle, const Eigen:
   out.tail(k) = films.d_speed.tail(k);
   if (!system_.forcing_) return;
   const double c = 2 * system_.speed_ * std::cos(angle), s = 2 * system_.speed_ * std::sin(angle);
-  for (Eigen::Index i = 0; i < n / 2; ++i) {
-    const auto j = static_cast<std::size_t>(i);
-    out(2 * i) -= c * system_.unbalance_cosine()[j] + s * system_.unbalance_sine()[j];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    out(i) -= c * system_.forcing_cosine()[row] + s * system_.forcing_sine()[row];
   }
 }
 

@@ -73,6 +73,7 @@ void RotorSystem::build() {
 void RotorSystem::set_train(Train train) {
   const Change change = change_between(train_, train);
   std::unique_ptr<rotor::Rotor> rotor = change.shaft ? hub_->make_rotor(train.rotor) : nullptr;
+  if (rotor) hub_->check_pattern(*rotor);
   std::vector<std::unique_ptr<FilmPart>> films = parts_at(train, change.films);
   if (change.axes) axes_ = axes_of(train);
   train_ = std::move(train);

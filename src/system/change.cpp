@@ -24,7 +24,10 @@ Change change_between(const Train& from, const Train& to) {
                 "trains of the same shape");
   Change out;
   out.shaft = shaft_of(a) != shaft_of(b);
-  out.damping = a.stiffness_damping != b.stiffness_damping;
+  // Complex modes depend on it.
+  if (a.reduction.type == rotor::Reduction::Type::craig_bampton_state)
+    out.shaft = out.shaft || a.stiffness_damping != b.stiffness_damping;
+  out.damping = !out.shaft && a.stiffness_damping != b.stiffness_damping;
   out.load = out.shaft || from.gravity != to.gravity || a.load != b.load;
   out.axes = out.shaft || from.gravity != to.gravity;
   out.unbalance = out.shaft || from.unbalance != to.unbalance;

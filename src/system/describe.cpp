@@ -170,7 +170,9 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
   const auto slopes =
       std::count_if(m.bearings.begin(), m.bearings.end(), [](const Bearing& b) { return film::facts(b.film).tilts; });
   const auto inner = 2 * n_nodes - static_cast<std::ptrdiff_t>(reduction.masters.size()) - slopes;
-  if (!rigid && slopes > 0 && reduction.type == rotor::Reduction::Type::craig_bampton && reduction.modes > inner)
+  const bool fixed_interface = reduction.type == rotor::Reduction::Type::craig_bampton ||
+                               reduction.type == rotor::Reduction::Type::craig_bampton_state;
+  if (!rigid && slopes > 0 && fixed_interface && reduction.modes > inner)
     r.fail("rotor.reduction.modes",
            fmt::format("the shaft with its masters and the slopes of {} journals held has {} modes per plane, not {}",
                        slopes, inner, reduction.modes));
@@ -182,6 +184,8 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
     if (!s.rotor.empty() && (rotors.empty() || rotors.back() != s.rotor)) rotors.push_back(s.rotor);
   for (const Unbalance& u : m.unbalance) {
     const std::string path = "unbalance." + u.name;
+    if (u.name == unbalance_of_discs && discs_force(m))
+      r.fail(path, "'discs' is what the eccentric and skewed discs of this rotor do: give the unbalance another name");
     for (std::size_t i = 0; i < u.planes.size(); ++i)
       if (u.planes[i].eccentricity && m.rotor.type != rotor::Options::Type::rigid)
         r.fail(fmt::format("{}.planes.{}.eccentricity", path, i + 1), "only a rigid rotor has an 'eccentricity'");

@@ -40,6 +40,21 @@ std::vector<std::string> unbalance_names(const Machine& m) {
   return names_of(m.unbalance);
 }
 
+bool discs_force(const Machine& m) {
+  return std::any_of(m.rotor.discs.begin(), m.rotor.discs.end(),
+                     [](const rotor::Disc& d) { return d.eccentricity > 0 || d.skew > 0; });
+}
+
+std::vector<int> unbalance_nodes(const Machine& m, std::string_view name) {
+  std::vector<int> nodes;
+  if (name == unbalance_of_discs && discs_force(m))
+    for (const rotor::Disc& d : m.rotor.discs)
+      if (d.eccentricity > 0 || d.skew > 0) nodes.push_back(d.node);
+  if (const auto i = find_unbalance(m, name))
+    for (const Plane& p : m.unbalance[*i].planes) nodes.push_back(p.node);
+  return nodes;
+}
+
 std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, std::string_view rotor) {
   const std::vector<double> z = rotor::node_positions(m.rotor);
   double from = z.back(), to = z.front();
@@ -116,6 +131,11 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
       for (const UnbalanceMass& x : unbalance_masses(m, u)) t.rotor.joints.push_back(x.node);
   }
   for (const std::string& name : unbalance) {
+    if (name == unbalance_of_discs && !find_unbalance(m, name)) {
+      for (const rotor::TurningForce& f : rotor::disc_forces(t.rotor))
+        t.unbalance.push_back({f.node, f.amount, f.phase, rotor::is_slope(f.freedom)});
+      continue;
+    }
     const auto i = find_unbalance(m, name);
     if (!i)
       throw core::InputError("there is no unbalance '" + name + "'" +

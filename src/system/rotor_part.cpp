@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "states.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -12,33 +13,6 @@ namespace whirl::system {
 using core::check;
 
 namespace {
-
-// `m` of the rotor with a diagonal of zeros for the pedestals behind it; `local` rows on this rank.
-core::Matrix with_pedestals(Mat m, PetscInt local, PetscInt n_rotor) {
-  PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(m, &begin, &end));
-  std::vector<PetscInt> count(static_cast<std::size_t>(local), 1);
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    check(MatGetRow(m, i, &k, nullptr, nullptr));
-    count[static_cast<std::size_t>(i - begin)] = k;
-    check(MatRestoreRow(m, i, &k, nullptr, nullptr));
-  }
-  core::Matrix out = core::make_matrix(PetscObjectComm(reinterpret_cast<PetscObject>(m)), local, std::move(count));
-  for (PetscInt i = begin; i < end; ++i) {
-    PetscInt k = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(m, i, &k, &columns, &values));
-    check(MatSetValues(out.get(), 1, &i, k, columns, values, INSERT_VALUES));
-    check(MatRestoreRow(m, i, &k, &columns, &values));
-  }
-  for (PetscInt i = std::max(end, n_rotor); i < begin + local; ++i)
-    check(MatSetValue(out.get(), i, i, 0.0, INSERT_VALUES));
-  check(MatAssemblyBegin(out.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(out.get(), MAT_FINAL_ASSEMBLY));
-  return out;
-}
 
 // All of `m` on the first rank.
 core::Matrix on_first(Mat m) {
@@ -63,7 +37,12 @@ RotorPart::RotorPart(MPI_Comm comm, const Train& train, bool on_first)
     for (PetscInt& row : rows) row = n_++;
   }
   PetscInt begin = 0, end = 0;
-  check(MatGetOwnershipRange(rotor_->matrices().mass.get(), &begin, &end));
+  if (rotor_->states()) {
+    check(MatGetOwnershipRange(rotor_->states()->rates.get(), &begin, &end));
+    begin /= 2, end /= 2;
+  } else {
+    check(MatGetOwnershipRange(rotor_->matrices().mass.get(), &begin, &end));
+  }
   const int rank = core::rank_of(comm_);
   if (on_first_) {
     begin = rank == 0 ? 0 : n_rotor_;
@@ -82,6 +61,11 @@ std::unique_ptr<rotor::Rotor> RotorPart::make_rotor(const rotor::Options& option
   return std::make_unique<rotor::Rotor>(comm_, options);
 }
 
+void RotorPart::check_pattern(const rotor::Rotor& rotor) const {
+  if (rotor.matrices().circulatory && !rotor_->matrices().circulatory)
+    throw core::InputError("'rotor.internal_damping' varies from a positive value on, not from none");
+}
+
 void RotorPart::take(const Change& change, std::unique_ptr<rotor::Rotor> rotor) {
   if (rotor)
     rotor_ = std::move(rotor);
@@ -95,14 +79,37 @@ void RotorPart::take(const Change& change, std::unique_ptr<rotor::Rotor> rotor) 
   if (change.unbalance) unbalance_ = unbalance_of(*rotor_, train_.unbalance);
 }
 
+core::Matrix RotorPart::here(Mat of_rotor) const {
+  if (on_first_) return on_first(of_rotor);
+  core::check(PetscObjectReference(reinterpret_cast<PetscObject>(of_rotor)));
+  return core::Matrix(of_rotor);
+}
+
 RotorPart::Matrices RotorPart::matrices_of(const rotor::Rotor& rotor) const {
-  const rotor::Matrices& m = rotor.matrices();
-  const auto made = [&](Mat from) {
-    const core::Matrix moved = on_first_ ? on_first(from) : core::Matrix();
-    return with_pedestals(moved ? moved.get() : from, end_ - begin_, n_rotor_);
-  };
-  return {made(m.mass.get()), made(m.damping.get()), made(m.gyroscopic.get()), made(m.stiffness.get()),
-          m.circulatory ? made(m.circulatory.get()) : core::Matrix()};
+  StateEntries rates, at_rest, turning;
+  if (const auto& of = rotor.states()) {
+    rates.add(here(of->rates.get()).get());
+    at_rest.add(here(of->at_rest.get()).get());
+    turning.add(here(of->turning.get()).get());
+  } else {
+    const rotor::Matrices& m = rotor.matrices();
+    rates.add(here(m.mass.get()).get(), 1);
+    at_rest.add(here(m.stiffness.get()).get(), 0);
+    at_rest.add(here(m.damping.get()).get(), 1);
+    turning.add(here(m.gyroscopic.get()).get(), 1);
+    if (m.circulatory) turning.add(here(m.circulatory.get()).get(), 0);
+  }
+  for (PetscInt i = rotor.states() ? std::max(begin_, n_rotor_) : begin_; i < end_; ++i) {
+    rates.add(2 * i + 1, 2 * i, 1);
+    at_rest.add(2 * i + 1, 2 * i + 1, -1);
+  }
+  // Room for what pedestals have.
+  for (PetscInt i = std::max(begin_, n_rotor_); i < end_; ++i) {
+    rates.add(2 * i, 2 * i + 1, 0);
+    for (const PetscInt rate : {0, 1}) at_rest.add(2 * i, 2 * i + rate, 0);
+  }
+  const PetscInt rows = end_ - begin_;
+  return {rates.matrix(comm_, rows), at_rest.matrix(comm_, rows), turning.matrix(comm_, rows)};
 }
 
 void RotorPart::make_matrices() {
@@ -133,13 +140,7 @@ void assemble(std::initializer_list<Mat> all) {
 }  // namespace
 
 void RotorPart::set_pedestals() {
-  Mat m = matrices_.mass.get(), c = matrices_.damping.get(), k = matrices_.stiffness.get();
-  for_pedestals(train_, pedestals_, begin_, end_, [&](PetscInt row, double mass, double damping, double stiffness) {
-    check(MatSetValue(m, row, row, mass, INSERT_VALUES));
-    check(MatSetValue(c, row, row, damping, INSERT_VALUES));
-    check(MatSetValue(k, row, row, stiffness, INSERT_VALUES));
-  });
-  assemble({m, c, k});
+  set_pedestals(matrices_.at_rest.get(), matrices_.rates.get());
 }
 
 void RotorPart::set_pedestals(Mat at_rest, Mat rates) const {
@@ -158,12 +159,14 @@ RotorPart::Weights RotorPart::weights_of(const Train& train) {
 }
 
 std::vector<double> RotorPart::load_of(const rotor::Rotor& rotor, const Weights& weights) const {
-  std::vector<double> load(static_cast<std::size_t>(end_ - begin_), 0.0);
-  const std::vector<double> g = core::gather(rotor.matrices().gravity.get());
-  for (PetscInt i = begin_; i < std::min(end_, n_rotor_); ++i)
-    load[static_cast<std::size_t>(i - begin_)] = weights.gravity * g[static_cast<std::size_t>(i)];
-  const auto take = [&](PetscInt row, double weight) {
-    if (weight != 0 && owns(row)) load[static_cast<std::size_t>(row - begin_)] -= weight;
+  std::vector<double> load(static_cast<std::size_t>(rows()), 0.0);
+  const auto& states = rotor.states();
+  const std::vector<double> g = core::gather((states ? states->gravity : rotor.matrices().gravity).get());
+  const PetscInt each = states ? 1 : 2;  // rows for one entry of the weight
+  for (PetscInt row = 2 * begin_; row < 2 * std::min(end_, n_rotor_); row += each)
+    load[static_cast<std::size_t>(row - 2 * begin_)] = weights.gravity * g[static_cast<std::size_t>(row / each)];
+  const auto take = [&](PetscInt coordinate, double weight) {
+    if (weight != 0 && owns(coordinate)) load[static_cast<std::size_t>(2 * (coordinate - begin_))] -= weight;
   };
   take(rotor.coordinate(1, rotor::Freedom::y), weights.rotor_load);
   for (std::size_t i = 0; i < pedestals_.size(); ++i) take(pedestals_[i][1], weights.pedestals[i]);
@@ -173,39 +176,37 @@ std::vector<double> RotorPart::load_of(const rotor::Rotor& rotor, const Weights&
 // U Omega^2 (cos, sin)(angle + phase) as cosine and sine parts, through T^T where the rotor is reduced.
 RotorPart::Unbalances RotorPart::unbalance_of(const rotor::Rotor& rotor,
                                               const std::vector<UnbalanceMass>& masses) const {
-  const rotor::Matrices& m = rotor.matrices();
-  PetscInt rotor_here = 0;
-  check(MatGetLocalSize(m.mass.get(), &rotor_here, nullptr));
-  core::Vector full_c, full_s, c = core::make_vector(comm_, rotor_here, PETSC_DETERMINE), s = core::duplicate(c.get());
-  const bool reduced = static_cast<bool>(m.basis);
-  if (reduced) {
-    check(MatCreateVecs(m.basis.get(), nullptr, full_c.put()));
-    full_s = core::duplicate(full_c.get());
-  }
-  Vec tc = reduced ? full_c.get() : c.get(), ts = reduced ? full_s.get() : s.get();
-  check(VecSet(tc, 0.0));
-  check(VecSet(ts, 0.0));
+  const auto& states = rotor.states();
+  const Mat through = states ? states->forces.get() : rotor.matrices().basis.get();
+  core::Vector full[2], reduced[2];
+  if (through)
+    check(MatCreateVecs(through, reduced[0].put(), full[0].put()));
+  else
+    full[0] = core::duplicate(rotor.matrices().gravity.get());
+  full[1] = core::duplicate(full[0].get());
+  if (through) reduced[1] = core::duplicate(reduced[0].get());
+  for (const core::Vector& v : full) check(VecSet(v.get(), 0.0));
   if (core::rank_of(comm_) == 0)
     for (const UnbalanceMass& u : masses) {
-      const PetscInt x = reduced ? rotor::full_coordinate(u.node, rotor::Freedom::x)
-                                 : rotor.coordinate(u.node, rotor::Freedom::x),
+      const rotor::Freedom freedom = u.couple ? rotor::Freedom::slope_x : rotor::Freedom::x;
+      const PetscInt x = through ? rotor::full_coordinate(u.node, freedom) : rotor.coordinate(u.node, freedom),
                      y = x + 1;
-      check(VecSetValue(tc, x, u.amount * std::cos(u.phase), ADD_VALUES));
-      check(VecSetValue(ts, x, -u.amount * std::sin(u.phase), ADD_VALUES));
-      check(VecSetValue(tc, y, u.amount * std::sin(u.phase), ADD_VALUES));
-      check(VecSetValue(ts, y, u.amount * std::cos(u.phase), ADD_VALUES));
+      check(VecSetValue(full[0].get(), x, u.amount * std::cos(u.phase), ADD_VALUES));
+      check(VecSetValue(full[1].get(), x, -u.amount * std::sin(u.phase), ADD_VALUES));
+      check(VecSetValue(full[0].get(), y, u.amount * std::sin(u.phase), ADD_VALUES));
+      check(VecSetValue(full[1].get(), y, u.amount * std::cos(u.phase), ADD_VALUES));
     }
-  for (Vec v : {tc, ts}) {
-    check(VecAssemblyBegin(v));
-    check(VecAssemblyEnd(v));
+  Unbalances out;
+  std::vector<double>* parts[] = {&out.cosine, &out.sine};
+  for (std::size_t k = 0; k < 2; ++k) {
+    check(VecAssemblyBegin(full[k].get()));
+    check(VecAssemblyEnd(full[k].get()));
+    if (through) check(MatMultTranspose(through, full[k].get(), reduced[k].get()));
+    const std::vector<double> values = core::gather((through ? reduced : full)[k].get());
+    parts[k]->assign(static_cast<std::size_t>(2 * n_), 0.0);
+    const std::size_t each = states ? 1 : 2;
+    for (std::size_t i = 0; i < values.size(); ++i) (*parts[k])[each * i] = values[i];
   }
-  if (reduced) {
-    check(MatMultTranspose(m.basis.get(), tc, c.get()));
-    check(MatMultTranspose(m.basis.get(), ts, s.get()));
-  }
-  Unbalances out{core::gather(c.get()), core::gather(s.get())};
-  out.cosine.resize(static_cast<std::size_t>(n_), 0.0);
-  out.sine.resize(static_cast<std::size_t>(n_), 0.0);
   return out;
 }
 
@@ -244,6 +245,11 @@ void RotorPart::scales(double* s, double* r) const {
     s[2 * i + 1] = length * film::typical_frequency;
     r[2 * i + 1] = length * film::typical_frequency;
     r[2 * i] = load;
+    // Both entries of a mode in state space are displacements, and both of its rows their rates.
+    if (g < n_rotor_ && rotor_->states() && !rotor_->freedom(g)) {
+      s[2 * i + 1] = length;
+      r[2 * i] = length * film::typical_frequency;
+    }
   }
 }
 
@@ -255,110 +261,80 @@ std::array<double, 2> RotorPart::unbalance_factors(const Moment& at) {
   return {inward * c + at.acceleration * s, inward * s - at.acceleration * c};
 }
 
+core::Vector RotorPart::own(Vec x) const {
+  core::Vector out = core::make_vector(comm_, rows(), PETSC_DETERMINE);
+  const core::ReadArray from(x);
+  const core::WriteArray to(out.get());
+  std::copy_n(from.data(), to.size(), to.data());
+  return out;
+}
+
 core::Vector RotorPart::products(const Matrices& m, const Moment& at) const {
-  // q, v and their rates as vectors of coordinates.
-  core::Vector q = core::make_vector(comm_, end_ - begin_, n_), v = core::duplicate(q.get()),
-               a = core::duplicate(q.get()), sum = core::duplicate(q.get());
-  {
-    const core::ReadArray xa(at.x), da(at.xdot);
-    const core::WriteArray qa(q.get()), va(v.get()), aa(a.get());
-    for (PetscInt i = 0; i < qa.size(); ++i) {
-      qa[i] = xa[2 * i];
-      va[i] = xa[2 * i + 1];
-      aa[i] = da[2 * i + 1];
-    }
+  const core::Vector x = own(at.x);
+  core::Vector sum = core::duplicate(x.get());
+  check(VecSet(sum.get(), 0.0));
+  if (m.turning) {
+    check(MatMult(m.turning.get(), x.get(), sum.get()));
+    check(VecScale(sum.get(), at.speed));
   }
-  check(MatMult(m.stiffness.get(), q.get(), sum.get()));
-  check(MatMultAdd(m.damping.get(), v.get(), sum.get(), sum.get()));
-  check(MatMultAdd(m.mass.get(), a.get(), sum.get(), sum.get()));
-  check(MatMult(m.gyroscopic.get(), v.get(), a.get()));
-  if (m.circulatory) check(MatMultAdd(m.circulatory.get(), q.get(), a.get(), a.get()));
-  check(VecAXPY(sum.get(), at.speed, a.get()));
+  if (m.at_rest) check(MatMultAdd(m.at_rest.get(), x.get(), sum.get(), sum.get()));
+  if (m.rates) check(MatMultAdd(m.rates.get(), own(at.xdot).get(), sum.get(), sum.get()));
   return sum;
 }
 
 void RotorPart::residual(const Moment& at, double* f) const {
   const core::Vector sum = products(matrices_, at);
-  const core::ReadArray xa(at.x), da(at.xdot), sa(sum.get());
+  const core::ReadArray sa(sum.get());
   const auto [c, s] = unbalance_factors(at);
   for (PetscInt i = 0; i < sa.size(); ++i) {
-    const auto g = static_cast<std::size_t>(begin_ + i);
-    f[2 * i + 1] = da[2 * i] - xa[2 * i + 1];
-    f[2 * i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_.cosine[g] - s * unbalance_.sine[g];
+    const auto row = static_cast<std::size_t>(2 * begin_ + i);
+    f[i] = sa[i] - load_[static_cast<std::size_t>(i)] - c * unbalance_.cosine[row] - s * unbalance_.sine[row];
   }
 }
 
 void RotorPart::speed_derivative(const Moment& at, double* f) const {
-  core::Vector v = core::make_vector(comm_, end_ - begin_, n_), sum = core::duplicate(v.get());
-  {
-    const core::ReadArray xa(at.x);
-    const core::WriteArray va(v.get());
-    for (PetscInt i = 0; i < va.size(); ++i) va[i] = xa[2 * i + 1];
-  }
-  check(MatMult(matrices_.gyroscopic.get(), v.get(), sum.get()));
-  if (matrices_.circulatory) {
-    const core::Vector q = core::duplicate(v.get());
-    {
-      const core::ReadArray xa(at.x);
-      const core::WriteArray qa(q.get());
-      for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = xa[2 * i];
-    }
-    check(MatMultAdd(matrices_.circulatory.get(), q.get(), sum.get(), sum.get()));
-  }
+  const core::Vector x = own(at.x), sum = core::duplicate(x.get());
+  check(MatMult(matrices_.turning.get(), x.get(), sum.get()));
   const core::ReadArray sa(sum.get());
   const double force = at.forcing ? 2 * at.speed : 0.0, c = force * std::cos(at.angle), s = force * std::sin(at.angle);
   for (PetscInt i = 0; i < sa.size(); ++i) {
-    const auto g = static_cast<std::size_t>(begin_ + i);
-    f[2 * i + 1] = 0;
-    f[2 * i] = sa[i] - c * unbalance_.cosine[g] - s * unbalance_.sine[g];
+    const auto row = static_cast<std::size_t>(2 * begin_ + i);
+    f[i] = sa[i] - c * unbalance_.cosine[row] - s * unbalance_.sine[row];
   }
 }
 
 void RotorPart::count_entries(std::span<PetscInt> count) const {
-  for (PetscInt i = 0; i < end_ - begin_; ++i) {
-    PetscInt total = 12;
-    for (const core::Matrix* m :
-         {&matrices_.mass, &matrices_.damping, &matrices_.stiffness, &matrices_.gyroscopic, &matrices_.circulatory}) {
-      if (!*m) continue;
+  constexpr PetscInt of_films = 12;
+  for (PetscInt i = 0; i < rows(); ++i) {
+    PetscInt total = i % 2 == 0 ? of_films : 0;
+    for (const core::Matrix* m : {&matrices_.rates, &matrices_.at_rest, &matrices_.turning}) {
       PetscInt k = 0;
-      check(MatGetRow(m->get(), begin_ + i, &k, nullptr, nullptr));
-      total += 2 * k;
-      check(MatRestoreRow(m->get(), begin_ + i, &k, nullptr, nullptr));
+      check(MatGetRow(m->get(), 2 * begin_ + i, &k, nullptr, nullptr));
+      total += k;
+      check(MatRestoreRow(m->get(), 2 * begin_ + i, &k, nullptr, nullptr));
     }
-    count[static_cast<std::size_t>(2 * i)] += total;
-    count[static_cast<std::size_t>(2 * i + 1)] += 2;
+    count[static_cast<std::size_t>(i)] += total;
   }
 }
 
 void RotorPart::add(Mat j, double at_rest, double gyroscopic, double rates) const {
-  std::vector<PetscInt> columns_to;
-  std::vector<PetscScalar> scaled;
-  const auto add = [&](Mat m, PetscInt rate, double factor) {
-    for (PetscInt i = begin_; i < end_; ++i) {
-      PetscInt k = 0;
-      const PetscInt* columns = nullptr;
-      const PetscScalar* values = nullptr;
-      check(MatGetRow(m, i, &k, &columns, &values));
-      columns_to.assign(columns, columns + k);
-      scaled.assign(values, values + k);
-      for (PetscInt e = 0; e < k; ++e) {
-        columns_to[static_cast<std::size_t>(e)] = 2 * columns_to[static_cast<std::size_t>(e)] + rate;
-        scaled[static_cast<std::size_t>(e)] *= factor;
-      }
-      const PetscInt row = 2 * i;
-      check(MatSetValues(j, 1, &row, k, columns_to.data(), scaled.data(), ADD_VALUES));
-      check(MatRestoreRow(m, i, &k, &columns, &values));
-    }
-  };
-  add(matrices_.stiffness.get(), 0, at_rest);
-  add(matrices_.damping.get(), 1, at_rest);
-  add(matrices_.gyroscopic.get(), 1, gyroscopic);
-  if (matrices_.circulatory) add(matrices_.circulatory.get(), 0, gyroscopic);
-  add(matrices_.mass.get(), 1, rates);
-  for (PetscInt i = begin_; i < end_; ++i) {
-    check(MatSetValue(j, 2 * i + 1, 2 * i, rates, ADD_VALUES));
-    check(MatSetValue(j, 2 * i + 1, 2 * i + 1, -at_rest, ADD_VALUES));
-  }
+  for (const auto& [m, factor] :
+       {std::pair{matrices_.at_rest.get(), at_rest}, std::pair{matrices_.turning.get(), gyroscopic},
+        std::pair{matrices_.rates.get(), rates}})
+    for_entries(m, [j, by = factor](PetscInt row, PetscInt column, double value) {
+      check(MatSetValue(j, row, column, by * value, ADD_VALUES));
+    });
+  if (loss_ != std::array<double, 2>{}) add_loss(j, at_rest);
+}
+
+// Of the rotor alone: pedestals behind it have no loss.
+void RotorPart::add_loss(Mat j, double at_rest) const {
+  for_entries(here(rotor_->matrices().stiffness.get()).get(), [&](PetscInt i, PetscInt column, double value) {
+    const double k = at_rest * value;
+    check(MatSetValue(j, 2 * i, 2 * column + 1, loss_[0] * k, ADD_VALUES));
+    // The other plane: +K y in rows of x, -K x in rows of y.
+    check(MatSetValue(j, 2 * i, 2 * (column ^ 1), (i % 2 == 0 ? 1 : -1) * loss_[1] * k, ADD_VALUES));
+  });
 }
 
 }  // namespace whirl::system

@@ -20,16 +20,19 @@ namespace whirl::system {
 ///                                              - alpha (u_c sin angle - u_s cos angle)
 ///     row 2i + 1: q' - v
 ///
-/// Rows follow the rotor's distribution with the pedestals on its last rank, or all stand on the first one. Its rows
-/// are the first on every rank.
+/// A rotor reduced in state space has the rows N u' + (P + Omega Q) u - loads - forces of its own, in pairs of states;
+/// of its masters these are displacement and velocity, and forces of films act on the first row of the pair. Either way
+/// the rows are linear in states and rates with three constant matrices, and that is what is kept. Rows follow the
+/// rotor's distribution with the pedestals on its last rank, or all stand on the first one. Its rows are the first on
+/// every rank.
 class RotorPart final : public Part {
 public:
-  /// Matrices of coordinates, pedestals behind the rotor.
+  /// Derivatives of the rows in states and rates, pedestals behind the rotor: dF/d(dx/dt), dF/dx at rest and what the
+  /// speed is multiplied with.
   struct Matrices {
-    core::Matrix mass, damping, gyroscopic, stiffness;
-    core::Matrix circulatory;  // empty without internal damping
+    core::Matrix rates, at_rest, turning;
   };
-  /// Force of unbalance per Omega^2 [coordinates()], whole on every rank.
+  /// Force of unbalance per Omega^2 on the rows [2 coordinates()], whole on every rank.
   struct Unbalances {
     std::vector<double> cosine, sine;
   };
@@ -59,7 +62,7 @@ public:
   /// Coordinates of the pedestal of a bearing in x and y; -1: it has none.
   [[nodiscard]] const std::array<PetscInt, 2>& pedestal(std::size_t bearing) const { return pedestals_[bearing]; }
   [[nodiscard]] const Matrices& matrices() const { return matrices_; }
-  /// Weight and static load on this rank's coordinates [N].
+  /// Weight and static load on this rank's rows [N].
   [[nodiscard]] const std::vector<double>& load() const { return load_; }
   [[nodiscard]] const Unbalances& unbalance() const { return unbalance_; }
   /// Factors of the cosine and the sine parts of the unbalance [1/s^2].
@@ -75,6 +78,9 @@ public:
   /// j += at_rest dF/dx without what grows with speed (gyroscopic, circulatory), gyroscopic times that of unit speed,
   /// rates times dF/d(dx/dt): all entries, if need be zero. Not assembled.
   void add(Mat j, double at_rest, double gyroscopic, double rates) const;
+  /// From now on add() puts the rotor's K times `damping` [s] onto velocities and K x [[0, 1], [-1, 0]] times `turning`
+  /// onto displacements: what hysteresis does to a vibration of one frequency. The rows themselves stay.
+  void set_loss(double damping, double turning) { loss_ = {damping, turning}; }
   /// Sets the entries of the pedestals in the same matrices of the whole machine, which hold them already.
   void set_pedestals(Mat at_rest, Mat rates) const;
 
@@ -82,6 +88,9 @@ public:
   [[nodiscard]] std::unique_ptr<rotor::Rotor> make_rotor(const rotor::Options& options);
   /// Rotors made so far.
   [[nodiscard]] long made() const { return made_; }
+  /// Refuses a rotor that has damping which turns with it, where the first one had none: the pattern of the Jacobian is
+  /// without it. Throws core::InputError.
+  void check_pattern(const rotor::Rotor& rotor) const;
   /// Takes what differs from the train, which has changed; `rotor` is a new one if its shaft differs. Collective.
   void take(const Change& change, std::unique_ptr<rotor::Rotor> rotor);
   /// Differences of two trains over `step`. Exact where the rows are linear in a number of the train. Collective.
@@ -96,14 +105,20 @@ private:
     std::vector<double> pedestals;
   };
   [[nodiscard]] static Weights weights_of(const Train& train);
+  /// j += at_rest times what set_loss() says.
+  void add_loss(Mat j, double at_rest) const;
   /// Those of a rotor, zero at the pedestals. Collective, as are the others.
   [[nodiscard]] Matrices matrices_of(const rotor::Rotor& rotor) const;
+  /// This rank's rows of a matrix of the rotor: all rows on the first rank if the rotor stands there.
+  [[nodiscard]] core::Matrix here(Mat of_rotor) const;
   void make_matrices();
   void set_pedestals();
   [[nodiscard]] std::vector<double> load_of(const rotor::Rotor& rotor, const Weights& weights) const;
   [[nodiscard]] Unbalances unbalance_of(const rotor::Rotor& rotor, const std::vector<UnbalanceMass>& masses) const;
-  /// (K + Omega N) q + (C + Omega G) v + M v' on this rank's coordinates. Collective.
+  /// What the matrices give on this rank's rows; those that are empty give nothing. Collective.
   [[nodiscard]] core::Vector products(const Matrices& m, const Moment& at) const;
+  /// This rank's states of the hub. Collective.
+  [[nodiscard]] core::Vector own(Vec x) const;
 
   MPI_Comm comm_;
   const Train& train_;
@@ -115,6 +130,7 @@ private:
   Matrices matrices_;
   std::vector<double> load_;
   Unbalances unbalance_;
+  std::array<double, 2> loss_{};  // of velocities, of displacements across the planes
 };
 
 }  // namespace whirl::system

@@ -1,6 +1,7 @@
 // How the rows of rotor and pedestals change with a parameter other than the speed.
 
 #include "rotor_part.hpp"
+#include "states.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::system {
@@ -16,8 +17,8 @@ std::vector<UnbalanceMass> rate_of(const std::vector<UnbalanceMass>& minus, cons
   std::vector<UnbalanceMass> out;
   for (std::size_t k = 0; k < minus.size(); ++k) {
     const UnbalanceMass &a = minus[k], &b = plus[k];
-    core::require(a.node == b.node && a.phase == b.phase, "unbalances in the same planes");
-    out.push_back({a.node, (b.amount - a.amount) / step, a.phase});
+    core::require(a.node == b.node && a.phase == b.phase && a.couple == b.couple, "unbalances in the same planes");
+    out.push_back({a.node, (b.amount - a.amount) / step, a.phase, a.couple});
   }
   return out;
 }
@@ -33,15 +34,14 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
   };
   if (change.shaft) {
     const auto below = make_rotor(minus.rotor), above = make_rotor(plus.rotor);
+    check_pattern(*above);
     out.matrices = matrices_of(*above);
     const Matrices less = matrices_of(*below);
-    for (const auto& [m, n] :
-         {std::pair{&out.matrices->mass, &less.mass}, std::pair{&out.matrices->damping, &less.damping},
-          std::pair{&out.matrices->gyroscopic, &less.gyroscopic}, std::pair{&out.matrices->stiffness, &less.stiffness},
-          std::pair{&out.matrices->circulatory, &less.circulatory}}) {
-      if (!*m) continue;
-      check(MatAXPY(m->get(), -1, n->get(), DIFFERENT_NONZERO_PATTERN));
-      check(MatScale(m->get(), 1 / step));
+    for (const auto& [m, n] : {std::pair{out.matrices->rates.get(), less.rates.get()},
+                               std::pair{out.matrices->at_rest.get(), less.at_rest.get()},
+                               std::pair{out.matrices->turning.get(), less.turning.get()}}) {
+      check(MatAXPY(m, -1, n, DIFFERENT_NONZERO_PATTERN));
+      check(MatScale(m, 1 / step));
     }
     const Unbalances a = unbalance_of(*below, minus.unbalance), b = unbalance_of(*above, plus.unbalance);
     out.unbalance = {rates_of(a.cosine, b.cosine), rates_of(a.sine, b.sine)};
@@ -55,12 +55,11 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
     if (change.unbalance) out.unbalance = unbalance_of(*rotor_, rate_of(minus.unbalance, plus.unbalance, step));
     // C = value K
     if (change.damping) {
-      out.matrices = matrices_of(*rotor_);
-      check(MatCopy(out.matrices->stiffness.get(), out.matrices->damping.get(), SAME_NONZERO_PATTERN));
-      check(MatScale(out.matrices->damping.get(), rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping)));
-      for (const core::Matrix* m :
-           {&out.matrices->mass, &out.matrices->gyroscopic, &out.matrices->stiffness, &out.matrices->circulatory})
-        if (*m) check(MatZeroEntries(m->get()));
+      StateEntries damping;
+      damping.add(here(rotor_->matrices().stiffness.get()).get(), 1);
+      out.matrices.emplace();
+      out.matrices->at_rest = damping.matrix(comm_, end_ - begin_);
+      check(MatScale(out.matrices->at_rest.get(), rate(minus.rotor.stiffness_damping, plus.rotor.stiffness_damping)));
     }
   }
   for (std::size_t i = 0; change.pedestals && i < minus.supports.size(); ++i) {
@@ -77,11 +76,10 @@ void RotorPart::apply(const Rates& rates, const Moment& at, double* f) const {
   const auto [c, s] = unbalance_factors(at);
   const core::Vector sum = rates.matrices ? products(*rates.matrices, at) : core::Vector();
   const core::ReadArray xa(at.x), da(at.xdot);
-  for (PetscInt i = 0; i < end_ - begin_; ++i) {
-    const auto here = static_cast<std::size_t>(i), all = static_cast<std::size_t>(begin_ + i);
-    f[2 * i] = rates.load.empty() ? 0.0 : -rates.load[here];
-    f[2 * i + 1] = 0.0;
-    if (rates.unbalance) f[2 * i] -= c * rates.unbalance->cosine[all] + s * rates.unbalance->sine[all];
+  for (PetscInt i = 0; i < rows(); ++i) {
+    const auto at_row = static_cast<std::size_t>(i), all = static_cast<std::size_t>(2 * begin_ + i);
+    f[i] = rates.load.empty() ? 0.0 : -rates.load[at_row];
+    if (rates.unbalance) f[i] -= c * rates.unbalance->cosine[all] + s * rates.unbalance->sine[all];
   }
   for (const Rates::Pedestal& p : rates.pedestals) {
     const PetscInt i = 2 * (p.row - begin_);
@@ -89,7 +87,7 @@ void RotorPart::apply(const Rates& rates, const Moment& at, double* f) const {
   }
   if (!sum) return;
   const core::ReadArray sa(sum.get());
-  for (PetscInt i = 0; i < sa.size(); ++i) f[2 * i] += sa[i];
+  for (PetscInt i = 0; i < sa.size(); ++i) f[i] += sa[i];
 }
 
 }  // namespace whirl::system

@@ -177,16 +177,37 @@ const rotor::Rotor& RotorSystem::rotor() const {
   return hub_->rotor();
 }
 
-const std::vector<double>& RotorSystem::unbalance_cosine() const {
+const std::vector<double>& RotorSystem::forcing_cosine() const {
   return hub_->unbalance().cosine;
 }
 
-const std::vector<double>& RotorSystem::unbalance_sine() const {
+const std::vector<double>& RotorSystem::forcing_sine() const {
   return hub_->unbalance().sine;
 }
 
 RotorSystem::Made RotorSystem::made() const {
   return {hub_->made(), films_made_};
+}
+
+int RotorSystem::loss_sense(double frequency) const {
+  if (train_.rotor.loss_frame == rotor::LossFrame::stationary) return 1;
+  const double difference = frequency - speed_;
+  return std::abs(difference) <= 1e-12 * speed_ ? 0 : difference > 0 ? 1 : -1;
+}
+
+// i eta K (P_backward + s P_forward) = i eta (1 + s)/2 K + eta (1 - s)/2 K x [[0, 1], [-1, 0]], and i frequency q = v.
+RotorSystem::Loss RotorSystem::loss_at(double frequency) const {
+  core::require(frequency > 0, "vibration at a frequency");
+  const double eta = train_.rotor.loss_factor, s = loss_sense(frequency);
+  return {eta * (1 + s) / (2 * frequency), eta * (1 - s) / 2};
+}
+
+void RotorSystem::set_loss(const Loss& loss) {
+  hub_->set_loss(0, 0);
+  if (!j_at_rest_) make_constant_parts();  // in the pattern without
+  hub_->set_loss(loss.damping, loss.turning);
+  fill_constant_parts();
+  hub_entries_.clear();
 }
 
 PetscInt RotorSystem::local_size() const {
@@ -211,7 +232,8 @@ std::vector<double> RotorSystem::shaft(Vec x, int component, bool with_gravity) 
 
 std::vector<double> RotorSystem::shaft(const double* x, int component, bool with_gravity) const {
   const rotor::Matrices& m = rotor().matrices();
-  if (!m.basis) {
+  const auto& states = rotor().states();
+  if (!states && !m.basis) {
     const PetscInt n = hub_->rotor_coordinates();
     std::vector<double> out(static_cast<std::size_t>(n));
     for (PetscInt i = 0; i < n; ++i) out[static_cast<std::size_t>(i)] = x[2 * i + component];
@@ -219,16 +241,18 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
                0.0);  // a rigid rotor does not tilt
     return out;
   }
+  const Mat basis = !states ? m.basis.get() : component == 0 ? states->displacement.get() : states->velocity.get();
+  const Vec offset = states ? states->offset.get() : m.offset.get();
   core::Vector q, full;
-  check(MatCreateVecs(m.basis.get(), q.put(), full.put()));
+  check(MatCreateVecs(basis, q.put(), full.put()));
   {
     PetscInt begin = 0;
     check(VecGetOwnershipRange(q.get(), &begin, nullptr));
     const core::WriteArray qa(q.get());
-    for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = x[2 * (begin + i) + component];
+    for (PetscInt i = 0; i < qa.size(); ++i) qa[i] = states ? x[begin + i] : x[2 * (begin + i) + component];
   }
-  check(MatMult(m.basis.get(), q.get(), full.get()));
-  if (with_gravity && m.offset) check(VecAXPY(full.get(), train_.gravity, m.offset.get()));
+  check(MatMult(basis, q.get(), full.get()));
+  if (with_gravity) check(VecAXPY(full.get(), train_.gravity, offset));
   std::vector<double> out = core::gather(full.get());
   out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor().n_nodes()));  // without inner freedoms
   return out;

@@ -22,6 +22,10 @@ core::Vector static_guess(RotorSystem& system) {
                f = core::duplicate(x.get()), rest = core::duplicate(x.get());
   core::Matrix j = springs.make_jacobian();
   springs.residual(0, x.get(), rest.get(), f.get());
+  // What nothing pushes stays, be it held or free.
+  PetscReal push = 0;
+  check(VecNorm(f.get(), NORM_INFINITY, &push));
+  if (push == 0 && system.own_states() == 0) return x;
   springs.jacobian(0, x.get(), rest.get(), 1, 0, j.get());
   const core::LinearSolver ksp = core::make_direct_solver(system.comm(), "start_");
   check(KSPSetOperators(ksp.get(), j.get(), j.get()));

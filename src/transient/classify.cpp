@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::transient {
 namespace {
@@ -24,23 +25,31 @@ std::string largest(const Evidence& e) {
   return fmt::format("largest exponent {:.4g} +- {:.2g} 1/s", e.exponents[0], e.uncertainties[0]);
 }
 
-Verdict forced(const Evidence& e, int period) {
-  const Sign first = known(e) ? sign_of(e, 0) : Sign::negative;
-  // A multiplier near -1 lets a motion of period one look like one of period two for long.
+// A multiplier near -1 lets a motion of period one look like one of period two for long. Null if the return lasts.
+std::optional<Verdict> passing(const Evidence& e, int period, const char* turns) {
   constexpr double lasting = 0.95;
   for (int k = 1; k < period && static_cast<std::size_t>(k) <= e.fading.size(); ++k)
     if (const double left = e.fading[static_cast<std::size_t>(k - 1)]; left < lasting)
-      return {
+      return Verdict{
           Kind::unsettled, 0, "unsettled",
-          fmt::format("returns after {} revolutions, but its distance after {} dies out, by a factor of {:.2g} over "
-                      "half the record",
-                      period, k, left)};
+          fmt::format(
+              "returns after {} {}, but its distance after {} dies out, by a factor of {:.2g} over half the record",
+              period, turns, k, left)};
+  return {};
+}
+
+std::string distance(const Evidence& e, int period) {
+  return fmt::format("returns within {:.1e} of its size{}", e.returns[static_cast<std::size_t>(period - 1)],
+                     known(e) ? ", " + largest(e) : "");
+}
+
+Verdict forced(const Evidence& e, int period) {
+  const Sign first = known(e) ? sign_of(e, 0) : Sign::negative;
+  if (const auto verdict = passing(e, period, "revolutions")) return *verdict;
   if (period > 0) {
     if (first == Sign::positive)
       return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
-    return {Kind::periodic, period, fmt::format("period-{}", period),
-            fmt::format("returns within {:.1e} of its size{}", e.returns[static_cast<std::size_t>(period - 1)],
-                        known(e) ? ", " + largest(e) : "")};
+    return {Kind::periodic, period, fmt::format("period-{}", period), distance(e, period)};
   }
   const std::string none = fmt::format("no return within {} revolutions", e.returns.size());
   if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + ", no exponents of known uncertainty"};
@@ -49,15 +58,25 @@ Verdict forced(const Evidence& e, int period) {
   return {Kind::unsettled, 0, "unsettled", none + " although deviations die out: " + largest(e)};
 }
 
-Verdict autonomous(const Evidence& e) {
-  if (!known(e)) return {Kind::unsettled, 0, "unsettled", "no exponents of known uncertainty"};
-  if (sign_of(e, 0) == Sign::positive) return {Kind::chaotic, 0, "chaotic", largest(e)};
+Verdict autonomous(const Evidence& e, int period) {
+  if (const auto verdict = passing(e, period, "crossings of the section")) return *verdict;
+  if (period > 0) {
+    if (known(e) && sign_of(e, 0) == Sign::positive)
+      return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
+    return {Kind::limit_cycle, period, "limit_cycle",
+            fmt::format("period-{} on its section: {}", period, distance(e, period))};
+  }
+  const std::string none =
+      e.returns.empty() ? "" : fmt::format("no return within {} crossings of the section, ", e.returns.size());
+  if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + "no exponents of known uncertainty"};
+  if (sign_of(e, 0) == Sign::positive) return {Kind::chaotic, 0, "chaotic", none + largest(e)};
   int zeros = 0;
   for (std::size_t k = 0; k < e.exponents.size(); ++k) zeros += sign_of(e, k) == Sign::zero;
-  const std::string count = fmt::format("{} zero exponent{}, {}", zeros, zeros == 1 ? "" : "s", largest(e));
+  const std::string count = fmt::format("{}{} zero exponent{}, {}", none, zeros, zeros == 1 ? "" : "s", largest(e));
+  if (zeros == 1 && !e.returns.empty()) return {Kind::unsettled, 0, "unsettled", count};
   if (zeros == 1) return {Kind::limit_cycle, 0, "limit_cycle", count};
   if (zeros > 1) return {Kind::quasi_periodic, 0, "quasi_periodic", count};
-  return {Kind::unsettled, 0, "unsettled", "moves although all deviations die out: " + largest(e)};
+  return {Kind::unsettled, 0, "unsettled", none + "moves although all deviations die out: " + largest(e)};
 }
 
 }  // namespace
@@ -88,15 +107,19 @@ std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& po
 }
 
 Verdict classify(const Evidence& e) {
+  if (e.driven)
+    return {Kind::driven, 0, "driven",
+            "external forces act that do not follow the shaft's angle: returns at that angle say nothing" +
+                (known(e) ? ", " + largest(e) : "")};
   if (e.size < e.rest) {
     if (!e.exponents.empty() && sign_of(e, 0) == Sign::positive)
       return {Kind::unsettled, 0, "unsettled", "at rest although deviations grow: " + largest(e)};
     return {Kind::fixed_point, 0, "fixed_point",
             fmt::format("moves by {:.1e}{}", e.size, e.exponents.empty() ? "" : ", " + largest(e))};
   }
-  if (!e.forced) return autonomous(e);
   const auto back = std::find_if(e.returns.begin(), e.returns.end(), [&](double d) { return d < e.return_tolerance; });
-  return forced(e, back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1);
+  const int period = back == e.returns.end() ? 0 : static_cast<int>(back - e.returns.begin()) + 1;
+  return e.forced ? forced(e, period) : autonomous(e, period);
 }
 
 }  // namespace whirl::transient

@@ -27,6 +27,13 @@ constexpr int max_rejections = 20;
 // pessimistic for a solution of order four.
 constexpr double deviation_tolerance = 100;
 
+// -PREFIXassembled takes the other path: for comparison, and for what needs a matrix (TSIRK).
+Algebra algebra_of(const IntegratorOptions& o) {
+  PetscBool assembled = o.algebra == Algebra::assembled ? PETSC_TRUE : PETSC_FALSE;
+  check(PetscOptionsGetBool(nullptr, o.prefix.c_str(), "-assembled", &assembled, nullptr));
+  return assembled ? Algebra::assembled : Algebra::automatic;
+}
+
 // PETSc keeps schemes by name for the life of the process.
 void register_scheme(const solve::Tableau& t) {
   static const bool done = [&] {
@@ -45,12 +52,16 @@ void register_scheme(const solve::Tableau& t) {
 
 struct Integrator::Parts {
   Parts(problem::System& system, const problem::Drive& given, const IntegratorOptions& o)
-      : drive(given), options(o), equations(system, given), gate(system.comm()), tableau(solve::sdirk(4)) {}
+      : drive(given),
+        options(o),
+        equations(system, given, algebra_of(o)),
+        gate(equations.gate()),
+        tableau(solve::sdirk(4)) {}
 
   problem::Drive drive;
   IntegratorOptions options;
   Equations equations;
-  core::Gate gate;
+  core::Gate& gate;
   solve::Tableau tableau;
   core::Vector u, before;
   core::Matrix jacobian;
@@ -107,6 +118,7 @@ Integrator::Integrator(problem::System& system, problem::Drive drive, Vec x, Int
   p.jacobian = p.equations.make_matrix();
   p.step = options.first_step > 0 ? options.first_step : 2e-3 * std::numbers::pi / std::abs(system.speed());
   p.equations.scale(x, p.u.get());
+  p.equations.act(options.forces);
 
   TS* made = p.ts.put();
   check(TSCreate(system.comm(), made));
@@ -170,10 +182,17 @@ void Integrator::advance(double time) {
   TS ts = p.ts.get();
   check(TSRestartStep(ts));
   while (p.time < time) {
-    const double left = time - p.time;
+    // A step ends at a break of the forces; one that is nearer than rounding is none.
+    double end = time;
+    if (p.options.forces) {
+      const double slack = 1e-9 * p.step, next = p.options.forces->next_break(p.time + slack);
+      if (next < time - slack) end = next;
+    }
+    const double left = end - p.time;
     // Equal steps to the end, so that none of them is short for nothing.
     const double parts = std::max(1.0, std::ceil(left / p.step * (1 - 1e-9)));
     const double wanted = left / parts;
+    if (p.options.forces) p.options.forces->enter(p.time, p.time + wanted);
     check(TSSetTime(ts, p.time));
     check(TSSetTimeStep(ts, wanted));
     check(VecCopy(p.u.get(), p.before.get()));
@@ -208,7 +227,8 @@ void Integrator::advance(double time) {
     }
     // Growth stops at a factor of ten: a step cut short for the end of the interval then says nothing.
     p.step = proposed > 9.9 * length ? std::max(p.step, proposed) : proposed;
-    p.time = whole && parts == 1 ? time : now;
+    p.time = whole && parts == 1 ? end : now;
+    if (p.time == end && end < time) check(TSRestartStep(ts));  // for schemes that remember what was before the break
     ++p.work.steps;
     if (p.options.after_step) p.options.after_step(p.time, length);
   }

@@ -6,19 +6,12 @@
 #include <cmath>
 #include <complex>
 #include <memory>
-#include <numbers>
 
 #include "whirl/core/error.hpp"
 
 namespace whirl::transient {
 
 namespace {
-
-// What sample k of n is multiplied by.
-double weight(Window window, std::size_t k, std::size_t n) {
-  if (window == Window::none) return 1;
-  return (1 - std::cos(2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n))) / 2;
-}
 
 using Plan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, decltype(&fftw_destroy_plan)>;
 
@@ -36,11 +29,11 @@ Spectrum amplitude_spectrum(std::span<const double> samples, double interval, Wi
   double mean = 0;
   for (const double s : samples) mean += s / static_cast<double>(n);
   std::vector<double> in(n);
+  const std::vector<double> w = weights(window, n);
   double gain = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double w = weight(window, k, n);
-    in[k] = w * (samples[k] - mean);
-    gain += w;
+    in[k] = w[k] * (samples[k] - mean);
+    gain += w[k];
   }
   std::vector<std::complex<double>> out(n / 2 + 1);
   execute(
@@ -61,11 +54,11 @@ FullSpectrum full_spectrum(std::span<const double> x, std::span<const double> y,
   Complex mean = 0;
   for (std::size_t k = 0; k < n; ++k) mean += Complex(x[k], y[k]) / static_cast<double>(n);
   std::vector<Complex> in(n), out(n);
+  const std::vector<double> w = weights(window, n);
   double gain = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double w = weight(window, k, n);
-    in[k] = w * (Complex(x[k], y[k]) - mean);
-    gain += w;
+    in[k] = w[k] * (Complex(x[k], y[k]) - mean);
+    gain += w[k];
   }
   execute(fftw_plan_dft_1d(static_cast<int>(n), reinterpret_cast<fftw_complex*>(in.data()),
                            reinterpret_cast<fftw_complex*>(out.data()), FFTW_FORWARD, FFTW_ESTIMATE));
@@ -85,10 +78,7 @@ std::vector<Tone> tones(const Spectrum& s, int count) {
     if (!(a[k] > left && a[k] >= a[k + 1])) continue;
     const bool up = a[k + 1] > left;
     const double ratio = (up ? a[k + 1] : left) / a[k];
-    const double offset = s.window == Window::hann ? std::max(0.0, (2 * ratio - 1) / (1 + ratio)) : ratio / (1 + ratio);
-    const double x = std::numbers::pi * offset;
-    double amplitude = a[k] * (x > 1e-8 ? x / std::sin(x) : 1);
-    if (s.window == Window::hann) amplitude *= 1 - offset * offset;
+    const double offset = offset_of(s.window, ratio), amplitude = a[k] / response(s.window, offset);
     found.push_back({(static_cast<double>(k) + (up ? offset : -offset)) * s.resolution, amplitude});
   }
   std::stable_sort(found.begin(), found.end(), [](const Tone& l, const Tone& r) { return l.amplitude > r.amplitude; });

@@ -14,6 +14,7 @@
 #include "support/half_rotor.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
+#include "whirl/film/coefficients.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/solve/newton/newton.hpp"
 #include "whirl/system/start.hpp"
@@ -42,6 +43,19 @@ void film_alone(Mesh cells) {
   fmt::print("  cold start: {} factorisations, {:.1f} ms, {:.1f} ms each\n", s.factorisations, 1e3 * cold, 1e3 * step);
   fmt::print("  {} coefficients at one frequency: {:.1f} ms, {:.2f} Newton steps; kxx {:.4g} N/m\n",
              2 * k.ports * k.ports, 1e3 * coefficients, coefficients / step, k.stiffness[0][0]);
+  constexpr int frequencies = 16;
+  const double many = bench::least(PETSC_COMM_SELF, 3, [&] {
+                        film::FrequencyCoefficients at(*s.film, s.motion, s.states);
+                        for (int i = 1; i <= frequencies; ++i) k = at.at(speed * 4 * i / frequencies);
+                      }).wall;
+  fmt::print("  at {} frequencies up to four times the speed: {:.1f} ms, {:.2f} Newton steps\n", frequencies,
+             1e3 * many, many / step);
+  const double by_factors = bench::least(PETSC_COMM_SELF, 3, [&] {
+                              const film::FrequencyCoefficients at(*s.film, s.motion, s.states);
+                              (void)at.by_factors(speed);
+                            }).wall;
+  fmt::print("  by a complex factorisation: {:.1f} ms, {:.2f} Newton steps a frequency\n", 1e3 * by_factors,
+             by_factors / step);
 }
 
 struct Cost {

@@ -136,9 +136,8 @@ private:
   // f += a Omega^2 u(angle)
   void force(double angle, double a, double* f) const {
     const double square = a * rotor_.speed() * rotor_.speed();
-    for (std::size_t i = 0; i < rotor_.unbalance_cosine().size(); ++i)
-      f[2 * i] +=
-          square * (rotor_.unbalance_cosine()[i] * std::cos(angle) + rotor_.unbalance_sine()[i] * std::sin(angle));
+    for (std::size_t i = 0; i < rotor_.forcing_cosine().size(); ++i)
+      f[i] += square * (rotor_.forcing_cosine()[i] * std::cos(angle) + rotor_.forcing_sine()[i] * std::sin(angle));
   }
   system::RotorSystem rotor_;
   double a_ = 0;

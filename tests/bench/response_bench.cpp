@@ -71,8 +71,8 @@ Sparse part_of(Mat m, PetscInt rate) {
 Eigen::VectorXcd force(const system::RotorSystem& s, double speed) {
   Eigen::VectorXcd f(s.coordinates());
   for (PetscInt q = 0; q < s.coordinates(); ++q) {
-    const auto k = static_cast<std::size_t>(q);
-    f(q) = speed * speed * Complex(s.unbalance_cosine()[k], -s.unbalance_sine()[k]);
+    const auto row = static_cast<std::size_t>(2 * q);
+    f(q) = speed * speed * Complex(s.forcing_cosine()[row], -s.forcing_sine()[row]);
   }
   return f;
 }

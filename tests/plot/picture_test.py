@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection, QuadMesh
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, orbits, shapes, style, sweep, thd_compare,  # noqa: E402
+from whirl_plot import (bearing_map, bifurcation, campbell, curves, film as machine_film, locus, motion, orbits, orders, shapes, style, sweep, thd_compare,  # noqa: E402
                         thd_cuts, thd_film, thd_maps, thd_sections)
 from whirl_plot.subject import Drawn  # noqa: E402
 
@@ -196,6 +196,21 @@ def words(folder):
     assert titles[0] == "B1: 70 N" and titles[2] == "B3: 213.4 kN", titles
     said = [t.get_text() for t in axis.get_legend().get_texts()]
     assert "\u00b1" in said[0] and "inf" not in said[1] and "bar" in said[1], said
+
+
+def courses(folder):
+    """Orders over the speed with their own heights and phases; the rows of a waterfall stand at their speeds."""
+    with results_with(folder, lambda root: None) as results:
+        study = results["through"]
+        tracks = Figures().draw(orders, orders.draw_orders, study)["orders"].axes
+        fall = Figures().draw(orders, orders.draw_waterfall, study)["waterfall"].axes
+    top = [line.get_ydata() for line in tracks[0].get_lines()]
+    assert np.isclose(top[1].max(), 10, rtol=1e-3) and np.isclose(top[0].max(), 6), [t.max() for t in top]  # um
+    phase = next(axis for axis in tracks if axis.get_ylabel().startswith("phase")).get_lines()[0].get_ydata()
+    assert -20 < phase[0] < 0 and -180 < phase[-1] < -160, phase
+    assert "10" in fall[0].get_title(loc="left") and "5" in fall[1].get_title(loc="left")
+    feet = sorted(line.get_ydata()[-1] for line in fall[0].get_lines())
+    assert np.allclose(feet, np.linspace(50, 200, 31)), feet
 
 
 def colours(folder):
@@ -626,7 +641,7 @@ beams()
 refined()
 legends()
 border_of_stability()
-for check in (sag, mode_shapes, growth, campbell_lines, words, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
+for check in (sag, mode_shapes, growth, campbell_lines, words, courses, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
               coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")

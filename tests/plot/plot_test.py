@@ -25,6 +25,7 @@ EXPECTED = {
     "hard": ["impedance"],
     "soft": ["frequencies"],
     "period_two": ["motion"],
+    "through": ["waterfall", "orders"],
     "hot": ["thd-maps", "thd-velocity", "thd-fluid", "thd-heat", "thd-profiles", "thd-film", "thd-radial", "thd-axial", "thd-axial-orifice", "thd-iterations", "thd-meshes", "thd-budget", "thd-effective", "thd-properties"],
     "clearances": ["trends", "balanced"],
 }

@@ -202,6 +202,22 @@ def motion(root):
     put(g.create_group("bearings"), name=["left", "right"], node=[1, 1], clearance=[25e-6, 25e-6], preload=[0, 0], offset=[0, 0], arc=[2 * np.pi] * 2)
 
 
+def course(root):
+    """A run-up whose order 1 passes a resonance at 100 rad/s, with a half order above 150 rad/s."""
+    g = study(root, "through", "run_up", speed_unit="rad/s", acceleration=4.0, unbalance="a")
+    speed = np.linspace(50, 200, 31)
+    z = 1e-6 * speed**2 / (1e4 - speed**2 + 10j * speed)
+    half = 6e-6 * (speed > 150)
+    order = np.arange(129) / 32
+    near = lambda o: np.maximum(0, 1 - 16 * abs(order - o))  # noqa: E731
+    rows = np.abs(z)[:, None] * near(1) + half[:, None] * near(0.5)
+    put(g.create_group("waterfall"), place=["A", "B"], speed=speed, revolution=np.arange(31.0), time=np.arange(31.0), order=order,
+        x=rows[:, :, None] * [1, 0.5], y=rows[:, :, None] * [1, 0.5])
+    tracks, turned = np.stack([half, np.abs(z)], axis=1), np.stack([0 * half, np.angle(z)], axis=1)
+    put(g.create_group("orders"), place=["A", "B"], speed=speed, revolution=np.arange(31.0), time=np.arange(31.0), order=[0.5, 1.0],
+        **{f"{a}_amplitude": tracks[:, :, None] * [1, 0.5] for a in "xy"}, **{f"{a}_phase": turned[:, :, None] * [1, 1] for a in "xy"})
+
+
 def sweep(root):
     g = study(root, "clearances", "sweep")
     for k, name in enumerate(("narrow", "wide")):
@@ -227,6 +243,7 @@ def make(directory):
         bearing_map(root, "hard", 0)
         bearing_map(root, "soft", 0.5)
         motion(root)
+        course(root)
         thd(root)
         sweep(root)
     studies = [

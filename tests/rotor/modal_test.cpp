@@ -91,9 +91,9 @@ TEST(ModalReduction, HoldsItsMastersAndItsModes) {
 // A turning rotor that nothing holds: rigid motions of zero frequency, and the precession of the shaft without a disc
 // at I_p/I_d times its speed, 37.4298 rad/s.
 TEST(ModalReduction, KeepsTheRigidMotionsOfTheFreeRotor) {
-  rotor::Options whole = disc_rotor(), own = reduced(Type::modal, 8, 0);
-  whole.discs = own.discs = {};
-  for (const rotor::Options& o : {whole, own}) {
+  rotor::Options whole = disc_rotor(), own = reduced(Type::modal, 8, 0), held = reduced(Type::craig_bampton, 6, 0);
+  whole.discs = own.discs = held.discs = {};
+  for (const rotor::Options& o : {whole, own, held}) {
     const auto modes = test::whirl_modes(o, {}, 10000);
     // Zeros of multiplicity beyond their vectors, which rounding spreads as its root.
     for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(std::abs(modes[k].frequency), 0.5);

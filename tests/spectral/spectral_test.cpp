@@ -105,6 +105,35 @@ TEST(Modes, InfiniteEigenvaluesAreNone) {
   }
 }
 
+// Nodes that decay at 100 to 1e8 1/s, as those of a film of gas, and weak ports that hold at every moment and act back
+// on some of them, as its orifices: rounding makes their eigenvalues finite.
+struct StiffWithPorts {
+  static constexpr int nodes = 60, ports = 8;
+  static double decay(int k) { return std::pow(10.0, 2 + 6.0 * k / (nodes - 1)); }
+  template <class T>
+  Column<T> operator()(double, const Column<T>& x, const Column<T>& xdot, T) const {
+    Column<T> f(nodes + ports);
+    for (int k = 0; k < nodes; ++k) f(k) = xdot(k) + decay(k) * x(k) + (k > 0 ? 0.3 * decay(k) * x(k - 1) : T(0));
+    for (int k = 0; k < ports; ++k) {
+      f(7 * k) += 1e7 * x(nodes + k);
+      f(nodes + k) = 1e-6 * (x(nodes + k) - x(7 * k));
+    }
+    return f;
+  }
+};
+
+TEST(Modes, OfWeakPortsAreNone) {
+  test::SmallSystem s(MPI_COMM_WORLD, StiffWithPorts::nodes + StiffWithPorts::ports, 0, 1, StiffWithPorts{});
+  const core::Vector x = s.vector(Eigen::VectorXd::Zero(StiffWithPorts::nodes + StiffWithPorts::ports));
+  const auto modes = spectral::modes(s, x.get(), {});
+  ASSERT_EQ(modes.size(), static_cast<std::size_t>(StiffWithPorts::nodes));
+  std::vector<double> wanted;
+  for (int k = 0; k < StiffWithPorts::nodes; ++k)
+    wanted.push_back(-StiffWithPorts::decay(k) - (k % 7 == 0 && k < 7 * StiffWithPorts::ports ? 1e7 : 0.0));
+  std::sort(wanted.begin(), wanted.end());
+  for (std::size_t k = 0; k < wanted.size(); ++k) EXPECT_NEAR(modes[k].lambda.real(), wanted[k], 1e-6 * 1e8);
+}
+
 // By LAPACK, and by Krylov-Schur, which has to ask three times until it has found one beyond the radius.
 TEST(Modes, WithinARadiusNoneIsMissing) {
   for (const int masses : {20, 320}) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "film/gas_cases.hpp"
 #include "study/bearing/film_at_rest.hpp"
@@ -52,9 +53,37 @@ TEST(FilmAtRest, CarriesALoadInAnyDirection) {
   }
 }
 
+// Ocvirk's half film: load and attitude of a short bearing are known in closed form at every eccentricity.
+TEST(FilmAtRest, OfAShortBearing) {
+  const system::Support s = oil(false);
+  const double c = s.geometry.clearance, length = s.geometry.length, speed = 300;
+  for (const double e : {0.1, 0.5, 0.9}) {
+    const double q = 1 - e * e;
+    const double unit = s.lubricant.viscosity * speed * s.geometry.radius * std::pow(length, 3) / (4 * c * c);
+    const double load = unit * e / (q * q) * std::sqrt(16 * e * e + std::numbers::pi * std::numbers::pi * q);
+    FilmAtRest film(s, speed);
+    film.carry({0, -load});
+    const auto [x, y] = film.place();
+    EXPECT_NEAR(std::hypot(x, y) / c, e, 1e-7);
+    EXPECT_NEAR(std::atan2(x, -y), std::atan(std::numbers::pi * std::sqrt(q) / (4 * e)), 1e-7);
+  }
+}
+
+// The film with its states, held where the condensed one found the load.
+TEST(FilmAtRest, ComesToRestWithItsStates) {
+  const system::Support s = aerostatic(6e5);
+  FilmAtRest film(s, 2000);
+  film.carry({0, -49.05});
+  const auto whole = film::make_film(s.geometry, s.film, s.lubricant);
+  const study::JournalPlace at = study::rest_at(*whole, film.motion(), {});
+  EXPECT_EQ(at.states.size(), whole->states());
+  EXPECT_NEAR(at.force[0], 0, 1e-7);
+  EXPECT_NEAR(at.force[1], 49.05, 1e-7);
+}
+
 TEST(FilmAtRest, KnowsTheMostThatAFilmCarries) {
   FilmAtRest film(aerostatic(3e5), 0);
-  const FilmAtRest::Capacity most = film.capacity({0, -49});
+  const study::Capacity most = film.capacity({0, -49});
   EXPECT_FALSE(most.rises);
   EXPECT_GT(most.load, 25);
   EXPECT_LT(most.load, 35);
@@ -63,8 +92,10 @@ TEST(FilmAtRest, KnowsTheMostThatAFilmCarries) {
   try {
     film.carry({0, -1.05 * most.load});
     FAIL() << "there is no such place";
-  } catch (const core::NotConverged& error) {
+  } catch (const study::NoPlace& error) {
     EXPECT_NE(std::string(error.what()).find("no equilibrium"), std::string::npos) << error.what();
+    EXPECT_NEAR(error.most.load, most.load, 1e-3 * most.load);
+    EXPECT_EQ(error.speed, 0);
   }
   // A film of oil carries the more the closer to the wall.
   EXPECT_TRUE(FilmAtRest(oil(false), 300).capacity({0, -1}).rises);

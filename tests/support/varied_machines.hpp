@@ -84,6 +84,12 @@ inline system::Machine whole_machine() {
   using enum film::Geometry::Bore;
   system::Machine m;
   m.rotor = four_segments();
+  m.rotor.internal_damping = 2e-6;
+  m.rotor.couplings = {{.segment = 3, .stiffness = 1e8, .tilt_stiffness = 1e6, .damping = 1e3, .tilt_damping = 10}};
+  rotor::Disc& bad = m.rotor.discs[0];
+  bad.offset = 0.02;
+  bad.eccentricity = 1e-5;
+  bad.skew = 1e-3;
   m.lubricants["oil"] = {0.02, 870};
   film::Reynolds content;
   content.cells = {16, 4};

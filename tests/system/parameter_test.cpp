@@ -56,7 +56,9 @@ void collect(const deck::Structure& s, const std::string& in, std::set<std::stri
 }
 
 std::vector<std::string> unbalances(const system::Machine& machine) {
-  return system::unbalance_names(machine);
+  std::vector<std::string> names = system::unbalance_names(machine);
+  if (system::discs_force(machine)) names.emplace_back(system::unbalance_of_discs);
+  return names;
 }
 
 double value_of(system::Machine machine, const std::string& path) {

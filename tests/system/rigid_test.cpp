@@ -73,10 +73,10 @@ TEST(RigidRotor, TwoBearingsShareWeightAndLoad) {
 
 TEST(RigidRotor, UnbalanceTurnsWithTheShaft) {
   system::RotorSystem s(MPI_COMM_WORLD, rigid_rotor(), 300);
-  EXPECT_NEAR(s.unbalance_cosine()[0], 2e-4 * std::cos(0.3), 1e-18);
-  EXPECT_NEAR(s.unbalance_sine()[0], -2e-4 * std::sin(0.3), 1e-18);
-  EXPECT_NEAR(s.unbalance_cosine()[1], 2e-4 * std::sin(0.3), 1e-18);
-  EXPECT_NEAR(s.unbalance_sine()[1], 2e-4 * std::cos(0.3), 1e-18);
+  EXPECT_NEAR(s.forcing_cosine()[0], 2e-4 * std::cos(0.3), 1e-18);
+  EXPECT_NEAR(s.forcing_sine()[0], -2e-4 * std::sin(0.3), 1e-18);
+  EXPECT_NEAR(s.forcing_cosine()[2], 2e-4 * std::sin(0.3), 1e-18);
+  EXPECT_NEAR(s.forcing_sine()[2], 2e-4 * std::cos(0.3), 1e-18);
 }
 
 TEST(RigidRotor, GroupsNeedEqualBearings) {

@@ -7,6 +7,7 @@
 
 #include "reference/rotor/trial_rotor.hpp"
 #include "support/train_system.hpp"
+#include "whirl/problem/structure.hpp"
 #include "whirl/problem/taylor.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
@@ -18,7 +19,9 @@ using namespace whirl;
 namespace {
 
 // A shaft with a disc, 20 mm thick and 0.4 m long, on linear bearings that are not isotropic.
-system::Train small_machine(rotor::Element element, double internal_damping, bool reduced) {
+enum class Kept { all, real_modes, complex_modes };
+
+system::Train small_machine(rotor::Element element, double internal_damping, Kept kept) {
   system::Train t;
   rotor::Segment s;
   s.length = 0.05;
@@ -33,7 +36,10 @@ system::Train small_machine(rotor::Element element, double internal_damping, boo
   t.rotor.discs = {d};
   t.rotor.element = element;
   t.rotor.internal_damping = internal_damping;
-  if (reduced) t.rotor.reduction = {rotor::Reduction::Type::craig_bampton, {1, 4, 9}, 2};
+  if (kept == Kept::real_modes) t.rotor.reduction = {rotor::Reduction::Type::craig_bampton, {1, 4, 9}, 2};
+  if (kept == Kept::complex_modes)
+    t.rotor.reduction = {
+        .type = rotor::Reduction::Type::craig_bampton_state, .masters = {1, 9}, .modes = 4, .speed = 400};
   for (const int node : {1, 9}) {
     system::Support b;
     b.node = node;
@@ -58,12 +64,14 @@ std::vector<spectral::Mode> modes(const system::Train& t, double speed) {
 
 TEST(ShaftModels, DerivativesPassTheTaylorTest) {
   using enum rotor::Element;
-  for (const auto& [element, internal, reduced] : {std::tuple{timoshenko, 1e-4, false},
-                                                   {timoshenko, 1e-4, true},
-                                                   {timoshenko_linear, 0.0, false},
-                                                   {timoshenko_hermitian, 1e-4, false},
-                                                   {timoshenko_hermitian, 1e-4, true}}) {
-    system::RotorSystem s(MPI_COMM_WORLD, small_machine(element, internal, reduced), 300);
+  for (const auto& [element, internal, kept] : {std::tuple{timoshenko, 1e-4, Kept::all},
+                                                {timoshenko, 1e-4, Kept::real_modes},
+                                                {timoshenko, 1e-6, Kept::complex_modes},
+                                                {timoshenko_linear, 0.0, Kept::all},
+                                                {timoshenko_hermitian, 1e-4, Kept::all},
+                                                {timoshenko_hermitian, 1e-4, Kept::real_modes},
+                                                {timoshenko_linear, 1e-6, Kept::complex_modes}}) {
+    system::RotorSystem s(MPI_COMM_WORLD, small_machine(element, internal, kept), 300);
     core::Vector x = system::static_guess(s), rate = core::duplicate(x.get());
     PetscInt begin = 0;
     core::check(VecGetOwnershipRange(x.get(), &begin, nullptr));
@@ -85,8 +93,8 @@ TEST(ShaftModels, DerivativesPassTheTaylorTest) {
 
 // The same machine by elements of order four and six. Little damping: much makes the highest modes creep instead.
 TEST(ShaftModels, ElementsWithInnerFreedomsGiveTheSameModes) {
-  const auto linear = modes(small_machine(rotor::Element::timoshenko_linear, 1e-8, false), 500),
-             hermitian = modes(small_machine(rotor::Element::timoshenko_hermitian, 1e-8, false), 500);
+  const auto linear = modes(small_machine(rotor::Element::timoshenko_linear, 1e-8, Kept::all), 500),
+             hermitian = modes(small_machine(rotor::Element::timoshenko_hermitian, 1e-8, Kept::all), 500);
   for (std::size_t k = 0; k < 4; ++k) {
     ASSERT_GT(linear[k].lambda.imag(), 10);
     EXPECT_LT(std::abs(linear[k].lambda - hermitian[k].lambda), 1e-3 * std::abs(hermitian[k].lambda)) << k;
@@ -96,7 +104,7 @@ TEST(ShaftModels, ElementsWithInnerFreedomsGiveTheSameModes) {
 // The trial rotor as a machine: stable below the threshold of internal damping, unstable above.
 TEST(ShaftModels, InternalDampingDestabilisesAboveItsThreshold) {
   const auto trial = reference::trial_rotor::read();
-  system::Train t = small_machine(rotor::Element::timoshenko, trial.internal_damping, false);
+  system::Train t = small_machine(rotor::Element::timoshenko, trial.internal_damping, Kept::all);
   rotor::Segment s;
   s.length = s.outer_mass_diameter = 0.015;
   t.rotor.segments.assign(20, s);
@@ -119,4 +127,52 @@ TEST(ShaftModels, InternalDampingDestabilisesAboveItsThreshold) {
     EXPECT_LT(growth(threshold * (1 - 2e-5)), 0);
     EXPECT_GT(growth(threshold * (1 + 2e-5)), 0);
   }
+}
+
+// With all its modes a rotor reduced in state space is the whole one: modes, and the state under the weight.
+TEST(ShaftModels, InStateSpaceAllModesAreTheWholeShaft) {
+  const system::Train whole = small_machine(rotor::Element::timoshenko, 1e-6, Kept::all);
+  system::Train small = small_machine(rotor::Element::timoshenko, 1e-6, Kept::complex_modes);
+  small.rotor.reduction.modes = 16;
+  const auto a = modes(whole, 500), b = modes(small, 500);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_LT(std::abs(a[k].lambda - b[k].lambda), 1e-7 * std::abs(a[k].lambda)) << k;
+  system::RotorSystem one(MPI_COMM_WORLD, whole, 500), other(MPI_COMM_WORLD, small, 500);
+  core::Vector x = system::static_guess(one), y = system::static_guess(other);
+  const std::vector<double> p = one.shaft(x.get(), 0, true), q = other.shaft(y.get(), 0, true);
+  ASSERT_EQ(p.size(), q.size());
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(p[i], q[i], 1e-10);
+}
+
+// Where its damping varies, its modes do: a new rotor. The rows of the structure are those of the residual.
+TEST(ShaftModels, InStateSpaceParametersAndBlocksAgree) {
+  const auto at = [](double beta) {
+    system::Train t = small_machine(rotor::Element::timoshenko, 1e-6, Kept::complex_modes);
+    t.rotor.stiffness_damping = beta;
+    return t;
+  };
+  system::RotorSystem s(MPI_COMM_SELF, system::Varying{at, 1e-5, 1e-5}, 300);
+  const auto first = s.made().rotors;
+  s.set_parameter(1.1e-5);
+  EXPECT_EQ(s.made().rotors, first + 1);
+  core::Vector x = system::static_guess(s), rate = core::duplicate(x.get()), f = core::duplicate(x.get());
+  {
+    const core::WriteArray xa(x.get()), ra(rate.get());
+    for (PetscInt i = 0; i < xa.size(); ++i) {
+      xa[i] += 5e-6 * std::sin(3.7 * static_cast<double>(i));
+      ra[i] = 1e-3 * std::cos(1.3 * static_cast<double>(i));
+    }
+  }
+  const auto r = problem::taylor_test(s, 0.7, x.get(), rate.get(), 1e-3);
+  EXPECT_GE(r.parameter_order, 1.9);
+  s.residual(0.7, x.get(), rate.get(), f.get());
+  const core::ReadArray xa(x.get()), ra(rate.get()), fa(f.get());
+  problem::Structure& blocks = *s.structure();
+  const Eigen::Map<const Eigen::VectorXd> state(xa.data(), xa.size()), rates(ra.data(), ra.size()),
+      wanted(fa.data(), fa.size());
+  problem::Films films;
+  Eigen::VectorXd load;
+  blocks.films(blocks.c() * state, nullptr, nullptr, false, films);
+  blocks.load(0.7, load);
+  const Eigen::VectorXd found = blocks.l1() * rates + blocks.l0() * state - load - blocks.b() * films.forces;
+  EXPECT_LT((found - wanted).norm(), 1e-12 * wanted.norm());
 }

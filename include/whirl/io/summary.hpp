@@ -57,6 +57,7 @@ struct ModeEntry {
   std::string speed_unit = "rad/s";
   std::map<std::string, double> more = {};  ///< "real_uncertainty", ...
   std::string stability = {};               ///< stable, undamped (its real part is rounding), unstable; or empty
+  std::string whirl_rule = {};              ///< as `whirl`, by the nodes' sense alone; or empty
 };
 
 /// A column of numbers over the points of a curve.

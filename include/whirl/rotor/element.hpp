@@ -24,7 +24,8 @@ struct Beam {
 struct ElementMatrices {
   Eigen::MatrixXd stiffness;  // n x n
   Eigen::MatrixXd translational_mass, rotary_mass;
-  Eigen::VectorXd weight;  // n, of a unit acceleration along the plane
+  Eigen::VectorXd weight;     // n, of a unit acceleration along the plane
+  Eigen::MatrixXd damping{};  // n x n, turns with the shaft; empty of a beam
 };
 
 /// Inner freedoms of an element per plane.
@@ -45,6 +46,13 @@ struct ElementMatrices {
 /// the section half way, which keeps the order of the frequencies but is not exact at rest. Throws as make_beam does.
 [[nodiscard]] ElementMatrices element_matrices(const Segment& segment, const Material& material, Shear shear,
                                                Element element);
+
+/// The same of a segment of a shaft, counted from 0: of its beam, or of the coupling in its place, which has n = 4.
+/// With the halves as rigid arms the offset of the axes half way is u2 - u1 - L (s1 + s2)/2, their angle s2 - s1.
+[[nodiscard]] ElementMatrices element_matrices(const Options& options, std::size_t segment);
+
+/// The coupling in the place of a segment, counted from 0; null where there is a beam.
+[[nodiscard]] const Coupling* coupling_at(const Options& options, std::size_t segment);
 
 /// Constants of a segment at its temperature, of its left end if it is tapered. Throws core::DomainError if E(T) is not
 /// known there. Source: Gavalas (2022), table 2.1 with A_S, D_AM and J_AD corrected; kappa by Cowper (1966).

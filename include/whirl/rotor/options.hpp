@@ -31,12 +31,19 @@ struct Segment {
 struct Disc {
   int node = 0;                  // 1-based
   double mass = 0;               // kg
-  double polar_inertia = 0;      // kg m^2, about the shaft axis
-  double diametral_inertia = 0;  // kg m^2, about a diameter through the node
+  double polar_inertia = 0;      // kg m^2, about the axis of the disc
+  double diametral_inertia = 0;  // kg m^2, about a diameter through the centre of mass
   double outer_diameter = 0;     // m; 0: no geometry
   double inner_diameter = 0;     // m, bore
   double thickness = 0;          // m
   double density = 0;            // kg/m^3; 0: that of the shaft material
+  double offset = 0;             // m, of the centre of mass from the node along the shaft
+  // What turns with the shaft and forces it: distance of the centre of mass from the axis of the shaft, and tilt of the
+  // axis of the disc against it, each with the angle of its direction from +x at shaft angle zero.
+  double eccentricity = 0, eccentricity_phase = 0;  // m, rad
+  double skew = 0, skew_phase = 0;                  // rad
+  // Nodes at both ends of its hub: the disc then tilts as the line through them. Empty: as the section at its node.
+  std::vector<int> hub{};
   friend bool operator==(const Disc&, const Disc&) = default;
 };
 
@@ -64,15 +71,34 @@ enum class Element {
   timoshenko_hermitian  // displacement and slope each cubic and independent: shear angle and curvature at the ends
 };
 
+/// A flexible coupling in the place of a beam: two rigid halves, each on one end of its segment and with the mass of
+/// half the segment, joined by springs and dashpots that turn with the shaft. Between the halves, half way along the
+/// segment, k and c act on the offset of the axes and on the angle between them.
+struct Coupling {
+  int segment = 0;                 // 1-based
+  double stiffness = 0;            // N/m
+  double tilt_stiffness = 0;       // N m/rad
+  double damping = 0;              // N s/m
+  double tilt_damping = 0;         // N m s/rad
+  double torsional_stiffness = 0;  // N m/rad, of torsion alone
+  double axial_stiffness = 0;      // N/m, of motion along the shaft alone
+  friend bool operator==(const Coupling&, const Coupling&) = default;
+};
+
+/// In whose frame hysteresis sees a vibration: that of the shaft, which turns, or the stationary one.
+enum class LossFrame { shaft, stationary };
+
 /// Reduction of the coordinates. Masters are both translations of each master node, and both slopes of some of them.
 struct Reduction {
-  enum class Type { none, guyan, craig_bampton, modal };
+  enum class Type { none, guyan, craig_bampton, craig_bampton_state, modal };
   Type type = Type::none;
   std::vector<int> masters;  // 1-based nodes, at least two, any order
-  // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate). modal: real modes of the shaft
-  // at rest per plane, at least as many as masters, whose motions are among theirs.
+  // craig_bampton: fixed-interface modes per plane (each gives an x and a y coordinate). craig_bampton_state: half as
+  // many as pairs of complex modes of both planes. modal: real modes of the shaft at rest per plane, at least as many
+  // as masters, whose motions are among theirs.
   int modes = 0;
   double support = 0;         // N/m, modal: springs at the masters while its modes are computed; 0: the free shaft
+  double speed = 0;           // rad/s, craig_bampton_state: of the shaft while its modes are computed
   std::vector<int> slopes{};  // those of the masters whose slopes are masters too; no key of a deck
   friend bool operator==(const Reduction&, const Reduction&) = default;
 };
@@ -85,6 +111,7 @@ struct Options {
   double load = 0;  // N, rigid: static force along -y beside the weight
   std::vector<Segment> segments;
   std::vector<Disc> discs;
+  std::vector<Coupling> couplings{};
   Material material;
   Shear shear = Shear::cowper_solid;
   Element element = Element::timoshenko;
@@ -93,6 +120,8 @@ struct Options {
   std::vector<int> joints{};
   double stiffness_damping = 0;  // s, C = stiffness_damping * K in the stationary frame
   double internal_damping = 0;   // s, viscous damping of the material, which turns with the shaft
+  double loss_factor = 0;  // eta, hysteretic damping of shaft and couplings: of vibration with one frequency alone
+  LossFrame loss_frame = LossFrame::shaft;
   Reduction reduction;
   friend bool operator==(const Options&, const Options&) = default;
 };

@@ -18,9 +18,10 @@ struct Matrices {
   core::Matrix mass;        // M, symmetric
   core::Matrix gyroscopic;  // G, skew, multiplied by Omega (rad/s); forward whirl is x -> y
   core::Matrix stiffness;   // K, symmetric
-  core::Matrix damping;     // C = (stiffness_damping + internal_damping) K
-  // N = internal_damping K x [[0, 1], [-1, 0]], skew: what turning with the shaft makes of its damping, which opposes
-  // q' - Omega e_z x q. It drives forward whirl slower than the shaft. Empty without internal damping.
+  core::Matrix damping;     // C = (stiffness_damping + internal_damping) K + D, D the damping of couplings
+  // N = (internal_damping K + D) x [[0, 1], [-1, 0]], skew: what turning with the shaft makes of its damping, which
+  // opposes q' - Omega e_z x q. It drives forward whirl slower than the shaft. Empty without such damping and without a
+  // loss factor, which is in none of these matrices but takes its pattern.
   core::Matrix circulatory;
   core::Vector gravity;  // kg: nodal weights along -y per unit acceleration; multiply by g
   core::Matrix basis;    // T, q_full = T q, rows of inner freedoms of elements last; empty if not reduced. Loads reduce
@@ -28,8 +29,24 @@ struct Matrices {
   core::Vector offset;   // s^2: q_full = T q + g offset is the exact static shape under gravity; empty if not reduced
 };
 
+/// A rotor reduced in state space:
+///
+///     N u' + (P + Omega Q) u = L_v^T f,     q = R_q u + g offset,     v = R_v u
+///
+/// u has two entries for each coordinate: displacement and velocity of a master, or two of a mode, in m sqrt(kg). Row 2
+/// i of a master is its momentum, row 2 i + 1 its velocity: u'_2i - u_2i+1 and what modes add to it, since q' = v holds
+/// in the mean over L only. Each rank owns the rows of whole coordinates.
+struct StateMatrices {
+  core::Matrix rates, at_rest, turning;  // N, P, Q: what grows with Omega is gyroscopic and circulatory
+  core::Vector gravity;                  // kg, on the rows: multiply by g
+  core::Matrix displacement, velocity;   // R_q, R_v, rows of full coordinates
+  core::Matrix forces;                   // L_v, likewise
+  core::Vector offset;                   // s^2, as Matrices::offset
+};
+
 /// How good a reduction is: vibration at frequency omega is followed with a relative error of order
-/// (omega/neglected)^2 or better. Frequencies of the shaft with its masters held, rad/s; zero if not reduced.
+/// (omega/neglected)^2 or better. Frequencies of the shaft with its masters held, rad/s; zero if not reduced. In state
+/// space the moduli of its eigenvalues.
 struct ReductionQuality {
   double retained = 0;   // highest kept fixed-interface frequency (zero for Guyan)
   double neglected = 0;  // lowest fixed-interface frequency left out; infinite if none is left out
@@ -41,14 +58,19 @@ struct ReductionQuality {
 /// have no node. Reduced coordinates are the pairs (x, y) of the master nodes in
 /// ascending order of nodes, each followed by the pair (dx/dz, dy/dz) where slopes are masters too, then pairs of
 /// mass-normalised fixed-interface modes in ascending order of frequency. Masters by K: T = [I; -K_ss^-1 K_sm] (Guyan
-/// 1965), with modes Craig & Bampton (1968). Construction is collective on `comm`; throws core::InputError on all ranks
-/// together.
+/// 1965), with modes Craig & Bampton (1968). Reduced in state space (`craig_bampton_state`) it has states() in place of
+/// matrices(), and coordinates are pairs of states. Construction is collective on `comm`; throws core::InputError on
+/// all ranks together.
 class Rotor {
 public:
   Rotor(MPI_Comm comm, const Options& options);
 
+  /// All empty of a rotor reduced in state space.
   [[nodiscard]] const Matrices& matrices() const noexcept { return matrices_; }
-  /// C = (`value` + internal_damping) K [s]; all else stays. Collective.
+  /// Of a rotor reduced in state space, else empty.
+  [[nodiscard]] const std::optional<StateMatrices>& states() const noexcept { return states_; }
+  /// C = (`value` + internal_damping) K + D [s]; all else stays. Not of a rotor reduced in state space, whose modes
+  /// depend on C. Collective.
   void set_stiffness_damping(double value);
   /// Number of coordinates q.
   [[nodiscard]] PetscInt size() const noexcept { return size_; }
@@ -62,7 +84,11 @@ public:
   [[nodiscard]] const ReductionQuality& quality() const noexcept { return quality_; }
 
 private:
+  void reduce_states(MPI_Comm comm, const Options& options);
+
   Matrices matrices_;
+  std::optional<StateMatrices> states_;
+  core::Matrix couplings_;  // D; empty without
   PetscInt size_ = 0;
   double internal_damping_ = 0;
   int n_nodes_ = 0;

@@ -1,6 +1,9 @@
 #pragma once
 // Facts of a shaft that need no linear algebra: lengths, masses, material, and the check of the options.
 
+#include <vector>
+
+#include "whirl/rotor/freedom.hpp"
 #include "whirl/rotor/options.hpp"
 
 namespace whirl::rotor {
@@ -30,6 +33,23 @@ void validate(const Options& options);
 /// The disc with its geometry turned into inertias: m = rho pi (Do^2 - Di^2) t/4, Jp = m (Do^2 + Di^2)/8,
 /// Jd = Jp/2 + m t^2/12, added to those given.
 [[nodiscard]] Disc resolved(const Disc& disc, const Material& material);
+
+/// Length of the hub of a disc that has one, in m.
+[[nodiscard]] double hub_length(const Disc& disc, const Options& options);
+
+/// A force or a moment that turns with the shaft: on `freedom` (x or slope_x) Re(F) and on its partner in y Im(F),
+/// F = amount (Omega^2 - i alpha) exp(i (angle + phase)), amount in kg m or kg m^2.
+struct TurningForce {
+  int node = 0;  // 1-based
+  Freedom freedom = Freedom::x;
+  double amount = 0;
+  double phase = 0;  // rad
+};
+
+/// What eccentric and skewed discs do to the shaft: m e on the displacement, m e offset and (I_d - I_p) skew on the
+/// tilt of the disc, there as a couple of forces where it has a hub. Source: Skarolek (2011), (1.75), with the terms of
+/// the angular acceleration alpha.
+[[nodiscard]] std::vector<TurningForce> disc_forces(const Options& options);
 
 /// Mass of the rotor in kg.
 [[nodiscard]] double total_mass(const Options& options);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "whirl/problem/system.hpp"
@@ -19,9 +20,18 @@ struct Mode {
   Complex lambda;
   std::vector<Complex> shape;
   double rounding = 0;  ///< what rounding may have done to lambda, where its real part is small enough to ask [rad/s]
+  std::vector<Complex> left{};  ///< y with y* (dF/dx + lambda dF/dx') = 0, y* (-dF/dx') shape = 1, SI; empty: not known
+  /// Of lambda as an eigenvalue of B^-1 A, A = dF/dx, B = -dF/dx': |x| |B* y|/|y* B x| >= 1, 2-norm, states in their
+  /// scales (System::scales). A relative change eps of B^-1 A moves lambda by up to condition eps |B^-1 A|. One for a
+  /// normal matrix, infinite for a multiple eigenvalue without as many vectors. Not a number: not known.
+  double condition = std::numeric_limits<double>::quiet_NaN();
+  int multiplicity = 1;  ///< eigenvalues that rounding does not tell from this one, itself included
+  int vectors = 1;       ///< independent right vectors that these have
 
   /// The real part is nothing but rounding: neither growth nor decay can be told.
   [[nodiscard]] bool neutral() const { return std::abs(lambda.real()) <= rounding; }
+  /// It has fewer vectors than its multiplicity asks for: no sum of modes describes its motions.
+  [[nodiscard]] bool defective() const { return vectors < multiplicity; }
 };
 
 /// Solves with the shifted matrix of a large system, for a search by shift and invert. All members are collective.
@@ -42,13 +52,16 @@ struct EigenOptions {
   int dense_below = 600;  ///< systems up to this size are solved as dense matrices (LAPACK), with all eigenvalues
   bool shapes = true;
   bool rounding = false;            ///< estimate Mode::rounding
+  bool left = false;                ///< left vectors, condition numbers and multiplicities
   ShiftInverse* inverse = nullptr;  ///< of systems above dense_below; null: LU by MUMPS
 };
 
 /// Modes of dF/dx u + lambda dF/d(dx/dt) u = 0 at the equilibrium x, sorted by ascending |imag|, then real part.
 ///
 /// Small systems: all modes, by LAPACK on rank 0 for all. Larger ones: Krylov-Schur with shift and invert at a real
-/// target (prefix modes_); such a search can miss a mode far from the target, so ask for more than are needed.
+/// target (prefix modes_); such a search can miss a mode far from the target, so ask for more than are needed. Left
+/// vectors come from the inverse of all right ones, of a larger system from a second search with the transposed
+/// matrices, which an `inverse` of the caller's cannot serve: they are then not known.
 /// Collective; throws core::NotConverged.
 [[nodiscard]] std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options);
 

@@ -27,6 +27,19 @@ struct WhirlEnergy {
 [[nodiscard]] Sense sense_of_whirl(const std::vector<std::complex<double>>& x,
                                    const std::vector<std::complex<double>>& y, const std::vector<double>& mass = {});
 
+/// How each node turns: sin of the phase by which y lags behind x, weighted by both, 2 Im(conj(y) x)/(|x|^2 + |y|^2) in
+/// [-1, 1]: 1 on a forward circle, -1 on a backward one, 0 on a line; 0 for a node that moves less than 1e-6 of the one
+/// that moves most, of which rounding decides.
+[[nodiscard]] std::vector<double> turning(const std::vector<std::complex<double>>& x,
+                                          const std::vector<std::complex<double>>& y);
+
+/// The kind of a mode by the nodes alone, whatever their motion weighs: planar if all move on lines, forward or
+/// backward if all that turn do so one way, mixed if some turn one way and some the other. An orbit counts as a line
+/// while |turning| <= `straight`. Source: Skarolek (2011), appendix B, where nodes on lines among turning ones have no
+/// rule: they say nothing here.
+inline constexpr double straight = 1e-6;
+[[nodiscard]] Sense sense_by_nodes(const std::vector<double>& turning);
+
 /// delta = -2 pi Re(lambda)/|Im(lambda)|; infinite for a real eigenvalue.
 [[nodiscard]] double log_decrement(std::complex<double> lambda);
 /// nu = 10^-delta; unstable above 1. Source: Gavalas (2022), Sec. 4.1, errata 12.

@@ -70,6 +70,8 @@ public:
   [[nodiscard]] virtual bool needs_rotor() const { return true; }
   /// True if the shaft of a rotor has to stand in bearings for it.
   [[nodiscard]] virtual bool needs_bearings() const { return true; }
+  /// True if it may look at a rotor with a loss factor: at rest, or at vibration with one frequency.
+  [[nodiscard]] virtual bool takes_hysteresis() const { return false; }
   /// Reports options that do not fit the machine; `report` starts at the study's options. Solves nothing.
   virtual void validate(const system::Machine& machine, const deck::Report& report) const = 0;
   /// The same for what does not fit the studies before it in the deck.

@@ -92,6 +92,13 @@ void describe_others(deck::Description<Machine>& d);
 [[nodiscard]] std::vector<std::string> bearing_names(const Machine& machine);
 [[nodiscard]] std::vector<std::string> unbalance_names(const Machine& machine);
 
+/// The name by which studies ask for what eccentric and skewed discs do.
+inline constexpr std::string_view unbalance_of_discs = "discs";
+/// Whether a disc is eccentric or skewed.
+[[nodiscard]] bool discs_force(const Machine& machine);
+/// Nodes on which the unbalance `name` acts, or its discs stand; empty if there is none.
+[[nodiscard]] std::vector<int> unbalance_nodes(const Machine& machine, std::string_view name);
+
 /// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies; empty if
 /// there is no such rotor or no such pair.
 [[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine,
@@ -100,7 +107,8 @@ void describe_others(deck::Description<Machine>& d);
 /// Masses of one unbalance, U = fraction M_k e_u or the given amounts, for a machine that was checked.
 [[nodiscard]] std::vector<UnbalanceMass> unbalance_masses(const Machine& machine, const Unbalance& unbalance);
 
-/// The machine with all names resolved and the named unbalances applied (all at once), for the equations. Supports
+/// The machine with all names resolved and the named unbalances applied (all at once; `discs`: what the discs do by
+/// themselves), for the equations. Supports
 /// stand in the order of the deck.
 [[nodiscard]] Train train_of(const Machine& machine, const std::vector<std::string>& unbalance = {});
 

@@ -43,13 +43,14 @@ struct JournalState : PlaceState {
 ///                                                  - alpha (u_c sin angle - u_s cos angle) - f_film = 0
 ///     row 2i + 1: q' - v = 0
 ///
-/// in this order, so that no diagonal entry of dF/dx is zero. alpha is the shaft's angular acceleration, whose torque
-/// follows the bent axis and adds no moment of its own. f_film acts on the journal and with the opposite sign on
-/// the pedestal. Rows follow the rotor's distribution; pedestals are on its last rank. A film without own states is
-/// evaluated on one rank, film i on rank i mod size; its force and tangents are summed over the ranks. The own states
-/// of films that have some follow behind all pairs (q, v), film by film, with the rows g(motion, s, s') = 0. They are
-/// shared out over all ranks, cut where the films allow it; the rotor then stands with the pedestals on the first rank.
-/// Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
+/// in this order, so that no diagonal entry of dF/dx is zero. A rotor reduced in state space has rows of its own in
+/// their place (rotor::StateMatrices); the pairs of its masters are still displacement and velocity. alpha is the
+/// shaft's angular acceleration, whose torque follows the bent axis and adds no moment of its own. f_film acts on the
+/// journal and with the opposite sign on the pedestal. Rows follow the rotor's distribution; pedestals are on its last
+/// rank. A film without own states is evaluated on one rank, film i on rank i mod size; its force and tangents are
+/// summed over the ranks. The own states of films that have some follow behind all pairs (q, v), film by film, with the
+/// rows g(motion, s, s') = 0. They are shared out over all ranks, cut where the films allow it; the rotor then stands
+/// with the pedestals on the first rank. Source: Gavalas (2022) eq. 2.14 with errata 14, 20, 23.
 class RotorSystem : public Plant, public problem::Settles {
 public:
   /// The speed [rad/s] is the parameter.
@@ -91,6 +92,20 @@ public:
   void set_forcing(bool on) override { forcing_ = on; }
   /// The angular acceleration alpha [rad/s^2] of a shaft whose speed follows from outside; 0 at the start.
   void set_acceleration(double alpha) { acceleration_ = alpha; }
+
+  /// What the loss factor eta of the rotor adds to dF/dx of a vibration: `damping` [s] times its K on velocities and
+  /// `turning` times K x [[0, 1], [-1, 0]] on displacements.
+  struct Loss {
+    double damping = 0, turning = 0;
+  };
+  /// That of a vibration Re(z exp(i frequency t)), frequency > 0 [rad/s]: with it the Jacobian holds K (1 + i eta s), s
+  /// = 1 of backward and s = sign(frequency - Omega) of forward circular motion; in the stationary frame s = 1 of both.
+  /// Zero without a loss factor. Source: Skarolek (2011), (2.36); Genta & Amati (2010).
+  [[nodiscard]] Loss loss_at(double frequency) const;
+  /// The sense s of forward motion there: -1, 0 or 1.
+  [[nodiscard]] int loss_sense(double frequency) const;
+  /// From now on jacobian() and entries() have it; residual() never has. Collective.
+  void set_loss(const Loss& loss);
 
   [[nodiscard]] ShownPlaces places() const override;
   [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override;
@@ -152,9 +167,10 @@ public:
   [[nodiscard]] std::vector<double> shaft(const double* x, int component, bool with_gravity) const;
   /// The same from a distributed state, of which rotor and pedestals alone are gathered.
   [[nodiscard]] std::vector<double> shaft(Vec x, int component, bool with_gravity) const;
-  /// Force of unbalance per Omega^2 on each coordinate as cosine and sine parts [coordinates()], whole on every rank.
-  [[nodiscard]] const std::vector<double>& unbalance_cosine() const;
-  [[nodiscard]] const std::vector<double>& unbalance_sine() const;
+  /// Force of unbalance per Omega^2 on the rows of rotor and pedestals as cosine and sine parts [2 coordinates()],
+  /// whole on every rank. Only of a rotor reduced in state space it acts on rows that are no momentum.
+  [[nodiscard]] const std::vector<double>& forcing_cosine() const;
+  [[nodiscard]] const std::vector<double>& forcing_sine() const;
 
 private:
   struct Bearing {

@@ -26,11 +26,12 @@ struct Support {
   std::array<double, 2> mass{}, stiffness{}, damping{};  ///< of the pedestal in x and y [kg, N/m, N s/m]
 };
 
-/// An unbalance U at a node: force U Omega^2 (cos, sin)(angle + phase).
+/// An unbalance U at a node: force U Omega^2 (cos, sin)(angle + phase); of a couple a moment on its slopes.
 struct UnbalanceMass {
   int node = 0;
-  double amount = 0;  ///< U [kg m]
+  double amount = 0;  ///< U [kg m], of a couple [kg m^2]
   double phase = 0;   ///< [rad]
+  bool couple = false;
   friend bool operator==(const UnbalanceMass&, const UnbalanceMass&) = default;
 };
 

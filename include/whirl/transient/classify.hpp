@@ -8,30 +8,32 @@
 
 namespace whirl::transient {
 
-enum class Kind { fixed_point, periodic, limit_cycle, quasi_periodic, chaotic, unsettled };
+enum class Kind { fixed_point, periodic, limit_cycle, quasi_periodic, chaotic, unsettled, driven };
 
 /// What is known of a motion after its transient.
 struct Evidence {
-  bool forced = true;                 ///< by the turning shaft; else the system does not depend on the angle
-  double size = 0;                    ///< of the motion: root mean square distance of its states from their mean
-  double rest = 1e-6;                 ///< size below which nothing moves
-  std::vector<double> returns;        ///< d_k, k = 1, 2, ...: see return_distances()
-  double return_tolerance = 1e-4;     ///< d_k below which the motion repeats itself after k revolutions
-  std::vector<double> fading;         ///< d_k of the record's second half over that of its first; may be empty
-  std::vector<double> exponents;      ///< Lyapunov exponents, the largest first; may be empty
+  bool forced = true;              ///< by the turning shaft; else the system does not depend on the angle
+  bool driven = false;             ///< by external forces that change with time, whatever the shaft does
+  double size = 0;                 ///< of the motion: root mean square distance of its states from their mean
+  double rest = 1e-6;              ///< size below which nothing moves
+  std::vector<double> returns;     ///< d_k, k = 1, 2, ...: see return_distances(); of an unforced motion on a section
+  double return_tolerance = 1e-4;  ///< d_k below which the motion repeats itself after k revolutions
+  std::vector<double> fading;      ///< d_k of the record's second half over that of its first; may be empty
+  std::vector<double> exponents;   ///< Lyapunov exponents, the largest first; may be empty
   std::vector<double> uncertainties;  ///< of each
 };
 
 struct Verdict {
   Kind kind = Kind::unsettled;
-  int period = 0;      ///< revolutions after which a periodic motion repeats itself
-  std::string name;    ///< fixed_point, period-1, period-2, ..., limit_cycle, quasi_periodic, chaotic, unsettled
+  int period = 0;      ///< revolutions after which a periodic motion repeats itself; returns of a limit cycle's section
+  std::string name;    ///< fixed_point, period-1, period-2, ..., limit_cycle, quasi_periodic, chaotic, unsettled,
+                       ///< driven
   std::string reason;  ///< in words
 };
 
 /// d_k = root mean square of |P_(i+k) - P_i| over all i, divided by `size`, for k = 1 to `longest`; P_i are the states
-/// at the same shaft angle of successive revolutions [points][entries of a state on this rank]. Empty if there are too
-/// few points. Collective on `comm`, whose ranks share the states.
+/// at the same shaft angle of successive revolutions, or on a section [points][entries of a state on this rank]. Empty
+/// if there are too few points. Collective on `comm`, whose ranks share the states.
 [[nodiscard]] std::vector<double> return_distances(const std::vector<std::vector<double>>& points, int longest,
                                                    double size, MPI_Comm comm = MPI_COMM_SELF);
 
@@ -42,9 +44,12 @@ struct Verdict {
 
 /// A forced motion is periodic if it returns and its largest exponent is not positive, chaotic if that is positive,
 /// quasi-periodic if it is zero within its uncertainty and nothing returns. Without forcing the number of zero
-/// exponents counts the frequencies. Whatever contradicts itself - no return although all deviations die out, a return
+/// exponents counts the frequencies, and a limit cycle returns to its section; where no section is known the exponents
+/// decide. Whatever contradicts itself - no return although all deviations die out, a return
 /// although they grow, a return after k revolutions while what keeps it from a shorter one dies out - is unsettled: not
 /// enough revolutions, or an unstable orbit that the motion has not left yet.
+/// A motion that external forces drive is `driven`: where it is at the same shaft angle says nothing of it, and its
+/// exponents, if there are any, tell only whether it forgets where it began.
 [[nodiscard]] Verdict classify(const Evidence& evidence);
 
 }  // namespace whirl::transient

@@ -7,15 +7,25 @@
 
 #include "whirl/problem/drive.hpp"
 #include "whirl/problem/system.hpp"
+#include "whirl/transient/force.hpp"
 #include "whirl/transient/tangents.hpp"
 
 namespace whirl::transient {
+
+/// How the linear problems of a step are solved.
+enum class Algebra {
+  automatic,  ///< by structure where the system tells one, on one rank; else assembled
+  assembled   ///< dense LAPACK where the system is small, MUMPS where it is not
+};
 
 struct IntegratorOptions {
   /// Estimated error of a step: root mean square of the scaled states, relative where they exceed one.
   double tolerance = 1e-8;
   double first_step = 0;           ///< [s]; 0: a thousandth of a revolution
   std::string prefix = "motion_";  ///< of the PETSc options
+  Algebra algebra = Algebra::automatic;
+  /// External forces, which outlive the integrator; null: none. Steps end at their breaks.
+  Forces* forces = nullptr;
   /// Called after every step with the time reached [s] and the length of the step [s]; on every rank.
   std::function<void(double time, double step)> after_step{};
 };

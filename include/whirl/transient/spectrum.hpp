@@ -4,13 +4,9 @@
 #include <span>
 #include <vector>
 
-namespace whirl::transient {
+#include "whirl/transient/window.hpp"
 
-/// What multiplies the samples before the transform.
-enum class Window {
-  none,  ///< exact if the record holds whole periods of everything
-  hann   ///< leaks little where it does not
-};
+namespace whirl::transient {
 
 /// Amplitudes 0-peak over frequency; the first line is the magnitude of the mean.
 struct Spectrum {
@@ -41,8 +37,9 @@ struct Tone {
 };
 
 /// The `count` highest lines that tower above their neighbours, the highest first, each with the frequency and the
-/// amplitude of a single tone between two lines (exact for an isolated one). Source: Grandke (1983), IEEE Trans.
-/// Instrum. Meas. 32, 350.
+/// amplitude of a single tone between two lines, by the ratio of the two highest lines (exact for an isolated one in a
+/// long record). Two tones need a distance of twice the window's main lobe; of a flat top the ratio tells the frequency
+/// least, and the amplitude best. Source: Grandke (1983), IEEE Trans. Instrum. Meas. 32, 350.
 [[nodiscard]] std::vector<Tone> tones(const Spectrum& spectrum, int count);
 
 }  // namespace whirl::transient

@@ -96,9 +96,14 @@ void EliminatedResponse::analyse() {
   analysed_ = true;
 }
 
-void EliminatedResponse::solve(Mat jx, Mat jd, double omega, const double* row, const double* column,
-                               const std::vector<double>& right, std::vector<double>& amplitude) {
+void EliminatedResponse::linearise(Mat jx, Mat jd, const double* row, const double* column) {
   read(jx, jd, row, column);
+  row_.assign(row, row + n_);
+  column_.assign(column, column + n_);
+}
+
+void EliminatedResponse::factorise(double omega) {
+  omega_ = omega;
   // An entry that was zero when the pattern was made and is not now asks for a new one.
   for (std::size_t e = 0; e < columns_.size() && analysed_; ++e)
     if (place_[e] < 0 && (x_[e] != 0 || d_[e] != 0)) {
@@ -107,37 +112,45 @@ void EliminatedResponse::solve(Mat jx, Mat jd, double omega, const double* row, 
     }
   if (!analysed_) analyse();
 
-  const auto b = [&](PetscInt i) { return Complex(right[at(2 * i)], right[at(2 * i + 1)]) / row[i]; };
   const Complex rate(0, omega);
   Complex* const values = matrix_.valuePtr();
   std::fill(values, values + matrix_.nonZeros(), Complex(0));
+  for (PetscInt i = 0; i < n_; ++i) {
+    if (row_of_[at(i)] < 0) continue;
+    for (std::size_t e = at(begin_[at(i)]); e < at(begin_[at(i) + 1]); ++e) {
+      if (place_[e] < 0) continue;
+      Complex value(x_[e], omega * d_[e]);
+      const Link& link = links_[at(columns_[e])];
+      if (link.row >= 0) value *= -rate * link.d / link.a;
+      values[place_[e]] += value;
+    }
+  }
+  lu_.factorize(matrix_);
+  if (lu_.info() != Eigen::Success)
+    throw core::NotConverged("the response at this frequency could not be solved: the matrix is singular");
+}
+
+void EliminatedResponse::solve(const std::vector<double>& right, std::vector<double>& amplitude) const {
+  const auto b = [&](PetscInt i) { return Complex(right[at(2 * i)], right[at(2 * i + 1)]) / row_[at(i)]; };
   Eigen::VectorXcd rhs(matrix_.rows());
   for (PetscInt i = 0; i < n_; ++i) {
     if (row_of_[at(i)] < 0) continue;
     Complex load = b(i);
     for (std::size_t e = at(begin_[at(i)]); e < at(begin_[at(i) + 1]); ++e) {
-      if (place_[e] < 0) continue;
-      Complex value(x_[e], omega * d_[e]);
       const Link& link = links_[at(columns_[e])];
-      if (link.row >= 0) {
-        load -= value * b(link.row) / link.a;
-        value *= -rate * link.d / link.a;
-      }
-      values[place_[e]] += value;
+      if (place_[e] >= 0 && link.row >= 0) load -= Complex(x_[e], omega_ * d_[e]) * b(link.row) / link.a;
     }
     rhs(row_of_[at(i)]) = load;
   }
-  lu_.factorize(matrix_);
-  if (lu_.info() != Eigen::Success)
-    throw core::NotConverged("the response at this frequency could not be solved: the matrix is singular");
   const Eigen::VectorXcd z = lu_.solve(rhs);
+  const Complex rate(0, omega_);
   amplitude.resize(at(2 * n_));
   for (PetscInt c = 0; c < n_; ++c) {
     const Link& link = links_[at(c)];
     const Complex value =
         link.row < 0 ? z(kept_[at(c)]) : (b(link.row) - rate * link.d * z(kept_[at(link.to)])) / link.a;
-    amplitude[at(2 * c)] = value.real() * column[c];
-    amplitude[at(2 * c + 1)] = value.imag() * column[c];
+    amplitude[at(2 * c)] = value.real() * column_[at(c)];
+    amplitude[at(2 * c + 1)] = value.imag() * column_[at(c)];
   }
 }
 

@@ -18,10 +18,12 @@ namespace whirl::solve {
 /// change.
 class EliminatedResponse {
 public:
-  /// Jx and Jd on one rank with one pattern; `row` and `column` [n] scale rows and columns. `right` and `amplitude` [2
-  /// n] as in FrequencyResponse. Throws core::NotConverged if the matrix is singular.
-  void solve(Mat jx, Mat jd, double omega, const double* row, const double* column, const std::vector<double>& right,
-             std::vector<double>& amplitude);
+  /// Takes Jx and Jd on one rank with one pattern; `row` and `column` [n] scale rows and columns.
+  void linearise(Mat jx, Mat jd, const double* row, const double* column);
+  /// Throws core::NotConverged if the matrix is singular.
+  void factorise(double omega);
+  /// `right` and `amplitude` [2 n] as in FrequencyResponse, at the frequency factorised last.
+  void solve(const std::vector<double>& right, std::vector<double>& amplitude) const;
 
 private:
   using Complex = std::complex<double>;
@@ -35,6 +37,8 @@ private:
   void analyse();
 
   PetscInt n_ = 0;
+  double omega_ = 0;
+  std::vector<double> row_, column_;
   std::vector<PetscInt> begin_, columns_;  // compressed rows of both matrices
   std::vector<double> x_, d_;              // scaled values
   std::vector<Link> links_;                // per state

@@ -23,21 +23,35 @@ FrequencyResponse::FrequencyResponse(problem::System& system) : system_(system) 
 
 FrequencyResponse::~FrequencyResponse() = default;
 
-void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude) {
+void FrequencyResponse::linearise(Vec x) {
   if (shifted_) {
-    solve_shifted(x, omega, right, amplitude);
+    shifted_->linearise(x);
     return;
   }
   system_.jacobian(0, x, rest_.get(), 1, 0, jx_.get());
   system_.jacobian(0, x, rest_.get(), 0, 1, jd_.get());
   const core::ReadArray rows(residual_scale_.get()), columns(state_scale_.get());
-  eliminated_->solve(jx_.get(), jd_.get(), omega, rows.data(), columns.data(), right, amplitude);
+  eliminated_->linearise(jx_.get(), jd_.get(), rows.data(), columns.data());
 }
 
-void FrequencyResponse::solve_shifted(Vec x, double omega, const std::vector<double>& right,
-                                      std::vector<double>& amplitude) {
-  shifted_->linearise(x);
-  shifted_->factorise(omega);
+void FrequencyResponse::factorise(double omega) {
+  if (shifted_)
+    shifted_->factorise(omega);
+  else
+    eliminated_->factorise(omega);
+}
+
+void FrequencyResponse::solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude) {
+  linearise(x);
+  factorise(omega);
+  solve(right, amplitude);
+}
+
+void FrequencyResponse::solve(const std::vector<double>& right, std::vector<double>& amplitude) {
+  if (eliminated_) {
+    eliminated_->solve(right, amplitude);
+    return;
+  }
   core::Vector b = shifted_->make_vector(), z = core::duplicate(b.get());
   {
     const core::ReadArray scale(shifted_->residual_scale());

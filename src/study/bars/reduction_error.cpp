@@ -11,7 +11,7 @@ namespace whirl::study {
 bool has_reduction_errors(const system::RotorSystem& system) {
   const rotor::Options& rotor = system.train().rotor;
   return rotor.type != rotor::Options::Type::rigid && rotor.reduction.type != rotor::Reduction::Type::none &&
-         system.own_states() == 0;
+         system.own_states() == 0 && rotor.loss_factor == 0;  // the whole shaft is searched without its loss
 }
 
 std::vector<std::complex<double>> reduction_errors(const system::RotorSystem& system, Vec x,

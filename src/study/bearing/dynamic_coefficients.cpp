@@ -8,10 +8,13 @@
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/journal_place.hpp"
+#include "study/bearing/coefficient_names.hpp"
+#include "study/bearing/enforced_motion.hpp"
+#include "study/bearing/held_film.hpp"
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/film/coefficients.hpp"
 
 namespace whirl::study {
 namespace {
@@ -21,49 +24,49 @@ struct AtSpeed {
   JournalPlace place;
   double thickness = 0;
   std::vector<film::PortCoefficients> coefficients;
+  std::vector<std::vector<EnforcedAt>> enforced;  // [frequency][amplitude]; none without amplitudes
 };
 
-// Names of the entries: xx, xy, ..., and with slopes x.slope_x, ...; `slopes` counts those in a pair.
-constexpr std::array<const char*, 4> port_words = {"x", "y", "slope_x", "slope_y"};
-constexpr std::array<const char*, 3> stiffness_units = {"N/m", "N", "N m"}, damping_units = {"N s/m", "N s", "N m s"};
-
-std::size_t slopes_in(std::size_t i, std::size_t j) {
-  return (i > 1 ? 1U : 0U) + (j > 1 ? 1U : 0U);
-}
-std::string pair_name(std::size_t i, std::size_t j, const char* between) {
-  return std::string(port_words[i]) + (slopes_in(i, j) == 0 ? "" : between) + port_words[j];
-}
-
-std::array<double, 2> load_of(const DynamicCoefficientsOptions& o) {
-  const auto& f = o.load.values;
-  if (f.empty()) return {};
-  return f.size() == 1 ? std::array<double, 2>{0, -f[0]} : std::array<double, 2>{f[0], f[1]};
-}
-
 // What one rank computes; all do it alike. Every speed starts from the one before.
-std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, const system::Support& support) {
-  film::Options kind = support.film;
-  if (options.tilt) kind = film::tilting(kind).value();
-  const auto film = film::make_film(support.geometry, kind, support.lubricant);
+std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, system::Support support) {
+  if (options.tilt) support.film = film::tilting(support.film).value();
+  const auto film = film::make_film(support.geometry, support.film, support.lubricant);
   const double c = support.geometry.clearance;
   std::vector<AtSpeed> out;
-  JournalPlace start;
-  if (options.load.values.empty()) {
-    const double e = options.eccentricity.value_or(0.0) * c, angle = options.attitude.value_or(0.0);
-    start.motion.position = {e * std::cos(angle), e * std::sin(angle), 0, 0};
-  }
+  film::JournalMotion motion;
+  const double e = options.eccentricity.value_or(0.0) * c, angle = options.attitude.value_or(0.0);
+  if (options.load.values.empty()) motion.position = {e * std::cos(angle), e * std::sin(angle), 0, 0};
+  std::vector<double> states;
   for (const deck::Quantity& speed : options.speeds) {
-    start.motion.speed = speed.value;
+    motion.speed = speed.value;
+    if (!options.load.values.empty()) {
+      FilmAtRest carrier(support, speed.value);
+      if (!out.empty()) carrier.hold({motion.position[0], motion.position[1]});
+      carrier.carry(load_along(options.load));
+      motion = carrier.motion();
+    }
     AtSpeed now;
-    now.place = options.load.values.empty() ? rest_at(*film, start.motion, start.states)
-                                            : carry(*film, c, load_of(options), start);
-    now.thickness = film->least_thickness(now.place.motion, now.place.states);
-    for (const double ratio : options.all_frequencies())
-      now.coefficients.push_back(
-          film::port_coefficients(*film, now.place.motion, now.place.states, ratio * speed.value));
-    start = now.place;
+    now.place = rest_at(*film, motion, states);
+    states = now.place.states;
+    now.thickness = film->least_thickness(motion, states);
+    film::FrequencyCoefficients by_frequency(*film, motion, states);
+    for (const double ratio : options.all_frequencies()) {
+      const double omega = ratio * speed.value;
+      now.coefficients.push_back(by_frequency.at(omega));
+      if (!options.amplitudes.empty())
+        now.enforced.push_back(
+            enforced_at(*film, support.geometry, now.place, omega, options.amplitudes, now.coefficients.back()));
+    }
     out.push_back(std::move(now));
   }
+  return out;
+}
+
+// Empty without amplitudes.
+std::vector<std::vector<std::vector<EnforcedAt>>> enforced_of(const std::vector<AtSpeed>& found) {
+  std::vector<std::vector<std::vector<EnforcedAt>>> out;
+  for (const AtSpeed& a : found)
+    if (!a.enforced.empty()) out.push_back(a.enforced);
   return out;
 }
 
@@ -78,6 +81,7 @@ std::vector<double> numbers_of(const std::vector<AtSpeed>& found) {
       for (const AtSpeed& a : found)
         for (const film::PortCoefficients& c : a.coefficients)
           out.insert(out.end(), {c.stiffness[i][j], c.damping[i][j]});
+  add_numbers(enforced_of(found), out);
   return out;
 }
 
@@ -101,6 +105,7 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
           summary.set(at_ratio + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
           summary.set(at_ratio + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
         }
+      if (!a.enforced.empty()) put_enforced(summary, at_ratio, options.amplitudes, a.enforced[f]);
     }
   }
 }
@@ -154,6 +159,8 @@ void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, dou
                     fmt::format("estimated error of {} from the film mesh", name));
       }
     }
+  if (!options.amplitudes.empty())
+    put_enforced_tables(group, speeds, ratios, options.amplitudes, enforced_of(found), bars, next);
 }
 
 }  // namespace
@@ -166,7 +173,21 @@ StudyResult DynamicCoefficients::run(Context& context) {
   auto& group = context.results.group();
 
   std::vector<AtSpeed> found;
-  core::agree(context.comm, [&] { found = computed(options, train.supports[which]); });
+  std::string none;  // why there is no equilibrium
+  Capacity most;
+  core::agree(context.comm, [&] {
+    try {
+      found = computed(options, train.supports[which]);
+    } catch (const NoPlace& error) {
+      none = error.what();
+      most = error.most;
+    }
+  });
+  if (!none.empty()) {
+    summary.set("capacity.load", most.load, "N");
+    summary.set("capacity.eccentricity", most.eccentricity, "1");
+    return context.results.finish(none, false);
+  }
   put_summary(summary, options, clearance, found);
 
   const MeshLaw law = law_of(context.machine);

@@ -8,6 +8,15 @@
 
 namespace whirl::study {
 
+std::span<const deck::Name<DynamicCoefficientsOptions::Method>> names(DynamicCoefficientsOptions::Method) {
+  using enum DynamicCoefficientsOptions::Method;
+  static constexpr deck::Name<DynamicCoefficientsOptions::Method> table[] = {
+      {perturbation, "perturbation", "of infinitely small motions"},
+      {enforced, "enforced",
+       "beside it of the amplitudes given: forces of a harmonic motion, fitted by least squares"}};
+  return table;
+}
+
 void describe(deck::Description<DynamicCoefficientsOptions>& d) {
   using O = DynamicCoefficientsOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
@@ -24,7 +33,16 @@ void describe(deck::Description<DynamicCoefficientsOptions>& d) {
   d.add("frequency_range", &O::frequency_range, deck::positive,
         "lowest and highest of more frequencies omega/Omega, which only the tables and the pictures show");
   d.add("points", &O::points, deck::in(2, 1e6), "frequencies in that range, evenly spaced in their logarithm");
+  d.add("method", &O::method, "how stiffness and damping are found", "003 sec. 3.4");
+  d.add("amplitudes", &O::amplitudes, deck::between(0, 1),
+        "0 to peak of the enforced motion along x and y, in clearances; slopes: the same over twice the length",
+        "003 (3.40)");
   d.check([](const O& o, const deck::Report& r) {
+    const bool enforced = o.method == O::Method::enforced;
+    if (enforced && o.amplitudes.empty())
+      r.fail("method", "'enforced' motions have amplitudes: give 'amplitudes: [0.05]', in clearances");
+    if (!enforced && !o.amplitudes.empty())
+      r.fail("amplitudes", "only enforced motions have amplitudes: add 'method: enforced' or leave them out");
     if (o.frequency_range && !((*o.frequency_range)[0] < (*o.frequency_range)[1]))
       r.fail("frequency_range", "'frequency_range' goes from the lowest to the highest frequency");
     if (o.load.values.empty()) return;
@@ -45,7 +63,8 @@ std::vector<double> DynamicCoefficientsOptions::all_frequencies() const {
 }
 
 double DynamicCoefficients::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
-  return 600.0 * static_cast<double>(options.all_frequencies().size() * options.speeds.size());
+  return 600.0 * static_cast<double>(options.all_frequencies().size() * options.speeds.size() *
+                                     (1 + options.amplitudes.size()));
 }
 
 void DynamicCoefficients::validate(const system::Machine& machine, const deck::Report& report) const {

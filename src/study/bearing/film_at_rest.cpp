@@ -6,12 +6,33 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
 
 using Pair = FilmAtRest::Pair;
+
+JournalPlace rest_at(film::Film& film, const film::JournalMotion& motion, std::vector<double> states) {
+  JournalPlace out{motion, std::move(states), {}};
+  if (out.states.size() != film.states()) {
+    out.states.assign(film.states(), 0.0);
+    film.unloaded(motion, out.states);
+  }
+  film::relax(film, motion, out.states);
+  film::StateResponse response;
+  const std::vector<double> rest(out.states.size(), 0.0);
+  film.evaluate(motion, out.states, rest, film::Need::force, response);
+  out.force = {response.journal.force[0], response.journal.force[1]};
+  return out;
+}
+
+std::string in_words(const Capacity& most) {
+  return fmt::format(
+      "Where it pushes to no side the film carries at most {:.6g} N, at an eccentricity of {:.3g} clearances{}",
+      most.load, most.eccentricity, most.rises ? ", and more closer to the wall" : "");
+}
 
 FilmAtRest::FilmAtRest(const system::Support& support, double speed)
     : clearance_(support.geometry.clearance),
@@ -31,13 +52,12 @@ void FilmAtRest::hold(const Pair& place) {
 // Newton's method with the film's own stiffness, in steps of at most a quarter of the clearance, which are halved where
 // there is no film or the force that is left does not fall.
 bool FilmAtRest::try_to_carry(const Pair& load) {
-  constexpr double tolerance = 1e-9;
   constexpr int most_steps = 60, most_halvings = 12;
   const Eigen::Vector2d wanted(load[0], load[1]);
   const auto left = [&] { return Eigen::Vector2d(Eigen::Vector2d(answer_.force[0], answer_.force[1]) + wanted); };
   for (int step = 0; step < most_steps; ++step) {
     const Eigen::Vector2d before = left();
-    if (before.norm() <= tolerance * wanted.norm()) return true;
+    if (before.norm() <= place_tolerance * wanted.norm()) return true;
     Eigen::Matrix2d slope;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
@@ -57,7 +77,7 @@ bool FilmAtRest::try_to_carry(const Pair& load) {
     }
     if (closer) continue;
     hold(from);
-    return before.norm() <= 100 * tolerance * wanted.norm();
+    return before.norm() <= 100 * place_tolerance * wanted.norm();
   }
   return false;
 }
@@ -75,10 +95,10 @@ void FilmAtRest::carry(const Pair& load) {
     }
   }
   const Capacity most = capacity(load);
-  throw core::NotConverged(fmt::format(
-      "no equilibrium: no place of the journal was found where the film carries {:.6g} N at {:.6g} rad/s. Where it "
-      "pushes to no side it carries at most {:.6g} N, at an eccentricity of {:.3g} clearances{}",
-      size, motion_.speed, most.load, most.eccentricity, most.rises ? ", and more closer to the wall" : ""));
+  throw NoPlace(fmt::format("no equilibrium: no place of the journal was found where the film carries {:.6g} N at "
+                            "{:.6g} rad/s. {}",
+                            size, motion_.speed, in_words(most)),
+                motion_.speed, most);
 }
 
 double FilmAtRest::lifted(const Pair& load, double eccentricity, double& from) {
@@ -113,7 +133,7 @@ double FilmAtRest::lifted(const Pair& load, double eccentricity, double& from) {
   return none;
 }
 
-FilmAtRest::Capacity FilmAtRest::capacity(const Pair& load) {
+Capacity FilmAtRest::capacity(const Pair& load) {
   constexpr double first = 0.05, last = 0.95, step = 0.05;
   Capacity out;
   double angle = 0;

@@ -3,11 +3,44 @@
 
 #include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "whirl/core/error.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/system/train.hpp"
 
 namespace whirl::study {
+
+/// Of the load, the force that may be left where the journal is.
+inline constexpr double place_tolerance = 1e-9;
+
+/// The most that a film carries in one direction where it pushes to no side, up to 0.95 clearances.
+struct Capacity {
+  double load = 0;          ///< N
+  double eccentricity = 0;  ///< there, in clearances
+  bool rises = false;       ///< it still grows with the eccentricity where the search ended
+};
+[[nodiscard]] std::string in_words(const Capacity& most);
+
+/// No place of the journal was found where the film carries the load; the text tells what it carries at most.
+class NoPlace : public core::NotConverged {
+public:
+  NoPlace(const std::string& what, double at_speed, const Capacity& capacity)
+      : NotConverged(what), speed(at_speed), most(capacity) {}
+  double speed;  ///< rad/s
+  Capacity most;
+};
+
+/// A journal at rest and the film that has come to rest with it.
+struct JournalPlace {
+  film::JournalMotion motion;
+  std::vector<double> states;     ///< of the film, if it has any
+  std::array<double, 2> force{};  ///< of the film on the journal [N]
+};
+/// The film at rest at the place and speed of `motion`, from `states`, or where these are none from those of a film
+/// that carries nothing. Throws core::DomainError or core::NotConverged.
+[[nodiscard]] JournalPlace rest_at(film::Film& film, const film::JournalMotion& motion, std::vector<double> states);
 
 /// At one speed. Not collective; not thread-safe.
 class FilmAtRest {
@@ -19,15 +52,10 @@ public:
   /// The journal at `place` (x, y) [m] from the centre of the bearing, without tilt. Throws core::DomainError where the
   /// surfaces touch, core::NotConverged where the film is not found.
   void hold(const Pair& place);
-  /// The journal where the film balances `load` [N] on it, to 1e-9 of it, sought from the last place. Throws
-  /// core::NotConverged if there is none, and says what the film can carry in that direction.
+  /// The journal where the film balances `load` [N] on it, to place_tolerance of it, sought from the last place. Throws
+  /// NoPlace if there is none.
   void carry(const Pair& load);
-  /// The most that it carries in the direction of `load`, up to 0.95 clearances.
-  struct Capacity {
-    double load = 0;          ///< N
-    double eccentricity = 0;  ///< there, in clearances
-    bool rises = false;       ///< it still grows with the eccentricity where the search ended
-  };
+  /// In the direction of `load`.
   [[nodiscard]] Capacity capacity(const Pair& load);
 
   [[nodiscard]] const film::JournalMotion& motion() const { return motion_; }

@@ -1,5 +1,7 @@
 #include "whirl/study/bearing/gas_bearing.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -200,7 +202,8 @@ StudyResult GasBearing::run(Context& context) {
   auto& group = results.group();
   std::vector<GasPoint> curves, equilibria;
   std::string none;  // why there is no equilibrium
-  FilmAtRest::Capacity most;
+  Capacity most;
+  double beyond = 0;  // speed at which there is none
   core::agree(context.comm, [&] {
     curves = gas_curves(options, support);
     if (options.meshes > 0) put_gas_meshes(group, summary, options, support);
@@ -208,9 +211,10 @@ StudyResult GasBearing::run(Context& context) {
     if (options.load.values.empty()) return;
     try {
       equilibria = gas_equilibria(options, support);
-    } catch (const core::NotConverged& error) {
+    } catch (const NoPlace& error) {
       none = error.what();
-      most = FilmAtRest(support, options.speeds.front().value).capacity(load_along(options.load));
+      most = error.most;
+      beyond = error.speed;
     }
   });
   put_gas_summary(summary, curves, "");
@@ -230,8 +234,7 @@ StudyResult GasBearing::run(Context& context) {
         (void)has_answer(
             [&] { put_gas_summary(there, gas_equilibria(options, other.supports[which]), "equilibrium"); });
       if (!none.empty()) {
-        const auto c =
-            FilmAtRest(other.supports[which], options.speeds.front().value).capacity(load_along(options.load));
+        const Capacity c = FilmAtRest(other.supports[which], beyond).capacity(load_along(options.load));
         there.set("capacity.load", c.load, "N");
         there.set("capacity.eccentricity", c.eccentricity, "1");
       }

@@ -64,7 +64,9 @@ void describe(deck::Description<CycleBranchOptions>& d) {
   using O = CycleBranchOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
   d.add("origin", &O::origin, "where the branch begins");
-  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; required for forced cycles");
+  d.add("unbalance", &O::unbalance,
+        "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do; required "
+        "for forced cycles");
   d.embed(&O::parameter);
   d.add("start", &O::start, "*", deck::any, "value of the parameter to start at; that of range.from if not given");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed, where the parameter is another one");

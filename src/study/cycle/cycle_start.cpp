@@ -75,6 +75,8 @@ solve::Restart CycleFollower::start_at_hopf() {
     solve::ContinuationOptions o = continuation_;
     o.initial_step = o.max_step;
     o.newton.max_iterations = 20;
+    // Points of the branch of cycles say nothing of how far the Hopf point is.
+    o.max_points = std::max(o.max_points, solve::ContinuationOptions().max_points);
     const solve::BranchEnd end = solve::follow_branch(equilibria, std::move(u), o, callbacks);
     if (!at_hopf) throw core::NotConverged("no Hopf point in the range: " + end.reason);
   };

@@ -7,6 +7,7 @@
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
+#include "study/bearing/film_at_rest.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "whirl/core/agree.hpp"
@@ -153,13 +154,33 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
   bars.write(1e-9);
 }
 
+// Throws core::NotConverged with what the film carries, of a rotor whose whole weight is on one.
+[[noreturn]] void tell_capacity(const Context& context, const system::Train& train, double speed,
+                                const core::NotConverged& error) {
+  const rotor::Options& r = train.rotor;
+  const double load = r.mass * train.gravity + r.load;
+  if (r.type != rotor::Options::Type::rigid || train.supports.size() != 1 || !(load > 0)) throw error;
+  Capacity most;
+  core::agree(context.comm, [&] {
+    if (!has_answer([&] { most = FilmAtRest(train.supports.front(), speed).capacity({0, -load}); })) most = {};
+  });
+  if (!(most.load > 0)) throw error;
+  throw core::NotConverged(
+      fmt::format("no equilibrium under {:.6g} N at {:.6g} rad/s: {}. {}", load, speed, error.what(), in_words(most)));
+}
+
 }  // namespace
 
 StudyResult Static::run(Context& context) {
   const Layout layout = plan(context, Sharing::machine);
   system::RotorSystem system(layout.space, system::train_of(context.machine), options.speed.value);
   Walker walker(system);
-  Vec at = walker.at(options.speed.value);
+  Vec at = nullptr;
+  try {
+    at = walker.at(options.speed.value);
+  } catch (const core::NotConverged& error) {
+    tell_capacity(context, system.train(), options.speed.value, error);
+  }
   const std::vector<double> x = system.gather(at);
   const auto journals = system.journals(x.data());
   const auto films = system.film_responses(x.data(), film::Need::force);

@@ -14,9 +14,11 @@
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
+#include "study/linear/line_modes.hpp"
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
 #include "study/linear/mode_reduction.hpp"
+#include "study/linear/mode_tables.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
@@ -28,8 +30,6 @@
 
 namespace whirl::study {
 namespace {
-
-using Complex = std::complex<double>;
 
 // The modes at one speed, those of lowest frequency first.
 struct Station {
@@ -143,6 +143,7 @@ void put_searches(io::Group& group, io::StudySummary& summary, const std::vector
 }  // namespace
 
 StudyResult Modes::run(Context& context) {
+  if (options.motion != ModesOptions::Motion::bending) return line_modes(context, options);
   if (options.supports != ModesOptions::Supports::films) return rigid_modes(context, options);
   const std::vector<double> speeds = options.all_speeds();
   const std::vector<double> shape_speeds = options.all_shape_speeds();
@@ -168,8 +169,8 @@ StudyResult Modes::run(Context& context) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
       ModeSearch here;
-      auto modes = pack(shaft_modes(system, walker.at(list[i]), sought, limit, here));
-      modes.insert(modes.end(), {here.frequency, here.decay, here.counted, here.missed, here.gave_up});
+      const auto found = shaft_modes(system, walker.at(list[i]), sought, limit, here, options.condition);
+      auto modes = pack(found, here);
       ready += static_cast<std::size_t>(layout.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
                                    wanted, deck::from_si(list[i], unit), unit, results.seconds()));
@@ -180,12 +181,10 @@ StudyResult Modes::run(Context& context) {
     ++rounds;
     std::vector<std::vector<ShaftMode>> out;
     for (std::size_t i = 0; i < packed.size(); ++i) {
-      const std::vector<double>& p = packed[i];
-      out.push_back(unpack(p));
-      const auto end = p.size();
-      searches[list[i]] = {p[end - 5], p[end - 4], p[end - 3], p[end - 2], p[end - 1]};
-      missed.add(static_cast<int>(p[end - 2]));
-      if (p[end - 1] > 0 && out.back().size() < count) too_few = list[i];
+      ModeSearch& search = searches[list[i]];
+      out.push_back(unpack(packed[i], search));
+      missed.add(static_cast<int>(search.missed));
+      if (search.gave_up > 0 && out.back().size() < count) too_few = list[i];
     }
     return out;
   };
@@ -219,33 +218,34 @@ StudyResult Modes::run(Context& context) {
     return points_of(shaft_modes(on, x, sought, limit, of_other_mesh));
   });
   ModeReduction reduction(system, walker, sampled);
-  const std::vector<double> mass = rotor::node_masses(system.train().rotor);
-  std::vector<double> speed_column, frequency, real, decrement, factor, whirl_column, forward_column, taken_column;
+  ModeTables tables(rotor::node_positions(system.train().rotor), rotor::node_masses(system.train().rotor),
+                    options.condition);
+  std::vector<double> speed_column, frequency, real, decrement, factor;
   std::vector<std::int64_t> id_column;
-  std::vector<std::string> sense_column, stability_column;
+  std::vector<std::string> stability_column;
   for (const double speed : speeds) {
     const auto& modes = station_at(speed).modes;
     for (std::size_t k = 0; k < std::min(count, modes.size()); ++k) {
       const ShaftMode& m = modes[k];
-      const auto energy = spectral::whirl_energy(m.x, m.y, mass);
-      const auto* sense = spectral::name_of(spectral::sense_of_whirl(energy));
       speed_column.push_back(speed);
       id_column.push_back(m.id);
       frequency.push_back(m.lambda.imag());
       real.push_back(m.lambda.real());
       decrement.push_back(m.undamped ? 0 : spectral::log_decrement(m.lambda));
       factor.push_back(spectral::stability_factor(m.lambda));
-      whirl_column.push_back(energy.whirl);
-      forward_column.push_back(energy.forward);
-      taken_column.push_back(m.participation);
-      sense_column.emplace_back(sense);
       const char* const stability = name_of(m.undamped            ? StabilityClass::undamped
                                             : m.lambda.real() > 0 ? StabilityClass::unstable
                                                                   : StabilityClass::stable);
       stability_column.emplace_back(stability);
-      summary.modes.push_back({deck::from_si(speed, unit), m.lambda.real(), m.lambda.imag(), decrement.back(), sense,
-                               unit, bars.named(m.id, speed), stability});
-      summary.modes.back().more["participation"] = m.participation;
+      summary.modes.push_back({deck::from_si(speed, unit),
+                               m.lambda.real(),
+                               m.lambda.imag(),
+                               decrement.back(),
+                               {},
+                               unit,
+                               bars.named(m.id, speed),
+                               stability});
+      tables.add(m, summary.modes.back());
       reduction.put(summary, speed, k);
     }
   }
@@ -310,13 +310,11 @@ StudyResult Modes::run(Context& context) {
   spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
   bars.put(spectrum, id_column, speed_column);
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
-  spectrum.put("whirl", sense_column, "sense of whirl by the kinetic energy of the shaft's nodes");
-  spectrum.put("whirl_share", whirl_column, "1", "of the kinetic energy: 0 every node on a line, 1 on a circle");
-  spectrum.put("forward_share", forward_column, "1", "the same, backward motion counted negative");
+  tables.put_spectrum(spectrum);
   spectrum.put("stability", stability_column,
                "stable, unstable, or undamped: the real part is rounding, shown as zero");
-  spectrum.put("participation", taken_column, "1",
-               "largest motion of shaft and pedestals over that of any state, in their scales");
+  tables.put_map(group.child("whirl_map"));
+  tables.warn(summary, searches);
   group.set("speed_unit", unit);
   put_searches(group, summary, speeds, searches);
 
@@ -339,35 +337,9 @@ StudyResult Modes::run(Context& context) {
   group.child("critical").put("mode", critical_mode, "mode followed by its shape");
 
   put_bearings(group, context.machine);
-  auto& shapes = group.child("shapes");
-  const auto z = rotor::node_positions(system.train().rotor);
-  std::vector<double> flat[8], at_frequency, at_speed, at_decrement;
-  std::vector<std::string> at_sense;
-  std::vector<std::int64_t> at_mode;
-  for (const double speed : shape_speeds) {
-    const auto& modes = station_at(speed).modes;
-    for (std::size_t j = 0; j < std::min(count, modes.size()); ++j) {
-      ShaftMode m = modes[j];
-      at_speed.push_back(speed);
-      at_mode.push_back(m.id);
-      at_frequency.push_back(m.lambda.imag());
-      at_decrement.push_back(spectral::log_decrement(m.lambda));
-      at_sense.emplace_back(spectral::name_of(spectral::sense_of_whirl(m.x, m.y, mass)));
-      for (std::size_t k = 0; k < 8; ++k)
-        for (const Complex& v : *m.columns()[k / 2]) flat[k].push_back(k % 2 == 0 ? v.real() : v.imag());
-    }
-  }
-  const char* const names[] = {"x_real",       "x_imag",       "y_real",       "y_imag",
-                               "slope_x_real", "slope_x_imag", "slope_y_real", "slope_y_imag"};
-  for (std::size_t k = 0; k < 8; ++k)
-    shapes.put(names[k], {at_speed.size(), z.size()}, flat[k], k < 4 ? "1" : "1/m",
-               k < 4 ? "shape [mode][node], largest displacement one" : "its derivative along the shaft");
-  shapes.put("speed", at_speed, "rad/s", "speed of the shapes");
-  shapes.put("mode", at_mode, "mode followed by its shape");
-  shapes.put("z", z, "m", "axial position of the nodes");
-  shapes.put("frequency", at_frequency, "rad/s", "of the shapes");
-  shapes.put("log_decrement", at_decrement, "1", "of the shapes");
-  shapes.put("whirl", at_sense, "sense of whirl by the kinetic energy of the shaft's nodes");
+  std::vector<const std::vector<ShaftMode>*> shaped;
+  for (const double speed : shape_speeds) shaped.push_back(&station_at(speed).modes);
+  tables.put_shapes(group.child("shapes"), shape_speeds, shaped, count);
   missed.warn(summary);
   if (too_few)
     summary.warnings.push_back(fmt::format(

@@ -16,9 +16,22 @@ std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports
   return table;
 }
 
+std::span<const deck::Name<ModesOptions::Motion>> names(ModesOptions::Motion) {
+  using enum ModesOptions::Motion;
+  static constexpr deck::Name<ModesOptions::Motion> table[] = {
+      {bending, "bending", "across the axis"},
+      {torsion, "torsion", "about the axis, uncoupled from bending, without bearings: see 'held'"},
+      {axial, "axial", "along the axis, likewise"}};
+  return table;
+}
+
 void describe(deck::Description<ModesOptions>& d) {
   d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
   d.add("supports", &ModesOptions::supports, "what holds the journals");
+  d.add("motion", &ModesOptions::motion, "which motion of the shaft", "003 (1.61)-(1.62)");
+  d.add("held", &ModesOptions::held, deck::positive,
+        "nodes that do not turn (torsion) or do not move along the shaft (axial); none if empty")
+      .only(&ModesOptions::motion, {ModesOptions::Motion::torsion, ModesOptions::Motion::axial});
   d.add("range", &ModesOptions::range, "rad/s", deck::non_negative, "range of speeds; results carry its unit");
   d.add("points", &ModesOptions::points, deck::in(2, 1e8), "speeds in the range, evenly spaced with both ends");
   d.add("speeds", &ModesOptions::speeds, "rad/s", deck::non_negative, "single speeds instead of a range");
@@ -28,6 +41,9 @@ void describe(deck::Description<ModesOptions>& d) {
   d.add("operating", &ModesOptions::operating, "rad/s", deck::positive,
         "operating speeds, lowest to highest, from which separation margins of critical speeds are counted",
         "API 617, API 684");
+  d.add("condition", &ModesOptions::condition,
+        "condition number of every eigenvalue, by right and left vectors, and whether multiple ones have as many "
+        "vectors; of large machines it takes a second search");
   d.add("shapes_at", &ModesOptions::shapes_at, "rad/s", deck::positive,
         "speeds at which mode shapes are kept and drawn; the last of the speeds if not given");
   d.check([](const ModesOptions& o, const deck::Report& r) {
@@ -35,6 +51,9 @@ void describe(deck::Description<ModesOptions>& d) {
     if (o.operating && !(o.operating->from <= o.operating->to))
       r.fail("operating", "the lowest operating speed comes first");
     // Without films the shaft is taken at rest, whatever its speed.
+    if (o.motion != ModesOptions::Motion::bending && (o.range || !o.speeds.empty()))
+      r.fail(o.range ? "range" : "speeds", "torsion and axial motion do not depend on the speed: leave it out");
+    if (o.motion != ModesOptions::Motion::bending) return;
     if (o.supports != ModesOptions::Supports::films) return;
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
   });
@@ -59,12 +78,24 @@ std::string ModesOptions::unit() const {
   return range ? range->unit : speeds.empty() ? "rad/s" : speeds.front().unit;
 }
 
+void Modes::validate_line(const system::Machine& machine, const deck::Report& report) const {
+  if (machine.rotor.type == rotor::Options::Type::rigid)
+    return report.fail("motion", "a rigid rotor has neither torsion nor axial motion");
+  check_nodes("held", options.held, machine, report);
+  const bool torsion = options.motion == ModesOptions::Motion::torsion;
+  for (const rotor::Coupling& c : machine.rotor.couplings)
+    if ((torsion ? c.torsional_stiffness : c.axial_stiffness) <= 0)
+      report.fail("motion", fmt::format("the coupling of segment {} has no '{}'", c.segment,
+                                        torsion ? "torsional_stiffness" : "axial_stiffness"));
+}
+
 double Modes::memory(const system::Machine& machine, const LayoutOptions& /*layout*/) const {
   const double speeds = options.range ? options.points : static_cast<double>(options.speeds.size());
   return memory_of_equilibria(machine) + 1000 * speeds * std::min<double>(options.count, n_states(machine));
 }
 
 void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (options.motion != ModesOptions::Motion::bending) return validate_line(machine, report);
   if (options.supports != ModesOptions::Supports::films) return;
   bool at_rest = options.range && std::min(options.range->from, options.range->to) <= 0;
   for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/linear/mode_loss.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
 
 namespace whirl::study {
@@ -22,8 +23,9 @@ double participation(const std::vector<Complex>& shape, const std::vector<double
 }  // namespace
 
 std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency,
-                                   ModeSearch& search) {
+                                   ModeSearch& search, bool condition) {
   spectral::EigenOptions options;
+  options.left = condition;
   options.count = 2 * count + 40;
   options.rounding = true;
   std::vector<ShaftMode> out;
@@ -36,12 +38,20 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   const auto part_taken = [&](const spectral::Mode& mode) {
     return participation(mode.shape, scale, 2 * system.coordinates());
   };
-  const solve::MachineModes found =
+  solve::MachineModes found =
       solve::machine_modes(system, equilibrium, options,
                            {std::isfinite(max_frequency) ? max_frequency : 0, count,
                             [&](const spectral::Mode& mode) { return part_taken(mode) >= least_participation; }});
   search = {found.frequency, found.decay, static_cast<double>(found.counted),
             static_cast<double>(found.doubt.empty() ? found.missed : -1), found.gave_up ? 1.0 : 0.0};
+  const auto slowest = std::min_element(found.modes.begin(), found.modes.end(), [](const auto& m, const auto& n) {
+    return std::abs(m.lambda) < std::abs(n.lambda);
+  });
+  if (slowest != found.modes.end() && slowest->defective()) {
+    search.rest_multiplicity = slowest->multiplicity;
+    search.rest_vectors = slowest->vectors;
+  }
+  if (system.train().rotor.loss_factor > 0) found.modes = with_loss(system, equilibrium, found.modes);
   for (const auto& mode : found.modes) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
     if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
@@ -56,6 +66,9 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     }
     ShaftMode m;
     m.participation = taken;
+    m.condition = mode.condition;
+    m.multiplicity = mode.multiplicity;
+    m.vectors = mode.vectors;
     m.undamped = mode.neutral();
     m.lambda = m.undamped ? Complex(0, mode.lambda.imag()) : mode.lambda;
     Complex largest = 0;
@@ -72,9 +85,11 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   return out;
 }
 
-std::vector<double> pack(std::vector<ShaftMode> modes) {
-  std::vector<double> flat{static_cast<double>(modes.size()),
-                           modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size())};
+std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search) {
+  std::vector<double> flat{search.frequency,         search.decay,       search.counted, search.missed, search.gave_up,
+                           search.rest_multiplicity, search.rest_vectors};
+  flat.push_back(static_cast<double>(modes.size()));
+  flat.push_back(modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size()));
   const auto put = [&](Complex v) {
     flat.push_back(v.real());
     flat.push_back(v.imag());
@@ -82,16 +97,20 @@ std::vector<double> pack(std::vector<ShaftMode> modes) {
   for (ShaftMode& m : modes) {
     put(m.lambda);
     put({m.undamped ? 1.0 : 0.0, m.participation});
+    put({static_cast<double>(m.multiplicity), static_cast<double>(m.vectors)});
+    put(m.condition);
     for (const auto* column : m.columns())
       for (const Complex& v : *column) put(v);
   }
   return flat;
 }
 
-std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
-  const auto count = static_cast<std::size_t>(flat[0]), nodes = static_cast<std::size_t>(flat[1]);
+std::vector<ShaftMode> unpack(const std::vector<double>& flat, ModeSearch& search) {
+  search = {flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], flat[6]};
+  const auto count = static_cast<std::size_t>(flat[ModeSearch::size]),
+             nodes = static_cast<std::size_t>(flat[ModeSearch::size + 1]);
   std::vector<ShaftMode> modes(count);
-  std::size_t at = 2;
+  std::size_t at = ModeSearch::size + 2;
   const auto take = [&] {
     at += 2;
     return Complex(flat[at - 2], flat[at - 1]);
@@ -101,6 +120,10 @@ std::vector<ShaftMode> unpack(const std::vector<double>& flat) {
     const Complex facts = take();
     m.undamped = facts.real() > 0;
     m.participation = facts.imag();
+    const Complex multiple = take();
+    m.multiplicity = static_cast<int>(multiple.real());
+    m.vectors = static_cast<int>(multiple.imag());
+    m.condition = take().real();
     for (auto* column : m.columns())
       for (std::size_t k = 0; k < nodes; ++k) column->push_back(take());
   }

@@ -99,15 +99,18 @@ public:
     Vec x = walker_.at(speed);
     PetscInt begin = 0, end = 0;
     core::check(VecGetOwnershipRange(x, &begin, &end));
-    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on its momentum
-    // rows; own states of films, behind all pairs of coordinate and rate, are not forced.
+    // F holds minus the forcing Omega^2 (u_c cos + u_s sin) = Re(Omega^2 (u_c - i u_s) exp(i angle)) on the
+    // rotor's rows; own states of films, behind all pairs of coordinate and rate, are not forced.
     std::vector<double> right(static_cast<std::size_t>(2 * (end - begin)), 0.0), amplitude;
-    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); row += 2) {
-      const auto q = static_cast<std::size_t>(row / 2), at = static_cast<std::size_t>(2 * (row - begin));
-      right[at] = speed * speed * system_.unbalance_cosine()[q];
-      right[at + 1] = -speed * speed * system_.unbalance_sine()[q];
+    for (PetscInt row = begin; row < std::min(end, 2 * system_.coordinates()); ++row) {
+      const auto of = static_cast<std::size_t>(row), at = static_cast<std::size_t>(2 * (row - begin));
+      right[at] = speed * speed * system_.forcing_cosine()[of];
+      right[at + 1] = -speed * speed * system_.forcing_sine()[of];
     }
+    const bool hysteretic = system_.train().rotor.loss_factor > 0;
+    if (hysteretic) system_.set_loss(system_.loss_at(speed));
     solver_.solve(x, speed, right, amplitude);
+    if (hysteretic) system_.set_loss({});  // equilibria know of none
     std::vector<double> state[2], shaft[2];
     for (std::size_t part = 0; part < 2; ++part) {
       core::Vector v = core::duplicate(x);
@@ -225,8 +228,7 @@ StudyResult UnbalanceResponse::run(Context& context) {
   if (nodes.empty()) {
     for (const auto& b : context.machine.bearings) wanted.insert(b.node);
     for (const auto& name : options.unbalance)
-      for (const auto& plane : context.machine.unbalance[*system::find_unbalance(context.machine, name)].planes)
-        wanted.insert(plane.node);
+      for (const int node : system::unbalance_nodes(context.machine, name)) wanted.insert(node);
     nodes.assign(wanted.begin(), wanted.end());
   }
   const std::string unit = options.range.unit;

@@ -7,7 +7,9 @@ namespace whirl::study {
 void describe(deck::Description<UnbalanceResponseOptions>& d) {
   using O = UnbalanceResponseOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once").required();
+  d.add("unbalance", &O::unbalance,
+        "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do")
+      .required();
   d.add("range", &O::range, "rad/s", deck::positive, "range of speeds; results carry its unit").required();
   d.add("points", &O::points, deck::in(2, 1e8), "speeds in the range, evenly spaced with both ends");
   d.add("nodes", &O::nodes, deck::positive, "nodes to report; bearings and unbalance planes if empty");

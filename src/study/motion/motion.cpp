@@ -14,6 +14,7 @@
 #include "study/make_plant.hpp"
 #include "study/motion/motion_record.hpp"
 #include "study/motion/motion_start.hpp"
+#include "study/motion/plane.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/transient/integrator.hpp"
@@ -30,7 +31,7 @@ MotionOptions limited(MotionOptions options, const system::Plant& system) {
 }
 
 // A motion revolution by revolution. Time begins anew with each one, so that the equations repeat themselves to the
-// bit.
+// bit; but where external forces act it goes on.
 class Player {
 public:
   Player(Context& context, const MotionOptions& given)
@@ -40,10 +41,13 @@ public:
         system_(*plant_),
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
+        forces_(make_forces(options_.forces, context.machine, system_)),
         integrator_(system_, {options_.speed.value}, start_.x.get(),
                     {.tolerance = options_.tolerance,
+                     .forces = acting(forces_),
                      .after_step = [this](double time, double step) { progress(time, step); }}),
-        record_(options_, system_.places(), system_.forced() || !options_.unbalance.empty(), integrator_.scaled()),
+        forced_(system_.forced() || !options_.unbalance.empty()),
+        record_(options_, system_.places(), forced_, integrator_.scaled(), driven()),
         films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
@@ -55,7 +59,9 @@ public:
     try {
       for (; done_ < total; ++done_) {
         // Directions need time to turn to those that grow most, before their growth counts.
-        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) integrator_.carry(&*tangents_);
+        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) carried_ = &*tangents_;
+        integrator_.carry(carried_);
+        if (done_ >= options_.discard && !section_) cut();
         revolve(done_ >= options_.discard);
         save();
       }
@@ -67,11 +73,21 @@ public:
   }
 
 private:
+  [[nodiscard]] double period() const { return 2 * std::numbers::pi / options_.speed.value; }
+  [[nodiscard]] double turns_before() const { return forces_.empty() ? 0 : done_; }
+  // External forces change while the motion is recorded.
+  [[nodiscard]] bool driven() const {
+    return !forces_.constant(period() * options_.discard, period() * (options_.discard + options_.revolutions));
+  }
+
   void revolve(bool record) {
-    const double period = 2 * std::numbers::pi / options_.speed.value;
     std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
     for (int k = 1; k <= options_.samples; ++k) {
-      integrator_.advance(period * k / options_.samples);
+      const double time = period() * (turns_before() * options_.samples + k) / options_.samples;
+      if (record && section_)
+        section_->advance(time, carried_);
+      else
+        integrator_.advance(time);
       if (tangents_) {
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
@@ -80,9 +96,28 @@ private:
       const system::Observed seen = system_.observe(start_.x.get());
       if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
       if (record) record_.sample(seen.shown, integrator_.scaled());
+      if (!record && !forced_ && done_ >= options_.discard - std::max(1, options_.discard / 4)) watch_.see(seen.shown);
     }
-    if (record) record_.close(growth, period);
-    integrator_.restart(0, integrator_.step());
+    if (record) record_.close(growth, period());
+    if (forces_.empty()) integrator_.restart(0, integrator_.step());
+  }
+
+  // Sets up the section, if there is one.
+  void cut() {
+    if (plane_ || (!options_.section && (forced_ || !watch_.seen()))) return;
+    const system::ShownPlaces places = system_.places();
+    plane_ = options_.section ? plane_of(*options_.section, places, system_.size()) : watch_.choose(places);
+    record_.set_section(plane_->text(places));
+    const auto here = [this] {
+      integrator_.state(start_.x.get());
+      return start_.x.get();
+    };
+    section_.emplace(
+        integrator_, [this, here] { return plane_->height(system_, here()); },
+        options_.section ? options_.section->direction : transient::Sense::rising,
+        [this, here](double time) {
+          record_.cross(time - turns_before() * period(), system_.shown_at(here()), integrator_.scaled());
+        });
   }
 
   // A revolution may take minutes: each step says where it ended.
@@ -92,7 +127,7 @@ private:
     context_.results.progress(
         fmt::format("{}: revolution {} of {}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
                     done_ + 1, options_.discard + options_.revolutions, done_ < options_.discard ? " (discarded)" : "",
-                    turn * time, turn * step, context_.results.seconds()));
+                    turn * (time - period() * turns_before()), turn * step, context_.results.seconds()));
   }
 
   void save() {
@@ -103,12 +138,14 @@ private:
     if (!due) return;
     io::Group state;
     state.set("done", done_ + 1);
+    state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
     put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       put_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k), layout_.shared, "deviation");
     record_.save(state.child("record"), layout_.shared);
+    if (watch_.seen()) watch_.save(state.child("watch"));
     context_.results.save_checkpoint(state);
     last_saved_ = context_.results.seconds();
   }
@@ -116,10 +153,11 @@ private:
   void restore(const io::Group& state) {
     done_ = static_cast<int>(state.integer("done"));
     take_vector(state, "u", integrator_.scaled());
-    integrator_.restart(0, state.real("step"));
+    integrator_.restart(state.real("time"), state.real("step"));
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       take_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k));
     record_.load(state.group("record"));
+    if (state.has_group("watch")) watch_.load(state.group("watch"));
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
@@ -128,12 +166,11 @@ private:
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
     summary.set("speed", options_.speed.value, "rad/s");
-    const double period = 2 * std::numbers::pi / options_.speed.value;
     for (std::size_t k = 0; k < start_.multipliers.size() && k < static_cast<std::size_t>(options_.exponents); ++k) {
       const double modulus = std::abs(start_.multipliers[k]);
       summary.set(fmt::format("cycle.multiplier.{}.modulus", k + 1), modulus, "1");
       summary.set(fmt::format("cycle.multiplier.{}.angle", k + 1), std::abs(std::arg(start_.multipliers[k])), "rad");
-      summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period, "1/s");
+      summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period(), "1/s");
     }
     auto& group = results.group();
     group.set("speed", options_.speed.value);
@@ -150,9 +187,15 @@ private:
   system::Plant& system_;
   MotionOptions options_;
   StartState start_;
+  transient::Forces forces_;
   transient::Integrator integrator_;
   std::optional<transient::Tangents> tangents_;
+  transient::Tangents* carried_ = nullptr;
+  bool forced_;
   MotionRecord record_;
+  Watch watch_;
+  std::optional<Plane> plane_;
+  std::optional<transient::Section> section_;
   FilmLimit films_;
   int done_ = 0;
   double last_saved_ = -1e9;

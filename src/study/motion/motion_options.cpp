@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include "study/cost.hpp"
+#include "study/motion/motion_start.hpp"
+#include "whirl/film/options.hpp"
 #include "whirl/study/motion/motion.hpp"
 
 namespace whirl::study {
@@ -9,15 +11,8 @@ std::span<const deck::Name<MotionStart::From>> names(MotionStart::From) {
   using enum MotionStart::From;
   static constexpr deck::Name<MotionStart::From> table[] = {
       {equilibrium, "equilibrium", "where the balanced machine sits"},
-      {cycle, "cycle", "the synchronous cycle of the unbalanced machine, stable or not, with its multipliers"}};
-  return table;
-}
-
-std::span<const deck::Name<MotionOptions::Window>> names(MotionOptions::Window) {
-  using enum MotionOptions::Window;
-  static constexpr deck::Name<MotionOptions::Window> table[] = {
-      {none, "none", "exact for motions that repeat themselves within the record"},
-      {hann, "hann", "Hann's: leaks little where tones lie between the lines"}};
+      {cycle, "cycle", "the synchronous cycle of the unbalanced machine, stable or not, with its multipliers"},
+      {centre, "centre", "the journal of a rigid rotor on one bearing, at rest in the centre of it"}};
   return table;
 }
 
@@ -30,8 +25,11 @@ void describe(deck::Description<MotionStart>& d) {
 void describe(deck::Description<MotionOptions>& d) {
   using O = MotionOptions;
   d.add("name", &O::name, "name in the results; the kind if not given");
-  d.add("unbalance", &O::unbalance, "names of the unbalances to apply, all at once; none for the balanced machine");
+  d.add("unbalance", &O::unbalance,
+        "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do; none for "
+        "the balanced machine");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.named("forces", &O::forces, &ForceOptions::name, "external forces over the time since the beginning, by name");
   d.add("start", &O::start, "state at the beginning");
   d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
   d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
@@ -44,13 +42,34 @@ void describe(deck::Description<MotionOptions>& d) {
         "distance between Poincare points, relative to the size of the motion, below which it repeats itself");
   d.add("window", &O::window, "what multiplies the record before its Fourier transform");
   d.add("orbit", &O::orbit, deck::non_negative, "revolutions whose orbit is stored, the last ones");
+  d.add(
+      "section", &O::section,
+      "Poincare section by a plane in the states; without it the points of a motion that nothing forces lie where the "
+      "coordinate that travels most passes its mean");
+  d.add("orders", &O::orders, "amplitude and phase of orders of the speed over the course of the motion");
+  d.add("waterfall", &O::waterfall, "spectra over the course of the motion");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
 }
 
+void check_start(const MotionStart& start, const system::Machine& machine, const deck::Report& report) {
+  if (start.from != MotionStart::From::centre) return;
+  if (machine.bearings.size() != 1 || machine.rotor.type != rotor::Options::Type::rigid)
+    return report.fail("start.from",
+                       "only a rigid rotor on one bearing can be let go from the centre of its bearing: begin at the "
+                       "equilibrium, with an 'offset'");
+  if (film::facts(machine.bearings.front().film).coefficients)
+    report.fail("start.from", "a linear film knows no centre of its bearing: begin at the equilibrium");
+}
+
 void Motion::validate(const system::Machine& machine, const deck::Report& report) const {
+  check_start(options.start, machine, report);
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+  check_forces("forces", options.forces, machine, report);
+  if (options.section) check_section("section", *options.section, machine, report);
+  if (options.orders) check_orders("orders", *options.orders, options.revolutions, options.samples, report);
+  if (options.waterfall) check_waterfall("waterfall", *options.waterfall, options.revolutions, options.samples, report);
   const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
   if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
     report.fail(

@@ -19,9 +19,10 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like)
+MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like, bool driven)
     : options_(options),
       forced_(forced),
+      driven_(driven),
       places_(std::move(places)),
       like_(like),
       period_(2 * std::numbers::pi / options.speed.value),
@@ -51,12 +52,14 @@ void MotionRecord::close(const std::vector<double>& growth, double duration) {
   open_ = {};
   points_.push_back(last_state_);
   ends_.insert(ends_.end(), last_.begin(), last_.end());
+  section_.close();
   if (!growth.empty()) exponents_.add(growth, duration);
 }
 
 transient::Evidence MotionRecord::evidence() const {
   transient::Evidence e;
   e.forced = forced_;
+  e.driven = driven_;
   const double count = static_cast<double>(points_.size()) * options_.samples;
   double of_all[] = {0, squares_};  // square of the mean, sum of the squares
   for (const double s : sum_) of_all[0] += (s / count) * (s / count);
@@ -64,8 +67,10 @@ transient::Evidence MotionRecord::evidence() const {
   MPI_Allreduce(MPI_IN_PLACE, of_all, 2, MPI_DOUBLE, MPI_SUM, comm);
   e.size = std::sqrt(std::max(0.0, of_all[1] / count - of_all[0]));
   e.return_tolerance = options_.return_tolerance;
-  if (e.size >= e.rest) e.returns = transient::return_distances(points_, options_.max_period, e.size, comm);
-  e.fading = transient::fading_of_returns(points_, options_.max_period, comm);
+  // A motion that nothing forces has no angle to return at, but a section.
+  const auto& returning = forced_ ? points_ : section_.states();
+  if (e.size >= e.rest) e.returns = transient::return_distances(returning, options_.max_period, e.size, comm);
+  e.fading = transient::fading_of_returns(returning, options_.max_period, comm);
   if (options_.exponents > 0) {
     e.exponents = exponents_.values();
     e.uncertainties = exponents_.uncertainties();
@@ -135,8 +140,7 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
   const std::size_t n = places_.names.size();
   const auto e = evidence();
   const int named = e.size < e.rest ? 0 : tones_named;
-  const auto window =
-      options_.window == MotionOptions::Window::hann ? transient::Window::hann : transient::Window::none;
+  const auto window = options_.window;
   std::vector<std::vector<transient::Spectrum>> all;
   for (std::size_t b = 0; b < n; ++b) {
     all.emplace_back();
@@ -220,6 +224,9 @@ void MotionRecord::write(io::Group& group, io::StudySummary& summary) const {
   group.set("evidence", v.reason);
   group.set("samples", options_.samples);
   if (v.period > 0) summary.set("period", v.period, "1");
+  write_section(group, summary, v);
+  write_rotation(group, summary, v);
+  write_short_time(group);
   summary.set("size", e.size, "1");
   for (std::size_t k = 0; k < e.returns.size(); ++k) summary.set(fmt::format("return.{}", k + 1), e.returns[k], "1");
   write_exponents(group, summary);
@@ -245,6 +252,7 @@ void MotionRecord::save(io::Group& group, bool shared) const {
   put_columns(group, "points", points, shared ? like_ : nullptr, "1", "scaled states at the ends of revolutions");
   group.put("growth", exponents_.growth(), "1", "of deviations");
   group.put("durations", exponents_.durations(), "s", "of revolutions");
+  section_.save(group.child("section"), shared, like_);
 }
 
 void MotionRecord::load(const io::Group& group) {
@@ -264,6 +272,7 @@ void MotionRecord::load(const io::Group& group) {
     exponents_.add({growth.begin() + static_cast<std::ptrdiff_t>(i) * options_.exponents,
                     growth.begin() + static_cast<std::ptrdiff_t>(i + 1) * options_.exponents},
                    durations[i]);
+  section_.load(group.group("section"), like_);
 }
 
 }  // namespace whirl::study

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "study/motion/section_record.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/motion/motion.hpp"
@@ -19,15 +20,18 @@ namespace whirl::study {
 class MotionRecord {
 public:
   /// States are laid out as `like`, which outlives this.
-  /// `forced` by the system itself, beside the unbalance of the options.
-  /// `forced`: by an unbalance, or the system by itself.
-  MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like);
+  /// `forced`: by an unbalance, or the system by itself. `driven`: by external forces that change meanwhile.
+  MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like, bool driven = false);
 
   /// A sample at a state; `scaled` is it over its scales. Not collective.
   void sample(const std::vector<system::PlaceState>& shown, Vec scaled);
   /// The last sample closes a revolution; `growth` of the deviations over it, empty if none were carried. Samples of a
   /// revolution that is never closed, because it ended in contact, count for nothing.
   void close(const std::vector<double>& growth, double duration);
+  /// A crossing of the section, `time` [s] since the present revolution began. Not collective.
+  void cross(double time, const std::vector<system::PlaceState>& shown, Vec scaled);
+  /// What the section is, in words.
+  void set_section(std::string text) { section_text_ = std::move(text); }
   [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
 
   /// The verdict so far. Collective.
@@ -47,9 +51,14 @@ private:
   void write_spectrum(io::Group& group, io::StudySummary& summary) const;
   void write_full_spectrum(io::Group& group, transient::Window window) const;
   void write_exponents(io::Group& group, io::StudySummary& summary) const;
+  void write_section(io::Group& group, io::StudySummary& summary, const transient::Verdict& verdict) const;
+  void write_rotation(io::Group& group, io::StudySummary& summary, const transient::Verdict& verdict) const;
+  void write_short_time(io::Group& group) const;
+  [[nodiscard]] std::vector<std::array<double, 2>> returning_points(std::size_t place) const;
+  [[nodiscard]] std::array<double, 2> whirl_tone(std::size_t place, double rotation, double interval) const;
 
   const MotionOptions& options_;
-  bool forced_;
+  bool forced_, driven_;
   system::ShownPlaces places_;
   Vec like_;
   double period_;                // of a revolution [s]
@@ -66,6 +75,8 @@ private:
   std::vector<double> last_state_;           // the last scaled state
   std::vector<std::vector<double>> points_;  // scaled states at the ends of revolutions
   transient::Exponents exponents_;
+  SectionRecord section_;
+  std::string section_text_;  // empty: there is none
 };
 
 }  // namespace whirl::study

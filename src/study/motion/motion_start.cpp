@@ -1,5 +1,6 @@
 #include "study/motion/motion_start.hpp"
 
+#include <array>
 #include <numbers>
 
 #include "study/make_plant.hpp"
@@ -45,7 +46,12 @@ StartState start_state(system::Plant& system, const MotionStart& start) {
   StartState state;
   state.x = find_rest(system);
   if (start.from == MotionStart::From::cycle) state.multipliers = to_cycle(system, state.x.get());
-  system.displace(state.x.get(), start.offset);
+  std::array<double, 2> offset = start.offset;
+  if (start.from == MotionStart::From::centre) {
+    const std::array<double, 2> place = system.observe(state.x.get()).shown.front().position;
+    for (std::size_t d = 0; d < 2; ++d) offset[d] -= place[d] / system.places().clearances.front();
+  }
+  system.displace(state.x.get(), offset);
   return state;
 }
 

@@ -20,6 +20,9 @@ struct StartState {
   return start.from == MotionStart::From::cycle ? Sharing::nothing : Sharing::machine;
 }
 
+/// Reports a start that this machine does not have.
+void check_start(const MotionStart& start, const system::Machine& machine, const deck::Report& report);
+
 /// The state at shaft angle zero. Collective on the system's communicator; throws core::NotConverged.
 [[nodiscard]] StartState start_state(system::Plant& system, const MotionStart& start);
 

@@ -11,6 +11,7 @@
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/motion/motion_start.hpp"
+#include "study/motion/short_time.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/deck/units.hpp"
@@ -82,7 +83,8 @@ public:
         layout_(plan(context, sharing_of(options.start))),
         system_(layout_.space, system::train_of(context.machine, options.unbalance), drive_.speed),
         x_(start_state(system_, options.start).x),
-        integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),
+        forces_(make_forces(options.forces, context.machine, system_)),
+        integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance, .forces = acting(forces_)}),
         places_(system_.places()),
         films_(places_),
         table_(columns(unit_, places_.names.size(), options.nodes.size())) {
@@ -135,6 +137,7 @@ private:
       }
     }
     record(r);
+    keep(r);
     context_.results.progress(fmt::format("{}: revolution {} of {}, {:.1f} {}, step {:.3g} of a revolution, {:.1f} s",
                                           context_.results.summary().name, done_ + 1, total_, speed_at(done_ + 1),
                                           unit_, integrator_.step() * system_.speed() / (2 * std::numbers::pi),
@@ -170,6 +173,13 @@ private:
     table_.append(row);
   }
 
+  // Samples of all places, where spectra of them are wanted.
+  void keep(const Revolution& r) {
+    if (!options_.orders && !options_.waterfall) return;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(options_.samples); ++k)
+      for (const auto& place : r.samples) kept_.insert(kept_.end(), place[k].begin(), place[k].end());
+  }
+
   void save() {
     if (!options_.checkpoint) return;
     // At most once a second; rank 0 decides for all.
@@ -178,6 +188,7 @@ private:
     if (!due) return;
     io::Group state;
     state.set("done", done_ + 1);
+    state.put("kept", kept_, "m", "samples [sample][place][x, y]");
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
@@ -192,7 +203,22 @@ private:
     take_vector(state, "u", integrator_.scaled());
     integrator_.restart(state.real("time"), state.real("step"));
     table_.read(state.group("run_up"));
+    kept_ = state.reals("kept");
     context_.results.add_earlier_seconds(state.real("seconds"));
+  }
+
+  void write_spectra(io::Group& group) const {
+    if (!options_.orders && !options_.waterfall) return;
+    AngleRecord r{places_.names,
+                  "m",
+                  options_.samples,
+                  kept_,
+                  [this](double n) { return speed_at(n); },
+                  [this](double n) { return drive_.time_of(2 * std::numbers::pi * n); },
+                  unit_};
+    for (const int node : options_.nodes) r.names.push_back(fmt::format("node {}", node));
+    if (options_.orders) write_orders(group, r, *options_.orders);
+    if (options_.waterfall) write_waterfall(group, r, *options_.waterfall);
   }
 
   // The largest amplitude of each place and where it was.
@@ -222,6 +248,7 @@ private:
     }
     auto& group = results.group();
     table_.write(group.child("run_up"));
+    write_spectra(group);
     group.put("node", std::vector<std::int64_t>(options_.nodes.begin(), options_.nodes.end()), "shaft nodes, 1-based");
     group.set("acceleration", drive_.acceleration);
     group.set("speed_unit", unit_);
@@ -238,10 +265,12 @@ private:
   Layout layout_;
   system::RotorSystem system_;
   core::Vector x_;
+  transient::Forces forces_;
   transient::Integrator integrator_;
   system::ShownPlaces places_;
   FilmLimit films_;
   io::Table table_;
+  std::vector<double> kept_;  // [sample][place and node][x, y]
   int total_ = 0, done_ = 0;
   double last_saved_ = -1e9;
 };

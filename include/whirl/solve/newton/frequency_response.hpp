@@ -19,12 +19,16 @@ class FrequencyResponse {
 public:
   explicit FrequencyResponse(problem::System& system);
   ~FrequencyResponse();
-  /// `right` and `amplitude` [2 x local size]: real and imaginary part of each local entry in turn, SI. Linearised at
-  /// the equilibrium x. Collective.
+  /// Takes the derivatives at the equilibrium x and the system's parameter. Collective.
+  void linearise(Vec x);
+  /// Factorises the matrix for a frequency [rad/s]. Collective; throws core::NotConverged if it is singular.
+  void factorise(double omega);
+  /// `right` and `amplitude` [2 x local size]: real and imaginary part of each local entry in turn, SI. Collective.
+  void solve(const std::vector<double>& right, std::vector<double>& amplitude);
+  /// All three.
   void solve(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
 
 private:
-  void solve_shifted(Vec x, double omega, const std::vector<double>& right, std::vector<double>& amplitude);
   problem::System& system_;
   core::Vector rest_, state_scale_, residual_scale_;
   core::Matrix jx_, jd_;

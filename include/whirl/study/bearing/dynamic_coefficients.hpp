@@ -11,6 +11,7 @@
 namespace whirl::study {
 
 struct DynamicCoefficientsOptions {
+  enum class Method { perturbation, enforced };
   std::string name;
   std::string bearing;                 ///< its name; the first of the deck if empty
   std::vector<deck::Quantity> speeds;  ///< [rad/s]
@@ -21,10 +22,14 @@ struct DynamicCoefficientsOptions {
   std::vector<double> frequencies{1};  ///< omega/Omega, in the summary and the tables
   std::optional<std::array<double, 2>> frequency_range;  ///< omega/Omega, lowest and highest, in the tables only
   int points = 30;                                       ///< frequencies in that range
+  Method method = Method::perturbation;
+  /// of enforced motion, along x and y in clearances; a slope's is as much over twice the length of the bearing
+  std::vector<double> amplitudes;
 
   /// Those of the list, then those of the range.
   [[nodiscard]] std::vector<double> all_frequencies() const;
 };
+[[nodiscard]] std::span<const deck::Name<DynamicCoefficientsOptions::Method>> names(DynamicCoefficientsOptions::Method);
 void describe(deck::Description<DynamicCoefficientsOptions>& d);
 
 class DynamicCoefficients final : public StudyWith<DynamicCoefficientsOptions> {

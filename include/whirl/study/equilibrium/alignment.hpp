@@ -19,6 +19,7 @@ class Alignment final : public StudyWith<AlignmentOptions> {
 public:
   static constexpr std::string_view key = "alignment";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] StudyResult run(Context& context) override;
 };

@@ -23,6 +23,7 @@ class UnbalanceResponse final : public StudyWith<UnbalanceResponseOptions> {
 public:
   static constexpr std::string_view key = "unbalance_response";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool takes_hysteresis() const override { return true; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   [[nodiscard]] double memory(const system::Machine& machine, const LayoutOptions& layout) const override;
   [[nodiscard]] StudyResult run(Context& context) override;

@@ -2,14 +2,16 @@
 // A motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, and what kind of motion it is.
 
 #include <array>
+#include <optional>
 
-#include "whirl/study/study.hpp"
+#include "whirl/study/motion/assessment.hpp"
+#include "whirl/study/motion/forces.hpp"
 
 namespace whirl::study {
 
 /// Where a motion begins.
 struct MotionStart {
-  enum class From { equilibrium, cycle };
+  enum class From { equilibrium, cycle, centre };
   From from = From::equilibrium;
   std::array<double, 2> offset{};  ///< of every journal in x and y, per clearance
 };
@@ -17,10 +19,10 @@ struct MotionStart {
 void describe(deck::Description<MotionStart>& d);
 
 struct MotionOptions {
-  enum class Window { none, hann };
   std::string name;
   std::vector<std::string> unbalance;  ///< names of the machine's unbalances, applied together; none: balanced
   deck::Quantity speed;                ///< [rad/s]
+  std::vector<ForceOptions> forces;    ///< external, over the time since the motion began
   MotionStart start;
   int discard = 200;      ///< revolutions before anything is recorded
   int revolutions = 400;  ///< recorded
@@ -29,11 +31,13 @@ struct MotionOptions {
   int exponents = 2;  ///< Lyapunov exponents, the largest
   int max_period = 8;
   double return_tolerance = 1e-4;
-  Window window = Window::hann;
+  transient::Window window = transient::Window::hann;
   int orbit = 20;  ///< revolutions whose orbit is stored, the last ones
+  std::optional<SectionOptions> section;
+  std::optional<OrderOptions> orders;
+  std::optional<WaterfallOptions> waterfall;
   bool checkpoint = true;
 };
-[[nodiscard]] std::span<const deck::Name<MotionOptions::Window>> names(MotionOptions::Window);
 void describe(deck::Description<MotionOptions>& d);
 
 class Motion final : public StudyWith<MotionOptions> {

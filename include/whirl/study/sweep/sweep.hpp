@@ -45,6 +45,7 @@ class Sweep final : public StudyWith<SweepOptions> {
 public:
   static constexpr std::string_view key = "sweep";
   [[nodiscard]] std::string_view kind() const override { return key; }
+  [[nodiscard]] bool takes_hysteresis() const override { return true; }
   [[nodiscard]] bool needs_rotor() const override { return false; }
   void validate(const system::Machine& machine, const deck::Report& report) const override;
   void validate_among(std::span<const std::unique_ptr<Study>> before, const deck::Report& report) const override;

@@ -1,0 +1,26 @@
+"""Shapes of torsion and of motion along the shaft."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .style import COLOURS, save
+
+SHOWN = 6
+
+
+def draw(study):
+    """The lowest modes along the shaft, each named by its frequency."""
+    if not study.has("line/z", "line/shape", "spectrum/frequency"):
+        return []
+    z, frequency = study.get("line/z"), np.atleast_1d(study.get("spectrum/frequency"))
+    shapes = np.reshape(study.get("line/shape"), (len(frequency), len(z)))
+    figure, axis = plt.subplots(figsize=(8.6, 4.4))
+    handles = []
+    for k, (f, shape) in enumerate(zip(frequency[:SHOWN], shapes)):
+        colour = COLOURS[k % len(COLOURS)]
+        axis.plot(z, shape, color=colour, linewidth=1.4, marker=".", markersize=4)
+        handles.append(Line2D([], [], color=colour, marker=".", label=f"{f:.4g} rad/s"))
+    axis.axhline(0, color="black", linewidth=0.5)
+    axis.set_xlabel("z [m]")
+    axis.set_ylabel("twist or displacement, largest one [-]")
+    return save(figure, study, "line-modes", "undamped modes about or along the axis; no bearings", handles=handles)

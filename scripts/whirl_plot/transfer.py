@@ -1,0 +1,69 @@
+"""Frequency responses: amplitude and phase of every output over the frequency, one colour for each input."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+
+from .style import COLOURS, INK, ROTATION, save, speed_axis
+
+LINES = ("-", (0, (4, 2)), (0, (1.2, 1.4)), (0, (7, 1.6, 1.2, 1.6)))
+
+
+def ways_of(response):
+    """(group, words) of the machine, and of machines with stiffness and damping in place of their films."""
+    for name in sorted((n for n in response if "frequency" in response[n].attrs), key=lambda n: (n != "machine", n)):
+        at = response[name].attrs["frequency"]
+        yield name, {"machine": "machine", "coefficients": "K, C at each frequency", "given": "K, C as given"}.get(name, f"K, C at {at:.5g} rad/s")
+
+
+def turned(phase):
+    """Degrees, broken where the phase passes 180."""
+    degrees = np.rad2deg(phase)
+    return np.where(np.abs(np.diff(degrees, prepend=degrees[0])) > 180, np.nan, degrees)
+
+
+def draw(study):
+    if "response" not in study.group or "machine" not in study.group["response"]:
+        return []
+    response = study.group["response"]
+    factor, _, _, _ = speed_axis(study.attribute("frequency_unit", "rad/s"))
+    unit = study.attribute("frequency_unit", "rad/s")
+    frequency = response["frequency"][()] * factor
+    ways, pairs = list(ways_of(response)), list(response["machine"])
+    outputs = list(dict.fromkeys(p.split(".from.")[0] for p in pairs))
+    inputs = list(dict.fromkeys(p.split(".from.")[1] for p in pairs))
+    log = np.allclose(np.diff(np.log(frequency)), np.log(frequency[1] / frequency[0]), rtol=1e-6)
+    files = []
+    for output in outputs:
+        figure, (top, bottom) = plt.subplots(2, 1, figsize=(8.6, 6.4), sharex=True, height_ratios=[1.6, 1])
+        units = []
+        for colour, source in zip(COLOURS * len(inputs), inputs):
+            for (way, _), line in zip(ways, LINES * len(ways)):
+                table = response[way][f"{output}.from.{source}"]
+                amplitude = table["amplitude"][()]
+                if np.all(amplitude == 0):
+                    continue
+                width = 1.6 if way == "machine" else 1.2
+                look = {"color": colour, "linestyle": line, "linewidth": width}
+                if way == "coefficients":  # the same curve: points on it
+                    look = {"color": colour, "linestyle": "none", "marker": ".", "markersize": 5, "markevery": max(1, len(frequency) // 40)}
+                top.plot(frequency, amplitude, **look)
+                bottom.plot(frequency, turned(table["phase"][()]), **look)
+                units.append(str(table["amplitude"].attrs.get("unit", "")))
+        if not units:
+            plt.close(figure)
+            continue
+        top.set_yscale("log")
+        if log:
+            top.set_xscale("log")
+        top.set_ylabel(f"amplitude [{', '.join(dict.fromkeys(units))}]")
+        bottom.set_ylabel("phase [\u00b0]")
+        bottom.set_yticks(range(-180, 181, 90))
+        bottom.set_ylim(-190, 190)
+        bottom.set_xlabel(f"frequency [{unit}]")
+        top.set_title(f"{output} per unit of input")
+        handles = [Line2D([], [], color=c, label=f"from {i}") for c, i in zip(COLOURS * len(inputs), inputs)]
+        if len(ways) > 1:
+            handles += [Line2D([], [], color=INK, linestyle="none" if way == "coefficients" else line, marker="." if way == "coefficients" else None, label=words)
+                        for (way, words), line in zip(ways, LINES * len(ways))]
+        files += save(figure, study, f"response-{output}", f"0-peak over 0-peak, phase of the output ahead of the input; {ROTATION}", handles, 4)
+    return files

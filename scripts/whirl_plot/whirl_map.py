@@ -1,0 +1,37 @@
+"""Whirl map: which way every node of the shaft turns in each mode, over the speed and along the shaft."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .campbell import modes_of
+from .shapes import bearing_places
+from .style import GREY, INK, grid_of, save, speed_axis
+
+MOST = 12  # modes in one picture, those of lowest frequency
+
+
+def draw(study):
+    """A panel for each mode: z upwards over the speed, blue where the node turns backward, red where it turns forward."""
+    if not study.has("whirl_map/turning", "spectrum/mode") or len(np.unique(study.get("spectrum/speed"))) < 2:
+        return []
+    z, turning = study.get("whirl_map/z"), study.get("whirl_map/turning")
+    number, at = study.get("spectrum/mode"), study.get("spectrum/speed")
+    to_speed, speed_label, to_frequency, unit = speed_axis(study.attribute("speed_unit", "rad/s"))
+    modes = sorted((m for m in modes_of(study) if len(m[1]) > 1), key=lambda m: m[2][-1])[:MOST]
+    if not modes:
+        return []
+    figure, axes, _ = grid_of(len(modes), 3.0, 2.1)
+    image = None
+    for axis, (mode, speed, frequency, _, whirl) in zip(axes, modes):
+        rows = np.nonzero(number == mode)[0]
+        rows = rows[np.argsort(at[rows], kind="stable")]
+        image = axis.pcolormesh(speed * to_speed, z, turning[rows].T, cmap="RdBu_r", vmin=-1, vmax=1, shading="nearest", rasterized=True)
+        for place, _ in bearing_places(study, z):
+            axis.axhline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)))
+        word = whirl[-1] if len(set(whirl)) == 1 else f"{whirl[0]} to {whirl[-1]}"
+        axis.set_title(f"{mode}: {frequency[0] * to_frequency:.4g} to {frequency[-1] * to_frequency:.4g} {unit}, {word}", fontsize=7.5)
+        axis.grid(False)
+    for axis in axes[-3:]:
+        axis.set_xlabel(speed_label)
+    axes[0].set_ylabel("z [m]", color=INK)
+    figure.colorbar(image, ax=list(axes), label="backward circle \u2212 line \u2212 forward circle", shrink=0.8)
+    return save(figure, study, "whirl-map", "colour: 2ab/(a\u00b2+b\u00b2) of the node's ellipse with half-axes a and b, negative backward; broken lines: bearings")

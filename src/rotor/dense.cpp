@@ -1,0 +1,22 @@
+#include "dense.hpp"
+
+#include "whirl/core/petsc.hpp"
+
+namespace whirl::rotor {
+
+Eigen::MatrixXd dense(Mat sparse) {
+  PetscInt n = 0;
+  core::check(MatGetSize(sparse, &n, nullptr));
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+  for (PetscInt r = 0; r < n; ++r) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    core::check(MatGetRow(sparse, r, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k) out(r, columns[k]) = values[k];
+    core::check(MatRestoreRow(sparse, r, &count, &columns, &values));
+  }
+  return out;
+}
+
+}  // namespace whirl::rotor

@@ -1,0 +1,28 @@
+#include "whirl/rotor/modal_coupling.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "dense.hpp"
+#include "planar.hpp"
+#include "whirl/core/error.hpp"
+#include "whirl/rotor/shaft.hpp"
+
+namespace whirl::rotor {
+
+GyroscopicCoupling gyroscopic_coupling(const Options& options, const std::vector<int>& nodes, double support) {
+  validate(options);
+  const Planar planar = assemble_planar(PETSC_COMM_SELF, options);
+  Eigen::MatrixXd k = dense(planar.stiffness.get());
+  for (const int node : nodes) {
+    if (node < 1 || node > n_nodes(options))
+      throw core::InputError(fmt::format("rotor: node {} is not in 1..{}", node, n_nodes(options)));
+    k(2 * (node - 1), 2 * (node - 1)) += support;
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> rest(k, dense(planar.mass.get()));
+  const Eigen::MatrixXd& v = rest.eigenvectors();
+  return {rest.eigenvalues().cwiseMax(0).cwiseSqrt(), v.transpose() * dense(planar.gyroscopic.get()) * v};
+}
+
+}  // namespace whirl::rotor

@@ -1,0 +1,146 @@
+#include "study/bearing/enforced_motion.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "study/bearing/coefficient_names.hpp"
+#include "whirl/film/enforced.hpp"
+
+namespace whirl::study {
+namespace {
+
+using All = std::vector<std::vector<std::vector<EnforcedAt>>>;  // [speed][frequency][amplitude]
+
+template <class Visit>
+void each(const All& found, const Visit& visit) {
+  for (const auto& speed : found)
+    for (const auto& frequency : speed)
+      for (const EnforcedAt& a : frequency) visit(a);
+}
+
+std::size_t ports_of(const All& found) {
+  std::size_t out = 0;
+  each(found, [&](const EnforcedAt& a) { out = std::max(out, a.coefficients.ports); });
+  return out;
+}
+
+void fill(EnforcedAt& out, std::size_t port, const film::EnforcedForces& f) {
+  for (std::size_t i = 0; i < out.coefficients.ports; ++i) {
+    out.coefficients.stiffness[i][port] = f.stiffness[i];
+    out.coefficients.damping[i][port] = f.damping[i];
+  }
+  out.distortion[port] = f.distortion;
+}
+
+// Of entries that have a size: shifts by shifts and slopes by slopes.
+double difference(const film::PortCoefficients& a, const film::PortCoefficients& b) {
+  double out = 0;
+  for (std::size_t block = 0; block < b.ports; block += 2)
+    for (const auto of : {&film::PortCoefficients::stiffness, &film::PortCoefficients::damping}) {
+      double most = 0, size = 0;
+      for (std::size_t i = block; i < block + 2; ++i)
+        for (std::size_t j = block; j < block + 2; ++j) {
+          const double d = std::abs((a.*of)[i][j] - (b.*of)[i][j]);
+          most = std::isnan(d) ? d : std::max(most, d);
+          size = std::max(size, std::abs((b.*of)[i][j]));
+        }
+      if (size > 0) out = std::isnan(most) ? most : std::max(out, most / size);
+    }
+  return out;
+}
+
+}  // namespace
+
+std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore, const JournalPlace& at, double omega,
+                                    std::span<const double> amplitudes, const film::PortCoefficients& perturbation) {
+  film::Enforced enforced(film, at.motion, at.states, omega);
+  const auto ports = film.ports();
+  film::EnforcedForces none;
+  none.distortion = std::numeric_limits<double>::quiet_NaN();
+  none.stiffness.fill(none.distortion);
+  none.damping.fill(none.distortion);
+  std::vector<EnforcedAt> out;
+  for (const double amplitude : amplitudes) {
+    EnforcedAt& now = out.emplace_back();
+    now.coefficients.ports = ports.size();
+    for (std::size_t port = 0; port < ports.size(); ++port) {
+      const bool slope = ports[port] >= film::Port::tilt_x;
+      const double size = amplitude * bore.clearance / (slope ? 2 * bore.length : 1.0);
+      fill(now, port, none);
+      try {
+        fill(now, port, enforced.along(port, size));
+      } catch (const core::DomainError&) {
+      } catch (const core::NotConverged&) {
+      }
+    }
+    now.apart = difference(now.coefficients, perturbation);
+  }
+  return out;
+}
+
+void put_enforced(io::StudySummary& summary, const std::string& head, std::span<const double> amplitudes,
+                  const std::vector<EnforcedAt>& found) {
+  for (std::size_t a = 0; a < found.size(); ++a) {
+    const std::string at = fmt::format("{}amplitude.{:.6g}.", head, amplitudes[a]);
+    const film::PortCoefficients& c = found[a].coefficients;
+    for (std::size_t i = 0; i < c.ports; ++i)
+      for (std::size_t j = 0; j < c.ports; ++j) {
+        summary.set(at + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
+        summary.set(at + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
+      }
+    for (std::size_t j = 0; j < c.ports; ++j)
+      summary.set(at + "distortion." + port_words[j], found[a].distortion[j], "1");
+    summary.set(at + "from_perturbation", found[a].apart, "1");
+  }
+}
+
+void add_numbers(const All& found, std::vector<double>& numbers) {
+  const std::size_t n = ports_of(found);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      each(found, [&](const EnforcedAt& a) {
+        numbers.insert(numbers.end(), {a.coefficients.stiffness[i][j], a.coefficients.damping[i][j]});
+      });
+}
+
+void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, const std::vector<double>& ratios,
+                         const std::vector<double>& amplitudes, const All& found, const Bars* bars, std::size_t next) {
+  auto& table = group.child("enforced");
+  table.put("speed", speeds, "rad/s", "shaft speed");
+  table.put("ratio", ratios, "1", "frequency over speed, omega/Omega");
+  table.put("amplitude", amplitudes, "1",
+            "0 to peak of the motion along x and y, in clearances; of slopes over twice the length of the bearing");
+  const io::Shape shape{speeds.size(), ratios.size(), amplitudes.size()};
+  const std::size_t n = ports_of(found);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      std::array<std::vector<double>, 2> values, errors;
+      each(found, [&](const EnforcedAt& a) {
+        values[0].push_back(a.coefficients.stiffness[i][j]);
+        values[1].push_back(a.coefficients.damping[i][j]);
+        for (std::size_t k = 0; k < 2; ++k, ++next)
+          if (bars) errors[k].push_back((*bars)[next].total());
+      });
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::string name = (k == 0 ? "k_" : "b_") + pair_name(i, j, "_");
+        const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
+        table.put(name, shape, values[k], unit,
+                  fmt::format("{} [speed][frequency][amplitude]", k == 0 ? "stiffness" : "damping"));
+        if (bars)
+          table.put(name + "_uncertainty", shape, errors[k], unit,
+                    fmt::format("estimated error of {} from the film mesh", name));
+      }
+    }
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<double> left;
+    each(found, [&](const EnforcedAt& a) { left.push_back(a.distortion[j]); });
+    table.put(
+        std::string("distortion_") + port_words[j], shape, left, "1",
+        "what stiffness and damping leave of the force, ratio of root mean squares [speed][frequency][amplitude]");
+  }
+}
+
+}  // namespace whirl::study

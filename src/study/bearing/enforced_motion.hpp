@@ -1,0 +1,42 @@
+#pragma once
+// Stiffness and damping of one film by enforced harmonic motions of its journal, amplitude by amplitude.
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/bars/error_bar.hpp"
+#include "study/bearing/film_at_rest.hpp"
+#include "whirl/film/film.hpp"
+#include "whirl/io/record.hpp"
+#include "whirl/io/summary.hpp"
+
+namespace whirl::study {
+
+/// By motions of one amplitude along each port; not numbers where the surfaces touch on the way.
+struct EnforcedAt {
+  film::PortCoefficients coefficients;
+  std::array<double, 4> distortion{};  ///< of the forces by the motion along each port: what K and B leave of them
+  double apart = 0;                    ///< largest difference from the perturbation, of the largest entry of its block
+};
+
+/// About `at` at the frequency omega [rad/s], of `amplitudes` in clearances, slopes' over twice the length:
+/// [amplitude].
+[[nodiscard]] std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore, const JournalPlace& at,
+                                                  double omega, std::span<const double> amplitudes,
+                                                  const film::PortCoefficients& perturbation);
+
+/// Values of one speed and frequency under names that begin with `head`.
+void put_enforced(io::StudySummary& summary, const std::string& head, std::span<const double> amplitudes,
+                  const std::vector<EnforcedAt>& found);
+
+/// Their numbers that may have bars, in the order in which put_enforced_tables() takes these: K and B by entry.
+void add_numbers(const std::vector<std::vector<std::vector<EnforcedAt>>>& found, std::vector<double>& numbers);
+/// Tables [speed][frequency][amplitude]; bars from number `next` on, null: none.
+void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, const std::vector<double>& ratios,
+                         const std::vector<double>& amplitudes,
+                         const std::vector<std::vector<std::vector<EnforcedAt>>>& found, const Bars* bars,
+                         std::size_t next);
+
+}  // namespace whirl::study

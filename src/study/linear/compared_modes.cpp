@@ -1,0 +1,165 @@
+#include "study/linear/compared_modes.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+
+#include "whirl/core/error.hpp"
+#include "whirl/problem/structure.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Sparse = Eigen::SparseMatrix<double>;
+
+// A = dF/dx with the films as `films` says.
+Sparse linearised(problem::Structure& machine, const MatrixXd& films) {
+  return machine.l0() - Sparse(machine.b() * Sparse(films.sparseView()) * machine.c());
+}
+
+MatrixXd dense(Mat sparse) {
+  core::Matrix copy;
+  check(MatConvert(sparse, MATSEQDENSE, MAT_INITIAL_MATRIX, copy.put()));
+  PetscInt rows = 0, columns = 0;
+  check(MatGetSize(copy.get(), &rows, &columns));
+  const PetscScalar* values = nullptr;
+  check(MatDenseGetArrayRead(copy.get(), &values));
+  MatrixXd out = Eigen::Map<const MatrixXd>(values, rows, columns);
+  check(MatDenseRestoreArrayRead(copy.get(), &values));
+  return out;
+}
+
+}  // namespace
+
+MatrixXd whole_states(const system::RotorSystem& reduced) {
+  const rotor::Rotor& rotor = reduced.rotor();
+  const Index kept = 2 * rotor.size(), others = 2 * reduced.coordinates() - kept;
+  MatrixXd q, v;
+  if (const auto& states = rotor.states()) {
+    q = dense(states->displacement.get());
+    v = dense(states->velocity.get());
+  } else {
+    const MatrixXd t = dense(rotor.matrices().basis.get());
+    q = v = MatrixXd::Zero(t.rows(), kept);
+    for (Index j = 0; j < t.cols(); ++j) {
+      q.col(2 * j) = t.col(j);
+      v.col(2 * j + 1) = t.col(j);
+    }
+  }
+  MatrixXd out = MatrixXd::Zero(2 * q.rows() + others, kept + others);
+  for (Index i = 0; i < q.rows(); ++i) {
+    out.row(2 * i).head(kept) = q.row(i);
+    out.row(2 * i + 1).head(kept) = v.row(i);
+  }
+  out.bottomRightCorner(others, others).setIdentity();
+  return out;
+}
+
+WholeModes::WholeModes(system::RotorSystem& system, Vec x, int count) {
+  problem::Structure& machine = *system.structure();
+  const Index n = machine.size();
+  const std::vector<double> state = system.gather(x);
+  problem::Films films;
+  machine.films(machine.c() * Eigen::Map<const Eigen::VectorXd>(state.data(), n), nullptr, nullptr, true, films);
+  films_ = films.d_inputs;
+  rates_ = machine.l1();
+  const Sparse a = linearised(machine, films_);
+
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto of = [&](const Sparse& m, Index column_parity, double factor) {
+    for (Index j = column_parity; j < n; j += 2)
+      for (Sparse::InnerIterator it(m, j); it; ++it)
+        if (it.row() % 2 == 0) {
+          const auto r = static_cast<int>(it.row() + column_parity), c = static_cast<int>(j);
+          entries.emplace_back(r, c, factor * it.value());
+          entries.emplace_back(c, r, factor * it.value());
+        }
+  };
+  of(a, 0, 0.5);
+  of(rates_, 1, 0.5);
+  energy_.resize(n, n);
+  energy_.setFromTriplets(entries.begin(), entries.end());
+  if (Eigen::SimplicialLLT<Sparse>(energy_).info() != Eigen::Success)
+    throw core::NotConverged("the stiffness of the machine is not positive definite: its modes have no energy norm");
+
+  std::vector<spectral::Mode> modes = spectral::modes(system, x, {.count = 2 * count + 40});
+  std::erase_if(modes, [](const spectral::Mode& m) { return m.lambda.imag() <= 1e-7 * std::abs(m.lambda); });
+  if (static_cast<int>(modes.size()) < count)
+    throw core::NotConverged(fmt::format("the machine has {} modes that vibrate, not {}", modes.size(), count));
+  frequencies_.resize(count);
+  right_.resize(n, count);
+  left_.resize(n, count);
+  const Eigen::SparseMatrix<Complex> rates = rates_.cast<Complex>(), held = a.cast<Complex>();
+  for (int k = 0; k < count; ++k) {
+    const spectral::Mode& mode = modes[static_cast<std::size_t>(k)];
+    // Beside the eigenvalue, where the matrix is regular.
+    const Complex shift = mode.lambda * (1 + 1e-9);
+    Eigen::SparseMatrix<Complex> shifted = held + shift * rates;
+    shifted.makeCompressed();
+    Eigen::SparseLU<Eigen::SparseMatrix<Complex>> lu(shifted);
+    if (lu.info() != Eigen::Success)
+      throw core::NotConverged("an eigenvector of the whole shaft could not be computed");
+    VectorXcd v = Eigen::Map<const VectorXcd>(mode.shape.data(), n), w = (rates * v).conjugate();
+    for (int turn = 0; turn < 3; ++turn) {
+      v = lu.solve((rates * v).eval());
+      w = lu.transpose().solve((rates.transpose() * w).eval());
+      v /= v.norm();
+      w /= w.norm();
+    }
+    v /= std::sqrt(std::abs(energy(v, v)));
+    const Complex product = w.transpose() * (rates * v);
+    w /= product;
+    const Complex s = -Complex(w.transpose() * (held * v));
+    frequencies_(k) = s.imag();
+    right_.col(k) = v;
+    left_.col(k) = w;
+  }
+}
+
+Complex WholeModes::energy(const VectorXcd& a, const VectorXcd& b) const {
+  return a.dot((energy_.cast<Complex>() * b).eval());
+}
+
+// Eigenvalues of -A^-1 L1 are 1/s: the slowest ones are the largest, and keep their digits.
+WholeModes::Errors WholeModes::errors(system::RotorSystem& reduced) const {
+  problem::Structure& machine = *reduced.structure();
+  const MatrixXd a = linearised(machine, films_), rates = machine.l1();
+  const spectral::Eigenpairs pairs = spectral::eigenpairs(-a.partialPivLu().solve(rates));
+  std::vector<std::pair<double, Index>> order;
+  for (Index k = 0; k < pairs.values.size(); ++k) {
+    const Complex s = 1.0 / pairs.values(k);
+    if (s.imag() > 1e-7 * std::abs(s)) order.emplace_back(s.imag(), k);
+  }
+  std::sort(order.begin(), order.end());
+  const Index count = frequencies_.size();
+  if (static_cast<Index>(order.size()) < count)
+    throw core::NotConverged(fmt::format("the reduced machine has {} modes that vibrate, not {}", order.size(), count));
+  const MatrixXd to_whole = whole_states(reduced);
+  const Eigen::SparseMatrix<Complex> whole_rates = rates_.cast<Complex>();
+  Errors out{Eigen::VectorXd(count), Eigen::VectorXd(count), Eigen::MatrixXcd::Identity(count, count)};
+  for (Index k = 0; k < count; ++k) {
+    const auto [frequency, at] = order[static_cast<std::size_t>(k)];
+    out.frequency(k) = std::abs(frequency / frequencies_(k) - 1);
+    VectorXcd v = to_whole.cast<Complex>() * pairs.vectors.col(at);
+    v /= std::sqrt(std::abs(energy(v, v)));
+    const Complex along = energy(right_.col(k), v);
+    const VectorXcd beside = v - along * right_.col(k);
+    out.vector(k) = std::sqrt(std::abs(energy(beside, beside)));
+    const Complex product = left_.col(k).transpose() * (whole_rates * v);
+    if (product != 0.0) v *= std::conj(product) / std::abs(product);
+    out.r.col(k) -= left_.transpose() * (whole_rates * v);
+  }
+  return out;
+}
+
+}  // namespace whirl::study

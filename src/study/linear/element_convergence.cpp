@@ -1,0 +1,208 @@
+#include "whirl/study/linear/element_convergence.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "study/common.hpp"
+#include "study/layout.hpp"
+#include "study/linear/shaft_modes.hpp"
+#include "study/pieces.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/rotor/describe.hpp"
+#include "whirl/rotor/divide.hpp"
+#include "whirl/rotor/shaft.hpp"
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+
+system::Train divided(system::Train train, int parts, rotor::Element element) {
+  train.rotor = rotor::divided(train.rotor, parts);
+  train.rotor.element = element;
+  if (element == rotor::Element::timoshenko_hermitian)
+    for (const system::Support& s : train.supports) train.rotor.joints.push_back(rotor::node_after(s.node, parts));
+  for (system::Support& s : train.supports) s.node = rotor::node_after(s.node, parts);
+  for (system::UnbalanceMass& u : train.unbalance) u.node = rotor::node_after(u.node, parts);
+  return train;
+}
+
+template <class M>
+double condition_number(const M& matrix) {
+  const auto sizes = Eigen::BDCSVD<M>(matrix).singularValues();
+  return sizes(0) / sizes(sizes.size() - 1);
+}
+
+// Of the modes' vectors V, of stiffness and of mass, all in the system's scales, 2-norm; not a number where the machine
+// is too large for dense matrices.
+struct Conditions {
+  double vectors = io::no_value, stiffness = io::no_value, mass = io::no_value;
+};
+
+Conditions conditions(system::RotorSystem& system, Vec x) {
+  spectral::EigenOptions options;
+  const PetscInt n = system.size(), q = system.coordinates();
+  Conditions out;
+  if (n > options.dense_below) return out;
+  core::Vector states = core::duplicate(x), rows = core::duplicate(x), rest = core::duplicate(x);
+  system.scales(states.get(), rows.get());
+  core::check(VecSet(rest.get(), 0));
+  const std::vector<double> scale = core::gather(states.get()), row_scale = core::gather(rows.get());
+  const auto modes = spectral::modes(system, x, options);
+  // Rows of momentum in coordinates, and in rates of velocities: each column from a product with the Jacobian.
+  const auto block = [&](double alpha, double sigma, PetscInt offset) {
+    core::Matrix j = system.make_jacobian();
+    system.jacobian(0, x, rest.get(), alpha, sigma, j.get());
+    Eigen::MatrixXd m(q, q);
+    core::Vector unit = core::duplicate(x), image = core::duplicate(x);
+    PetscInt begin = 0, end = 0;
+    core::check(VecGetOwnershipRange(unit.get(), &begin, &end));
+    for (PetscInt c = 0; c < q; ++c) {
+      core::check(VecSet(unit.get(), 0));
+      const PetscInt at = 2 * c + offset;
+      if (at >= begin && at < end)
+        core::check(VecSetValue(unit.get(), at, scale[static_cast<std::size_t>(at)], INSERT_VALUES));
+      core::check(VecAssemblyBegin(unit.get()));
+      core::check(VecAssemblyEnd(unit.get()));
+      core::check(MatMult(j.get(), unit.get(), image.get()));
+      const std::vector<double> whole = core::gather(image.get());
+      for (PetscInt r = 0; r < q; ++r)
+        m(r, c) = whole[static_cast<std::size_t>(2 * r)] / row_scale[static_cast<std::size_t>(2 * r)];
+    }
+    return m;
+  };
+  const Eigen::MatrixXd stiffness = block(1, 0, 0), mass = block(0, 1, 1);
+  core::agree(system.comm(), [&] {
+    Eigen::MatrixXcd v(n, n);
+    Eigen::Index columns = 0;
+    for (const spectral::Mode& m : modes)
+      for (const bool conjugate : {false, true}) {
+        if ((conjugate && m.lambda.imag() == 0) || columns == n) continue;
+        for (PetscInt k = 0; k < n; ++k) {
+          const Complex value = m.shape[static_cast<std::size_t>(k)] / scale[static_cast<std::size_t>(k)];
+          v(k, columns) = conjugate ? std::conj(value) : value;
+        }
+        v.col(columns++).normalize();
+      }
+    if (columns == n) out.vectors = condition_number(v);
+    out.stiffness = condition_number(stiffness);
+    out.mass = condition_number(mass);
+  });
+  return out;
+}
+
+struct Found {
+  double elements = 0;
+  std::vector<double> frequency, forward;
+  Conditions condition;
+};
+
+// Order at which the last three meshes with equal ratios of parts converge.
+double order(double coarse, double middle, double fine, double ratio) {
+  const double p = std::log(std::abs((coarse - middle) / (middle - fine))) / std::log(ratio);
+  return std::isfinite(p) ? p : io::no_value;
+}
+
+}  // namespace
+
+StudyResult ElementConvergence::run(Context& context) {
+  const Layout layout = plan(context, Sharing::speeds);
+  auto& results = context.results;
+  auto& summary = results.summary();
+  const std::size_t meshes = options.parts.size(), count = static_cast<std::size_t>(options.count);
+  const system::Train given = system::train_of(context.machine);
+  Pieces pieces(results, context.resume);
+  std::size_t ready = 0;
+  const auto compute = [&](std::size_t i) {
+    const rotor::Element element = options.elements[i / meshes];
+    const system::Train train = divided(given, options.parts[i % meshes], element);
+    system::RotorSystem system(layout.space, train, options.speed.value);
+    Walker walker(system);
+    const Vec x = walker.at(options.speed.value);
+    ModeSearch search;
+    const auto modes = shaft_modes(system, x, options.count, std::numeric_limits<double>::infinity(), search);
+    const std::vector<double> mass = rotor::node_masses(train.rotor);
+    std::vector<double> out{static_cast<double>(train.rotor.segments.size()), 0, 0, 0};
+    if (options.condition) {
+      const Conditions c = conditions(system, x);
+      std::copy_n(std::array{c.vectors, c.stiffness, c.mass}.begin(), 3, out.begin() + 1);
+    }
+    for (std::size_t k = 0; k < count; ++k) out.push_back(k < modes.size() ? modes[k].lambda.imag() : io::no_value);
+    for (std::size_t k = 0; k < count; ++k)
+      out.push_back(k < modes.size() ? spectral::whirl_energy(modes[k].x, modes[k].y, mass).forward : io::no_value);
+    results.progress(fmt::format("{}: {} meshes on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
+    return out;
+  };
+  const auto packed = distribute(layout, options.elements.size() * meshes, compute, pieces, "mesh",
+                                 {[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}});
+  std::vector<std::vector<Found>> all(options.elements.size());
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    const auto& p = packed[i];
+    const auto at = p.begin() + 4, next = at + options.count;
+    all[i / meshes].push_back({p[0], {at, next}, {next, p.end()}, {p[1], p[2], p[3]}});
+  }
+
+  auto& group = results.group();
+  group.set("speed", options.speed.value);
+  for (std::size_t e = 0; e < all.size(); ++e) {
+    const std::vector<Found>& of = all[e];
+    std::string name;
+    for (const auto& n : rotor::names(options.elements[e]))
+      if (n.value == options.elements[e]) name = n.name;
+    auto& table = group.child("convergence").child(name);
+    table.set("place", static_cast<int>(e));
+    std::vector<double> elements, frequency, forward, error, shift, columns[3];
+    for (const Found& f : of) {
+      elements.push_back(f.elements);
+      for (std::size_t c = 0; c < 3; ++c)
+        columns[c].push_back(std::array{f.condition.vectors, f.condition.stiffness, f.condition.mass}[c]);
+      for (std::size_t k = 0; k < count; ++k) {
+        frequency.push_back(f.frequency[k]);
+        forward.push_back(f.forward[k]);
+        error.push_back(std::abs(f.frequency[k] / of.back().frequency[k] - 1));
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k)
+      shift.push_back(of.back().frequency[k] / all.front().back().frequency[k] - 1);
+    table.put("elements", elements, "1", "of the whole shaft");
+    table.put("frequency", {meshes, count}, frequency, "rad/s", "damped frequencies [mesh][mode], the lowest");
+    table.put("forward_share", {meshes, count}, forward, "1", "of their kinetic energy, backward negative");
+    table.put("error", {meshes, count}, error, "1", "relative distance from the last mesh");
+    table.put("shift", shift, "1", "of the last mesh from the first kind of element, relative");
+    if (options.condition) {
+      const char* const names[] = {"condition_vectors", "condition_stiffness", "condition_mass"};
+      const char* const texts[] = {"of the modes' vectors, each of length one", "of dF/dx by the coordinates",
+                                   "of the mass"};
+      for (std::size_t c = 0; c < 3; ++c)
+        table.put(names[c], columns[c], "1",
+                  fmt::format("condition number {}, 2-norm in the states' scales", texts[c]));
+      summary.set(name + ".condition_vectors", columns[0].back(), "1");
+      summary.set(name + ".condition_stiffness", columns[1].back(), "1");
+      summary.set(name + ".condition_mass", columns[2].back(), "1");
+    }
+    const std::size_t last = meshes - 1;
+    const double ratio = static_cast<double>(options.parts[last]) / options.parts[last - 1];
+    const bool even = meshes > 2 && options.parts[last - 1] * options.parts[last - 1] ==
+                                        options.parts[last] * options.parts[last - 2];
+    for (std::size_t k = 0; k < count; ++k) {
+      const double fine = of[last].frequency[k], middle = of[last - 1].frequency[k];
+      summary.set(fmt::format("{}.frequency.{}", name, k + 1), fine, "rad/s",
+                  {{"uncertainty", std::abs(fine - middle)}});
+      if (even)
+        summary.set(fmt::format("{}.order.{}", name, k + 1), order(of[last - 2].frequency[k], middle, fine, ratio),
+                    "1");
+      if (e > 0) summary.set(fmt::format("{}.shift.{}", name, k + 1), shift[k], "1");
+    }
+  }
+  summary.points = static_cast<long>(packed.size());
+  return results.finish("completed", true);
+}
+
+}  // namespace whirl::study

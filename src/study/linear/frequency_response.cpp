@@ -1,0 +1,213 @@
+#include "whirl/study/linear/frequency_response.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "study/common.hpp"
+#include "study/layout.hpp"
+#include "study/linear/transfer_points.hpp"
+#include "study/pieces.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/film/linear.hpp"
+
+namespace whirl::study {
+namespace {
+
+using Complex = std::complex<double>;
+using Matrices = std::vector<std::vector<Complex>>;  // per frequency
+
+// The machine with constant stiffness and damping in place of its films.
+system::Train with_coefficients(system::Train train, const std::vector<FilmCoefficients>& films) {
+  for (std::size_t b = 0; b < films.size(); ++b) {
+    film::Linear film;
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t j = 0; j < 2; ++j) {
+        film.stiffness[2 * i + j] = films[b].stiffness[i][j];
+        film.damping[2 * i + j] = films[b].damping[i][j];
+      }
+    train.supports[b].film = film;
+  }
+  return train;
+}
+
+// What is computed: by the films as they are, by their coefficients at the same or at one other frequency, by those
+// that the user gives.
+struct Way {
+  std::string name;
+  enum class Films { whole, at_each, constant, given } films = Films::whole;
+  double frequency = 0;  // [rad/s] of constant coefficients
+};
+
+class Transfers {
+public:
+  Transfers(const Context& context, const Layout& layout, const FrequencyResponseOptions& options,
+            const std::vector<TransferOutput>& outputs)
+      : options_(options),
+        outputs_(outputs),
+        train_(with_joints(system::train_of(context.machine), options)),
+        system_(layout.space, train_, options.speed.value),
+        walker_(system_),
+        matrix_(system_, options.inputs, outputs) {}
+
+  std::vector<Complex> at(const Way& way, double omega) {
+    if (!linearised_) {
+      const Vec x = walker_.at(options_.speed.value);
+      matrix_.linearise(x);
+      whole_ = system_.gather(x);
+      linearised_ = true;
+    }
+    if (way.films == Way::Films::whole) return matrix_.at(omega);
+    const double frequency = way.films == Way::Films::constant ? way.frequency : omega;
+    if (frequency != last_ || way.films != last_films_) {
+      std::vector<FilmCoefficients> films = film_coefficients(system_, whole_, frequency);
+      if (way.films == Way::Films::given) put_given(films, frequency);
+      const system::Train train = with_coefficients(train_, films);
+      if (linear_) {
+        linear_->set_train(train);
+      } else {
+        linear_ = std::make_unique<system::RotorSystem>(system_.comm(), train, options_.speed.value);
+        linear_matrix_ = std::make_unique<TransferMatrix>(*linear_, options_.inputs, outputs_);
+      }
+      core::Vector rest = core::make_vector(linear_->comm(), linear_->local_size(), PETSC_DETERMINE);
+      core::check(VecSet(rest.get(), 0));
+      linear_matrix_->linearise(rest.get());
+      last_ = frequency;
+      last_films_ = way.films;
+    }
+    return linear_matrix_->at(omega);
+  }
+  [[nodiscard]] Trail trail() { return walker_.trail(); }
+
+private:
+  void put_given(std::vector<FilmCoefficients>& films, double frequency) const {
+    for (std::size_t b = 0; b < films.size(); ++b)
+      for (const GivenCoefficients& g : options_.given) {
+        if (g.bearing != train_.supports[b].name) continue;
+        const CoefficientsAt c = interpolated(g.table, frequency);
+        films[b].stiffness = {{{c.k_xx, c.k_xy}, {c.k_yx, c.k_yy}}};
+        films[b].damping = {{{c.b_xx, c.b_xy}, {c.b_yx, c.b_yy}}};
+      }
+  }
+  // Forces may make the shear force jump, where an element asks for the place.
+  static system::Train with_joints(system::Train train, const FrequencyResponseOptions& options) {
+    for (const TransferInput& input : options.inputs)
+      if (input.node > 0 && !train.rotor.joints.empty()) train.rotor.joints.push_back(input.node);
+    return train;
+  }
+
+  const FrequencyResponseOptions& options_;
+  const std::vector<TransferOutput>& outputs_;
+  system::Train train_;
+  system::RotorSystem system_;
+  Walker walker_;
+  TransferMatrix matrix_;
+  bool linearised_ = false;
+  std::vector<double> whole_;
+  std::unique_ptr<system::RotorSystem> linear_;
+  std::unique_ptr<TransferMatrix> linear_matrix_;
+  double last_ = 0;
+  Way::Films last_films_ = Way::Films::whole;
+};
+
+// Largest difference over the frequencies, relative to the matrix of the whole machine there, and where it is.
+struct Difference {
+  double relative = 0, frequency = 0;
+};
+Difference difference(const Matrices& whole, const Matrices& other, const std::vector<double>& frequencies) {
+  Difference out;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    double apart = 0, size = 0;
+    for (std::size_t e = 0; e < whole[k].size(); ++e) {
+      apart += std::norm(other[k][e] - whole[k][e]);
+      size += std::norm(whole[k][e]);
+    }
+    const double relative = size > 0 ? std::sqrt(apart / size) : 0;
+    if (relative > out.relative) out = {relative, frequencies[k]};
+  }
+  return out;
+}
+
+}  // namespace
+
+StudyResult FrequencyResponse::run(Context& context) {
+  std::vector<TransferOutput> outputs = options.outputs;
+  if (outputs.empty())
+    for (const TransferInput& input : options.inputs) outputs.push_back(output_of(input));
+  const std::string unit = options.range.unit;
+  std::vector<double> frequencies;
+  for (int k = 0; k < options.points; ++k) {
+    const double part = static_cast<double>(k) / (options.points - 1);
+    frequencies.push_back(options.spacing == FrequencyResponseOptions::Spacing::log
+                              ? options.range.from * std::pow(options.range.to / options.range.from, part)
+                              : options.range.from + (options.range.to - options.range.from) * part);
+  }
+  std::vector<Way> ways{{"machine"}};
+  if (options.coefficients) ways.push_back({"coefficients", Way::Films::at_each});
+  for (const deck::Quantity& q : options.constant_at)
+    ways.push_back({fmt::format("constant.{}", ways.size() - options.coefficients), Way::Films::constant, q.value});
+  if (!options.given.empty()) ways.push_back({"given", Way::Films::given});
+
+  const Layout layout = plan(context, Sharing::speeds);
+  Transfers machine(context, layout, options, outputs);
+  auto& results = context.results;
+  auto& summary = results.summary();
+  Pieces pieces(results, context.resume);
+  std::size_t ready = 0;
+  std::vector<Matrices> all;
+  for (const Way& way : ways) {
+    const auto compute = [&](std::size_t i) {
+      std::vector<double> flat;
+      for (const Complex& v : machine.at(way, frequencies[i])) flat.insert(flat.end(), {v.real(), v.imag()});
+      results.progress(
+          fmt::format("{}: {} frequencies on this rank, {:.1f} s", summary.name, ++ready, results.seconds()));
+      return flat;
+    };
+    Matrices& found = all.emplace_back();
+    for (const auto& flat : distribute(layout, frequencies.size(), compute, pieces, way.name, machine.trail())) {
+      std::vector<Complex>& matrix = found.emplace_back();
+      for (std::size_t e = 0; e < flat.size(); e += 2) matrix.emplace_back(flat[e], flat[e + 1]);
+    }
+  }
+
+  auto& group = results.group();
+  group.set("speed", options.speed.value);
+  group.set("frequency_unit", unit);
+  auto& response = group.child("response");
+  response.put("frequency", frequencies, "rad/s", "of force and motion");
+  for (const Way& way : ways) response.child(way.name).set("frequency", way.frequency);
+  const std::size_t inputs = options.inputs.size();
+  for (std::size_t o = 0; o < outputs.size(); ++o)
+    for (std::size_t i = 0; i < inputs; ++i) {
+      const std::string name = label(outputs[o]) + ".from." + label(options.inputs[i]),
+                        of = unit_of(outputs[o], options.inputs[i]);
+      for (std::size_t w = 0; w < ways.size(); ++w) {
+        std::vector<double> column[4];
+        for (const auto& matrix : all[w]) {
+          const Complex g = matrix[o * inputs + i];
+          for (const auto& [k, value] : {std::pair{0, g.real()}, {1, g.imag()}, {2, std::abs(g)}, {3, std::arg(g)}})
+            column[k].push_back(value);
+        }
+        auto& table = response.child(ways[w].name).child(name);
+        table.put("real", column[0], of, "of the output over the input, for exp(+i w t)");
+        table.put("imaginary", column[1], of, "likewise");
+        table.put("amplitude", column[2], of, "0-peak over 0-peak");
+        table.put("phase", column[3], "rad", "of the output ahead of the input");
+        if (w > 0) continue;
+        const auto most = std::max_element(column[2].begin(), column[2].end()) - column[2].begin();
+        summary.set(name + ".largest", column[2][static_cast<std::size_t>(most)], of);
+        summary.set(name + ".largest_at", deck::from_si(frequencies[static_cast<std::size_t>(most)], unit), unit);
+      }
+    }
+  for (std::size_t w = 1; w < ways.size(); ++w) {
+    const Difference apart = difference(all[0], all[w], frequencies);
+    summary.set(ways[w].name + ".difference", apart.relative, "1");
+    summary.set(ways[w].name + ".difference_at", deck::from_si(apart.frequency, unit), unit);
+  }
+  summary.points = static_cast<long>(frequencies.size());
+  return results.finish("completed", true);
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,18 @@
+#pragma once
+// What the loss factor of a rotor makes of the modes of a machine.
+
+#include <vector>
+
+#include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+/// Solves (dF/dx + lambda dF/d(dx/dt) + i eta H) u = 0, H the rotor's K with the sense of hysteresis at the frequency
+/// of the mode (RotorSystem::loss_at), for the eigenvalues that those of eta = 0 become. `modes` are these, at the
+/// equilibrium x; those that do not vibrate stay as they are. Newton's method of each by itself, eta raised in four
+/// steps. The same on every rank. Collective; throws core::NotConverged, core::InputError above 20,000 states.
+[[nodiscard]] std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x,
+                                                    const std::vector<spectral::Mode>& modes);
+
+}  // namespace whirl::study

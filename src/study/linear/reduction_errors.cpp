@@ -1,0 +1,260 @@
+#include "whirl/study/linear/reduction_errors.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "study/common.hpp"
+#include "study/linear/compared_modes.hpp"
+#include "whirl/deck/codecs.hpp"
+#include "whirl/film/describe.hpp"
+#include "whirl/problem/structure.hpp"
+#include "whirl/rotor/modal_coupling.hpp"
+#include "whirl/transient/integrator.hpp"
+
+namespace whirl::study {
+namespace {
+
+using core::check;
+using Eigen::MatrixXd;
+
+std::string name_of(ReductionMethod method) {
+  return std::string(deck::name_of(method));
+}
+
+// Machines of one rank, the same on all.
+class Comparison {
+public:
+  Comparison(Context& context, const ReductionErrorsOptions& options)
+      : context_(context),
+        options_(options),
+        train_(system::train_of(context.machine,
+                                options.orbits ? options.orbits->unbalance : std::vector<std::string>{})) {
+    train_.rotor.reduction = {};
+    for (const system::Support& s : train_.supports) {
+      if (std::find(masters_.begin(), masters_.end(), s.node) == masters_.end()) masters_.push_back(s.node);
+      if (film::facts(s.film).tilts) slopes_.push_back(s.node);
+    }
+    for (const int node : options.masters)
+      if (std::find(masters_.begin(), masters_.end(), node) == masters_.end()) masters_.push_back(node);
+  }
+
+  StudyResult run() {
+    system::RotorSystem whole(PETSC_COMM_SELF, train_, options_.speed);
+    Walker walker(whole);
+    Vec rest = walker.at(options_.speed);
+    const WholeModes modes(whole, rest, options_.count);
+    support_ = options_.support > 0 ? options_.support : mean_stiffness(modes.films());
+    auto& results = context_.results;
+    auto& summary = results.summary();
+    for (Eigen::Index k = 0; k < modes.frequencies().size(); ++k)
+      summary.set(fmt::format("frequency.{}", k + 1), modes.frequencies()(k), "rad/s");
+    compare(modes);
+    if (options_.maps > 0) put_maps(modes);
+    if (options_.orbits) put_orbits(whole, rest);
+    summary.points = static_cast<long>(options_.methods.size() * options_.freedoms.size());
+    return results.finish("completed", true);
+  }
+
+private:
+  [[nodiscard]] double mean_stiffness(const MatrixXd& films) const {
+    double sum = 0;
+    Eigen::Index ports = 0;
+    for (const system::Support& s : train_.supports) {
+      for (Eigen::Index d = 0; d < 2; ++d) sum -= films(ports + d, 2 * ports + d);
+      ports += film::facts(s.film).tilts ? 4 : 2;
+    }
+    return std::max(sum / (2 * static_cast<double>(train_.supports.size())), 0.0);
+  }
+
+  [[nodiscard]] system::Train reduced(ReductionMethod method, int freedoms) const {
+    using enum rotor::Reduction::Type;
+    const int modes = freedoms / 2, held = static_cast<int>(masters_.size() + slopes_.size());
+    system::Train out = train_;
+    rotor::Reduction& r = out.rotor.reduction;
+    r.masters = masters_;
+    r.slopes = slopes_;
+    switch (method) {
+      case ReductionMethod::modal_supported:
+      case ReductionMethod::modal_free:
+        r.type = modal;
+        r.modes = modes;
+        r.support = method == ReductionMethod::modal_free ? 0 : support_;
+        break;
+      case ReductionMethod::craig_bampton:
+        r.type = craig_bampton;
+        r.modes = modes - held;
+        break;
+      case ReductionMethod::craig_bampton_state:
+        r.type = craig_bampton_state;
+        r.modes = modes - held;
+        r.speed = options_.speed;
+    }
+    return out;
+  }
+
+  void compare(const WholeModes& modes) {
+    const std::size_t methods = options_.methods.size(), sizes = options_.freedoms.size(),
+                      count = static_cast<std::size_t>(options_.count);
+    std::vector<double> frequency, vector, diagonal, freedoms(options_.freedoms.begin(), options_.freedoms.end());
+    std::vector<std::string> method_names;
+    auto& summary = context_.results.summary();
+    for (const ReductionMethod method : options_.methods) {
+      method_names.push_back(name_of(method));
+      for (const int kept : options_.freedoms) {
+        system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
+        const WholeModes::Errors e = modes.errors(small);
+        for (Eigen::Index k = 0; k < e.frequency.size(); ++k) {
+          frequency.push_back(e.frequency(k));
+          vector.push_back(e.vector(k));
+          diagonal.push_back(std::abs(e.r(k, k)));
+        }
+        const std::string head = fmt::format("{}.{}", method_names.back(), kept);
+        summary.set(head + ".frequency_error", e.frequency.maxCoeff(), "1");
+        summary.set(head + ".vector_error", e.vector.maxCoeff(), "1");
+        context_.results.progress(fmt::format("{}: {}, {} freedoms, {:.1f} s", summary.name, method_names.back(), kept,
+                                              context_.results.seconds()));
+      }
+    }
+    auto& table = context_.results.group().child("errors");
+    const io::Shape shape{methods, sizes, count};
+    table.put("method", method_names, "reduction of the shaft");
+    table.put("freedoms", freedoms, "1", "freedoms kept, of both planes");
+    table.put("whole", std::vector<double>(modes.frequencies().begin(), modes.frequencies().end()), "rad/s",
+              "whirl frequencies with the whole shaft");
+    table.put("frequency", shape, frequency, "1", "|Im s/Im s_whole - 1| [method][freedoms][mode]");
+    table.put("vector", shape, vector, "1",
+              "distance of eigenvectors of length one in the energy norm [method][freedoms][mode]");
+    table.put("diagonal", shape, diagonal, "1",
+              "|R_kk| of R = I - W^T N V*, vectors of length one in the energy norm [method][freedoms][mode]");
+  }
+
+  void put_matrix(io::Group& to, const char* name, const MatrixXd& a, const char* text) {
+    std::vector<double> rows;
+    for (Eigen::Index i = 0; i < a.rows(); ++i)
+      for (Eigen::Index j = 0; j < a.cols(); ++j) rows.push_back(a(i, j));
+    to.put(name, {static_cast<std::size_t>(a.rows()), static_cast<std::size_t>(a.cols())}, std::move(rows), "1", text);
+  }
+
+  // Entries in SI; their units differ from one to the next.
+  void put_maps(const WholeModes& modes) {
+    auto& maps = context_.results.group().child("maps");
+    maps.set("freedoms", options_.maps);
+    maps.set("speed", options_.speed);
+    for (const auto& [name, support] : {std::pair{"supported", support_}, std::pair{"free", 0.0}}) {
+      const auto coupling = rotor::gyroscopic_coupling(train_.rotor, masters_, support);
+      put_matrix(maps.child("coupling"), name, coupling.matrix,
+                 "V^T G V of all mass-normalised real modes of a plane, by rising frequency");
+    }
+    const auto block = [](const MatrixXd& a, Eigen::Index row, Eigen::Index column) {
+      return MatrixXd(a(Eigen::seq(row, Eigen::last, 2), Eigen::seq(column, Eigen::last, 2)));
+    };
+    for (const ReductionMethod method : options_.methods) {
+      system::RotorSystem small(PETSC_COMM_SELF, reduced(method, options_.maps), options_.speed);
+      auto& of = maps.child(name_of(method));
+      put_matrix(of, "R", modes.errors(small).r.cwiseAbs(), "|R| of R = I - W^T N V*");
+      const auto rotor_rows = Eigen::seqN(0, 2 * small.rotor().size());
+      const MatrixXd rates = MatrixXd(small.structure()->l1())(rotor_rows, rotor_rows),
+                     rest = MatrixXd(small.structure()->l0())(rotor_rows, rotor_rows);
+      if (small.rotor().states()) {
+        put_matrix(of, "N", rates, "L^T N R: states of masters, then of modes; the two rows of a pair are exchanged");
+        put_matrix(of, "P", rest, "L^T P R at the speed, without films");
+      } else {
+        put_matrix(of, "M", block(rates, 0, 1), "reduced mass matrix");
+        put_matrix(of, "K", block(rest, 0, 0), "reduced stiffness matrix, without films");
+        put_matrix(of, "G", block(rest, 0, 1), "reduced damping and gyroscopic matrix at the speed");
+      }
+    }
+  }
+
+  // x and y of the node, relative to where it rests.
+  struct Orbit {
+    std::vector<double> x, y;
+  };
+
+  Orbit orbit(system::RotorSystem& system, Vec rest) {
+    const ReductionOrbits& o = *options_.orbits;
+    const auto at = static_cast<std::size_t>(4 * (o.node - 1));
+    const auto place = [&](Vec state) {
+      const std::vector<double> shaft = system.shaft(state, 0, false);
+      return std::array{shaft[at], shaft[at + 1]};
+    };
+    const auto start = place(rest);
+    core::Vector x = core::duplicate(rest);
+    check(VecCopy(rest, x.get()));
+    transient::Integrator integrator(system, {options_.speed}, x.get(), {.tolerance = o.tolerance});
+    Orbit out;
+    const long samples = std::lround(o.revolutions * o.samples);
+    const double step = 2 * std::numbers::pi / (options_.speed * o.samples);
+    for (long k = 0; k <= samples; ++k) {
+      if (k > 0) integrator.advance(step * static_cast<double>(k));
+      integrator.state(x.get());
+      const auto here = place(x.get());
+      out.x.push_back(here[0] - start[0]);
+      out.y.push_back(here[1] - start[1]);
+    }
+    return out;
+  }
+
+  void put_orbits(system::RotorSystem& whole, Vec rest) {
+    const ReductionOrbits& o = *options_.orbits;
+    auto& group = context_.results.group().child("orbits");
+    auto& summary = context_.results.summary();
+    group.set("node", o.node);
+    group.set("speed", options_.speed);
+    const auto progress = [&](const std::string& what) {
+      context_.results.progress(
+          fmt::format("{}: orbit of {}, {:.1f} s", summary.name, what, context_.results.seconds()));
+    };
+    progress("the whole shaft");
+    const Orbit exact = orbit(whole, rest);
+    const std::size_t samples = exact.x.size();
+    double size = 0;
+    std::vector<double> time;
+    for (std::size_t k = 0; k < samples; ++k) {
+      time.push_back(2 * std::numbers::pi / (options_.speed * o.samples) * static_cast<double>(k));
+      size = std::max(size, std::hypot(exact.x[k], exact.y[k]));
+    }
+    group.put("time", time, "s", "since the unbalance set in");
+    group.put("x", exact.x, "m", "orbit of the node of the whole shaft, from where it rests");
+    group.put("y", exact.y, "m", "orbit of the node of the whole shaft, from where it rests");
+    summary.set("orbit.size", size, "m");
+    std::vector<double> errors, x, y, freedoms(o.freedoms.begin(), o.freedoms.end());
+    for (const ReductionMethod method : options_.methods)
+      for (const int kept : o.freedoms) {
+        progress(fmt::format("{} with {} freedoms", name_of(method), kept));
+        system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
+        Walker walker(small);
+        const Orbit found = orbit(small, walker.at(options_.speed));
+        double error = 0;
+        for (std::size_t k = 0; k < samples; ++k)
+          error = std::max(error, std::hypot(found.x[k] - exact.x[k], found.y[k] - exact.y[k]));
+        errors.push_back(size > 0 ? error / size : 0);
+        summary.set(fmt::format("orbit.{}.{}.error", name_of(method), kept), errors.back(), "1");
+        x.insert(x.end(), found.x.begin(), found.x.end());
+        y.insert(y.end(), found.y.begin(), found.y.end());
+      }
+    const io::Shape shape{options_.methods.size(), o.freedoms.size(), samples};
+    group.put("freedoms", freedoms, "1", "freedoms of the reduced shafts");
+    group.put("reduced_x", shape, x, "m", "the same of the reduced shafts [method][freedoms][time]");
+    group.put("reduced_y", shape, y, "m", "the same of the reduced shafts [method][freedoms][time]");
+    group.put("error", {shape[0], shape[1]}, errors, "1",
+              "largest distance from the orbit of the whole shaft over the size of this [method][freedoms]");
+  }
+
+  Context& context_;
+  const ReductionErrorsOptions& options_;
+  system::Train train_;
+  std::vector<int> masters_, slopes_;
+  double support_ = 0;
+};
+
+}  // namespace
+
+StudyResult ReductionErrors::run(Context& context) {
+  return Comparison(context, options).run();
+}
+
+}  // namespace whirl::study

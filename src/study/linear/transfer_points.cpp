@@ -1,0 +1,165 @@
+#include "study/linear/transfer_points.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "whirl/core/error.hpp"
+#include "whirl/rotor/freedom.hpp"
+
+namespace whirl::study {
+
+using core::check;
+using Complex = std::complex<double>;
+
+namespace {
+
+template <class E>
+std::string word(E value) {
+  for (const auto& n : names(value))
+    if (n.value == value) return std::string(n.name);
+  return {};
+}
+
+template <class Point>
+std::string place(const Point& p) {
+  return (p.bearing.empty() ? fmt::format("node.{}.", p.node) : fmt::format("bearing.{}.", p.bearing)) +
+         word(p.direction);
+}
+
+bool is_slope(Along a) {
+  return a == Along::slope_x || a == Along::slope_y;
+}
+
+rotor::Freedom freedom_of(Along a) {
+  return static_cast<rotor::Freedom>(a);
+}
+static_assert(static_cast<int>(Along::slope_y) == static_cast<int>(rotor::Freedom::slope_y));
+
+int bearing_of(const system::RotorSystem& system, const std::string& name) {
+  const auto& supports = system.train().supports;
+  const auto found = std::find_if(supports.begin(), supports.end(), [&](const auto& s) { return s.name == name; });
+  core::require(found != supports.end(), "an input or output at a bearing that is not there");
+  return static_cast<int>(found - supports.begin());
+}
+
+}  // namespace
+
+std::string label(const TransferInput& input) {
+  return place(input);
+}
+
+std::string label(const TransferOutput& output) {
+  return place(output) + (output.quantity == TransferOutput::Quantity::displacement ? "" : "." + word(output.quantity));
+}
+
+std::string unit_of(const TransferOutput& output, const TransferInput& input) {
+  std::string below = is_slope(input.direction) ? "N m" : "N";
+  if (output.quantity == TransferOutput::Quantity::velocity) below += " s";
+  if (output.quantity == TransferOutput::Quantity::acceleration) below += " s^2";
+  if (below != "N") below = "(" + below + ")";
+  return (is_slope(output.direction) ? "1/" : "m/") + below;
+}
+
+TransferOutput output_of(const TransferInput& input) {
+  return {input.node, input.bearing, input.direction, TransferOutput::Quantity::displacement};
+}
+
+TransferMatrix::TransferMatrix(system::RotorSystem& system, const std::vector<TransferInput>& inputs,
+                               const std::vector<TransferOutput>& outputs)
+    : system_(system), solver_(system), outputs_(outputs) {
+  PetscInt begin = 0;
+  const core::Vector rows = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
+  check(VecGetOwnershipRange(rows.get(), &begin, nullptr));
+  for (const TransferInput& input : inputs) {
+    const std::vector<double> force = load(input);
+    auto& right = loads_.emplace_back(static_cast<std::size_t>(2 * system.local_size()), 0.0);
+    // F holds minus the forces on its momentum rows; own states of films, behind all pairs, are not forced.
+    for (PetscInt row = begin; row < std::min(begin + system.local_size(), 2 * system.coordinates()); ++row)
+      if (row % 2 == 0) right[static_cast<std::size_t>(2 * (row - begin))] = force[static_cast<std::size_t>(row / 2)];
+  }
+}
+
+// A unit force on the coordinates, whole on every rank.
+std::vector<double> TransferMatrix::load(const TransferInput& input) const {
+  std::vector<double> out(static_cast<std::size_t>(system_.coordinates()), 0.0);
+  const auto add = [&](PetscInt coordinate, double value) { out[static_cast<std::size_t>(coordinate)] += value; };
+  if (!input.bearing.empty()) {
+    const int b = bearing_of(system_, input.bearing), d = static_cast<int>(input.direction);
+    add(system_.journal(b, d), 1);
+    if (system_.pedestal(b, d) >= 0) add(system_.pedestal(b, d), -1);
+    return out;
+  }
+  const rotor::Matrices& m = system_.rotor().matrices();
+  if (!m.basis) {
+    add(system_.rotor().coordinate(input.node, freedom_of(input.direction)), 1);
+    return out;
+  }
+  core::Vector full, reduced;
+  check(MatCreateVecs(m.basis.get(), reduced.put(), full.put()));
+  check(VecSet(full.get(), 0));
+  if (core::rank_of(system_.comm()) == 0)
+    check(VecSetValue(full.get(), rotor::full_coordinate(input.node, freedom_of(input.direction)), 1, ADD_VALUES));
+  check(VecAssemblyBegin(full.get()));
+  check(VecAssemblyEnd(full.get()));
+  check(MatMultTranspose(m.basis.get(), full.get(), reduced.get()));
+  const std::vector<double> shares = core::gather(reduced.get());
+  std::copy(shares.begin(), shares.end(), out.begin());
+  return out;
+}
+
+void TransferMatrix::linearise(Vec x) {
+  x_ = core::duplicate(x);
+  check(VecCopy(x, x_.get()));
+  solver_.linearise(x);
+}
+
+void TransferMatrix::linearise_with_loss(double omega) {
+  system_.set_loss(omega > 0 ? system_.loss_at(omega) : system::RotorSystem::Loss{});
+  solver_.linearise(x_.get());
+  system_.set_loss({});
+}
+
+std::vector<Complex> TransferMatrix::at(double omega) {
+  if (system_.train().rotor.loss_factor > 0) linearise_with_loss(omega);
+  solver_.factorise(omega);
+  const std::size_t inputs = loads_.size();
+  std::vector<Complex> out(outputs_.size() * inputs);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    std::vector<double> amplitude;
+    solver_.solve(loads_[i], amplitude);
+    std::vector<double> state[2], shaft[2];
+    for (std::size_t part = 0; part < 2; ++part) {
+      core::Vector v = core::make_vector(system_.comm(), system_.local_size(), PETSC_DETERMINE);
+      {
+        const core::WriteArray a(v.get());
+        for (PetscInt k = 0; k < a.size(); ++k) a[k] = amplitude[static_cast<std::size_t>(2 * k) + part];
+      }
+      state[part] = system_.gather(v.get());
+      shaft[part] = system_.shaft(state[part].data(), 0, false);
+    }
+    const auto coordinate = [&](PetscInt q) {
+      const auto k = static_cast<std::size_t>(2 * q);
+      return Complex(state[0][k], state[1][k]);
+    };
+    for (std::size_t o = 0; o < outputs_.size(); ++o) {
+      const TransferOutput& output = outputs_[o];
+      Complex z;
+      if (output.bearing.empty()) {
+        const auto k = static_cast<std::size_t>(rotor::full_coordinate(output.node, freedom_of(output.direction)));
+        z = {shaft[0][k], shaft[1][k]};
+      } else {
+        const int b = bearing_of(system_, output.bearing), d = static_cast<int>(output.direction);
+        z = coordinate(system_.journal(b, d));
+        if (system_.pedestal(b, d) >= 0) z -= coordinate(system_.pedestal(b, d));
+      }
+      const Complex rate(0, omega);
+      if (output.quantity == TransferOutput::Quantity::velocity) z *= rate;
+      if (output.quantity == TransferOutput::Quantity::acceleration) z *= rate * rate;
+      out[o * inputs + i] = z;
+    }
+  }
+  return out;
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,45 @@
+#pragma once
+// Inputs and outputs of transfer functions on the states of a machine.
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/study/linear/frequency_response.hpp"
+#include "whirl/system/rotor_system.hpp"
+
+namespace whirl::study {
+
+/// "node.7.x" or "bearing.left.y"; of an output other than a displacement with its quantity behind.
+[[nodiscard]] std::string label(const TransferInput& input);
+[[nodiscard]] std::string label(const TransferOutput& output);
+/// "m/N", "1/(N m)", "m/(N s^2)" ...
+[[nodiscard]] std::string unit_of(const TransferOutput& output, const TransferInput& input);
+/// The displacement along an input.
+[[nodiscard]] TransferOutput output_of(const TransferInput& input);
+
+/// The transfer matrix of one machine from inputs to outputs about an equilibrium. All members are collective on the
+/// system's communicator.
+class TransferMatrix {
+public:
+  TransferMatrix(system::RotorSystem& system, const std::vector<TransferInput>& inputs,
+                 const std::vector<TransferOutput>& outputs);
+  /// Takes the derivatives at the equilibrium x and the system's speed.
+  void linearise(Vec x);
+  /// G(i omega) [output][input], all of an output behind each other; the same on all ranks. Throws core::NotConverged
+  /// at an undamped resonance.
+  [[nodiscard]] std::vector<std::complex<double>> at(double omega);
+
+private:
+  /// With what a loss factor of the rotor is at this frequency.
+  void linearise_with_loss(double omega);
+  [[nodiscard]] std::vector<double> load(const TransferInput& input) const;
+  core::Vector x_;  // where it is linearised
+  system::RotorSystem& system_;
+  solve::FrequencyResponse solver_;
+  std::vector<TransferOutput> outputs_;
+  std::vector<std::vector<double>> loads_;  // per input, this rank's rows as real and imaginary parts
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,57 @@
+#pragma once
+// Planes in the states that a motion is cut by.
+
+#include <string>
+#include <vector>
+
+#include "whirl/io/record.hpp"
+#include "whirl/study/motion/assessment.hpp"
+#include "whirl/system/plant.hpp"
+
+namespace whirl::study {
+
+/// A coordinate that decks name: x, y, vx, vy of a place, or a state by its number.
+struct Coordinate {
+  int place = -1;  ///< of ShownPlaces; -1: a state
+  int which = 0;   ///< 0 to 3 for x, y, vx, vy; of a state its number from 0
+};
+/// Throws core::InputError (without a place) with the nearest name if there is none. `states` 0: none can be named.
+[[nodiscard]] Coordinate coordinate(std::string_view name, const std::vector<std::string>& places, PetscInt states);
+
+/// sum factor x coordinate - value, whose sign changes where the plane is crossed.
+class Plane {
+public:
+  struct Term {
+    Coordinate of;
+    double factor = 1;
+  };
+  Plane(std::vector<Term> terms, double value) : terms_(std::move(terms)), value_(value) {}
+  /// Of a state in SI. Collective, the same on all ranks.
+  [[nodiscard]] double height(system::Plant& system, Vec x) const;
+  /// "B1.y = 1.2e-05 m".
+  [[nodiscard]] std::string text(const system::ShownPlaces& places) const;
+  [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
+  [[nodiscard]] double value() const { return value_; }
+
+private:
+  std::vector<Term> terms_;
+  double value_;
+};
+[[nodiscard]] Plane plane_of(const SectionOptions& options, const system::ShownPlaces& places, PetscInt states);
+
+/// Watches where a motion is, to choose a plane that it crosses: the mean of the coordinate x or y that travels most,
+/// per clearance.
+class Watch {
+public:
+  void see(const std::vector<system::PlaceState>& shown);
+  [[nodiscard]] bool seen() const { return count_ > 0; }
+  [[nodiscard]] Plane choose(const system::ShownPlaces& places) const;
+  void save(io::Group& group) const;
+  void load(const io::Group& group);
+
+private:
+  std::vector<double> sum_, low_, high_;  // [place][x, y]
+  double count_ = 0;
+};
+
+}  // namespace whirl::study
