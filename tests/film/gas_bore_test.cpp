@@ -108,7 +108,7 @@ TEST(GasBore, PadsLobesAndGroovesAtLowSpeeds) {
 }
 
 // Two lobes with vented joints are the lemon bore of 180 deg; three lobes carry nothing in the middle and alike in
-// three directions, and preload makes them stiffer than the circle at a low bearing number.
+// three directions, and preload makes them stiffer than the circle of the same radius.
 TEST(GasBore, Lobes) {
   Geometry lemon = spindle();
   lemon.type = Geometry::Bore::lemon_bore;
@@ -133,8 +133,10 @@ TEST(GasBore, Lobes) {
   const auto stiffness = [](const SolvedGas& s) {
     return port_coefficients(*s.film, s.motion, s.states, 1.0).stiffness[0][0];
   };
-  EXPECT_GT(stiffness(solved(spindle(), three, {0.0, 0.0}, 1000.0)),
-            2.0 * stiffness(solved(spindle(), self_acting({48, 16}), {0.0, 0.0}, 1000.0)));
+  Geometry assembled = spindle();
+  assembled.clearance = 10e-6;  // lobes of 20 um
+  EXPECT_GT(stiffness(solved(assembled, three, {0.0, 0.0}, 1000.0)),
+            stiffness(solved(spindle(), self_acting({48, 16}), {0.0, 0.0}, 1000.0)));
 }
 
 // A groove under pressure feeds the film: what it gives leaves at the ends, and the journal is pushed away from it.

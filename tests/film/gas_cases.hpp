@@ -49,7 +49,8 @@ inline std::vector<GasCase> gas_films() {
   pockets.tilt = true;
   pockets.slip = Gas::Slip::second;
   pockets.orifices[0].law = OrificeRow::Law::two_restrictors;
-  pockets.orifices[0].pocket = Pocket{4e-3, 300e-6};
+  pockets.orifices[0].diameter = 0.5e-3;  // so wide that the rim of its pocket resists too
+  pockets.orifices[0].pocket = Pocket{0.7e-3, 300e-6};
   pockets.orifices[1].law = OrificeRow::Law::reynolds;
   pockets.orifices[1].pocket = Pocket{1e-3, 15e-6};
   pockets.orifices[1].angle = 0.13;

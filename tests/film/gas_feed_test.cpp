@@ -92,7 +92,7 @@ TEST(GasFeed, PocketsConvergeWithTheMesh) {
   EXPECT_GT(std::log2(std::abs((load[1] - load[0]) / (load[2] - load[1]))), 1.3);
 }
 
-// The gas in a pocket is compressed and comes back late: pneumatic hammer. At rest its volume does not show.
+// A pocket fills late: pneumatic hammer, and less stiffness at a frequency. At rest its volume does not show.
 TEST(GasFeed, VolumesOfPocketsTakeDampingAway) {
   double stiffness = 0.0, before = 1e9;
   for (const double depth : {0.4e-3, 2e-3, 10e-3}) {
@@ -107,7 +107,7 @@ TEST(GasFeed, VolumesOfPocketsTakeDampingAway) {
     }
     stiffness = slow.stiffness[0][0];
     EXPECT_LT(slow.damping[0][0], before - 100.0);
-    EXPECT_GT(c.stiffness[0][0], stiffness);
+    EXPECT_LT(c.stiffness[0][0], stiffness);
     before = slow.damping[0][0];
   }
   EXPECT_LT(before, 0.0);
