@@ -41,7 +41,8 @@ public:
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
         integrator_(system_, {options_.speed.value}, start_.x.get(),
-                    {.tolerance = options_.tolerance,
+                    {.scheme = options_.integrator.scheme,
+                     .tolerance = options_.tolerance,
                      .after_step = [this](double time, double step) { progress(time, step); }}),
         record_(options_, system_.places(), system_.forced() || !options_.unbalance.empty(), integrator_.scaled()),
         films_(system_.places()) {
@@ -71,7 +72,7 @@ private:
     const double period = 2 * std::numbers::pi / options_.speed.value;
     std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
     for (int k = 1; k <= options_.samples; ++k) {
-      integrator_.advance(period * k / options_.samples);
+      integrator_.advance(period * k / options_.samples, period);
       if (tangents_) {
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
@@ -82,7 +83,7 @@ private:
       if (record) record_.sample(seen.shown, integrator_.scaled());
     }
     if (record) record_.close(growth, period);
-    integrator_.restart(0, integrator_.step());
+    integrator_.close_revolution(period);
   }
 
   // A revolution may take minutes: each step says where it ended.

@@ -37,7 +37,10 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, of orbits and spectra");
   d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
-        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
+        "error allowed to a step, in clearances; rounding lets none be smaller than the limit; with equal steps a "
+        "hundredth of "
+        "it ends Newton's method");
+  d.add("integrator", &O::integrator, "scheme of the steps in time");
   d.add("exponents", &O::exponents, deck::in(0, 1e4), "Lyapunov exponents to compute, the largest; none: 0");
   d.add("max_period", &O::max_period, deck::in(1, 1e5), "longest period to look for, in revolutions");
   d.add("return_tolerance", &O::return_tolerance, deck::in(1e-13, 1),
@@ -47,10 +50,28 @@ void describe(deck::Description<MotionOptions>& d) {
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
 }
 
+void check_scheme(const std::string& key, const transient::Scheme& scheme, const system::Machine& machine,
+                  const deck::Report& report) {
+  if (!transient::is_explicit(scheme)) return;
+  for (const auto& b : machine.bearings)
+    // Where the gap is full its pressure follows the journal at once.
+    if (film::find<film::Reynolds>(b.film) && film::facts(b.film).own_states)
+      report.fail(
+          key,
+          fmt::format("an explicit scheme needs a rate of every state, and pressures of a film that conserves its mass "
+                      "have none (bearing {}): take sdirk4, bdf, generalized_alpha or newmark",
+                      b.name));
+}
+
 void Motion::validate(const system::Machine& machine, const deck::Report& report) const {
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+  check_scheme("integrator.type", options.integrator.scheme, machine, report);
+  if (options.exponents > 0 && !std::holds_alternative<transient::Sdirk4>(options.integrator.scheme))
+    report.fail("exponents",
+                fmt::format("Lyapunov exponents are carried along by sdirk4 only; with {} say `exponents: 0`",
+                            transient::name_of(options.integrator.scheme)));
   const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
   if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
     report.fail(

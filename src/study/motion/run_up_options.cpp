@@ -29,7 +29,10 @@ void describe(deck::Description<RunUpOptions>& d) {
   d.add("nodes", &O::nodes, deck::positive, "nodes of the shaft to report beside the bearings");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, among which extremes are looked for");
   d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
-        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
+        "error allowed to a step, in clearances; rounding lets none be smaller than the limit; with equal steps a "
+        "hundredth of "
+        "it ends Newton's method");
+  d.add("integrator", &O::integrator, "scheme of the steps in time");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
   d.check([](const O& o, const deck::Report& r) {
     if (o.acceleration.has_value() == o.duration.has_value())
@@ -46,6 +49,7 @@ void describe(deck::Description<RunUpOptions>& d) {
 
 void RunUp::validate(const system::Machine& machine, const deck::Report& report) const {
   check_unbalance(options.unbalance, machine, report);
+  check_scheme("integrator.type", options.integrator.scheme, machine, report);
   check_nodes("nodes", options.nodes, machine, report);
 }
 

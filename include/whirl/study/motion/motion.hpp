@@ -4,6 +4,7 @@
 #include <array>
 
 #include "whirl/study/study.hpp"
+#include "whirl/transient/scheme.hpp"
 
 namespace whirl::study {
 
@@ -16,6 +17,10 @@ struct MotionStart {
 [[nodiscard]] std::span<const deck::Name<MotionStart::From>> names(MotionStart::From);
 void describe(deck::Description<MotionStart>& d);
 
+/// Reports a scheme that the machine's films do not allow.
+void check_scheme(const std::string& key, const transient::Scheme& scheme, const system::Machine& machine,
+                  const deck::Report& report);
+
 struct MotionOptions {
   enum class Window { none, hann };
   std::string name;
@@ -26,6 +31,7 @@ struct MotionOptions {
   int revolutions = 400;  ///< recorded
   int samples = 64;       ///< per revolution
   double tolerance = 1e-8;
+  transient::SchemeOptions integrator;
   int exponents = 2;  ///< Lyapunov exponents, the largest
   int max_period = 8;
   double return_tolerance = 1e-4;
