@@ -178,17 +178,19 @@ std::unique_ptr<Signal> make_signal(const SignalOptions& options) {
   return std::visit(Make{}, options);
 }
 
+double interpolation_gain(const Random& o, double frequency) {
+  const double f = frequency / (o.oversampling * o.cutoff);
+  const auto sinc = [](double x) { return std::sin(pi * x) / (pi * x); };
+  if (f < 1e-4) return 1;
+  // Fourier transform of the kernel of the cubic through four samples, slopes by central differences.
+  const double square = (pi * f) * (pi * f), one = sinc(f), two = sinc(2 * f);
+  return (3 * (one * one - two) - (3 * two * two - 2 * two - sinc(4 * f))) / square;
+}
+
 double spectral_density(const Random& o, double frequency) {
-  const double rate = o.oversampling * o.cutoff, f = frequency / rate;
-  const auto sinc = [](double x) { return x == 0 ? 1.0 : std::sin(pi * x) / (pi * x); };
-  // Fourier transform of the kernel of the cubic through four samples, slopes by central differences (a = -1/2).
-  double kernel = 1;
-  if (f > 1e-4) {
-    const double square = (pi * f) * (pi * f), one = sinc(f), two = sinc(2 * f);
-    kernel = (3 * (one * one - two) - (3 * two * two - 2 * two - sinc(4 * f))) / square;
-  }
-  const double filter = ButterworthLowPass(1.0 / o.oversampling).power_gain(f), gain = gain_of(o);
-  return 2 / rate * gain * gain * filter * kernel * kernel;
+  const double rate = o.oversampling * o.cutoff, gain = gain_of(o), between = interpolation_gain(o, frequency);
+  return 2 / rate * gain * gain * ButterworthLowPass(1.0 / o.oversampling).power_gain(frequency / rate) * between *
+         between;
 }
 
 void describe(deck::Description<Step>& d) {

@@ -101,9 +101,13 @@ void describe(deck::Description<Series::Point>& d);
 
 [[nodiscard]] std::unique_ptr<Signal> make_signal(const SignalOptions& options);
 
-/// One-sided power spectral density of a Random signal at `frequency` [N^2/Hz]: that of the noise, times the filter's
-/// and the interpolation's power gain. Source of the latter: Keys (1981), IEEE Trans. Acoust. Speech Signal Process.
-/// 29, 1153.
+/// What the cubic between the samples of a Random signal makes of their Fourier transform at `frequency` [Hz], below
+/// half the sample rate: 0.94 at a quarter of it. Source: Keys (1981), IEEE Trans. Acoust. Speech Signal Process. 29,
+/// 1153, with a = -1/2.
+[[nodiscard]] double interpolation_gain(const Random& options, double frequency);
+
+/// One-sided power spectral density of a Random signal at `frequency` [N^2/Hz]: that of the noise, times the power
+/// gains of filter and interpolation.
 [[nodiscard]] double spectral_density(const Random& options, double frequency);
 
 }  // namespace whirl::transient

@@ -162,7 +162,7 @@ void put_excitation(io::Group& group, const LinearityOptions& options, const Lin
     for (Eigen::Index d = 0; d < 2; ++d) found[d].push_back(r.spectra.lines[k](d, d).real());
   }
   group.put("frequency", frequency, "Hz", "of the line");
-  group.put("density_x", found[0], "N^2/Hz", "one-sided power spectral density of the force along x, its samples");
+  group.put("density_x", found[0], "N^2/Hz", "one-sided power spectral density of the force along x");
   group.put("density_y", found[1], "N^2/Hz", "of the force along y");
   group.put("density", wanted, "N^2/Hz",
             "that of white noise through the low pass and between samples, in closed form");

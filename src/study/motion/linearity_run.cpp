@@ -100,7 +100,13 @@ std::vector<double> LinearityRunner::record(double level, const std::function<vo
   flat.push_back(static_cast<double>(kept));
   for (std::size_t k = 0; k < kept; ++k)
     for (const auto& s : record) flat.push_back(s[k]);
-  const auto spectra = transient::spectral_matrix(record, 1 / rate, {.segments = options_.segments});
+  auto spectra = transient::spectral_matrix(record, 1 / rate, {.segments = options_.segments});
+  // The force is what stands between its samples as well.
+  for (std::size_t k = 0; k < spectra.lines.size(); ++k) {
+    const double gain = transient::interpolation_gain(noise_of(options_, level, 0), spectra.frequency(k));
+    spectra.lines[k].topRows(2) *= gain;
+    spectra.lines[k].leftCols(2) *= gain;
+  }
   flat.insert(flat.end(), {spectra.resolution, static_cast<double>(spectra.samples), spectra.averages,
                            static_cast<double>(spectra.lines.size())});
   for (const Eigen::MatrixXcd& m : spectra.lines)
