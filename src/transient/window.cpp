@@ -59,7 +59,7 @@ double response(Window window, double offset) {
     const double d = j == nearest ? from_line : x - static_cast<double>(j);
     sum += (j % 2 == 0 ? a[j] : -a[j]) * x / (d * (x + static_cast<double>(j)));
   }
-  return std::abs(std::sin(pi * from_line) / pi * sum) / a[0];
+  return std::abs(std::sin(std::numbers::pi * from_line) / std::numbers::pi * sum) / a[0];
 }
 
 double offset_of(Window window, double ratio) {
