@@ -124,20 +124,11 @@ void Equations::thin_residual(double t, Vec u, Vec udot) {
   time_ = t;
   tangents_ = false;
   const bool cheap = point_->own_states() == 0;
-  if (cheap)
-    point_->residual(drive_.angle_at(t), u_, udot_, f_, at_);
-  else
-    point_->residual(drive_.angle_at(t), u_, udot_, f_);
+  residual(t, u_, udot_, f_, cheap ? &at_ : nullptr);
   tangents_ = cheap;
 }
 
 void Equations::residual(double t, Vec u, Vec udot, Vec f) {
-  free_residual(t, u, udot, f);
-  if (forces_) forces_->subtract(t, inverse_.get(), f);
-}
-
-void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
-  turn(t);
   if (thin_) {
     f_.resize(system_.size());
     thin_residual(t, u, udot);
@@ -145,6 +136,13 @@ void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
     Eigen::Map<Eigen::VectorXd>(out.data(), out.size()) = f_;
     return;
   }
+  free_residual(t, u, udot, f);
+  if (forces_) forces_->subtract(t, inverse_.get(), f);
+}
+
+void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
+  ++residuals_;
+  turn(t);
   const double angle = drive_.angle_at(t);
   if (point_) {
     to_eigen(u, u_);
@@ -160,7 +158,22 @@ void Equations::free_residual(double t, Vec u, Vec udot, Vec f) {
   check(VecPointwiseMult(f, f, inverse_.get()));
 }
 
+void Equations::residual(double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot, Eigen::VectorXd& f,
+                         solve::PointState* keep) {
+  ++residuals_;
+  turn(t);
+  if (keep)
+    point_->residual(drive_.angle_at(t), u, udot, f, *keep);
+  else
+    point_->residual(drive_.angle_at(t), u, udot, f);
+  if (!forces_) return;
+  const core::ReadArray factor(inverse_.get());
+  const auto n = static_cast<std::size_t>(f.size());
+  forces_->subtract(t, 0, {factor.data(), n}, {f.data(), n});
+}
+
 void Equations::jacobian(double t, Vec u, Vec udot, double alpha, double sigma, Mat j) {
+  ++jacobians_;
   turn(t);
   const double angle = drive_.angle_at(t);
   if (thin_) {
@@ -201,6 +214,63 @@ void Equations::jacobian(double t, Vec u, Vec udot, double alpha, double sigma, 
   unscale(udot, xdot_.get());
   system_.jacobian(angle, x_.get(), xdot_.get(), alpha, sigma, j);
   check(MatDiagonalScale(j, inverse_.get(), state_scale_.get()));
+}
+
+core::LinearSolver Equations::make_solver(const std::string& prefix) {
+  core::LinearSolver out;
+  check(KSPCreate(system_.comm(), out.put()));
+  check(KSPSetOptionsPrefix(out.get(), prefix.c_str()));
+  configure(out.get());
+  check(KSPSetFromOptions(out.get()));
+  return out;
+}
+
+bool Equations::solve(KSP ksp, Mat matrix, Vec b, Vec x) {
+  check(KSPSetOperators(ksp, matrix, matrix));
+  gate_.rethrow(KSPSolve(ksp, b, x));
+  return core::reason_of(ksp) > 0;
+}
+
+void Equations::rate(double t, Vec u, Vec udot) {
+  if (!rates_) {
+    rates_ = make_matrix();
+    rate_solver_ = make_solver("rates_");
+    f_rate_ = make_state();
+    change_ = make_state();
+  }
+  check(VecSet(udot, 0));
+  // The first pass finds the rates of films' states, the second one the forces that are cut off at these.
+  const int passes = thin_ && point_->own_states() == 0 ? 1 : 2;
+  for (int pass = 0; pass < passes; ++pass) {
+    residual(t, u, udot, f_rate_.get());
+    jacobian(t, u, udot, 0, 1, rates_.get());
+    if (!solve(rate_solver_.get(), rates_.get(), f_rate_.get(), change_.get()))
+      throw core::NotConverged("the rates do not follow from the states: dF/d(dx/dt) is singular");
+    check(VecAXPY(udot, -1, change_.get()));
+  }
+}
+
+std::string Equations::why_singular(double t, Vec u) {
+  turn(t);
+  const core::Matrix m = system_.make_jacobian();
+  unscale(u, x_.get());
+  check(VecSet(xdot_.get(), 0));
+  system_.jacobian(drive_.angle_at(t), x_.get(), xdot_.get(), 0, 1, m.get());
+  const core::Vector largest = core::duplicate(x_.get());
+  check(MatGetRowMaxAbs(m.get(), largest.get(), nullptr));
+  const std::vector<problem::Field> fields = system_.fields();
+  int field = 0;  // number of the first one with such a row, from 1
+  {
+    const core::ReadArray a(largest.get());
+    for (std::size_t k = fields.size(); k-- > 0;)
+      fields[k].each([&](PetscInt row) {
+        if (a[row] == 0) field = static_cast<int>(k) + 1;
+      });
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &field, 1, MPI_INT, MPI_MAX, system_.comm());
+  if (field == 0) return {};
+  const problem::Field& f = fields[static_cast<std::size_t>(field - 1)];
+  return f.quantity.empty() ? f.name : f.quantity + " of " + f.name;
 }
 
 }  // namespace whirl::transient

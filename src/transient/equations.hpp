@@ -20,6 +20,8 @@ namespace whirl::transient {
 class Equations {
 public:
   Equations(problem::System& system, const problem::Drive& drive, Algebra algebra = Algebra::automatic);
+  Equations(const Equations&) = delete;
+  Equations& operator=(const Equations&) = delete;
 
   [[nodiscard]] problem::System& system() const { return system_; }
   [[nodiscard]] bool dense() const { return point_ && !thin(); }
@@ -29,6 +31,13 @@ public:
   [[nodiscard]] core::Matrix make_matrix();
   /// A solver of KSP for matrices of make_matrix(): ThinInverse, or LU with row exchanges.
   void configure(KSP ksp);
+  [[nodiscard]] core::LinearSolver make_solver(const std::string& prefix);
+  /// x = matrix^-1 b; false if that failed.
+  [[nodiscard]] bool solve(KSP ksp, Mat matrix, Vec b, Vec x);
+  [[nodiscard]] solve::ScaledPoint& point() { return *point_; }
+  [[nodiscard]] const problem::Drive& drive() const { return drive_; }
+  /// Sets the speed of the shaft at `t`, where it changes.
+  void turn(double t);
   /// What callbacks throw leaves PETSc through it.
   [[nodiscard]] core::Gate& gate() { return gate_; }
 
@@ -38,12 +47,23 @@ public:
   void residual(double t, Vec u, Vec udot, Vec f);
   /// F - B f(t) from now on; null: none. They outlive their use here.
   void act(const Forces* forces) { forces_ = forces; }
+  /// Of thin ones the same without PETSc; with `keep` the films' tangents stay in it.
+  void residual(double t, const Eigen::VectorXd& u, const Eigen::VectorXd& udot, Eigen::VectorXd& f,
+                solve::PointState* keep = nullptr);
   /// j = alpha dF/du + sigma dF/d(du/dt)
   void jacobian(double t, Vec u, Vec udot, double alpha, double sigma, Mat j);
 
+  /// The du/dt of F(t, u, du/dt) = 0, F being linear in it but for cut-offs, with a regular dF/d(du/dt).
+  void rate(double t, Vec u, Vec udot);
+  /// Which equations hold no rates, so that dF/d(du/dt) is singular at `u`: the states they belong to; empty if there
+  /// are none.
+  [[nodiscard]] std::string why_singular(double t, Vec u);
+  /// Evaluations by residual() and jacobian() so far.
+  [[nodiscard]] long residuals() const { return residuals_; }
+  [[nodiscard]] long jacobians() const { return jacobians_; }
+
 private:
-  void turn(double t);
-  /// Without external forces.
+  /// Of assembled ones, without external forces.
   void free_residual(double t, Vec u, Vec udot, Vec f);
   [[nodiscard]] ThinOperator& operator_of(Mat m);
   void thin_residual(double t, Vec u, Vec udot);
@@ -61,7 +81,11 @@ private:
   double time_ = 0;
   solve::PointState at_;
   bool tangents_ = false;
+  long residuals_ = 0, jacobians_ = 0;
   std::vector<std::pair<Mat, std::shared_ptr<ThinOperator>>> operators_;
+  core::Matrix rates_;  // of rate()
+  core::LinearSolver rate_solver_;
+  core::Vector f_rate_, change_;
 };
 
 }  // namespace whirl::transient

@@ -18,7 +18,8 @@ constexpr std::size_t most_kept = 6;
 constexpr double near_step = 0.1, near_parameter = 0.05;
 constexpr double slow = 0.3;  // a refinement that converges slower pays for new factors
 constexpr int most_refinements = 12;
-// Dense factors win up to here: LAPACK's blocks against scattered entries.
+// A dense inverse wins up to here: one product without a dependence of one row on the next. It is used with refinement
+// or in Newton's method only.
 constexpr Index dense_until = 160;
 
 bool near(double a, double b, double ratio) {
@@ -85,8 +86,8 @@ ThinInverse::Factors& ThinInverse::factorise(const ThinOperator& a) {
   const Sparse m = blocks.l1 + tau * blocks.l0;
   const MatrixXd b = blocks.b;
   if (m.rows() <= dense_until) {
-    made->dense = std::make_unique<Eigen::PartialPivLU<MatrixXd>>(MatrixXd(m));
-    made->lead = made->dense->solve(b);
+    made->inverse = MatrixXd(m).partialPivLu().inverse();
+    made->lead.noalias() = made->inverse * b;
   } else {
     if (!made->sparse) made->sparse = std::make_unique<Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>>>();
     made->sparse->compute(m);
@@ -122,35 +123,53 @@ void ThinInverse::prepare(const ThinOperator& a, Factors& f) {
 
 // A/sigma = [ M - tau B D C   -B F ]     M = L1 + tau L0, S = dg/ds' + tau dg/ds, F = df/ds' + tau df/ds, D = df/dw
 //           [ tau dg/dw C        S   ]
-void ThinInverse::apply(const ThinOperator& a, const VectorXd& y, VectorXd& x) const {
+void ThinInverse::apply(const ThinOperator& a, const VectorXd& y, VectorXd& x) {
   const Factors& f = *now_;
   const auto& blocks = point_.thin_blocks();
   const Index n = structure_.size();
   x.resize(y.size());
-  VectorXd forces = VectorXd::Zero(structure_.n_forces());
-  for (std::size_t i = 0; i < f.films.size(); ++i) {
-    const problem::OwnStates& own = structure_.own()[i];
-    x.segment(n + own.first, own.count) = f.films[i]->lu.solve(y.segment(n + own.first, own.count));
-    forces.segment(own.first_force, own.forces) += f.films[i]->forces * x.segment(n + own.first, own.count);
-  }
-  VectorXd rhs = y.head(n);
-  if (!f.films.empty()) rhs += blocks.b * forces;
-  if (f.dense)
-    x.head(n) = f.dense->solve(rhs);
-  else
-    x.head(n) = f.sparse->solve(rhs);
-  const VectorXd inputs = blocks.c * x.head(n);
-  const VectorXd by_force = small_.solve(by_input_ * inputs);
-  x.head(n).noalias() += f.tau * (f.lead * by_force);
+  rhs_ = y.head(n);
   if (!f.films.empty()) {
-    const VectorXd seen = inputs + f.tau * (f.seen * by_force);
+    forces_.setZero(structure_.n_forces());
+    for (std::size_t i = 0; i < f.films.size(); ++i) {
+      const problem::OwnStates& own = structure_.own()[i];
+      x.segment(n + own.first, own.count) = f.films[i]->lu.solve(y.segment(n + own.first, own.count));
+      forces_.segment(own.first_force, own.forces) += f.films[i]->forces * x.segment(n + own.first, own.count);
+    }
+    rhs_ += blocks.b * forces_;
+  }
+  if (f.sparse)
+    x.head(n) = f.sparse->solve(rhs_);
+  else
+    x.head(n).noalias() = f.inverse * rhs_;
+  inputs_.noalias() = blocks.c * x.head(n);
+  by_force_.noalias() = by_input_ * inputs_;
+  by_force_ = small_.solve(by_force_);
+  x.head(n).noalias() += f.tau * (f.lead * by_force_);
+  if (!f.films.empty()) {
+    inputs_.noalias() += f.tau * (f.seen * by_force_);
     for (std::size_t i = 0; i < f.films.size(); ++i) {
       const problem::OwnStates& own = structure_.own()[i];
       x.segment(n + own.first, own.count).noalias() -=
-          f.tau * (f.films[i]->by_input * seen.segment(own.first_input, own.inputs));
+          f.tau * (f.films[i]->by_input * inputs_.segment(own.first_input, own.inputs));
     }
   }
   x /= a.sigma;
+}
+
+void ThinInverse::place(const ThinOperator& a) {
+  Factors* f = nearest(a.alpha / a.sigma, a.parameter);
+  prepare(a, f ? *f : factorise(a));
+}
+
+bool ThinInverse::fits(double tau, double parameter) const {
+  return now_ && near(tau, now_->tau, near_step) && near(parameter, now_->parameter, near_parameter);
+}
+
+void ThinInverse::forget() {
+  kept_.clear();
+  now_ = nullptr;
+  prepared_ = nullptr;
 }
 
 void ThinInverse::solve(const ThinOperator& a, const VectorXd& y, VectorXd& x, double tolerance) {

@@ -35,6 +35,18 @@ public:
 
   /// To |y - A x| <= tolerance |y|.
   void solve(const ThinOperator& a, const Eigen::VectorXd& y, Eigen::VectorXd& x, double tolerance = 1e-6);
+
+  /// Makes ready for apply(): the journals' places enter exactly, all else by the factors that are kept, if some are
+  /// near, or
+  void place(const ThinOperator& a);
+  /// by new ones of this very point.
+  void factorise_at(const ThinOperator& a) { prepare(a, factorise(a)); }
+  /// Whether what was made ready is near a step of alpha/sigma = `tau` at `parameter`.
+  [[nodiscard]] bool fits(double tau, double parameter) const;
+  /// x = about A^-1 y, without refinement.
+  void apply(const ThinOperator& a, const Eigen::VectorXd& y, Eigen::VectorXd& x);
+  /// Drops all factors.
+  void forget();
   /// Factorisations of the rotor's part so far; those of films stand behind them.
   [[nodiscard]] long factorisations() const { return factorisations_; }
 
@@ -47,7 +59,7 @@ private:
   };
   struct Factors {
     double tau = 0, parameter = 0;
-    std::unique_ptr<Eigen::PartialPivLU<Eigen::MatrixXd>> dense;  // of L1 + tau L0, or
+    Eigen::MatrixXd inverse;  // of L1 + tau L0 if that is small, or
     std::unique_ptr<Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>>> sparse;
     Eigen::MatrixXd lead, seen;  // its inverse times B [n x r], and C times that [w x r]
     std::vector<std::unique_ptr<Film>> films;
@@ -59,7 +71,6 @@ private:
   void factorise_film(const ThinOperator& a, std::size_t which, Film& film) const;
   /// The matrix of size r for the point of `a`.
   void prepare(const ThinOperator& a, Factors& f);
-  void apply(const ThinOperator& a, const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
   [[nodiscard]] bool exact(const ThinOperator& a) const;
 
   const solve::ScaledPoint& point_;
@@ -71,7 +82,8 @@ private:
   Eigen::MatrixXd by_input_;                    // df/dw with what the films' states add [r x w]
   Eigen::PartialPivLU<Eigen::MatrixXd> small_;  // I - tau by_input C (L1 + tau L0)^-1 B
   long factorisations_ = 0, clock_ = 0;
-  Eigen::VectorXd left_, more_;  // work space of the refinement
+  Eigen::VectorXd left_, more_;                       // work space of the refinement
+  Eigen::VectorXd forces_, rhs_, inputs_, by_force_;  // and of apply()
 };
 
 }  // namespace whirl::transient

@@ -36,16 +36,16 @@ def whirl_map(h):
     study = "studies=[{modes: {name: map, range: {from: 0 rad/s, to: 10000 rad/s}, points: 5, count: 6}}]"
     h.run(deck, "isotropic", [study], launcher=[])
     with h5py.File(h.work / "isotropic" / "results.h5") as f:
-        speed, turning = f["map/spectrum/speed"][()], f["map/whirl_map/turning"][()]
+        speed, turning = f["studies/map/spectrum/speed"][()], f["studies/map/whirl_map/turning"][()]
         moving = turning[speed > 0]
         h.close("circles", np.abs(np.abs(moving[np.abs(moving) > 0]) - 1).max(), 0, 1e-3)
     springs = "bearings.*.film.stiffness=[1e7 N/m, 0 N/m, 0 N/m, 2e7 N/m]"
     s = h.run(deck, "springs", [study, springs], launcher=[])["map"]
     h.true("at rest every mode is planar by both rules", all(m["whirl"] == m["whirl_rule"] == "planar" for m in s["modes"] if m["speed"] == 0))
     with h5py.File(h.work / "springs" / "results.h5") as f:
-        speed, turning = f["map/spectrum/speed"][()], f["map/whirl_map/turning"][()]
-        rule = f["map/spectrum/whirl_rule"].asstr()[()]
-        forward, backward = f["map/spectrum/forward_nodes"][()], f["map/spectrum/backward_nodes"][()]
+        speed, turning = f["studies/map/spectrum/speed"][()], f["studies/map/whirl_map/turning"][()]
+        rule = f["studies/map/spectrum/whirl_rule"].asstr()[()]
+        forward, backward = f["studies/map/spectrum/forward_nodes"][()], f["studies/map/spectrum/backward_nodes"][()]
     h.true("nodes are counted", np.all(forward == (turning > 1e-6).sum(axis=1)) and np.all(backward == (turning < -1e-6).sum(axis=1)))
     wanted = np.where((forward > 0) & (backward > 0), "mixed", np.where(forward > 0, "forward", np.where(backward > 0, "backward", "planar")))
     h.true("the rule follows from the nodes", np.all(rule == wanted))
@@ -67,7 +67,7 @@ def convergence(h):
     h.close("shift by shear, 10", value(s, "timoshenko_linear.shift.10"), shift, 1e-4)
     with h5py.File(h.work / "plain" / "results.h5") as f:
         for element in ("rayleigh", "timoshenko_linear"):
-            table = f[f"elements/convergence/{element}"]
+            table = f[f"studies/elements/convergence/{element}"]
             h.true(f"{element}: vectors worse conditioned with more elements", np.all(np.diff(table["condition_vectors"][()]) > 0))
             growth = np.diff(np.log2(table["condition_stiffness"][()]))
             h.true("    stiffness by the fourth power", element != "rayleigh" or np.all(np.abs(growth - 4) < 1), np.array2string(growth, precision=2))
@@ -82,12 +82,12 @@ def response(h):
 
     def matrix(name, entries=("node.7.x", "node.7.y", "node.7.slope_x")):
         with h5py.File(h.work / name / "results.h5") as f:
-            g = f["disc/response/machine"]
+            g = f["studies/disc/response/machine"]
             return np.array([[g[f"{o}.from.{i}/real"][()] + 1j * g[f"{o}.from.{i}/imaginary"][()] for i in entries] for o in entries])
 
     h.run(deck, "whole", launcher=[])
     with h5py.File(h.work / "whole" / "results.h5") as f:
-        units = [f[f"disc/response/machine/{p}/amplitude"].attrs["unit"] for p in ("node.7.x.from.node.7.x", "node.7.slope_x.from.node.7.x", "node.7.slope_x.from.node.7.slope_x", "bearing.left.x.from.node.7.slope_x")]
+        units = [f[f"studies/disc/response/machine/{p}/amplitude"].attrs["unit"] for p in ("node.7.x.from.node.7.x", "node.7.slope_x.from.node.7.x", "node.7.slope_x.from.node.7.slope_x", "bearing.left.x.from.node.7.slope_x")]
     h.true("units", [u.decode() if isinstance(u, bytes) else u for u in units] == ["m/N", "1/N", "1/(N m)", "m/(N m)"], str(units))
     whole = matrix("whole")
     few = "studies.1.frequency_response.points=40"
@@ -109,7 +109,7 @@ def response(h):
     rows = [row % (1, 1e3, 1e7), row % (4, 4e3, 1e7)]
     h.run(deck, "rising", [one % tuple(r.replace("b_xx: 100", "b_xx: 0") for r in rows), "rotor.discs=[]", "rotor.material.density=1 kg/m^3"], launcher=[])
     with h5py.File(h.work / "rising" / "results.h5") as f:
-        found = f["disc/response/given/bearing.left.x.from.bearing.left.x/real"][()]
+        found = f["studies/disc/response/given/bearing.left.x.from.bearing.left.x/real"][()]
     for w, g in zip((2, 3), found):
         h.close(f"given: a spring of {w} kN/m [m/N]", g, 1e-3 / w, 1e-5 / w)
     # Far below all resonances: the springs, and the shaft's own compliance.

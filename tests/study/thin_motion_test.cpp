@@ -1,4 +1,5 @@
-// Steps in time by the structure of a machine against assembled ones: the same motions to the tolerance of Newton's method.
+// Steps in time by the structure of a machine against assembled ones: the same motions to the tolerance of Newton's
+// method.
 
 #include <gtest/gtest.h>
 

@@ -71,7 +71,8 @@ void correct(const Pencil& p, double eta, int sense, spectral::Mode& mode) {
   u.normalize();
   Complex lambda = mode.lambda;
   Eigen::SparseLU<Sparse> lu;
-  constexpr int steps = 4, most = 30;
+  constexpr int most = 30;
+  const int steps = static_cast<int>(std::ceil(eta / 0.05));
   for (int step = 1; step <= steps; ++step) {
     const double here = eta * step / steps;
     double change = 0;
@@ -106,18 +107,24 @@ void correct(const Pencil& p, double eta, int sense, spectral::Mode& mode) {
 
 }  // namespace
 
-std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const std::vector<spectral::Mode>& modes) {
-  constexpr PetscInt most = 20000;
-  if (system.size() > most)
+std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const std::vector<spectral::Mode>& modes,
+                                      int most) {
+  constexpr PetscInt largest = 20000;
+  if (system.size() > largest)
     core::agree(system.comm(), [] {
       throw core::InputError("modes with a loss factor take machines up to 20,000 states: films with fewer cells");
     });
   const Pencil pencil = pencil_of(system, x);
   const double eta = system.train().rotor.loss_factor;
-  std::vector<spectral::Mode> out = modes;
+  std::vector<spectral::Mode> out;
+  int vibrating = 0;
   core::agree(system.comm(), [&] {
-    for (spectral::Mode& m : out)
-      if (m.lambda.imag() > 1e-7 * std::abs(m.lambda)) correct(pencil, eta, system.loss_sense(m.lambda.imag()), m);
+    for (const spectral::Mode& m : modes) {
+      const bool vibrates = m.lambda.imag() > 1e-7 * std::abs(m.lambda);
+      if (vibrates && ++vibrating > most) return;
+      out.push_back(m);
+      if (vibrates) correct(pencil, eta, system.loss_sense(m.lambda.imag()), out.back());
+    }
   });
   std::stable_sort(out.begin(), out.end(),
                    [](const spectral::Mode& a, const spectral::Mode& b) { return a.lambda.imag() < b.lambda.imag(); });

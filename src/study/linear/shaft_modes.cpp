@@ -47,14 +47,27 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   const auto slowest = std::min_element(found.modes.begin(), found.modes.end(), [](const auto& m, const auto& n) {
     return std::abs(m.lambda) < std::abs(n.lambda);
   });
+  double rest = -1;  // modulus up to which eigenvalues are zero, which rounding parts
   if (slowest != found.modes.end() && slowest->defective()) {
     search.rest_multiplicity = slowest->multiplicity;
     search.rest_vectors = slowest->vectors;
+    std::vector<double> sizes;
+    for (const auto& mode : found.modes)
+      sizes.insert(sizes.end(), mode.lambda.imag() != 0 ? 2 : 1, std::abs(mode.lambda));
+    std::sort(sizes.begin(), sizes.end());
+    rest = sizes[std::min(sizes.size(), static_cast<std::size_t>(slowest->multiplicity)) - 1];
   }
-  if (system.train().rotor.loss_factor > 0) found.modes = with_loss(system, equilibrium, found.modes);
+  if (system.train().rotor.loss_factor > 0) {
+    // Those that count, and a few more whose places among them may change.
+    int vibrating = 4, counted = 0;
+    for (auto m = found.modes.begin(); m != found.modes.end() && counted < count; ++m)
+      if (m->lambda.imag() > 1e-7 * std::abs(m->lambda)) ++vibrating, counted += part_taken(*m) >= least_participation;
+    found.modes = with_loss(system, equilibrium, found.modes, vibrating);
+  }
   for (const auto& mode : found.modes) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
     if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
+    if (std::abs(mode.lambda) <= rest) continue;
     if (static_cast<int>(out.size()) == count) break;
     const double taken = part_taken(mode);
     if (taken < least_participation) continue;

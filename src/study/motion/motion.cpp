@@ -43,7 +43,8 @@ public:
         start_(start_state(system_, options_.start)),
         forces_(make_forces(options_.forces, context.machine, system_)),
         integrator_(system_, {options_.speed.value}, start_.x.get(),
-                    {.tolerance = options_.tolerance,
+                    {.scheme = options_.integrator.scheme,
+                     .tolerance = options_.tolerance,
                      .forces = acting(forces_),
                      .after_step = [this](double time, double step) { progress(time, step); }}),
         forced_(system_.forced() || !options_.unbalance.empty()),
@@ -83,11 +84,13 @@ private:
   void revolve(bool record) {
     std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
     for (int k = 1; k <= options_.samples; ++k) {
-      const double time = period() * (turns_before() * options_.samples + k) / options_.samples;
+      const auto at = [&](int sample) {
+        return period() * (turns_before() * options_.samples + sample) / options_.samples;
+      };
       if (record && section_)
-        section_->advance(time, carried_);
+        section_->advance(at(k), carried_);
       else
-        integrator_.advance(time);
+        integrator_.advance(at(k), at(options_.samples));
       if (tangents_) {
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
@@ -99,7 +102,7 @@ private:
       if (!record && !forced_ && done_ >= options_.discard - std::max(1, options_.discard / 4)) watch_.see(seen.shown);
     }
     if (record) record_.close(growth, period());
-    if (forces_.empty()) integrator_.restart(0, integrator_.step());
+    integrator_.close_revolution(forces_.empty() ? period() : 0);
   }
 
   // Sets up the section, if there is one.

@@ -18,6 +18,7 @@ struct RunUpOptions {
   std::vector<int> nodes;  ///< of the shaft, reported beside the bearings
   int samples = 64;        ///< per revolution, at equal angles
   double tolerance = 1e-7;
+  transient::SchemeOptions integrator;
   std::optional<OrderOptions> orders;
   std::optional<WaterfallOptions> waterfall;
   bool checkpoint = true;
