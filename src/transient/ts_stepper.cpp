@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "transient/stages.hpp"
@@ -189,7 +190,9 @@ Taken TsStepper::try_step(double time, double wanted, Vec u) {
     remember(now);
     return {now - time, proposed, 0};
   }
-  const bool whole = std::abs(now - time - wanted) < 1e-9 * wanted;
+  // Late in a motion the time itself is rounded by more than a part of a short step.
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(now);
+  const bool whole = std::abs(now - time - wanted) <= 1e-9 * wanted + rounding;
   return {whole ? wanted : now - time, proposed, whole ? 0 : 1};
 }
 
