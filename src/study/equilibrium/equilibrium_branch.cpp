@@ -101,7 +101,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     x = first_guess(*system);
     if (problem::parts_of(system->fields()).size() > 0) {
       system->set_parameter(range.from);
-      const core::Vector guess = core::duplicate(x.get());
+      core::Vector guess = core::duplicate(x.get());
       check(VecCopy(x.get(), guess.get()));
       if (!find_rest(*system, x.get()).converged) std::swap(x, guess);  // the branch says why
     }
