@@ -167,8 +167,9 @@ def critical_speeds(h):
 # A stiff shaft without mass, so that only the disc at node 7, 90 mm from the left of 300 mm, and the springs are left.
 LEFT, RIGHT = 0.09, 0.21
 MASS, DIAMETRAL, POLAR, OFFSET, ECCENTRICITY, SKEW = 0.5, 7.81e-5, 1.56e-4, 4e-3, 5e-6, 1e-3
-SPRING, DASHPOT = 1e7, 200.0
-AS_BODY = ["rotor.material.modulus=1e18 Pa", "rotor.material.density=1e-6 kg/m^3", "rotor.reduction={type: guyan, masters: [1, 21]}"]
+SPRING, DASHPOT = 1e5, 20.0
+AS_BODY = ["rotor.material.modulus=1e16 Pa", "rotor.material.density=1e-6 kg/m^3", "rotor.reduction={type: guyan, masters: [1, 21]}",
+           f"bearings.*.film={{type: linear, stiffness: {SPRING} N/m, damping: {DASHPOT} N s/m}}"]
 
 
 class Body:
@@ -214,8 +215,8 @@ class Body:
 def skewed_disc(h):
     """Eccentric and skewed disc: response and run-up of a rigid body on springs, and the deck as it is."""
     deck = h.source / "inputs/merot/skewed_disc.yaml"
-    body, start, end, acceleration = Body(), 4000, 6500, 2e5
-    few = ["studies=[{unbalance_response: {name: response, unbalance: [discs], range: {from: 1000 rad/s, to: 9000 rad/s}, points: 17,"
+    body, start, end, acceleration = Body(), 400, 650, 2e3
+    few = ["studies=[{unbalance_response: {name: response, unbalance: [discs], range: {from: 100 rad/s, to: 900 rad/s}, points: 17,"
            " refine: false, nodes: [1, 21]}}, {run_up: {name: run-up, unbalance: [discs], range: {from: %d rad/s, to: %d rad/s},"
            " acceleration: %g rad/s^2, start: {from: cycle}, nodes: [1, 21], tolerance: 1e-8}}]" % (start, end, acceleration)]
     h.run(deck, "body", [*AS_BODY, *few], launcher=[])
@@ -244,7 +245,7 @@ def skewed_disc(h):
 
 
 # A light shaft on stiff bearings with a heavy point in its middle: k and m of Jeffcott's rotor.
-JEFFCOTT = ["rotor.material.density=0.01 kg/m^3", "rotor.discs=[{node: 11, mass: 0.5 kg}]", "bearings.*.film={type: linear, stiffness: 1e12 N/m}",
+JEFFCOTT = ["rotor.material.density=1 kg/m^3", "rotor.discs=[{node: 11, mass: 0.5 kg}]", "bearings.*.film={type: linear, stiffness: 1e12 N/m}",
             "unbalance={disc: {planes: [{node: 11, amount: 1e-6 kg m}]}}"]
 
 
@@ -288,7 +289,7 @@ def hysteresis(h):
                     found = f["studies/response/response/semi_major"][0, 0]
                 loss = eta if frame == "stationary" else 0
                 wanted = abs(e * ratio**2 / (1 + 1j * loss - ratio**2))
-                h.close(f"{frame}: response at {ratio} times the critical speed", found, wanted, 1e-5 * wanted)
+                h.close(f"{frame}: response at {ratio} times the critical speed", found, wanted, 2e-4 * wanted)
     # As the deck is: the first mode is driven above its critical speed in spite of the bearings, or less damped.
     s = h.run(deck, "deck", launcher=[])
     first = [m for m in s["modes"]["modes"] if m["whirl"] == "forward" and m["imag"] < 1400]
