@@ -14,7 +14,7 @@ from .table import Table
 MAIN_TABLE = {"static": "bearings", "modes": "spectrum", "bearing_map": "locus", "dynamic_coefficients": "places",
               "unbalance_response": "response",
               "equilibrium_branch": "branch", "cycle_branch": "branch", "locus": "locus", "run_up": "run_up", "motion": "spectrum",
-              "gas_bearing": "curves",
+              "gas_bearing": "curves", "linearity": "levels",
               "critical_speed_map": "map"}
 
 

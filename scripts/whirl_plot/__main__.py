@@ -5,8 +5,8 @@ import sys
 
 import whirl
 
-from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, enforced, film, gas, line, locus, machine, motion,
-               multipliers, orbits, orders, reductions, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections,
+from . import (bearing_map, bifurcation, campbell, critical, dynamic, eccentricity, elements, enforced, film, gas, line, linearity, locus, machine,
+               motion, multipliers, orbits, orders, reductions, response, run_up, shapes, style, sweep, thd, thd_compare, thd_cuts, thd_maps, thd_sections,
                transfer, whirl_map)
 from .subject import Drawn, said_in_a_sentence
 
@@ -25,6 +25,7 @@ PICTURES = {
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
     "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
+    "linearity": [linearity.draw_transfer, linearity.draw_coherence, linearity.draw_excitation],
     "motion": [motion.draw, motion.draw_full_spectrum, orders.draw_waterfall, orders.draw_orders],
     "run_up": [orders.draw_waterfall, orders.draw_orders],
     "thd": [thd_maps.draw_maps, thd_maps.draw_velocity, thd_maps.draw_fluid, thd_maps.draw_heat, thd_cuts.draw_profiles, thd_sections.draw_film, thd_cuts.draw_radial,

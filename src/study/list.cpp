@@ -14,6 +14,7 @@
 #include "whirl/study/linear/reduction_errors.hpp"
 #include "whirl/study/linear/unbalance_response.hpp"
 #include "whirl/study/locus/locus.hpp"
+#include "whirl/study/motion/linearity.hpp"
 #include "whirl/study/motion/motion.hpp"
 #include "whirl/study/motion/run_up.hpp"
 #include "whirl/study/sweep/sweep.hpp"
@@ -50,6 +51,8 @@ const std::vector<deck::Kind<Study>>& kinds() {
       kind<CycleBranch>("limit cycles, forced or self-excited, over a parameter with multipliers and bifurcations"),
       kind<Motion>("a motion in time: orbit, Poincare points, spectrum, Lyapunov exponents, what kind of motion it is"),
       kind<RunUp>("a rotor whose speed rises or falls evenly: amplitude in every revolution on the way"),
+      kind<Linearity>(
+          "whether a rotor answers random forces as its linearisation: transfer functions, coherence, bounds"),
       kind<Locus>("curve of one bifurcation of a branch in two parameters, with points of codimension two"),
       kind<MeshConvergence>("bifurcations of a branch of cycles on finer and finer film meshes: order, limit, error"),
       kind<Sweep>("the same studies for variants of the machine: one table of all values, trends"),

@@ -60,6 +60,10 @@ void RotorSystem::MachineBlocks::rebuild() {
   l1_ = block(n, m.rates.get());
   l0_at_rest_ = block(n, m.at_rest.get());
   gyroscopic_ = block(n, m.turning.get());
+  // All of L0 with one pattern, so that it follows the speed by its values alone.
+  l0_ = l0_at_rest_ + gyroscopic_;
+  l0_at_rest_ = problem::SparseBlock(0.0 * l0_ + l0_at_rest_);
+  l0_by_speed_ = 0.0 * l0_ + gyroscopic_;
   b_ = block(n, ports, b);
   c_ = block(2 * ports, n, c);
   l0_speed_ = -1;
@@ -82,7 +86,7 @@ void RotorSystem::MachineBlocks::find_own_states() {
 const problem::SparseBlock& RotorSystem::MachineBlocks::l0() {
   if (l0_speed_ != system_.speed_) {
     l0_speed_ = system_.speed_;
-    l0_ = l0_at_rest_ + l0_speed_ * gyroscopic_;
+    l0_.coeffs() = l0_at_rest_.coeffs() + l0_speed_ * l0_by_speed_.coeffs();
   }
   return l0_;
 }

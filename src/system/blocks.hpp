@@ -36,7 +36,7 @@ private:
   void find_own_states();
 
   RotorSystem& system_;
-  problem::SparseBlock l1_, l0_at_rest_, gyroscopic_, l0_, b_, c_;
+  problem::SparseBlock l1_, l0_at_rest_, l0_by_speed_, gyroscopic_, l0_, b_, c_;
   double l0_speed_ = -1;
   std::vector<problem::OwnStates> own_;
   struct Ports {

@@ -107,6 +107,10 @@ std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& po
 }
 
 Verdict classify(const Evidence& e) {
+  if (e.driven)
+    return {Kind::driven, 0, "driven",
+            "external forces act that do not follow the shaft's angle: returns at that angle say nothing" +
+                (known(e) ? ", " + largest(e) : "")};
   if (e.size < e.rest) {
     if (!e.exponents.empty() && sign_of(e, 0) == Sign::positive)
       return {Kind::unsettled, 0, "unsettled", "at rest although deviations grow: " + largest(e)};

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
+#include "transient/adams_moulton.hpp"
 #include "transient/equations.hpp"
+#include "transient/gauss.hpp"
+#include "transient/newmark.hpp"
 #include "transient/stages.hpp"
+#include "transient/thin_steps.hpp"
+#include "transient/ts_stepper.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/gate.hpp"
 #include "whirl/solve/shooting/tableau.hpp"
 
 namespace whirl::transient {
@@ -19,199 +22,205 @@ namespace {
 
 using core::check;
 
-constexpr const char* scheme_name = "whirl_sdirk4";
-// Each rejection divides the step by at least four where a film was left, by up to ten otherwise.
-constexpr int max_rejections = 20;
-
 // Growth rates are wanted to fewer digits than the motion: two, at the step's estimate of order three, which is
 // pessimistic for a solution of order four.
 constexpr double deviation_tolerance = 100;
+// A proposal that changes the step by less keeps it, and with it the factors of its matrices.
+constexpr double least_change = 0.95, largest_kept = 1.2;
 
-// PETSc keeps schemes by name for the life of the process.
-void register_scheme(const solve::Tableau& t) {
-  static const bool done = [&] {
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a = t.a;
-    const Eigen::VectorXd estimate = embedded_weights(t);
-    const std::vector<double> none(static_cast<std::size_t>(a.size()), 0.0);
-    const auto s = static_cast<PetscInt>(t.stages());
-    check(TSARKIMEXRegister(scheme_name, t.order, s, a.data(), t.b.data(), t.c.data(), none.data(), none.data(),
-                            t.c.data(), estimate.data(), none.data(), 0, nullptr, nullptr));
-    return true;
-  }();
-  (void)done;
+// -PREFIXassembled takes the other path, for comparison.
+Algebra algebra_of(const IntegratorOptions& o) {
+  PetscBool assembled = o.algebra == Algebra::assembled ? PETSC_TRUE : PETSC_FALSE;
+  check(PetscOptionsGetBool(nullptr, o.prefix.c_str(), "-assembled", &assembled, nullptr));
+  return assembled ? Algebra::assembled : Algebra::automatic;
+}
+
+bool asks_for_petsc(const IntegratorOptions& o) {
+  PetscBool asked = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, o.prefix.c_str(), "-ts_type", &asked));
+  return asked == PETSC_TRUE;
 }
 
 }  // namespace
 
 struct Integrator::Parts {
   Parts(problem::System& system, const problem::Drive& given, const IntegratorOptions& o)
-      : drive(given), options(o), equations(system, given), gate(system.comm()), tableau(solve::sdirk(4)) {}
+      : drive(given), options(o), equations(system, given, algebra_of(o)), tableau(solve::sdirk(4)) {}
 
   problem::Drive drive;
   IntegratorOptions options;
   Equations equations;
-  core::Gate gate;
   solve::Tableau tableau;
-  core::Vector u, before;
-  core::Matrix jacobian;
-  core::Handle<TS, TSDestroy> ts;
+  core::Vector u;              // as told, and
+  core::Vector front, before;  // at the end of the last step, and at its beginning
+  std::unique_ptr<Stepper> stepper;
+  ThinSteps* thin = nullptr;  // the stepper if it is one of these
+  TsStepper* petsc = nullptr;
   std::unique_ptr<StageTangents> carrier;
   Tangents* tangents = nullptr;
-  double time = 0, step = 0;
-  Work work;
+  double time = 0, reached = 0, step = 0;  // told, of the front, proposed
+  double offset = 0;                       // of the stepper's time before these
+  long steps = 0, rejected = 0;
+
+  void choose();
+  template <class Made, class... Words>
+  Made* hold(Words&&... words) {
+    auto made = std::make_unique<Made>(std::forward<Words>(words)...);
+    Made* out = made.get();
+    stepper = std::move(made);
+    return out;
+  }
+  [[nodiscard]] std::string where() const {
+    return fmt::format("the motion could not be continued beyond t = {:.9g} s: ", reached);
+  }
+  // What is told of a motion that ends is its end.
+  void stop_at_front() {
+    check(VecCopy(front.get(), u.get()));
+    time = reached;
+  }
+  // One step towards `end`; with deviations only where they allow it.
+  void go_on(double end) {
+    const Pace pace = stepper->pace();
+    if (const int wanted_steps = equal_steps(options.scheme))
+      step = 2 * std::numbers::pi / (std::abs(drive.speed_at(reached)) * wanted_steps);
+    // A step ends at a break of the forces; one that is nearer than rounding is none.
+    bool breaks = false;
+    if (options.forces) {
+      const double slack = 1e-9 * step, next = options.forces->next_break(reached + slack);
+      breaks = next < end - slack;
+      if (breaks) end = next;
+    }
+    const double left = pace == Pace::by_itself ? step : end - reached;
+    // Equal steps to the end, so that none of them is short for nothing.
+    const double parts = std::max(1.0, std::ceil(left / step * (1 - 1e-9)));
+    const double wanted = left / parts;
+    if (options.forces) options.forces->enter(reached, reached + wanted);
+    check(VecCopy(front.get(), before.get()));
+    Taken taken = stepper->step(reached + offset, wanted, front.get());
+    rejected += taken.rejected;
+    if (tangents) {
+      for (int i = 0; i < static_cast<int>(tableau.stages()); ++i) carrier->keep(i, stepper->stage(i));
+      // The steps suit the deviations too: at an equilibrium the state alone would allow any.
+      const double error = carrier->propagate(reached + offset, taken.length, before.get(), *tangents) /
+                           (deviation_tolerance * options.tolerance);
+      const double allowed = allowed_step(taken.length, error, tableau.order);
+      if (error > 1) {
+        check(VecCopy(before.get(), front.get()));
+        stepper->forget();
+        step = allowed;
+        ++rejected;
+        return;
+      }
+      carrier->accept(*tangents);
+      taken.proposed = std::min(taken.proposed, allowed);
+    }
+    const double length = taken.length;
+    // Growth stops at a factor of ten: a step cut short for the end of the interval then says nothing.
+    if (pace == Pace::by_itself)
+      step = taken.proposed;
+    else if (taken.proposed > 9.9 * length)
+      step = std::max(step, taken.proposed);
+    else if (taken.rejected > 0 || taken.proposed < least_change * length || taken.proposed > largest_kept * length)
+      step = taken.proposed;
+    reached = pace != Pace::by_itself && length == wanted && parts == 1 ? end : reached + length;
+    if (breaks && reached == end) stepper->pass_break();
+    ++steps;
+    if (options.after_step) options.after_step(reached, length);
+  }
 };
 
-namespace {
-
-template <class Parts>
-SNES snes_of(Parts& p) {
-  SNES snes = nullptr;
-  check(TSGetSNES(p.ts.get(), &snes));
-  return snes;
+void Integrator::Parts::choose() {
+  const Scheme& s = options.scheme;
+  core::require(!options.forces || !has_own_pace(s), "no step of such a scheme ends at a break of external forces");
+  const double newton = std::max(1e-2 * options.tolerance, 1e-13);
+  const bool fixed_point = std::holds_alternative<NewmarkFixedPoint>(s),
+             linearised = std::holds_alternative<NewmarkLinearised>(s),
+             newmark = fixed_point || linearised || std::holds_alternative<Newmark>(s);
+  const std::string singular = newmark || is_explicit(s) ? equations.why_singular(0, u.get()) : "";
+  if (is_explicit(s) && !singular.empty())
+    throw core::InputError(
+        fmt::format("the explicit scheme {} needs a rate of every state, but equations of {} hold none: dF/d(dx/dt) is "
+                    "singular; sdirk4, bdf, generalized_alpha and newmark do without",
+                    name_of(s), singular));
+  if (fixed_point && !equations.thin())
+    throw core::InputError(fmt::format(
+        "{} iterates over the forces of films of a rotor that one rank holds whole; newmark does without", name_of(s)));
+  if (fixed_point)
+    hold<NewmarkFixedPointSteps>(equations, singular.empty(), newton);
+  else if (newmark)
+    hold<NewmarkSteps>(equations, linearised, singular.empty(), newton);
+  else if (std::holds_alternative<AdamsMoulton>(s))
+    hold<AdamsMoultonSteps>(equations);
+  else if (const auto* irk = std::get_if<Irk>(&s))
+    hold<GaussSteps>(equations, irk->stages, newton);
+  else if (std::holds_alternative<Sdirk4>(s) && equations.thin() && !asks_for_petsc(options))
+    thin = hold<ThinSteps>(equations, tableau, options.tolerance);
+  else
+    petsc = hold<TsStepper>(equations, options, tableau);
 }
-
-template <class Parts>
-PetscErrorCode form_residual(TS, PetscReal t, Vec u, Vec udot, Vec f, void* raw) {
-  auto& p = *static_cast<Parts*>(raw);
-  ++p.work.residuals;
-  const PetscErrorCode code = p.gate.run([&] { p.equations.residual(t, u, udot, f); });
-  return p.gate.domain_error() ? SNESSetFunctionDomainError(snes_of(p)) : code;
-}
-
-template <class Parts>
-PetscErrorCode form_jacobian(TS, PetscReal t, Vec u, Vec udot, PetscReal shift, Mat j, Mat, void* raw) {
-  auto& p = *static_cast<Parts*>(raw);
-  ++p.work.jacobians;
-  const PetscErrorCode code = p.gate.run([&] { p.equations.jacobian(t, u, udot, 1, shift, j); });
-  return p.gate.domain_error() ? SNESSetJacobianDomainError(snes_of(p)) : code;
-}
-
-// PETSc gives no place for a context of its own here.
-template <class Parts>
-PetscErrorCode keep_stage(TS ts, PetscReal, PetscInt stage, Vec* values) {
-  void* raw = nullptr;
-  PetscCall(TSGetApplicationContext(ts, &raw));
-  auto& p = *static_cast<Parts*>(raw);
-  if (!p.tangents) return 0;
-  return p.gate.run([&] { p.carrier->keep(stage, values[stage]); });
-}
-
-}  // namespace
 
 Integrator::Integrator(problem::System& system, problem::Drive drive, Vec x, IntegratorOptions options)
     : parts_(std::make_unique<Parts>(system, drive, options)) {
   Parts& p = *parts_;
-  register_scheme(p.tableau);
   p.u = p.equations.make_state();
-  p.before = core::duplicate(p.u.get());
-  p.jacobian = p.equations.make_matrix();
+  p.front = p.equations.make_state();
+  p.before = p.equations.make_state();
   p.step = options.first_step > 0 ? options.first_step : 2e-3 * std::numbers::pi / std::abs(system.speed());
   p.equations.scale(x, p.u.get());
-
-  TS* made = p.ts.put();
-  check(TSCreate(system.comm(), made));
-  TS ts = p.ts.get();
-  check(TSSetOptionsPrefix(ts, options.prefix.c_str()));
-  check(TSSetProblemType(ts, TS_NONLINEAR));
-  check(TSSetEquationType(ts, TS_EQ_ODE_IMPLICIT));
-  check(TSSetType(ts, TSARKIMEX));
-  check(TSARKIMEXSetType(ts, scheme_name));
-  check(TSARKIMEXSetFullyImplicit(ts, PETSC_TRUE));
-  check(TSSetIFunction(ts, nullptr, form_residual<Parts>, &p));
-  check(TSSetIJacobian(ts, p.jacobian.get(), p.jacobian.get(), form_jacobian<Parts>, &p));
-  check(TSSetApplicationContext(ts, &p));
-  check(TSSetPostStage(ts, keep_stage<Parts>));
-  check(TSSetTolerances(ts, options.tolerance, nullptr, options.tolerance, nullptr));
-  check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
-  check(TSSetMaxTime(ts, 1e300));
-  check(TSSetMaxSteps(ts, PETSC_MAX_INT));
-  check(TSSetMaxSNESFailures(ts, -1));
-  check(TSSetMaxStepRejections(ts, max_rejections));
-  check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
-  SNES snes = snes_of(p);
-  // The first guess of a stage is one step away from it. No test of the correction's size: a line search that failed
-  // outside the films would pass it.
-  const double root_n = std::sqrt(static_cast<double>(system.size()));
-  check(SNESSetTolerances(snes, std::max(1e-2 * options.tolerance, 1e-12) * root_n, 0.1 * options.tolerance, 0, 12,
-                          1000));
-  check(SNESSetCheckJacobianDomainError(snes, PETSC_TRUE));  // PETSc looks in debug builds only
-  // A Newton step that leaves a film means a time step too long: no line search.
-  SNESLineSearch search = nullptr;
-  check(SNESGetLineSearch(snes, &search));
-  check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
-  KSP ksp = nullptr;
-  check(SNESGetKSP(snes, &ksp));
-  p.equations.configure(ksp);
-  check(TSSetFromOptions(ts));
-  check(TSSetSolution(ts, p.u.get()));
-  check(TSSetUp(ts));
+  p.equations.act(options.forces);
+  p.choose();
+  restart(0, p.step);
 }
 
 Integrator::~Integrator() = default;
 
 void Integrator::carry(Tangents* tangents) {
   Parts& p = *parts_;
-  TSType type = nullptr;
-  check(TSGetType(p.ts.get(), &type));
-  if (tangents && std::string(type) != TSARKIMEX)
-    throw core::InputError("Lyapunov exponents need the scheme of this program, not -" + p.options.prefix + "ts_type " +
-                           type);
+  if (tangents && !p.thin && !(p.petsc && p.petsc->type() == TSARKIMEX))
+    throw core::InputError("Lyapunov exponents need the scheme sdirk4");
+  core::require(!tangents || p.reached == p.time, "deviations begin at the end of a step");
   p.tangents = tangents;
   if (tangents && !p.carrier) p.carrier = std::make_unique<StageTangents>(p.equations, p.tableau);
 }
 
 void Integrator::restart(double time, double step) {
-  parts_->time = time;
-  parts_->step = step;
+  Parts& p = *parts_;
+  p.time = p.reached = time;
+  p.offset = 0;
+  p.step = step;
+  check(VecCopy(p.u.get(), p.front.get()));
+  p.stepper->forget();
+}
+
+void Integrator::close_revolution(double earlier) {
+  Parts& p = *parts_;
+  if (p.stepper->pace() != Pace::by_itself) return restart(p.time - earlier, p.step);
+  p.time -= earlier;
+  p.reached -= earlier;
+  p.offset += earlier;
 }
 
 void Integrator::advance(double time) {
+  advance(time, time);
+}
+
+void Integrator::advance(double time, double end) {
   Parts& p = *parts_;
-  TS ts = p.ts.get();
-  check(TSRestartStep(ts));
-  while (p.time < time) {
-    const double left = time - p.time;
-    // Equal steps to the end, so that none of them is short for nothing.
-    const double parts = std::max(1.0, std::ceil(left / p.step * (1 - 1e-9)));
-    const double wanted = left / parts;
-    check(TSSetTime(ts, p.time));
-    check(TSSetTimeStep(ts, wanted));
-    check(VecCopy(p.u.get(), p.before.get()));
-    p.gate.rethrow(TSStep(ts));
-    TSConvergedReason reason = TS_CONVERGED_ITERATING;
-    PetscReal now = 0, proposed = 0;
-    check(TSGetConvergedReason(ts, &reason));
-    check(TSGetTime(ts, &now));
-    check(TSGetTimeStep(ts, &proposed));
-    if (reason < 0 || now == p.time) {
-      check(VecCopy(p.before.get(), p.u.get()));
-      const std::string where = fmt::format("the motion could not be continued beyond t = {:.9g} s", p.time);
-      if (!p.gate.domain_text().empty()) throw core::DomainError(where + ": " + p.gate.domain_text());
-      throw core::NotConverged(fmt::format("{}: {}", where, TSConvergedReasons[reason]));
-    }
-    const bool whole = std::abs(now - p.time - wanted) < 1e-9 * wanted;
-    if (!whole) ++p.work.rejected;
-    const double length = whole ? wanted : now - p.time;
-    if (p.tangents) {
-      // The steps suit the deviations too: at an equilibrium the state alone would allow any.
-      const double error = p.carrier->propagate(p.time, length, p.before.get(), *p.tangents) /
-                           (deviation_tolerance * p.options.tolerance);
-      const double allowed = length * std::clamp(0.9 * std::pow(error, -0.25), 0.1, 10.0);
-      if (error > 1) {
-        check(VecCopy(p.before.get(), p.u.get()));
-        p.step = allowed;
-        ++p.work.rejected;
-        continue;
-      }
-      p.carrier->accept(*p.tangents);
-      proposed = std::min(proposed, allowed);
-    }
-    // Growth stops at a factor of ten: a step cut short for the end of the interval then says nothing.
-    p.step = proposed > 9.9 * length ? std::max(p.step, proposed) : proposed;
-    p.time = whole && parts == 1 ? time : now;
-    ++p.work.steps;
-    if (p.options.after_step) p.options.after_step(p.time, length);
+  if (p.tangents || p.stepper->pace() == Pace::to_samples) end = time;
+  try {
+    while (p.reached < time) p.go_on(std::max(time, end));
+  } catch (const core::DomainError& e) {
+    p.stop_at_front();
+    throw core::DomainError(p.where() + e.what());
+  } catch (const core::NotConverged& e) {
+    p.stop_at_front();
+    throw core::NotConverged(p.where() + e.what());
   }
+  p.time = time;
+  if (p.reached == time)
+    check(VecCopy(p.front.get(), p.u.get()));
+  else
+    p.stepper->interpolate(time + p.offset, p.u.get());
 }
 
 double Integrator::time() const {
@@ -235,7 +244,14 @@ const problem::Drive& Integrator::drive() const {
 }
 
 Integrator::Work Integrator::work() const {
-  return parts_->work;
+  const Parts& p = *parts_;
+  Work work{p.steps, p.rejected, p.equations.residuals(), p.equations.jacobians(), p.equations.jacobians()};
+  if (p.thin) {
+    const ThinSteps::Work done = p.thin->work();
+    work.jacobians = done.tangents;
+    work.factorisations = done.factorisations;
+  }
+  return work;
 }
 
 }  // namespace whirl::transient

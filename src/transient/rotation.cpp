@@ -28,12 +28,16 @@ std::vector<double> angles(const std::vector<std::array<double, 2>>& points) {
       low[d] = std::min(low[d], p[d]);
       high[d] = std::max(high[d], p[d]);
     }
+  // Axes of the box for those of the curve: a flat ellipse is seen as a circle, a line stays one.
+  constexpr double flattest = 1e-6;
+  std::array<double, 2> width{high[0] - low[0], high[1] - low[1]};
+  const double widest = std::max({width[0], width[1], std::numeric_limits<double>::min()});
+  for (double& w : width)
+    if (w < flattest * widest) w = widest;
   std::vector<double> out;
   for (const auto& p : points) {
     std::array<double, 2> z{};
-    // Axes of the box for those of the curve: a flat ellipse is seen as a circle.
-    for (std::size_t d = 0; d < 2; ++d)
-      z[d] = (p[d] - (low[d] + high[d]) / 2) / std::max(high[d] - low[d], std::numeric_limits<double>::min());
+    for (std::size_t d = 0; d < 2; ++d) z[d] = (p[d] - (low[d] + high[d]) / 2) / width[d];
     out.push_back(fraction(std::atan2(z[1], z[0]) / (2 * std::numbers::pi)));
   }
   return out;

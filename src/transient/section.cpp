@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "whirl/core/error.hpp"
 
@@ -24,8 +23,9 @@ Section::Section(Integrator& integrator, Height height, Sense sense, Found found
       sense_(sense),
       found_(std::move(found)),
       before_(core::duplicate(integrator.scaled())),
-      after_(core::duplicate(integrator.scaled())),
-      left_(core::duplicate(integrator.scaled())) {}
+      after_(core::duplicate(integrator.scaled())) {
+  for (core::Vector& n : nodes_) n = core::duplicate(integrator.scaled());
+}
 
 void Section::advance(double time, Tangents* carried) {
   if (!last_) last_ = height_();
@@ -47,37 +47,73 @@ void Section::advance(double time, Tangents* carried) {
   integrator_.carry(carried);
 }
 
-// Regula falsi that halves the value of an end which stays (Dowell and Jarratt 1971). The states at the left end are
-// kept, so that each try is one step from there.
+// The bracket shrinks to an eighth of a step by false position, each try a step from its left end; states at five times
+// in it make a polynomial of degree four, whose error is far below that of a step, and the root is that of g along it.
+// Shorter steps would not do: rates by differences of the states lose what the steps are shorter.
 void Section::locate(double from, double to, double low, double high) {
+  const bool below = low < 0;
   double a = from, b = to, left = low, right = high;
-  int stayed = 0;  // which end did not move last: -1 the left one
-  check(VecCopy(before_.get(), left_.get()));
-  const double smallest = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(from), std::abs(to));
-  const double level = 1e-14 * std::max(std::abs(low), std::abs(high));
+  const double width = std::min(to - from, step_before_) / 8;
+  bool left_moved = false;
+  check(VecCopy(before_.get(), nodes_[0].get()));
+  const auto go = [&](double start, Vec state, double time) {
+    check(VecCopy(state, integrator_.scaled()));
+    integrator_.restart(start, step_before_);
+    integrator_.advance(time);
+  };
   constexpr int most = 60;
-  double t = a;
-  for (int k = 0; k < most; ++k) {
-    t = std::min(std::max(b - right * (b - a) / (right - left), a + smallest), b);
-    check(VecCopy(left_.get(), integrator_.scaled()));
-    integrator_.restart(a, step_before_);
-    integrator_.advance(t);
+  for (int k = 0; k < most && b - a > 1.001 * width; ++k) {
+    // Beside the estimate, on the side where the bracket is wide still.
+    const double estimate = b - right * (b - a) / (right - left) + (left_moved ? 0.5 : -0.5) * width;
+    const double t = std::min(std::max(estimate, a + width / 2), b - width / 4);
+    go(a, nodes_[0].get(), t);
     const double at = height_();
-    if (std::abs(at) <= level || b - a <= 2 * smallest) break;
-    if ((at < 0) == (low < 0)) {
-      a = t;
-      left = at;
-      check(VecCopy(integrator_.scaled(), left_.get()));
-      if (stayed > 0) right /= 2;
-      stayed = 1;
-    } else {
-      b = t;
-      right = at;
-      if (stayed < 0) left /= 2;
-      stayed = -1;
-    }
+    left_moved = (at < 0) == below;
+    (left_moved ? a : b) = t;
+    (left_moved ? left : right) = at;
+    if (left_moved) check(VecCopy(integrator_.scaled(), nodes_[0].get()));
   }
-  found_(t);
+  const double spacing = (b - a) / (nodes - 1);
+  for (std::size_t k = 1; k < nodes; ++k) {
+    go(a + static_cast<double>(k - 1) * spacing, nodes_[k - 1].get(), a + static_cast<double>(k) * spacing);
+    check(VecCopy(integrator_.scaled(), nodes_[k].get()));
+  }
+  found_(a + spacing * root(below, std::max(std::abs(low), std::abs(high))));
+}
+
+double Section::at(double x) {
+  check(VecSet(integrator_.scaled(), 0));
+  for (std::size_t k = 0; k < nodes; ++k) {
+    double weight = 1;
+    for (std::size_t j = 0; j < nodes; ++j)
+      if (j != k) weight *= (x - static_cast<double>(j)) / (static_cast<double>(k) - static_cast<double>(j));
+    check(VecAXPY(integrator_.scaled(), weight, nodes_[k].get()));
+  }
+  return height_();
+}
+
+// False position that halves the value of an end which stays (Dowell and Jarratt 1971), over the number of the node.
+double Section::root(bool below, double size) {
+  double a = 0, b = nodes - 1, left = at(a), right = at(b);
+  // The last step may have gone another way than the one that told the side, by its error.
+  if ((left < 0) != below) return a;
+  if ((right < 0) == below) return b;
+  const double level = 1e-14 * size;
+  int stayed = 0;
+  double x = b;
+  constexpr int most = 60;
+  for (int k = 0; k < most; ++k) {
+    x = b - right * (b - a) / (right - left);
+    const double value = at(x);
+    if (std::abs(value) <= level || !(a < x && x < b)) break;
+    const bool here = (value < 0) == below;
+    (here ? a : b) = x;
+    (here ? left : right) = value;
+    if (here && stayed > 0) right /= 2;
+    if (!here && stayed < 0) left /= 2;
+    stayed = here ? 1 : -1;
+  }
+  return x;
 }
 
 }  // namespace whirl::transient

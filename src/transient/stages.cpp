@@ -21,6 +21,23 @@ Eigen::VectorXd embedded_weights(const solve::Tableau& t) {
   return b;
 }
 
+Eigen::MatrixXd continuous_weights(const solve::Tableau& t) {
+  core::require(t.order == 4 && t.stages() == 5, "the continuation is that of the scheme of order 4");
+  Eigen::Matrix<double, 5, 5> conditions;
+  conditions.row(0).setOnes();
+  conditions.row(1) = t.c;
+  conditions.row(2) = t.c.cwiseAbs2();
+  conditions.row(3) = t.a * t.c;
+  conditions.row(4) = t.c.array().cube();
+  Eigen::Matrix<double, 5, 4> wanted = Eigen::Matrix<double, 5, 4>::Zero();
+  wanted(0, 0) = 1;
+  wanted(1, 1) = 1.0 / 2;
+  wanted(2, 2) = 1.0 / 3;
+  wanted(3, 2) = 1.0 / 6;
+  wanted(4, 3) = 1.0 / 4;
+  return conditions.partialPivLu().solve(wanted);
+}
+
 StageTangents::StageTangents(Equations& equations, const solve::Tableau& tableau)
     : equations_(equations), tableau_(tableau), estimate_(tableau.b - embedded_weights(tableau)) {
   z_ = equations.make_state();

@@ -13,6 +13,11 @@ namespace whirl::transient {
 /// sum b c = 1/2, sum b c^2 = 1/3, sum b a c = 1/6. They estimate the error of a step.
 [[nodiscard]] Eigen::VectorXd embedded_weights(const solve::Tableau& tableau);
 
+/// b_i(theta) = sum_p w_ip theta^(p+1) [stages x 4]: u(t + theta h) = u_0 + h sum b_i(theta) K_i to order 3 within a
+/// step, to order 4 at its end, by sum b = theta, sum b c = theta^2/2, sum b c^2 = theta^3/3, sum b a c = theta^3/6 and
+/// sum b c^3 = theta^4/4.
+[[nodiscard]] Eigen::MatrixXd continuous_weights(const solve::Tableau& tableau);
+
 /// With stages Y_i = Z_i + h a_ii K_i, Z_i = u_0 + h sum_{j<i} a_ij K_j and F(t_i, Y_i, K_i) = 0, a deviation obeys
 ///
 ///     (dF/d(du/dt) + h a_ii dF/du) dK_i = -dF/du dZ_i,    du_1 = dZ_s + h a_ss dK_s  (stiffly accurate)

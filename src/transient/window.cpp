@@ -50,16 +50,16 @@ std::vector<double> weights(Window window, std::size_t n) {
 
 double response(Window window, double offset) {
   const auto a = coefficients(window);
-  const double x = std::abs(offset);
+  const double x = std::abs(offset), line = std::round(x), from_line = x - line;
+  const auto nearest = static_cast<std::size_t>(line);
   // On a line only one term is left.
-  if (const double line = std::round(x); std::abs(x - line) < 1e-9) {
-    const auto j = static_cast<std::size_t>(line);
-    return j == 0 ? 1 : j < a.size() ? a[j] / (2 * a[0]) : 0;
-  }
+  if (from_line == 0) return nearest == 0 ? 1 : nearest < a.size() ? a[nearest] / (2 * a[0]) : 0;
   double sum = a[0] / x;
-  for (std::size_t j = 1; j < a.size(); ++j)
-    sum += (j % 2 == 0 ? a[j] : -a[j]) * x / (x * x - static_cast<double>(j * j));
-  return std::abs(std::sin(std::numbers::pi * x) / std::numbers::pi * sum) / a[0];
+  for (std::size_t j = 1; j < a.size(); ++j) {
+    const double d = j == nearest ? from_line : x - static_cast<double>(j);
+    sum += (j % 2 == 0 ? a[j] : -a[j]) * x / (d * (x + static_cast<double>(j)));
+  }
+  return std::abs(std::sin(std::numbers::pi * from_line) / std::numbers::pi * sum) / a[0];
 }
 
 double offset_of(Window window, double ratio) {

@@ -44,12 +44,29 @@ inline std::vector<GasCase> gas_films() {
   tilted.tilt = true;
   Gas at_nodes = aerostatic(1, 4e5, {16, 6});
   at_nodes.source = Gas::Source::node;
+  // Pockets of both kinds, not at nodes, with slip and a groove.
+  Gas pockets = aerostatic(2, 6e5, {16, 8});
+  pockets.tilt = true;
+  pockets.slip = Gas::Slip::second;
+  pockets.orifices[0].law = OrificeRow::Law::two_restrictors;
+  pockets.orifices[0].diameter = 0.5e-3;  // so wide that the rim of its pocket resists too
+  pockets.orifices[0].pocket = Pocket{0.7e-3, 300e-6};
+  pockets.orifices[1].law = OrificeRow::Law::reynolds;
+  pockets.orifices[1].pocket = Pocket{1e-3, 15e-6};
+  pockets.orifices[1].angle = 0.13;
+  pockets.grooves = {{2.0, 0.5, 2e5}};
+  Gas lobed = aerostatic(1, 5e5, {18, 6});
+  lobed.slip = Gas::Slip::first;
+  lobed.lobes = Lobes{3, 0.3, 1.5 * std::numbers::pi};
+  lobed.orifices[0].law = OrificeRow::Law::curtain;
   // As wide as oil needs.
   Geometry wide = spindle();
   wide.clearance = 200e-6;
   return {{"gas_one_row", wide, aerostatic(1, 5e5, {24, 6}), loaded, moving},
           {"gas_two_rows_tilted", wide, tilted, loaded, moving},
           {"gas_node_source", wide, at_nodes, loaded, moving},
+          {"gas_pockets", wide, pockets, loaded, moving},
+          {"gas_lobed", wide, lobed, loaded, moving},
           {"gas_self_acting", wide, self_acting({12, 5}), loaded, moving}};
 }
 
@@ -64,7 +81,7 @@ struct SolvedGas {
 };
 /// Journal at `at` clearances.
 inline SolvedGas solved(const Geometry& geometry, const Gas& options, std::array<double, 2> at, double speed) {
-  SolvedGas out{make_film(geometry, options, air()), {}, {}, {}, {}, 0};
+  SolvedGas out{make(geometry, options, air()), {}, {}, {}, {}, 0};
   out.motion.position = {at[0] * geometry.clearance, at[1] * geometry.clearance, 0.0, 0.0};
   out.motion.speed = speed;
   out.states.resize(out.film->states());

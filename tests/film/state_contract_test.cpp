@@ -85,19 +85,20 @@ std::vector<Case> cases() {
   }
   // Around a film in the closed form of parallel plates.
   for (const GasCase& c : gas_films()) {
-    const auto waves = [](double size, double phase, std::vector<double>& to) {
-      for (std::size_t k = 0; k < to.size(); ++k) to[k] = size * std::sin(phase + 2.3 * static_cast<double>(k));
+    const auto waves = [](const Film& film, double size, double phase, std::vector<double>& to) {
+      for (const StateField& f : film.state_fields())
+        f.each([&](int k) { to[static_cast<std::size_t>(k)] = size * f.scale * std::sin(phase + 2.3 * k); });
     };
     all.push_back({c.name, c.geometry, c.options, [c] { return motion(c.geometry, c.position, c.velocity, kSpeed); },
                    [c, waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
                      film.unloaded(motion(c.geometry, c.position, c.velocity, kSpeed), s);
                      for (std::size_t k = 0; k < s.size(); ++k)
                        s[k] *= 1.0 + 0.1 * std::sin(0.1 * static_cast<double>(k));
-                     waves(1e7, 2.0, rates);
+                     waves(film, 100.0, 2.0, rates);
                    },
-                   [waves](const Film&, std::vector<double>& s, std::vector<double>& rates) {
-                     waves(1e5, 0.3, s);
-                     waves(1e7, 0.7, rates);
+                   [waves](const Film& film, std::vector<double>& s, std::vector<double>& rates) {
+                     waves(film, 1.0, 0.3, s);
+                     waves(film, 100.0, 0.7, rates);
                    },
                    1e-4});
   }
@@ -325,7 +326,10 @@ TEST_P(StateContract, TurnsWithItsFrame) {
     if (find<CompliantLong>(turned) && grooves.empty()) grooves = {{90.0 * kDegree, 0.0}};
     for (Groove& g : grooves) g.angle += turn;
   } else if (find<Gas>(turned)) {
-    for (OrificeRow& r : as<Gas>(turned).orifices) r.angle += turn;
+    Gas& gas = as<Gas>(turned);
+    for (OrificeRow& r : gas.orifices) r.angle += turn;
+    for (Groove& g : gas.grooves) g.angle += turn;
+    if (gas.lobes) gas.lobes->angle += turn;
   } else {
     auto& content = as<Reynolds>(turned);
     for (Groove& g : content.grooves) g.angle += turn;

@@ -128,7 +128,7 @@ TEST(Rotation, OfTwoOscillatorsIsTheRatioOfTheirFrequencies) {
     return f;
   };
   test::SmallSystem s(PETSC_COMM_SELF, 4, 1, 1, both);
-  transient::Integrator integrator(s, {1}, s.vector(Eigen::Vector4d(1, 0, 0, 1)).get(), {.tolerance = 1e-8});
+  transient::Integrator integrator(s, {1}, s.vector(Eigen::Vector4d(1, 0, 0, 1)).get(), {.tolerance = 1e-7});
   Points points;
   transient::Section section(
       integrator, [&] { return core::gather(integrator.scaled())[1] - 0.2; }, transient::Sense::rising,
@@ -139,14 +139,14 @@ TEST(Rotation, OfTwoOscillatorsIsTheRatioOfTheirFrequencies) {
   for (int k = 1; k <= 8 * 60; ++k) section.advance(two_pi * k / 8, nullptr);
   ASSERT_EQ(points.size(), 60U);
   const auto r = rotation_number(points);
-  EXPECT_NEAR(r.value, w, 1e-7);
-  EXPECT_NEAR(r.value, w, r.uncertainty + 1e-7);  // beside what the integration loses
+  EXPECT_NEAR(r.value, w, r.uncertainty + 1e-6);  // beside what the integration loses
+  EXPECT_LT(r.uncertainty, 1e-3);
 }
 
 // The same oscillator beside one that the shaft drives: on the points once per revolution.
 TEST(Rotation, OfAForcedMotionIsItsWhirlPerRevolution) {
   if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the same on every rank";
-  const double speed = 2.3;
+  const double speed = std::sqrt(5.0);
   const auto both = []<class T>(double angle, const test::Column<T>& x, const test::Column<T>& xdot, T) {
     const T p = 1.0 - x(0) * x(0) - x(1) * x(1);
     test::Column<T> f(4);
@@ -155,15 +155,15 @@ TEST(Rotation, OfAForcedMotionIsItsWhirlPerRevolution) {
     return f;
   };
   test::SmallSystem s(PETSC_COMM_SELF, 4, speed, 0, both);
-  transient::Integrator integrator(s, {speed}, s.vector(Eigen::Vector4d(1, 0, 0, 0)).get(), {.tolerance = 1e-8});
+  transient::Integrator integrator(s, {speed}, s.vector(Eigen::Vector4d(1, 0, 0, 0)).get(), {.tolerance = 1e-7});
   Points points;
-  for (int k = 1; k <= 120; ++k) {
+  for (int k = 1; k <= 70; ++k) {
     integrator.advance(two_pi / speed * k);
     const auto x = core::gather(integrator.scaled());
-    if (k > 30) points.push_back({x[0] + 0.3 * x[2], x[1] + 0.2 * x[2]});
+    if (k > 10) points.push_back({x[0] + 0.3 * x[2], x[1] + 0.2 * x[2]});
   }
   const auto r = rotation_number(points);
-  EXPECT_NEAR(r.value, 1 / speed, 1e-7);
+  EXPECT_NEAR(r.value, 1 / speed, 1e-6);
   EXPECT_EQ(r.locked.q, 0);
 }
 

@@ -174,7 +174,27 @@ TEST(Verdicts, FollowFromTheEvidence) {
 
   e.forced = false;
   e.exponents = {0.01, -3};
+  e.returns = {0.4, 1e-6};  // to a section
   EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  EXPECT_EQ(classify(e).period, 2);
+  EXPECT_EQ(classify(e).name, "limit_cycle");
+  e.fading = {0.5, 1};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.fading = {};
+  e.exponents = {1, -3};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.exponents = {};  // returns are evidence enough
+  EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  e.exponents = {0.01, -3};
+  e.returns = {0.4, 0.2};
+  EXPECT_EQ(classify(e).kind, Kind::unsettled);
+  e.exponents = {0.01, -0.01, -3};
+  e.uncertainties = {0.1, 0.1, 0.1};
+  EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);
+  e.returns = {};  // no section: the exponents alone
+  e.exponents = {0.01, -3};
+  EXPECT_EQ(classify(e).kind, Kind::limit_cycle);
+  EXPECT_EQ(classify(e).period, 0);
   e.exponents = {0.01, -0.01, -3};
   e.uncertainties = {0.1, 0.1, 0.1};
   EXPECT_EQ(classify(e).kind, Kind::quasi_periodic);

@@ -10,8 +10,8 @@ namespace whirl::rotor {
   return (node - 1) * parts + 1;
 }
 
-/// The shaft with every segment cut into `parts` equal ones; discs, hubs, masters and joints stay where they were. A rigid
-/// rotor is itself. core::Bug of a shaft with couplings.
+/// The shaft with every segment cut into `parts` equal ones; discs, hubs, masters and joints stay where they were. A
+/// rigid rotor is itself. core::Bug of a shaft with couplings.
 [[nodiscard]] Options divided(Options options, int parts);
 
 }  // namespace whirl::rotor

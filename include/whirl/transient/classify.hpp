@@ -8,11 +8,12 @@
 
 namespace whirl::transient {
 
-enum class Kind { fixed_point, periodic, limit_cycle, quasi_periodic, chaotic, unsettled };
+enum class Kind { fixed_point, periodic, limit_cycle, quasi_periodic, chaotic, unsettled, driven };
 
 /// What is known of a motion after its transient.
 struct Evidence {
   bool forced = true;              ///< by the turning shaft; else the system does not depend on the angle
+  bool driven = false;             ///< by external forces that change with time, whatever the shaft does
   double size = 0;                 ///< of the motion: root mean square distance of its states from their mean
   double rest = 1e-6;              ///< size below which nothing moves
   std::vector<double> returns;     ///< d_k, k = 1, 2, ...: see return_distances(); of an unforced motion on a section
@@ -25,7 +26,8 @@ struct Evidence {
 struct Verdict {
   Kind kind = Kind::unsettled;
   int period = 0;      ///< revolutions after which a periodic motion repeats itself; returns of a limit cycle's section
-  std::string name;    ///< fixed_point, period-1, period-2, ..., limit_cycle, quasi_periodic, chaotic, unsettled
+  std::string name;    ///< fixed_point, period-1, period-2, ..., limit_cycle, quasi_periodic, chaotic, unsettled,
+                       ///< driven
   std::string reason;  ///< in words
 };
 
@@ -46,6 +48,8 @@ struct Verdict {
 /// decide. Whatever contradicts itself - no return although all deviations die out, a return
 /// although they grow, a return after k revolutions while what keeps it from a shorter one dies out - is unsettled: not
 /// enough revolutions, or an unstable orbit that the motion has not left yet.
+/// A motion that external forces drive is `driven`: where it is at the same shaft angle says nothing of it, and its
+/// exponents, if there are any, tell only whether it forgets where it began.
 [[nodiscard]] Verdict classify(const Evidence& evidence);
 
 }  // namespace whirl::transient

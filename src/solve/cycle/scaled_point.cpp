@@ -81,6 +81,16 @@ void ScaledPoint::refresh() {
     all(dense_);
 }
 
+void ScaledPoint::refresh_speed() {
+  if (!structure_) return;
+  const Index n = structure_->size();
+  const VectorXd rows = residual_scale_.head(n).cwiseInverse();
+  if (sparse_)
+    scale(structure_->l0(), rows, state_scale_.head(n), thin_.l0);
+  else
+    scale(structure_->l0(), rows, state_scale_.head(n), dense_.l0);
+}
+
 void ScaledPoint::put(const VectorXd& x, const VectorXd& xdot) {
   const core::WriteArray xa(x_.get()), da(xdot_.get());
   Map<VectorXd>(xa.data(), size()) = x.cwiseProduct(state_scale_);

@@ -57,7 +57,13 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     std::sort(sizes.begin(), sizes.end());
     rest = sizes[std::min(sizes.size(), static_cast<std::size_t>(slowest->multiplicity)) - 1];
   }
-  if (system.train().rotor.loss_factor > 0) found.modes = with_loss(system, equilibrium, found.modes);
+  if (system.train().rotor.loss_factor > 0) {
+    // Those that count, and a few more whose places among them may change.
+    int vibrating = 4, counted = 0;
+    for (auto m = found.modes.begin(); m != found.modes.end() && counted < count; ++m)
+      if (m->lambda.imag() > 1e-7 * std::abs(m->lambda)) ++vibrating, counted += part_taken(*m) >= least_participation;
+    found.modes = with_loss(system, equilibrium, found.modes, vibrating);
+  }
   for (const auto& mode : found.modes) {
     // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
     if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;

@@ -94,7 +94,7 @@ void check_section(const std::string& key, const SectionOptions& section, const 
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const std::string path = section.of.empty() ? fmt::format("{}.plane.{}.of", key, k + 1) : key + ".of";
     try {
-      const Coordinate c = coordinate(terms[k].of, here.places.names, here.states);
+      const StateAt c = state_at(terms[k].of, here.places.names, here.states);
       const std::string own = c.place < 0 ? "1" : c.which < 2 ? here.places.unit : here.places.rate_unit;
       // Systems without dimensions count time in seconds and mix states with rates.
       const bool bare = here.places.unit == "1";

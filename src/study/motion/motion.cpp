@@ -31,7 +31,7 @@ MotionOptions limited(MotionOptions options, const system::Plant& system) {
 }
 
 // A motion revolution by revolution. Time begins anew with each one, so that the equations repeat themselves to the
-// bit.
+// bit; but where external forces act it goes on.
 class Player {
 public:
   Player(Context& context, const MotionOptions& given)
@@ -41,11 +41,14 @@ public:
         system_(*plant_),
         options_(limited(given, system_)),
         start_(start_state(system_, options_.start)),
+        forces_(make_forces(options_.forces, context.machine, system_)),
         integrator_(system_, {options_.speed.value}, start_.x.get(),
-                    {.tolerance = options_.tolerance,
+                    {.scheme = options_.integrator.scheme,
+                     .tolerance = options_.tolerance,
+                     .forces = acting(forces_),
                      .after_step = [this](double time, double step) { progress(time, step); }}),
         forced_(system_.forced() || !options_.unbalance.empty()),
-        record_(options_, system_.places(), forced_, integrator_.scaled()),
+        record_(options_, system_.places(), forced_, integrator_.scaled(), driven()),
         films_(system_.places()) {
     if (options_.exponents > 0) tangents_.emplace(integrator_.scaled(), options_.exponents);
   }
@@ -71,15 +74,23 @@ public:
   }
 
 private:
+  [[nodiscard]] double period() const { return 2 * std::numbers::pi / options_.speed.value; }
+  [[nodiscard]] double turns_before() const { return forces_.empty() ? 0 : done_; }
+  // External forces change while the motion is recorded.
+  [[nodiscard]] bool driven() const {
+    return !forces_.constant(period() * options_.discard, period() * (options_.discard + options_.revolutions));
+  }
+
   void revolve(bool record) {
-    const double period = 2 * std::numbers::pi / options_.speed.value;
     std::vector<double> growth(tangents_ ? static_cast<std::size_t>(tangents_->count()) : 0, 0.0);
     for (int k = 1; k <= options_.samples; ++k) {
-      const double time = period * k / options_.samples;
+      const auto at = [&](int sample) {
+        return period() * (turns_before() * options_.samples + sample) / options_.samples;
+      };
       if (record && section_)
-        section_->advance(time, carried_);
+        section_->advance(at(k), carried_);
       else
-        integrator_.advance(time);
+        integrator_.advance(at(k), at(options_.samples));
       if (tangents_) {
         const std::vector<double> more = tangents_->orthonormalise();
         for (std::size_t i = 0; i < growth.size(); ++i) growth[i] += more[i];
@@ -90,8 +101,8 @@ private:
       if (record) record_.sample(seen.shown, integrator_.scaled());
       if (!record && !forced_ && done_ >= options_.discard - std::max(1, options_.discard / 4)) watch_.see(seen.shown);
     }
-    if (record) record_.close(growth, period);
-    integrator_.restart(0, integrator_.step());
+    if (record) record_.close(growth, period());
+    integrator_.close_revolution(forces_.empty() ? period() : 0);
   }
 
   // Sets up the section, if there is one.
@@ -107,7 +118,9 @@ private:
     section_.emplace(
         integrator_, [this, here] { return plane_->height(system_, here()); },
         options_.section ? options_.section->direction : transient::Sense::rising,
-        [this, here](double time) { record_.cross(time, system_.shown_at(here()), integrator_.scaled()); });
+        [this, here](double time) {
+          record_.cross(time - turns_before() * period(), system_.shown_at(here()), integrator_.scaled());
+        });
   }
 
   // A revolution may take minutes: each step says where it ended.
@@ -117,7 +130,7 @@ private:
     context_.results.progress(
         fmt::format("{}: revolution {} of {}{}, {:.1f} deg, step {:.3g} deg, {:.1f} s", context_.results.summary().name,
                     done_ + 1, options_.discard + options_.revolutions, done_ < options_.discard ? " (discarded)" : "",
-                    turn * time, turn * step, context_.results.seconds()));
+                    turn * (time - period() * turns_before()), turn * step, context_.results.seconds()));
   }
 
   void save() {
@@ -128,6 +141,7 @@ private:
     if (!due) return;
     io::Group state;
     state.set("done", done_ + 1);
+    state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
     put_vector(state, "u", integrator_.scaled(), layout_.shared, "scaled state");
@@ -142,7 +156,7 @@ private:
   void restore(const io::Group& state) {
     done_ = static_cast<int>(state.integer("done"));
     take_vector(state, "u", integrator_.scaled());
-    integrator_.restart(0, state.real("step"));
+    integrator_.restart(state.real("time"), state.real("step"));
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       take_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k));
     record_.load(state.group("record"));
@@ -155,12 +169,11 @@ private:
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
     summary.set("speed", options_.speed.value, "rad/s");
-    const double period = 2 * std::numbers::pi / options_.speed.value;
     for (std::size_t k = 0; k < start_.multipliers.size() && k < static_cast<std::size_t>(options_.exponents); ++k) {
       const double modulus = std::abs(start_.multipliers[k]);
       summary.set(fmt::format("cycle.multiplier.{}.modulus", k + 1), modulus, "1");
       summary.set(fmt::format("cycle.multiplier.{}.angle", k + 1), std::abs(std::arg(start_.multipliers[k])), "rad");
-      summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period, "1/s");
+      summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period(), "1/s");
     }
     auto& group = results.group();
     group.set("speed", options_.speed.value);
@@ -177,6 +190,7 @@ private:
   system::Plant& system_;
   MotionOptions options_;
   StartState start_;
+  transient::Forces forces_;
   transient::Integrator integrator_;
   std::optional<transient::Tangents> tangents_;
   transient::Tangents* carried_ = nullptr;

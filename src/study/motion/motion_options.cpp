@@ -29,12 +29,16 @@ void describe(deck::Description<MotionOptions>& d) {
         "names of the unbalances to apply, all at once, and 'discs' for what eccentric and skewed discs do; none for "
         "the balanced machine");
   d.add("speed", &O::speed, "rad/s", deck::positive, "shaft speed").required();
+  d.named("forces", &O::forces, &ForceOptions::name, "external forces over the time since the beginning, by name");
   d.add("start", &O::start, "state at the beginning");
   d.add("discard", &O::discard, deck::in(0, 1e9), "revolutions before anything is recorded");
   d.add("revolutions", &O::revolutions, deck::in(2, 1e8), "revolutions recorded");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, of orbits and spectra");
-  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
-        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
+  d.add(
+      "tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
+      "error allowed to a step, in clearances, not below what rounding leaves; with equal steps a hundredth of it ends "
+      "Newton's method");
+  d.add("integrator", &O::integrator, "scheme of the steps in time");
   d.add("exponents", &O::exponents, deck::in(0, 1e4), "Lyapunov exponents to compute, the largest; none: 0");
   d.add("max_period", &O::max_period, deck::in(1, 1e5), "longest period to look for, in revolutions");
   d.add("return_tolerance", &O::return_tolerance, deck::in(1e-13, 1),
@@ -60,14 +64,37 @@ void check_start(const MotionStart& start, const system::Machine& machine, const
     report.fail("start.from", "a linear film knows no centre of its bearing: begin at the equilibrium");
 }
 
+void check_scheme(const std::string& key, const transient::Scheme& scheme, bool forced, const system::Machine& machine,
+                  const deck::Report& report) {
+  if (forced && transient::has_own_pace(scheme))
+    report.fail(key, fmt::format("{} keeps a history of several steps, which end at no break of external forces: take "
+                                 "sdirk4 or a scheme of equal steps",
+                                 transient::name_of(scheme)));
+  if (!transient::is_explicit(scheme)) return;
+  for (const auto& b : machine.bearings)
+    // Where the gap is full its pressure follows the journal at once.
+    if (film::find<film::Reynolds>(b.film) && film::facts(b.film).own_states)
+      report.fail(
+          key,
+          fmt::format("an explicit scheme needs a rate of every state, and pressures of a film that conserves its mass "
+                      "have none (bearing {}): take sdirk4, bdf, generalized_alpha or newmark",
+                      b.name));
+}
+
 void Motion::validate(const system::Machine& machine, const deck::Report& report) const {
   check_start(options.start, machine, report);
   if (!options.unbalance.empty()) check_unbalance(options.unbalance, machine, report);
   if (options.unbalance.empty() && options.start.from == MotionStart::From::cycle)
     report.fail("start.from", "a balanced machine has no synchronous cycle to start from");
+  check_forces("forces", options.forces, machine, report);
   if (options.section) check_section("section", *options.section, machine, report);
   if (options.orders) check_orders("orders", *options.orders, options.revolutions, options.samples, report);
   if (options.waterfall) check_waterfall("waterfall", *options.waterfall, options.revolutions, options.samples, report);
+  check_scheme("integrator.type", options.integrator.scheme, !options.forces.empty(), machine, report);
+  if (options.exponents > 0 && !std::holds_alternative<transient::Sdirk4>(options.integrator.scheme))
+    report.fail("exponents",
+                fmt::format("Lyapunov exponents are carried along by sdirk4 only; with {} say `exponents: 0`",
+                            transient::name_of(options.integrator.scheme)));
   const double forcing = static_cast<const system::Slot<system::Duffing>&>(machine).options.frequency;
   if (system::name_of(machine.system) == system::Duffing::key && options.speed.value != forcing)
     report.fail(

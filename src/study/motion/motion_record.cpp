@@ -19,9 +19,10 @@ constexpr int tones_named = 5;
 
 }  // namespace
 
-MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like)
+MotionRecord::MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like, bool driven)
     : options_(options),
       forced_(forced),
+      driven_(driven),
       places_(std::move(places)),
       like_(like),
       period_(2 * std::numbers::pi / options.speed.value),
@@ -58,6 +59,7 @@ void MotionRecord::close(const std::vector<double>& growth, double duration) {
 transient::Evidence MotionRecord::evidence() const {
   transient::Evidence e;
   e.forced = forced_;
+  e.driven = driven_;
   const double count = static_cast<double>(points_.size()) * options_.samples;
   double of_all[] = {0, squares_};  // square of the mean, sum of the squares
   for (const double s : sum_) of_all[0] += (s / count) * (s / count);

@@ -20,9 +20,8 @@ namespace whirl::study {
 class MotionRecord {
 public:
   /// States are laid out as `like`, which outlives this.
-  /// `forced` by the system itself, beside the unbalance of the options.
-  /// `forced`: by an unbalance, or the system by itself.
-  MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like);
+  /// `forced`: by an unbalance, or the system by itself. `driven`: by external forces that change meanwhile.
+  MotionRecord(const MotionOptions& options, system::ShownPlaces places, bool forced, Vec like, bool driven = false);
 
   /// A sample at a state; `scaled` is it over its scales. Not collective.
   void sample(const std::vector<system::PlaceState>& shown, Vec scaled);
@@ -59,7 +58,7 @@ private:
   [[nodiscard]] std::array<double, 2> whirl_tone(std::size_t place, double rotation, double interval) const;
 
   const MotionOptions& options_;
-  bool forced_;
+  bool forced_, driven_;
   system::ShownPlaces places_;
   Vec like_;
   double period_;                // of a revolution [s]

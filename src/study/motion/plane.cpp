@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 4> directions{"x", "y", "vx", "vy"};
 
 }  // namespace
 
-Coordinate coordinate(std::string_view name, const std::vector<std::string>& places, PetscInt states) {
+StateAt state_at(std::string_view name, const std::vector<std::string>& places, PetscInt states) {
   constexpr std::string_view numbered = "state.";
   if (states > 0 && name.starts_with(numbered)) {
     const std::string_view digits = name.substr(numbered.size());
@@ -70,7 +70,7 @@ std::string Plane::text(const system::ShownPlaces& places) const {
 
 Plane plane_of(const SectionOptions& options, const system::ShownPlaces& places, PetscInt states) {
   std::vector<Plane::Term> terms;
-  for (const PlaneTerm& t : options.terms()) terms.push_back({coordinate(t.of, places.names, states), t.factor});
+  for (const PlaneTerm& t : options.terms()) terms.push_back({state_at(t.of, places.names, states), t.factor});
   return {std::move(terms), options.value.value};
 }
 

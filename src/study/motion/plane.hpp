@@ -11,18 +11,18 @@
 namespace whirl::study {
 
 /// A coordinate that decks name: x, y, vx, vy of a place, or a state by its number.
-struct Coordinate {
+struct StateAt {
   int place = -1;  ///< of ShownPlaces; -1: a state
   int which = 0;   ///< 0 to 3 for x, y, vx, vy; of a state its number from 0
 };
 /// Throws core::InputError (without a place) with the nearest name if there is none. `states` 0: none can be named.
-[[nodiscard]] Coordinate coordinate(std::string_view name, const std::vector<std::string>& places, PetscInt states);
+[[nodiscard]] StateAt state_at(std::string_view name, const std::vector<std::string>& places, PetscInt states);
 
 /// sum factor x coordinate - value, whose sign changes where the plane is crossed.
 class Plane {
 public:
   struct Term {
-    Coordinate of;
+    StateAt of;
     double factor = 1;
   };
   Plane(std::vector<Term> terms, double value) : terms_(std::move(terms)), value_(value) {}

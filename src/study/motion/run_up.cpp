@@ -83,7 +83,9 @@ public:
         layout_(plan(context, sharing_of(options.start))),
         system_(layout_.space, system::train_of(context.machine, options.unbalance), drive_.speed),
         x_(start_state(system_, options.start).x),
-        integrator_(system_, drive_, x_.get(), {.tolerance = options.tolerance}),
+        forces_(make_forces(options.forces, context.machine, system_)),
+        integrator_(system_, drive_, x_.get(),
+                    {.scheme = options.integrator.scheme, .tolerance = options.tolerance, .forces = acting(forces_)}),
         places_(system_.places()),
         films_(places_),
         table_(columns(unit_, places_.names.size(), options.nodes.size())) {
@@ -122,8 +124,11 @@ private:
     Revolution r;
     const std::size_t n = places_.names.size();
     r.samples.resize(n + options_.nodes.size());
+    const auto at = [&](int k) {
+      return drive_.time_of(2 * std::numbers::pi * (done_ + static_cast<double>(k) / options_.samples));
+    };
     for (int k = 1; k <= options_.samples; ++k) {
-      integrator_.advance(drive_.time_of(2 * std::numbers::pi * (done_ + static_cast<double>(k) / options_.samples)));
+      integrator_.advance(at(k), at(options_.samples));
       integrator_.state(x_.get());
       const system::Observed seen = system_.observe(x_.get());
       if (!(films_.margin(seen.film_thickness) > 0)) throw core::DomainError(films_.reason(seen.film_thickness));
@@ -131,10 +136,12 @@ private:
       if (options_.nodes.empty()) continue;
       const std::vector<double> shaft = system_.shaft(x_.get(), 0, false);
       for (std::size_t i = 0; i < options_.nodes.size(); ++i) {
-        const auto at = static_cast<std::size_t>(4 * (options_.nodes[i] - 1));
-        r.samples[n + i].push_back({shaft[at], shaft[at + 1]});
+        const auto from = static_cast<std::size_t>(4 * (options_.nodes[i] - 1));
+        r.samples[n + i].push_back({shaft[from], shaft[from + 1]});
       }
     }
+    // Where a checkpoint may lie nothing is remembered but what it holds.
+    integrator_.close_revolution(0);
     record(r);
     keep(r);
     context_.results.progress(fmt::format("{}: revolution {} of {}, {:.1f} {}, step {:.3g} of a revolution, {:.1f} s",
@@ -264,6 +271,7 @@ private:
   Layout layout_;
   system::RotorSystem system_;
   core::Vector x_;
+  transient::Forces forces_;
   transient::Integrator integrator_;
   system::ShownPlaces places_;
   FilmLimit films_;

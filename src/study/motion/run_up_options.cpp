@@ -28,11 +28,15 @@ void describe(deck::Description<RunUpOptions>& d) {
   d.add("acceleration", &O::acceleration, "rad/s^2", deck::positive,
         "size of the shaft's angular acceleration, the same all the time");
   d.add("duration", &O::duration, "s", deck::positive, "time from the first to the second speed, instead");
+  d.named("forces", &O::forces, &ForceOptions::name, "external forces over the time since the beginning, by name");
   d.add("start", &O::start, "state at the beginning");
   d.add("nodes", &O::nodes, deck::positive, "nodes of the shaft to report beside the bearings");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution, among which extremes are looked for");
-  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
-        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
+  d.add(
+      "tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
+      "error allowed to a step, in clearances, not below what rounding leaves; with equal steps a hundredth of it ends "
+      "Newton's method");
+  d.add("integrator", &O::integrator, "scheme of the steps in time");
   d.add("orders", &O::orders, "amplitude and phase of orders of the speed on the way");
   d.add("waterfall", &O::waterfall, "spectra on the way");
   d.add("checkpoint", &O::checkpoint, "write checkpoints to resume from");
@@ -52,7 +56,9 @@ void describe(deck::Description<RunUpOptions>& d) {
 void RunUp::validate(const system::Machine& machine, const deck::Report& report) const {
   check_unbalance(options.unbalance, machine, report);
   check_start(options.start, machine, report);
+  check_scheme("integrator.type", options.integrator.scheme, !options.forces.empty(), machine, report);
   check_nodes("nodes", options.nodes, machine, report);
+  check_forces("forces", options.forces, machine, report);
   const double turns = revolutions(options);
   if (options.orders) check_orders("orders", *options.orders, turns, options.samples, report);
   if (options.waterfall) check_waterfall("waterfall", *options.waterfall, turns, options.samples, report);

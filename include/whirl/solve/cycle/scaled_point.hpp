@@ -34,6 +34,8 @@ public:
 
   /// To be called after each change of the system's parameter.
   void refresh();
+  /// Where nothing but the speed has changed: of the structure only L0 follows it.
+  void refresh_speed();
   /// out = F(angle, x, xdot) [n]. Throws core::DomainError.
   void residual(double angle, const Eigen::VectorXd& x, const Eigen::VectorXd& xdot, Eigen::Ref<Eigen::VectorXd> out);
   /// The same with the films' tangents, which stay in `keep`; with structure only.

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "whirl/study/motion/assessment.hpp"
+#include "whirl/study/motion/forces.hpp"
+#include "whirl/transient/scheme.hpp"
 
 namespace whirl::study {
 
@@ -17,15 +19,21 @@ struct MotionStart {
 [[nodiscard]] std::span<const deck::Name<MotionStart::From>> names(MotionStart::From);
 void describe(deck::Description<MotionStart>& d);
 
+/// Reports a scheme that the machine's films do not allow, or external forces if it is `forced` by some.
+void check_scheme(const std::string& key, const transient::Scheme& scheme, bool forced, const system::Machine& machine,
+                  const deck::Report& report);
+
 struct MotionOptions {
   std::string name;
   std::vector<std::string> unbalance;  ///< names of the machine's unbalances, applied together; none: balanced
   deck::Quantity speed;                ///< [rad/s]
+  std::vector<ForceOptions> forces;    ///< external, over the time since the motion began
   MotionStart start;
   int discard = 200;      ///< revolutions before anything is recorded
   int revolutions = 400;  ///< recorded
   int samples = 64;       ///< per revolution
   double tolerance = 1e-8;
+  transient::SchemeOptions integrator;
   int exponents = 2;  ///< Lyapunov exponents, the largest
   int max_period = 8;
   double return_tolerance = 1e-4;

@@ -13,10 +13,12 @@ struct RunUpOptions {
   deck::Range range;                           ///< of speed [rad/s]; from the larger to the smaller one: coast-down
   std::optional<deck::Quantity> acceleration;  ///< its size [rad/s^2]
   std::optional<deck::Quantity> duration;      ///< [s], instead
+  std::vector<ForceOptions> forces;            ///< external, over the time since the run-up began
   MotionStart start;
   std::vector<int> nodes;  ///< of the shaft, reported beside the bearings
   int samples = 64;        ///< per revolution, at equal angles
   double tolerance = 1e-7;
+  transient::SchemeOptions integrator;
   std::optional<OrderOptions> orders;
   std::optional<WaterfallOptions> waterfall;
   bool checkpoint = true;

@@ -1,0 +1,67 @@
+#pragma once
+// Records of a rotor under two random forces, and the linear transfer functions beside them.
+
+#include <array>
+#include <complex>
+#include <functional>
+#include <vector>
+
+#include "study/bars/film_limit.hpp"
+#include "study/layout.hpp"
+#include "whirl/solve/newton/frequency_response.hpp"
+#include "whirl/study/motion/linearity.hpp"
+#include "whirl/system/rotor_system.hpp"
+#include "whirl/transient/estimators.hpp"
+#include "whirl/transient/force.hpp"
+
+namespace whirl::study {
+
+/// What one level of excitation left.
+struct LinearityRecord {
+  static constexpr int signals = 4;     ///< F_x, F_y, x, y
+  double peak = 0;                      ///< largest distance from the mean [m]
+  std::array<double, 2> mean{}, rms{};  ///< of the displacement from the equilibrium; about its mean [m]
+  std::array<double, 2> force{};        ///< root mean squares [N]
+  double steps = 0, rejected = 0;       ///< in time
+  std::vector<double> excerpt;          ///< beginning of the record, [sample][signal]
+  transient::SpectralMatrix spectra;    ///< of the signals
+};
+
+/// The rotor, its equilibrium and the place that is excited and watched. All members are collective on the ranks that
+/// share one machine.
+class LinearityRunner {
+public:
+  LinearityRunner(const Context& context, const Layout& layout, const LinearityOptions& options);
+
+  /// The record at a level [N], packed for LinearityRunner::unpack(); `say` gets the share that is done. Throws
+  /// core::DomainError where a film is left.
+  [[nodiscard]] std::vector<double> record(double level, const std::function<void(double)>& say);
+  [[nodiscard]] static LinearityRecord unpack(const std::vector<double>& flat, const LinearityOptions& options);
+  /// Displacement i by force j about the equilibrium at `frequency` [Hz]: re, im of xx, xy, yx, yy [m/N].
+  [[nodiscard]] std::vector<double> linear(double frequency);
+  [[nodiscard]] int node() const { return node_; }
+
+private:
+  /// Displacements of the place in x and y.
+  [[nodiscard]] std::array<double, 2> watched(Vec x) const;
+
+  const LinearityOptions& options_;
+  int node_;
+  system::RotorSystem system_;
+  core::Vector rest_, x_;
+  std::array<std::vector<double>, 2> columns_;  // of unit forces on the coordinates
+  FilmLimit films_;
+  solve::FrequencyResponse response_;
+};
+
+/// The noise of force d (0 x, 1 y) at a level.
+[[nodiscard]] transient::Random noise_of(const LinearityOptions& options, double level, int d);
+/// Samples of forces and displacements a second.
+[[nodiscard]] inline double rate_of(const LinearityOptions& options) {
+  return options.cutoff * options.oversampling;
+}
+/// Tables, values and warnings; `linear` [line][8] at lines 1, 2, ... of the spectra.
+void put_linearity(const Context& context, const LinearityOptions& options, const std::vector<LinearityRecord>& records,
+                   const std::vector<std::vector<double>>& linear, int node);
+
+}  // namespace whirl::study
