@@ -28,7 +28,7 @@ def draw(study):
         for place, _ in bearing_places(study, z):
             axis.axhline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)))
         word = whirl[-1] if len(set(whirl)) == 1 else f"{whirl[0]} to {whirl[-1]}"
-        axis.set_title(f"{mode}: {frequency[0] * to_frequency:.4g} to {frequency[-1] * to_frequency:.4g} {unit}, {word}", fontsize=7.5)
+        axis.set_title(f"{mode}: {word}\n{frequency[0] * to_frequency:.5g} to {frequency[-1] * to_frequency:.5g} {unit}", fontsize=8)
         axis.grid(False)
     for axis in axes[-3:]:
         axis.set_xlabel(speed_label)

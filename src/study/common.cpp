@@ -57,24 +57,31 @@ std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, con
   return out;
 }
 
+solve::NewtonResult find_rest(system::Plant& system, Vec x) {
+  solve::NewtonOptions options;
+  options.max_iterations = 30;
+  const bool has_parts = problem::parts_of(system.fields()).size() > 0;
+  if (has_parts) options.patience = 4;
+  const core::Vector start = core::duplicate(x);
+  check(VecCopy(x, start.get()));
+  system.set_forcing(false);
+  auto result = solve::find_equilibrium(system, x, options);
+  if (!result.converged && has_parts) {
+    // A film that starts without its pressure (orifices) has residuals that grow before they fall: no line search lets
+    // them, and whole steps get through.
+    check(VecCopy(start.get(), x));
+    options.searches = false;
+    result = solve::find_equilibrium(system, x, options);
+  }
+  system.set_forcing(true);
+  return result;
+}
+
 bool Walker::attempt(double speed) {
   system_.set_parameter(speed);
   trial_ = core::duplicate(x_.get());
   check(VecCopy(x_.get(), trial_.get()));
-  solve::NewtonOptions options;
-  options.max_iterations = 30;
-  const bool has_parts = problem::parts_of(system_.fields()).size() > 0;
-  if (has_parts) options.patience = 4;
-  system_.set_forcing(false);
-  auto result = solve::find_equilibrium(system_, trial_.get(), options);
-  if (!result.converged && has_parts) {
-    // A film that starts without its pressure (orifices) has residuals that grow before they fall: no line search lets
-    // them, and whole steps get through.
-    check(VecCopy(x_.get(), trial_.get()));
-    options.searches = false;
-    result = solve::find_equilibrium(system_, trial_.get(), options);
-  }
-  system_.set_forcing(true);
+  const solve::NewtonResult result = find_rest(system_, trial_.get());
   reason_ = result.reason;
   if (!result.converged) return false;
   std::swap(x_, trial_);

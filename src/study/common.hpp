@@ -28,6 +28,10 @@ struct FilmCoefficients {
 [[nodiscard]] std::vector<FilmCoefficients> film_coefficients(system::RotorSystem& system, const std::vector<double>& x,
                                                               double omega);
 
+/// The equilibrium without forcing from the guess x, which it replaces: by whole steps where a line search ends without
+/// it, which a film that starts without its pressure needs. Collective.
+solve::NewtonResult find_rest(system::Plant& system, Vec x);
+
 /// Equilibria at one speed after another, each from the last one; a speed that Newton cannot reach directly is
 /// approached by halved steps.
 class Walker {

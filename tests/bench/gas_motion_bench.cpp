@@ -62,6 +62,7 @@ core::Vector equilibrium(system::RotorSystem& s) {
   core::Vector x = system::static_guess(s);
   solve::NewtonOptions newton;
   newton.max_iterations = 60;
+  newton.searches = false;
   s.set_forcing(false);
   core::require(solve::find_equilibrium(s, x.get(), newton).converged, "no equilibrium");
   s.set_forcing(true);

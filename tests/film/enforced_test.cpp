@@ -46,9 +46,9 @@ TEST(Enforced, OfSmallAmplitudesIsThePerturbation) {
     Enforced enforced(*at.film, at.motion, at.states, omega);
     for (std::size_t port = 0; port < 4; ++port) {
       const double unit = port < 2 ? 1 : 1 / (2 * length);
-      const double large = apart(enforced.along(port, 0.1 * c * unit), k, port, omega);
-      const double small = apart(enforced.along(port, 0.05 * c * unit), k, port, omega);
-      EXPECT_LT(small, 4e-3) << nu << ' ' << port;
+      const double large = apart(enforced.along(port, 0.05 * c * unit), k, port, omega);
+      const double small = apart(enforced.along(port, 0.025 * c * unit), k, port, omega);
+      EXPECT_LT(small, 1e-3) << nu << ' ' << port;
       EXPECT_NEAR(std::log2(large / small), 2, 0.05) << nu << ' ' << port;
       EXPECT_LT(apart(enforced.along(port, 1e-3 * c * unit), k, port, omega), 3e-6) << nu << ' ' << port;
     }

@@ -114,13 +114,23 @@ def reduction_errors(h):
         ten, twenty = (value(s, f"orbit.{name}.{k}.error") for k in (10, 20))
         h.true(f"{name}: orbits converge", twenty < 0.2 * ten, f"{ten:.3g}, {twenty:.3g}")
         h.true(f"{name}: orbit with 20 freedoms within 1 %", twenty < 0.01, f"{twenty:.3g}")
-    # The orbit of the whole shaft is that of other studies' equations: its size with a tolerance a hundred times larger, and on two ranks.
-    few = ["studies.1.reduction_errors.freedoms=[12]", "studies.1.reduction_errors.methods=[craig_bampton_state]",
-           "studies.1.reduction_errors.orbits.tolerance=1e-8", "studies.1.reduction_errors.maps=0"]
+    # The same on two ranks.
+    few = ["studies.1.reduction_errors.freedoms=[12]", "studies.1.reduction_errors.methods=[craig_bampton_state]", "studies.1.reduction_errors.maps=0"]
     two = h.run(deck, "ranks", few, launcher=[*h.launcher, "-n", "2"])["reductions"]
     size = value(s, "orbit.size")
-    h.close("size of the orbit [m]", value(two, "orbit.size"), size, 1e-4 * size)
-    h.close("two ranks", value(two, "craig_bampton_state.12.frequency_error"), at("craig_bampton_state", 12, "frequency"), 1e-6)
+    h.close("size of the orbit [m], two ranks", value(two, "orbit.size"), size, 1e-8 * size)
+    h.close("two ranks", value(two, "craig_bampton_state.12.frequency_error"), at("craig_bampton_state", 12, "frequency"), 1e-9)
+    # The same orbit integrated in time: that of the left journal of a reduced shaft, with an unbalance large against the tolerance.
+    motion = ("studies=[{motion: {name: motion, unbalance: [disc], speed: 10000 rad/s, discard: 0, revolutions: 2, orbit: 2, samples: 96,"
+              " exponents: 0, tolerance: 1e-7}}, {reduction_errors: {name: orbits, speed: 10000 rad/s, freedoms: [12], methods: [craig_bampton_state],"
+              " orbits: {unbalance: [disc], node: 1, freedoms: [12], revolutions: 2}}}]")
+    moved = ["unbalance.disc.planes.1.amount=1e-4 kg m", "rotor.reduction={type: craig_bampton_state, masters: [1, 21], modes: 4, speed: 10000 rad/s}"]
+    h.run(deck, "motion", [*moved, motion], launcher=[])
+    with h5py.File(h.work / "motion/results.h5") as f:
+        found = np.array([f[f"studies/motion/orbit/{d}"][:, 0] for d in "xy"])
+        wanted = np.array([f[f"studies/orbits/orbits/reduced_{d}"][0, 0, 1:] for d in "xy"])
+        h.true("as many samples", found.shape == wanted.shape, f"{found.shape}, {wanted.shape}")
+        h.close("orbit of the left journal integrated in time, worst, per size", np.abs(found - wanted).max() / np.abs(wanted).max(), 0, 1e-4)
     # Other studies take such a rotor: its response to the unbalance is that of the whole shaft, at another speed than that of its modes too.
     response = "studies=[{unbalance_response: {name: response, unbalance: [disc], range: {from: 500 rad/s, to: 1500 rad/s}, points: 41, nodes: [11]}}]"
     damped = "bearings.*.film.damping=200 N s/m"
@@ -157,8 +167,9 @@ def critical_speeds(h):
 # A stiff shaft without mass, so that only the disc at node 7, 90 mm from the left of 300 mm, and the springs are left.
 LEFT, RIGHT = 0.09, 0.21
 MASS, DIAMETRAL, POLAR, OFFSET, ECCENTRICITY, SKEW = 0.5, 7.81e-5, 1.56e-4, 4e-3, 5e-6, 1e-3
-SPRING, DASHPOT = 1e7, 200.0
-AS_BODY = ["rotor.material.modulus=1e18 Pa", "rotor.material.density=1e-6 kg/m^3", "rotor.reduction={type: guyan, masters: [1, 21]}"]
+SPRING, DASHPOT = 1e5, 20.0
+AS_BODY = ["rotor.material.modulus=1e16 Pa", "rotor.material.density=1e-6 kg/m^3", "rotor.reduction={type: guyan, masters: [1, 21]}",
+           f"bearings.*.film={{type: linear, stiffness: {SPRING} N/m, damping: {DASHPOT} N s/m}}"]
 
 
 class Body:
@@ -204,8 +215,8 @@ class Body:
 def skewed_disc(h):
     """Eccentric and skewed disc: response and run-up of a rigid body on springs, and the deck as it is."""
     deck = h.source / "inputs/merot/skewed_disc.yaml"
-    body, start, end, acceleration = Body(), 4000, 6500, 2e5
-    few = ["studies=[{unbalance_response: {name: response, unbalance: [discs], range: {from: 1000 rad/s, to: 9000 rad/s}, points: 17,"
+    body, start, end, acceleration = Body(), 400, 650, 2e3
+    few = ["studies=[{unbalance_response: {name: response, unbalance: [discs], range: {from: 100 rad/s, to: 900 rad/s}, points: 17,"
            " refine: false, nodes: [1, 21]}}, {run_up: {name: run-up, unbalance: [discs], range: {from: %d rad/s, to: %d rad/s},"
            " acceleration: %g rad/s^2, start: {from: cycle}, nodes: [1, 21], tolerance: 1e-8}}]" % (start, end, acceleration)]
     h.run(deck, "body", [*AS_BODY, *few], launcher=[])
@@ -234,7 +245,7 @@ def skewed_disc(h):
 
 
 # A light shaft on stiff bearings with a heavy point in its middle: k and m of Jeffcott's rotor.
-JEFFCOTT = ["rotor.material.density=0.01 kg/m^3", "rotor.discs=[{node: 11, mass: 0.5 kg}]", "bearings.*.film={type: linear, stiffness: 1e12 N/m}",
+JEFFCOTT = ["rotor.material.density=1 kg/m^3", "rotor.discs=[{node: 11, mass: 0.5 kg}]", "bearings.*.film={type: linear, stiffness: 1e12 N/m}",
             "unbalance={disc: {planes: [{node: 11, amount: 1e-6 kg m}]}}"]
 
 
@@ -278,7 +289,7 @@ def hysteresis(h):
                     found = f["studies/response/response/semi_major"][0, 0]
                 loss = eta if frame == "stationary" else 0
                 wanted = abs(e * ratio**2 / (1 + 1j * loss - ratio**2))
-                h.close(f"{frame}: response at {ratio} times the critical speed", found, wanted, 1e-5 * wanted)
+                h.close(f"{frame}: response at {ratio} times the critical speed", found, wanted, 2e-4 * wanted)
     # As the deck is: the first mode is driven above its critical speed in spite of the bearings, or less damped.
     s = h.run(deck, "deck", launcher=[])
     first = [m for m in s["modes"]["modes"] if m["whirl"] == "forward" and m["imag"] < 1400]

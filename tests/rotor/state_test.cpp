@@ -59,11 +59,15 @@ Eigen::VectorXcd eigenvalues(const rotor::Rotor& r, double omega, double stiffne
   return s;
 }
 
+// On springs by their inverses, of which the slowest are the largest and keep their digits.
 std::vector<double> frequencies(const rotor::Options& o, std::size_t count) {
   std::vector<double> out;
-  for (const auto s : eigenvalues(rotor::Rotor(MPI_COMM_WORLD, o), speed, spring))
-    if (s.imag() > 0 && out.size() < count) out.push_back(s.imag());
+  const rotor::Rotor r(MPI_COMM_WORLD, o);
+  const MatrixXd a = whole_matrix(r, speed, spring).partialPivLu().solve(test::dense(r.states()->rates.get()));
+  for (const std::complex<double> inverse : a.eigenvalues())
+    if (const auto s = -1.0 / inverse; s.imag() > 0) out.push_back(s.imag());
   std::sort(out.begin(), out.end());
+  out.resize(std::min(out.size(), count));
   return out;
 }
 
@@ -78,7 +82,7 @@ TEST(StateReduction, ErrorsOfTheTrialRotorAreThoseComputedIndependently) {
     const std::vector<double> found = frequencies(reduced(disc_rotor(), std::stoi(count) / 2 - 2), exact.size());
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t k = 0; k < expected.size(); ++k)
-      EXPECT_NEAR(std::abs(found[k] / exact[k] - 1), expected[k], 2e-3 * expected[k] + 2e-10) << count << ' ' << k;
+      EXPECT_NEAR(std::abs(found[k] / exact[k] - 1), expected[k], 2e-3 * expected[k] + 1e-9) << count << ' ' << k;
   }
 }
 

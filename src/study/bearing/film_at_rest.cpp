@@ -53,11 +53,13 @@ void FilmAtRest::hold(const Pair& place) {
 // there is no film or the force that is left does not fall.
 bool FilmAtRest::try_to_carry(const Pair& load) {
   constexpr int most_steps = 60, most_halvings = 12;
+  // Closer to the wall the wedge of any film carries any load, on paper.
+  constexpr double thinnest = 0.005;
   const Eigen::Vector2d wanted(load[0], load[1]);
   const auto left = [&] { return Eigen::Vector2d(Eigen::Vector2d(answer_.force[0], answer_.force[1]) + wanted); };
   for (int step = 0; step < most_steps; ++step) {
     const Eigen::Vector2d before = left();
-    if (before.norm() <= place_tolerance * wanted.norm()) return true;
+    if (before.norm() <= place_tolerance * wanted.norm()) return answer_.min_thickness >= thinnest * clearance_;
     Eigen::Matrix2d slope;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
@@ -77,7 +79,7 @@ bool FilmAtRest::try_to_carry(const Pair& load) {
     }
     if (closer) continue;
     hold(from);
-    return before.norm() <= 100 * place_tolerance * wanted.norm();
+    return before.norm() <= 100 * place_tolerance * wanted.norm() && answer_.min_thickness >= thinnest * clearance_;
   }
   return false;
 }

@@ -53,7 +53,7 @@ public:
   /// surfaces touch, core::NotConverged where the film is not found.
   void hold(const Pair& place);
   /// The journal where the film balances `load` [N] on it, to place_tolerance of it, sought from the last place. Throws
-  /// NoPlace if there is none.
+  /// NoPlace if there is none; one with a film thinner than 0.005 clearances is none.
   void carry(const Pair& load);
   /// In the direction of `load`.
   [[nodiscard]] Capacity capacity(const Pair& load);

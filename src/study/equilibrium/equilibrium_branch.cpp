@@ -99,6 +99,12 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     check(VecCopy(walker.at(range.from), x.get()));
   } else {
     x = first_guess(*system);
+    if (problem::parts_of(system->fields()).size() > 0) {
+      system->set_parameter(range.from);
+      core::Vector guess = core::duplicate(x.get());
+      check(VecCopy(x.get(), guess.get()));
+      if (!find_rest(*system, x.get()).converged) std::swap(x, guess);  // the branch says why
+    }
   }
   problem.from_state(x.get(), range.from, u.get());
 

@@ -48,6 +48,8 @@ MatrixXd whole_states(const system::RotorSystem& reduced) {
   if (const auto& states = rotor.states()) {
     q = dense(states->displacement.get());
     v = dense(states->velocity.get());
+  } else if (!rotor.matrices().basis) {
+    return MatrixXd::Identity(2 * reduced.coordinates(), 2 * reduced.coordinates());
   } else {
     const MatrixXd t = dense(rotor.matrices().basis.get());
     q = v = MatrixXd::Zero(t.rows(), kept);
@@ -62,6 +64,39 @@ MatrixXd whole_states(const system::RotorSystem& reduced) {
     out.row(2 * i + 1).head(kept) = v.row(i);
   }
   out.bottomRightCorner(others, others).setIdentity();
+  return out;
+}
+
+Orbit orbit_from_rest(system::RotorSystem& system, const MatrixXd& films, int node, double step, Index count) {
+  problem::Structure& machine = *system.structure();
+  const MatrixXd a = linearised(machine, films), rates = machine.l1();
+  const Index n = machine.size();
+  const double omega = system.speed();
+  VectorXcd force(n);
+  for (Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    force(i) = omega * omega * Complex(system.forcing_cosine()[row], -system.forcing_sine()[row]);
+  }
+  const VectorXcd forced = (a.cast<Complex>() + Complex(0, omega) * rates).partialPivLu().solve(force);
+  // theta = 1/s, and the free motion that makes the state at the beginning zero. A mode of infinite s ends at once.
+  const spectral::Eigenpairs pairs = spectral::eigenpairs(-a.partialPivLu().solve(rates));
+  const VectorXcd start = pairs.vectors.partialPivLu().solve(-forced.real().cast<Complex>());
+  const MatrixXd shown = whole_states(system);
+  const Index first = 2 * rotor::full_coordinate(node, rotor::Freedom::x);
+  const double largest = pairs.values.cwiseAbs().maxCoeff();
+  Orbit out(2, count);
+  for (Index d = 0; d < 2; ++d) {
+    const Eigen::RowVectorXcd place = shown.row(first + 2 * d).cast<Complex>();
+    const Complex along = place * forced;
+    const VectorXcd weight = (place * pairs.vectors).transpose().cwiseProduct(start);
+    for (Index k = 0; k < count; ++k) {
+      const double t = step * static_cast<double>(k);
+      double value = (along * std::polar(1.0, omega * t)).real();
+      for (Index m = 0; m < weight.size(); ++m)
+        if (std::abs(pairs.values(m)) > 1e-15 * largest) value += (weight(m) * std::exp(t / pairs.values(m))).real();
+      out(d, k) = value;
+    }
+  }
   return out;
 }
 

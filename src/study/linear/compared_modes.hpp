@@ -40,7 +40,17 @@ private:
   Eigen::MatrixXcd right_, left_;  // columns
 };
 
-/// States of the whole machine [rows] that those of a reduced one are.
+/// Displacement of a place over time, a row of x and a row of y.
+using Orbit = Eigen::Matrix<double, 2, Eigen::Dynamic>;
+
+/// Motion of a shaft node (1-based) from the state of rest under the unbalance that sets in at angle zero, at `count`
+/// times 0, step, 2 step ... [s], relative to where it rests; A x + L1 dx/dt = Re(f exp(i Omega t)) with the films as
+/// `films` says. Exact in time: the forced motion and free ones in all modes of the machine, which must be
+/// diagonalisable, as it is on springs. Throws core::NotConverged. Dense, of the size of the machine.
+[[nodiscard]] Orbit orbit_from_rest(system::RotorSystem& system, const Eigen::MatrixXd& films, int node, double step,
+                                    Eigen::Index count);
+
+/// States of the whole machine [rows] that those of a reduced one are; of a machine with its whole shaft its own.
 [[nodiscard]] Eigen::MatrixXd whole_states(const system::RotorSystem& reduced);
 
 }  // namespace whirl::study

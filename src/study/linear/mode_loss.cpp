@@ -1,9 +1,13 @@
 #include "study/linear/mode_loss.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -36,10 +40,11 @@ Sparse whole(Mat distributed) {
   return out;
 }
 
-// In the scales of the system: dF/dx without loss, dF/d(dx/dt), and what unit losses add to dF/dx.
+// In the scales of the system: dF/dx without loss, dF/d(dx/dt), and the rotor's K and K x [[0, 1], [-1, 0]] on its
+// displacements.
 struct Pencil {
-  Sparse at_rest, rates, damping, turning;
-  Eigen::VectorXd scale;  // of the states
+  Sparse at_rest, rates, stiffness, turning;
+  Eigen::VectorXcd scale;  // of the states
 };
 
 Pencil pencil_of(system::RotorSystem& system, Vec x) {
@@ -55,77 +60,118 @@ Pencil pencil_of(system::RotorSystem& system, Vec x) {
     return whole(j.get());
   };
   Pencil p;
-  p.at_rest = jacobian(1, 0, {});
-  p.damping = jacobian(1, 0, {1, 0}) - p.at_rest;
-  p.turning = jacobian(1, 0, {0, 1}) - p.at_rest;
-  p.rates = jacobian(0, 1, {});
   const std::vector<double> scale = core::gather(states.get());
-  p.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), static_cast<Eigen::Index>(scale.size()));
+  p.scale = Eigen::Map<const Eigen::VectorXd>(scale.data(), static_cast<Eigen::Index>(scale.size())).cast<Complex>();
+  p.at_rest = jacobian(1, 0, {});
+  p.turning = jacobian(1, 0, {0, 1}) - p.at_rest;
+  // K stands on velocities there, each behind its displacement.
+  const Sparse on_velocities = jacobian(1, 0, {1, 0}) - p.at_rest;
+  std::vector<Eigen::Triplet<Complex>> entries;
+  for (Eigen::Index c = 1; c < on_velocities.cols(); ++c)
+    for (Sparse::InnerIterator e(on_velocities, c); e; ++e)
+      if (e.value() != 0.0) entries.emplace_back(e.row(), c - 1, e.value() * p.scale(c - 1) / p.scale(c));
+  p.stiffness.resize(p.at_rest.rows(), p.at_rest.cols());
+  p.stiffness.setFromTriplets(entries.begin(), entries.end());
+  p.rates = jacobian(0, 1, {});
   return p;
 }
 
-// On velocities v = lambda q stand i eta (1 + s)/(2 lambda) K, so that K q has the factor i eta (1 + s)/2 exactly.
-void correct(const Pencil& p, double eta, int sense, spectral::Mode& mode) {
-  const auto n = static_cast<Eigen::Index>(mode.shape.size());
-  Eigen::VectorXcd u = Eigen::Map<const Eigen::VectorXcd>(mode.shape.data(), n).cwiseQuotient(p.scale.cast<Complex>());
-  u.normalize();
-  Complex lambda = mode.lambda;
+// dF/dx with the loss of one sense of whirl.
+Sparse with_loss(const Pencil& p, double eta, int sense) {
+  return p.at_rest + Complex(0, eta * (1 + sense) / 2) * p.stiffness + Complex(eta * (1 - sense) / 2) * p.turning;
+}
+
+// A mode in scaled states, of length one.
+struct Vibration {
+  Complex lambda;
+  Eigen::VectorXcd shape;
+};
+
+// Newton's method of (a + lambda b) u = 0 is inverse iteration whose shift is the last eigenvalue.
+void refine(const Sparse& a, const Sparse& b, Vibration& v) {
   Eigen::SparseLU<Sparse> lu;
   constexpr int most = 30;
-  const int steps = static_cast<int>(std::ceil(eta / 0.05));
-  for (int step = 1; step <= steps; ++step) {
-    const double here = eta * step / steps;
-    double change = 0;
-    int k = 0;
-    for (; k < most; ++k) {
-      const Complex c = Complex(0, here * (1 + sense) / 2) / lambda;
-      const Sparse t = p.at_rest + lambda * p.rates + c * p.damping + Complex(here * (1 - sense) / 2) * p.turning;
-      const Sparse slope = p.rates - (c / lambda) * p.damping;
-      if (k == 0 && step == 1) lu.analyzePattern(t);
-      lu.factorize(t);
-      if (lu.info() != Eigen::Success) {
-        if (k > 0) break;  // the eigenvalue to the last digit
-        throw core::NotConverged("a mode with loss: the first matrix is singular");
-      }
-      const Eigen::VectorXcd w = lu.solve(slope * u);
-      const Complex move = 1.0 / u.dot(w);  // u* u = 1
-      lambda -= move;
-      u = w.normalized();
-      change = std::abs(move) / std::abs(lambda);
-      if (change < 1e-12) break;
-    }
-    if (k == most && !(change < 1e-9)) throw core::NotConverged("a mode with loss did not converge");
+  double change = 1, before = 2;
+  for (int k = 0; k < most; ++k) {
+    const Sparse t = a + v.lambda * b;
+    if (k == 0) lu.analyzePattern(t);
+    lu.factorize(t);
+    if (lu.info() != Eigen::Success) return;  // the eigenvalue to the last digit
+    const Eigen::VectorXcd w = lu.solve(b * v.shape);
+    const Complex move = 1.0 / v.shape.dot(w);  // u* u = 1
+    v.lambda -= move;
+    v.shape = w.normalized();
+    before = std::exchange(change, std::abs(move) / std::abs(v.lambda));
+    if (change < 1e-12 || (change < 1e-7 && change >= before)) return;  // rounding moves it from here on
   }
-  mode.lambda = lambda;
-  mode.rounding = std::max(mode.rounding, 1e-12 * std::abs(lambda));
-  u = u.cwiseProduct(p.scale.cast<Complex>());
-  Eigen::Index largest = 0;
-  u.cwiseQuotient(p.scale.cast<Complex>()).cwiseAbs().maxCoeff(&largest);
-  u /= u(largest) / p.scale(largest);
-  mode.shape.assign(u.begin(), u.end());
+  throw core::NotConverged("a mode with loss did not converge");
+}
+
+// Modes that are one frequency without loss may be mixed in any way: planar motion is forward and backward whirl, which
+// a loss parts. One step of inverse iteration beside them, in their own span, finds what becomes modes.
+void part(const Sparse& a, const Sparse& b, double eta, std::span<Vibration> together) {
+  const auto n = static_cast<Eigen::Index>(together.size());
+  Eigen::MatrixXcd u(together[0].shape.size(), n);
+  for (Eigen::Index k = 0; k < n; ++k) u.col(k) = together[static_cast<std::size_t>(k)].shape;
+  const Complex beside = together[0].lambda + eta * std::abs(together[0].lambda) * Complex(0.31, 0.17);
+  Eigen::SparseLU<Sparse> lu(a + beside * b);
+  if (lu.info() != Eigen::Success) throw core::NotConverged("modes with loss: the matrix beside them is singular");
+  const Eigen::MatrixXcd w = lu.solve(Eigen::MatrixXcd(b * u));
+  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> small(u.householderQr().solve(w));
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Vibration& v = together[static_cast<std::size_t>(k)];
+    v.lambda = beside - 1.0 / small.eigenvalues()(k);
+    v.shape = (u * small.eigenvectors().col(k)).normalized();
+  }
+}
+
+// Of modes without loss, by rising frequency.
+void add_loss(const Pencil& p, const system::RotorSystem& system, double eta, std::vector<Vibration>& modes) {
+  const int steps = static_cast<int>(std::ceil(eta / 0.05));
+  for (std::size_t first = 0, end = 0; first < modes.size(); first = end) {
+    for (end = first + 1; end < modes.size(); ++end)
+      if (std::abs(modes[end].lambda - modes[end - 1].lambda) > eta * std::abs(modes[end].lambda)) break;
+    const int sense = system.loss_sense(modes[first].lambda.imag());
+    const std::span<Vibration> together(modes.data() + first, end - first);
+    for (int step = 1; step <= steps; ++step) {
+      const Sparse a = with_loss(p, eta * step / steps, sense);
+      if (step == 1 && together.size() > 1) part(a, p.rates, eta / steps, together);
+      for (Vibration& v : together) refine(a, p.rates, v);
+    }
+  }
 }
 
 }  // namespace
 
 std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const std::vector<spectral::Mode>& modes,
                                       int most) {
-  constexpr PetscInt largest = 20000;
-  if (system.size() > largest)
+  constexpr PetscInt most_states = 20000;
+  if (system.size() > most_states)
     core::agree(system.comm(), [] {
       throw core::InputError("modes with a loss factor take machines up to 20,000 states: films with fewer cells");
     });
   const Pencil pencil = pencil_of(system, x);
   const double eta = system.train().rotor.loss_factor;
-  std::vector<spectral::Mode> out;
-  int vibrating = 0;
-  core::agree(system.comm(), [&] {
-    for (const spectral::Mode& m : modes) {
-      const bool vibrates = m.lambda.imag() > 1e-7 * std::abs(m.lambda);
-      if (vibrates && ++vibrating > most) return;
-      out.push_back(m);
-      if (vibrates) correct(pencil, eta, system.loss_sense(m.lambda.imag()), out.back());
-    }
-  });
+  std::vector<spectral::Mode> out, vibrating;
+  for (const spectral::Mode& m : modes) (m.lambda.imag() > 1e-7 * std::abs(m.lambda) ? vibrating : out).push_back(m);
+  vibrating.resize(std::min(vibrating.size(), static_cast<std::size_t>(most)));
+  std::vector<Vibration> moving;
+  for (const spectral::Mode& m : vibrating) {
+    const auto n = static_cast<Eigen::Index>(m.shape.size());
+    moving.push_back({m.lambda, Eigen::Map<const Eigen::VectorXcd>(m.shape.data(), n).cwiseQuotient(pencil.scale)});
+    moving.back().shape.normalize();
+  }
+  core::agree(system.comm(), [&] { add_loss(pencil, system, eta, moving); });
+  for (std::size_t k = 0; k < moving.size(); ++k) {
+    spectral::Mode& m = vibrating[k];
+    m.lambda = moving[k].lambda;
+    m.rounding = std::max(m.rounding, 1e-12 * std::abs(m.lambda));
+    Eigen::Index largest = 0;
+    moving[k].shape.cwiseAbs().maxCoeff(&largest);
+    const Eigen::VectorXcd shape = (moving[k].shape / moving[k].shape(largest)).cwiseProduct(pencil.scale);
+    m.shape.assign(shape.begin(), shape.end());
+    out.push_back(m);
+  }
   std::stable_sort(out.begin(), out.end(),
                    [](const spectral::Mode& a, const spectral::Mode& b) { return a.lambda.imag() < b.lambda.imag(); });
   return out;

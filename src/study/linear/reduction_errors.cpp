@@ -12,12 +12,10 @@
 #include "whirl/film/describe.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/rotor/modal_coupling.hpp"
-#include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {
 namespace {
 
-using core::check;
 using Eigen::MatrixXd;
 
 std::string name_of(ReductionMethod method) {
@@ -53,7 +51,7 @@ public:
       summary.set(fmt::format("frequency.{}", k + 1), modes.frequencies()(k), "rad/s");
     compare(modes);
     if (options_.maps > 0) put_maps(modes);
-    if (options_.orbits) put_orbits(whole, rest);
+    if (options_.orbits) put_orbits(whole, modes);
     summary.points = static_cast<long>(options_.methods.size() * options_.freedoms.size());
     return results.finish("completed", true);
   }
@@ -169,74 +167,40 @@ private:
     }
   }
 
-  // x and y of the node, relative to where it rests.
-  struct Orbit {
-    std::vector<double> x, y;
-  };
-
-  Orbit orbit(system::RotorSystem& system, Vec rest) {
-    const ReductionOrbits& o = *options_.orbits;
-    const auto at = static_cast<std::size_t>(4 * (o.node - 1));
-    const auto place = [&](Vec state) {
-      const std::vector<double> shaft = system.shaft(state, 0, false);
-      return std::array{shaft[at], shaft[at + 1]};
-    };
-    const auto start = place(rest);
-    core::Vector x = core::duplicate(rest);
-    check(VecCopy(rest, x.get()));
-    transient::Integrator integrator(system, {options_.speed}, x.get(), {.tolerance = o.tolerance});
-    Orbit out;
-    const long samples = std::lround(o.revolutions * o.samples);
-    const double step = 2 * std::numbers::pi / (options_.speed * o.samples);
-    for (long k = 0; k <= samples; ++k) {
-      if (k > 0) integrator.advance(step * static_cast<double>(k));
-      integrator.state(x.get());
-      const auto here = place(x.get());
-      out.x.push_back(here[0] - start[0]);
-      out.y.push_back(here[1] - start[1]);
-    }
-    return out;
-  }
-
-  void put_orbits(system::RotorSystem& whole, Vec rest) {
+  void put_orbits(system::RotorSystem& whole, const WholeModes& modes) {
     const ReductionOrbits& o = *options_.orbits;
     auto& group = context_.results.group().child("orbits");
     auto& summary = context_.results.summary();
     group.set("node", o.node);
     group.set("speed", options_.speed);
-    const auto progress = [&](const std::string& what) {
-      context_.results.progress(
-          fmt::format("{}: orbit of {}, {:.1f} s", summary.name, what, context_.results.seconds()));
+    const double step = 2 * std::numbers::pi / (options_.speed * o.samples);
+    const auto samples = static_cast<Eigen::Index>(std::lround(o.revolutions * o.samples)) + 1;
+    const Orbit exact = orbit_from_rest(whole, modes.films(), o.node, step, samples);
+    const double size = exact.colwise().norm().maxCoeff();
+    const auto component = [](const Orbit& orbit, Eigen::Index d) {
+      const Eigen::VectorXd row = orbit.row(d);
+      return std::vector<double>(row.begin(), row.end());
     };
-    progress("the whole shaft");
-    const Orbit exact = orbit(whole, rest);
-    const std::size_t samples = exact.x.size();
-    double size = 0;
     std::vector<double> time;
-    for (std::size_t k = 0; k < samples; ++k) {
-      time.push_back(2 * std::numbers::pi / (options_.speed * o.samples) * static_cast<double>(k));
-      size = std::max(size, std::hypot(exact.x[k], exact.y[k]));
-    }
+    for (Eigen::Index k = 0; k < samples; ++k) time.push_back(step * static_cast<double>(k));
     group.put("time", time, "s", "since the unbalance set in");
-    group.put("x", exact.x, "m", "orbit of the node of the whole shaft, from where it rests");
-    group.put("y", exact.y, "m", "orbit of the node of the whole shaft, from where it rests");
+    group.put("x", component(exact, 0), "m", "orbit of the node of the whole shaft, from where it rests");
+    group.put("y", component(exact, 1), "m", "orbit of the node of the whole shaft, from where it rests");
     summary.set("orbit.size", size, "m");
     std::vector<double> errors, x, y, freedoms(o.freedoms.begin(), o.freedoms.end());
     for (const ReductionMethod method : options_.methods)
       for (const int kept : o.freedoms) {
-        progress(fmt::format("{} with {} freedoms", name_of(method), kept));
         system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
-        Walker walker(small);
-        const Orbit found = orbit(small, walker.at(options_.speed));
-        double error = 0;
-        for (std::size_t k = 0; k < samples; ++k)
-          error = std::max(error, std::hypot(found.x[k] - exact.x[k], found.y[k] - exact.y[k]));
+        const Orbit found = orbit_from_rest(small, modes.films(), o.node, step, samples);
+        const double error = (found - exact).colwise().norm().maxCoeff();
         errors.push_back(size > 0 ? error / size : 0);
         summary.set(fmt::format("orbit.{}.{}.error", name_of(method), kept), errors.back(), "1");
-        x.insert(x.end(), found.x.begin(), found.x.end());
-        y.insert(y.end(), found.y.begin(), found.y.end());
+        for (const auto& [to, d] : {std::pair{&x, 0}, std::pair{&y, 1}}) {
+          const std::vector<double> values = component(found, d);
+          to->insert(to->end(), values.begin(), values.end());
+        }
       }
-    const io::Shape shape{options_.methods.size(), o.freedoms.size(), samples};
+    const io::Shape shape{options_.methods.size(), o.freedoms.size(), static_cast<std::size_t>(samples)};
     group.put("freedoms", freedoms, "1", "freedoms of the reduced shafts");
     group.put("reduced_x", shape, x, "m", "the same of the reduced shafts [method][freedoms][time]");
     group.put("reduced_y", shape, y, "m", "the same of the reduced shafts [method][freedoms][time]");

@@ -26,8 +26,6 @@ void describe(deck::Description<ReductionOrbits>& d) {
   d.add("node", &O::node, deck::positive, "node of the shaft whose orbit is shown").required();
   d.add("revolutions", &O::revolutions, deck::positive, "length of the motion");
   d.add("samples", &O::samples, deck::in(8, 1e5), "samples per revolution");
-  d.add("tolerance", &O::tolerance, deck::in(1e-13, 1e-2),
-        "error allowed to a step, in clearances; rounding lets none be smaller than the limit");
   d.check([](const O& o, const deck::Report& r) {
     if (o.freedoms.empty()) r.fail("freedoms", "'freedoms' is empty");
     if (o.unbalance.empty()) r.fail("unbalance", "a balanced machine stays at rest: give the name of an unbalance");

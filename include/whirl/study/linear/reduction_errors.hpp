@@ -18,7 +18,6 @@ struct ReductionOrbits {
   int node = 0;
   double revolutions = 12;
   int samples = 96;  ///< per revolution
-  double tolerance = 1e-10;
 };
 void describe(deck::Description<ReductionOrbits>& d);
 
