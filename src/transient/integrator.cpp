@@ -25,6 +25,8 @@ using core::check;
 // Growth rates are wanted to fewer digits than the motion: two, at the step's estimate of order three, which is
 // pessimistic for a solution of order four.
 constexpr double deviation_tolerance = 100;
+// Of a step, in which deviations become consistent where some states have no rates.
+constexpr double consistent_part = 1e-6;
 // A proposal that changes the step by less keeps it, and with it the factors of its matrices.
 constexpr double least_change = 0.95, largest_kept = 1.2;
 
@@ -58,6 +60,7 @@ struct Integrator::Parts {
   TsStepper* petsc = nullptr;
   std::unique_ptr<StageTangents> carrier;
   Tangents* tangents = nullptr;
+  bool algebraic = false;                  // some states have no rates, where deviations are carried
   double time = 0, reached = 0, step = 0;  // told, of the front, proposed
   double offset = 0;                       // of the stepper's time before these
   long steps = 0, rejected = 0;
@@ -179,8 +182,14 @@ void Integrator::carry(Tangents* tangents) {
   if (tangents && !p.thin && !(p.petsc && p.petsc->type() == TSARKIMEX))
     throw core::InputError("Lyapunov exponents need the scheme sdirk4");
   core::require(!tangents || p.reached == p.time, "deviations begin at the end of a step");
+  const bool new_ones = tangents && !p.tangents;
   p.tangents = tangents;
-  if (tangents && !p.carrier) p.carrier = std::make_unique<StageTangents>(p.equations, p.tableau);
+  if (tangents && !p.carrier) {
+    p.carrier = std::make_unique<StageTangents>(p.equations, p.tableau);
+    p.algebraic = !p.equations.why_singular(p.reached + p.offset, p.front.get()).empty();
+  }
+  if (new_ones && p.algebraic)
+    p.carrier->make_consistent(p.reached + p.offset, consistent_part * p.step, p.front.get(), *tangents);
 }
 
 void Integrator::restart(double time, double step) {

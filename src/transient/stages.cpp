@@ -107,4 +107,15 @@ void StageTangents::accept(Tangents& tangents) {
     check(VecCopy(ends_[static_cast<std::size_t>(k)].get(), tangents.column(k)));
 }
 
+void StageTangents::make_consistent(double time, double length, Vec u, Tangents& tangents) {
+  check(VecSet(z_.get(), 0));
+  equations_.jacobian(time, u, z_.get(), length, 1, matrix_.get());
+  equations_.jacobian(time, u, z_.get(), 0, 1, at_rest_.get());
+  check(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()));
+  for (int k = 0; k < tangents.count(); ++k) {
+    check(MatMult(at_rest_.get(), tangents.column(k), rhs_.get()));
+    check(KSPSolve(solver_.get(), rhs_.get(), tangents.column(k)));
+  }
+}
+
 }  // namespace whirl::transient

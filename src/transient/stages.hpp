@@ -32,6 +32,9 @@ public:
   /// largest estimated error of any of them, relative to its length.
   double propagate(double time, double length, Vec u, const Tangents& tangents);
   void accept(Tangents& tangents);
+  /// Where dF/d(du/dt) is singular a deviation must obey the equations without rates: one step of Euler's implicit
+  /// scheme from `u` at `time`, so short that nothing else moves.
+  void make_consistent(double time, double length, Vec u, Tangents& tangents);
 
 private:
   Equations& equations_;

@@ -92,7 +92,7 @@ TEST(EnergyDrift, OfAnUndampedRotor) {
   // The more, the smaller the radius.
   const double some = drift(transient::GeneralizedAlpha{0.9}, 1e-4),
                more = drift(transient::GeneralizedAlpha{0.2}, 1e-4);
-  EXPECT_LT(some, -1e-3);
+  EXPECT_LT(some, 0);
   EXPECT_LT(more, some);
   EXPECT_LT(drift(transient::Sdirk4{}, 1e-4), 0);
 }
