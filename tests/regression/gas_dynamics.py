@@ -98,17 +98,34 @@ def path(h):
     """Figure 3.18: from the centre to the place of `static`."""
     s = h.run(h.source / DECKS / "path.yaml", "path", launcher=[])
     with h5py.File(h.work / "path" / "results.h5") as f:
-        for speed in (1000, 2000):
-            orbit = f[f"studies/{speed} rad_s/orbit"] if f"studies/{speed} rad_s" in f else f[f"studies/{speed} rad/s/orbit"]
-            x, y = orbit["x"][()][:, 0], orbit["y"][()][:, 0]
-            place = s[f"place at {speed} rad/s"]
-            ex, ey = (value(place, f"bearing.A.{d}") for d in "xy")
-            c = 20e-6
-            h.close(f"{speed} rad/s: begins in the centre [clearances]", np.hypot(x[0], y[0]) / c, 0, 0.02)
-            h.close("    ends where `static` says", np.hypot(x[-1] - ex, y[-1] - ey) / c, 0, 1e-4)
-            h.true("    swings beyond its place", y.min() < 1.5 * ey, f"{y.min() / c:.3f} {ey / c:.3f}")
-            turned = np.unwrap(np.arctan2(y - ey, x - ex))
-            h.true("    spirals with the rotation", turned[len(turned) // 3] > turned[0], f"{turned[len(turned) // 3] / 2 / np.pi:.2f} turns")
+        orbit = f["studies/let go/orbit"]
+        x, y = orbit["x"][()][:, 0], orbit["y"][()][:, 0]
+    ex, ey = (value(s["its place"], f"bearing.A.{d}") for d in "xy")
+    c = 20e-6
+    h.close("begins in the centre [clearances]", np.hypot(x[0], y[0]) / c, 0, 0.02)
+    h.close("    ends where `static` says", np.hypot(x[-1] - ex, y[-1] - ey) / c, 0, 1e-3)
+    h.true("    swings beyond its place", y.min() < 1.5 * ey, f"{y.min() / c:.3f} {ey / c:.3f}")
+    turned = np.unwrap(np.arctan2(y - ey, x - ex))
+    h.true("    spirals with the rotation", turned[len(turned) // 3] > turned[0] + np.pi, f"{(turned[len(turned) // 3] - turned[0]) / 2 / np.pi:.2f} turns")
+
+
+def whirl(h):
+    """Self-excited cycles from the Hopf point that the equilibria show; before it the film's fast modes are no modes."""
+    deck = h.source / DECKS / "whirl.yaml"
+    coarse = ["bearings.A.film.cells=[16, 6]", "layout.refined_states=1"]
+    both = ["studies.2={equilibrium_branch: {name: rest, parameter: speed, range: {from: 2600 rad/s, to: 3300 rad/s}}}", "studies.1.cycle_branch.max_points=5",
+            "studies.1.cycle_branch.range={from: 2600 rad/s, to: 3300 rad/s}"]
+    s = h.run(deck, "whirl", coarse + both, launcher=[], code=None)
+    hopf = [b for b in s["rest"]["bifurcations"] if b["type"] == "hopf"]
+    h.true("one Hopf point of the equilibria", len(hopf) == 1 and len(s["rest"]["bifurcations"]) == 1 and hopf[0]["others_unstable"] == 0)
+    born = next(b for b in s["whirl"]["bifurcations"] if b["type"] == "hopf")
+    h.close("cycles are born there [rad/s]", born["value"], hopf[0]["value"], 0.02)
+    with h5py.File(h.work / "whirl" / "results.h5") as f:
+        branch = f["studies/whirl/branch"]
+        speed, size, period, stable = (branch[k][()] for k in ("parameter", "y_max", "period", "stable"))
+    h.close("    with its period [s]", period[0], 2 * np.pi / hopf[0]["whirl_frequency_rad_s"], 1e-3 * period[0])
+    h.true("    towards lower speeds, and unstable", speed[-1] < speed[0] and not stable.any(), f"{speed[0]:.1f} to {speed[-1]:.1f} rad/s")
+    h.true("    growing", (np.diff(size[:, 0]) > 0).all())
 
 
 def capacity(h):
@@ -135,7 +152,7 @@ def refused(h):
     run("enforced without amplitudes", "give 'amplitudes: [0.05]'", study % ", method: enforced")
     run("amplitudes by perturbation", "add 'method: enforced'", study % ", amplitudes: [0.1]")
     run("an amplitude as large as the clearance", "amplitudes", study % ", method: enforced, amplitudes: [1]")
-    done = subprocess.run(h.command(h.train / "run_up.yaml", h.work / "train", ["studies.*.run_up.start={from: centre}"], (), []), capture_output=True, text=True)
+    done = subprocess.run(h.command(h.train / "run_up.yaml", h.work / "train", ["studies.2.run_up.start={from: centre}"], (), []), capture_output=True, text=True)
     h.true("a train from the centre", done.returncode == 2 and "rigid rotor on one bearing" in done.stderr, done.stderr.strip()[:200])
     # Through the wall: the rest of the study is there.
     s = h.run(deck, "wall", ["bearings.A.film.cells=[24, 8]", study % ", method: enforced, amplitudes: [0.05, 0.9]"], launcher=[])["c"]
@@ -144,5 +161,5 @@ def refused(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"enforced": enforced, "pressures": pressures, "path": path, "capacity": capacity, "refused": refused}[sys.argv[3]](harness)
+    {"enforced": enforced, "pressures": pressures, "path": path, "whirl": whirl, "capacity": capacity, "refused": refused}[sys.argv[3]](harness)
     harness.finish()
