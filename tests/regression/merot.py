@@ -253,7 +253,8 @@ def hysteresis(h):
     deck = h.source / "inputs/merot/hysteresis.yaml"
     eta = 0.02
     modes = lambda speeds: "studies=[{modes: {name: modes, speeds: [%s], count: 2}}]" % ", ".join(f"{s:.12g} rad/s" for s in speeds)  # noqa: E731
-    omega = h.run(deck, "no loss", [*JEFFCOTT, modes([0]), "rotor.loss_factor=0"], launcher=[])["modes"]["modes"][0]["imag"]
+    # With next to no loss: the bearings are so stiff that the dense solver alone leaves an error of 6e-5, which Newton's method takes.
+    omega = h.run(deck, "no loss", [*JEFFCOTT, modes([0]), "rotor.loss_factor=1e-12"], launcher=[])["modes"]["modes"][0]["imag"]
     for frame in ("shaft", "stationary"):
         for ranks in (1, 2):
             more = [*JEFFCOTT, modes([0, 0.5 * omega, 2 * omega]), f"rotor.loss_frame={frame}"]
