@@ -2,6 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from .style import COLOURS, GREY, INK, save
 
@@ -10,6 +11,11 @@ WORDS = {"modal_supported": "modes on springs", "modal_free": "modes of the free
 
 def words(method):
     return WORDS.get(method, method)
+
+
+def broken(method):
+    """The same for a narrow column."""
+    return words(method).replace(", ", ",\n")
 
 
 def names(study, path):
@@ -46,21 +52,24 @@ def draw_orbits(study):
     if not study.has("orbits/x", "orbits/reduced_x", "errors/method"):
         return []
     methods, freedoms = names(study, "errors/method"), np.atleast_1d(study.get("orbits/freedoms"))
-    x, y = 1e6 * study.get("orbits/x"), 1e6 * study.get("orbits/y")
+    x, y = study.get("orbits/x"), study.get("orbits/y")
+    unit, scale = max(((u, s) for u, s in (("nm", 1e9), ("µm", 1e6), ("mm", 1e3)) if s * np.hypot(x, y).max() >= 1), key=lambda c: -c[1], default=("nm", 1e9))
+    x, y = scale * x, scale * y
     shape = (len(methods), len(freedoms), -1)
     rx, ry, errors = (np.reshape(study.get(f"orbits/{n}"), shape) for n in ("reduced_x", "reduced_y", "error"))
-    figure, axes = plt.subplots(len(freedoms), len(methods), figsize=(2.9 * len(methods) + 0.8, 3.0 * len(freedoms) + 0.4), squeeze=False, sharex=True, sharey=True)
+    figure, axes = plt.subplots(len(freedoms), len(methods), figsize=(2.3 * len(methods) + 0.8, 3.3 * len(freedoms) + 0.4), squeeze=False, sharex=True, sharey=True)
     for column, method in enumerate(methods):
         for row, kept in enumerate(freedoms):
             axis = axes[row, column]
             axis.plot(x, y, color=GREY, linewidth=2.6)
-            axis.plot(1e6 * rx[column, row], 1e6 * ry[column, row], color=COLOURS[column % len(COLOURS)], linewidth=0.9)
+            axis.plot(scale * rx[column, row], scale * ry[column, row], color=COLOURS[column % len(COLOURS)], linewidth=0.9)
             axis.set_aspect("equal")
-            axis.set_title(f"{words(method)}\n{kept:.0f} freedoms, error {100 * errors[column, row, 0]:.2g} %", fontsize=8.5)
+            axis.xaxis.set_major_locator(MaxNLocator(3))
+            axis.set_title(f"{broken(method)}\n{kept:.0f} freedoms, error {100 * errors[column, row, 0]:.2g} %", fontsize=8.5)
     for axis in axes[-1]:
-        axis.set_xlabel("x [µm]")
+        axis.set_xlabel(f"x [{unit}]")
     for axis in axes[:, 0]:
-        axis.set_ylabel("y [µm]")
+        axis.set_ylabel(f"y [{unit}]")
     handles = [Line2D([], [], color=GREY, linewidth=2.6, label="whole shaft"), Line2D([], [], color=INK, linewidth=0.9, label="reduced (coloured)")]
     group = study.group["orbits"].attrs
     note = f"node {group['node']}, {group['speed']:.6g} rad/s, from rest; error: largest distance over the size of the orbit"
@@ -75,6 +84,9 @@ def image(figure, axis, values, title):
     top = np.nanmax(orders) if np.isfinite(orders).any() else 0
     shown = axis.imshow(orders, cmap="viridis", vmin=max(np.nanmin(orders), top - 18) if np.isfinite(orders).any() else -1, vmax=top, interpolation="nearest")
     axis.set_title(title, fontsize=8.5)
+    axis.grid(False)
+    for along in (axis.xaxis, axis.yaxis):
+        along.set_major_locator(MaxNLocator(5, integer=True))
     axis.tick_params(labelsize=6.5)
     figure.colorbar(shown, ax=axis, shrink=0.8)
 
@@ -84,18 +96,17 @@ def draw_maps(study):
     if not study.has("errors/method", "maps/coupling/free"):
         return []
     methods = names(study, "errors/method")
-    pictures = [("V'GV, modes on springs", study.get("maps/coupling/supported")), ("V'GV, free modes", study.get("maps/coupling/free"))]
+    rows = [[("V'GV, modes on springs", study.get("maps/coupling/supported")), ("V'GV, free modes", study.get("maps/coupling/free"))]]
     for method in methods:
-        for name in ("M", "K", "G", "N", "P", "R"):
-            if study.has(f"maps/{method}/{name}"):
-                pictures.append((f"{name}, {words(method)}", study.get(f"maps/{method}/{name}")))
-    columns = 4
-    rows = -(-len(pictures) // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(12.0, 2.75 * rows + 0.4), squeeze=False)
-    for axis in axes.ravel()[len(pictures):]:
-        axis.axis("off")
-    for axis, (title, values) in zip(axes.ravel(), pictures):
-        image(figure, axis, values, title)
+        found = [name for name in ("M", "K", "G", "N", "P", "R") if study.has(f"maps/{method}/{name}")]
+        rows.append([(f"{name}, {words(method)}", study.get(f"maps/{method}/{name}")) for name in found])
+    columns = max(len(row) for row in rows)
+    figure, axes = plt.subplots(len(rows), columns, figsize=(3.0 * columns, 2.75 * len(rows) + 0.4), squeeze=False)
+    for line, row in zip(axes, rows):
+        for axis, (title, values) in zip(line, row):
+            image(figure, axis, values, title)
+        for axis in line[len(row):]:
+            axis.axis("off")
     group = study.group["maps"].attrs
     note = f"log10 of absolute entries in SI, zeros white; {group['freedoms']} freedoms, {group['speed']:.6g} rad/s; (x, y) adjacent, in state space two states a freedom"
     return save(figure, study, "reduction-maps", note)
