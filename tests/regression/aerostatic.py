@@ -3,7 +3,10 @@
 
 aerostatic.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
 """
+import cmath
 import json
+import math
+import subprocess
 import sys
 
 import h5py
@@ -46,7 +49,75 @@ def loads(h):
     h.true("    which is below its load", at_most < 49.05)
 
 
+def linear(number, slender):
+    """Load over p_a L D eps and attitude of a small eccentricity, of a bearing number and L/D."""
+    k = cmath.sqrt(1 + 1j * number)
+    load = math.pi / 2 * 1j * number / (1 + 1j * number) * (1 - cmath.tanh(k * slender) / (k * slender))
+    return abs(load), cmath.phase(load)
+
+
+def pockets(h):
+    deck, row = h.source / "inputs/aerostatic/pockets.yaml", "bearings.A.film.orifices.1"
+    whole = h.run(deck, "whole", launcher=[])
+    bare = h.run(deck, "bare", ["bearings.A.film.orifices=[{count: 8, diameter: 0.2 mm, supply: 0.6 MPa}]"], launcher=[])
+    fine = h.run(deck, "fine", ["bearings.A.film.cells=[96, 32]", "studies=[{gas_bearing: {name: load, speeds: [1000 rad/s], eccentricities: [0.5]}}]"],
+                 launcher=[])
+    deep = h.run(deck, "deep", [f"{row}.pocket.depth=4 mm"], launcher=[])
+    at = "speed.1000.eccentricity.0.5."
+    for name in ("load", "mass_flow"):
+        v = whole["load"]["values"][at + name]
+        h.close(f"{name} within its bar of a finer mesh", v["value"], value(fine["load"], at + name), v["uncertainty"])
+        h.true(f"{name}: pockets carry half as much again, for gas", 1.4 < v["value"] / value(bare["load"], at + name) < 1.6)
+    b = [value(s["coefficients"], "speed.1000.ratio.0.1.B.xx") for s in (bare, whole, deep)]
+    h.true("volumes of pockets take damping away, down to below zero", b[0] > b[1] > 0 > b[2], str(b))
+    for changes, said in (([f"{row}.law=thickness"], "two_restrictors"), ([f"{row}.law=curtain"], "without pocket"),
+                          ([f"{row}.pocket.diameter=0.1 mm"], "wider than its orifice"), ([f"{row}.z=14.5 mm"], "lie within the bearing"),
+                          (["bearings.A.geometry={type: lemon_bore, radius: 15 mm, length: 30 mm, clearance: 20 um, arc: 150 deg}",
+                            "bearings.A.film.lobes={count: 3}"], "a cylindrical bore")):
+        done = subprocess.run(h.command(deck, h.work / "no", changes), capture_output=True, text=True, timeout=100)
+        h.true(f"refused: {changes[-1]}", done.returncode == 2 and said in done.stderr, done.stderr.strip()[:300])
+
+
+def self_acting(h):
+    deck = h.source / "inputs/aerostatic/self_acting.yaml"
+    s = h.run(deck, "whole", launcher=[])["load"]
+    for e in ("0.2", "0.4", "0.6"):
+        h.true(f"{e}: carries more with the speed, and more in line", value(s, f"speed.3000.eccentricity.{e}.load") > 1.5 * value(s, f"speed.1000.eccentricity.{e}.load")
+               and value(s, f"speed.3000.eccentricity.{e}.attitude") < value(s, f"speed.1000.eccentricity.{e}.attitude"))
+    # A circle at a small eccentricity: films_and_rotors.md sec. 6.1.
+    number, slender = 1.0, 1.0
+    speed = number * 101325 / (6 * 18.46e-6) * (10e-6 / 15e-3) ** 2
+    study = f"studies=[{{gas_bearing: {{name: small, speeds: [{speed:.12g} rad/s], eccentricities: [0.01]}}}}]"
+    c = h.run(deck, "circle", ["bearings.A.film.lobes=null", "bearings.A.film.cells=[96, 32]", study], launcher=[])["small"]
+    load, attitude = linear(number, slender)
+    head = f"speed.{speed:.6g}.eccentricity.0.01."
+    h.close("load at a small eccentricity", value(c, head + "load") / (101325 * 0.03 * 0.03 * 0.01), load, 2.5e-3 * load)
+    h.close("    attitude", value(c, head + "attitude"), attitude, 2e-3)
+
+
+def slip(h):
+    deck = h.source / "inputs/aerostatic/slip.yaml"
+    number = 6 * 18.46e-6 * 40 / 101325 * (5e-3 / 1e-6) ** 2
+    knudsen = 18.46e-6 / 101325 * math.sqrt(math.pi * 286.7 * 300 / 2) / 1e-6
+    head = "speed.40.eccentricity.0.01."
+    for name, factor in (("none", 1), ("first", 1 + 6 * knudsen), ("second", 1 + 6 * knudsen + 6 * knudsen**2)):
+        s = h.run(deck, name, [f"bearings.A.film.slip={name}", "bearings.A.film.cells=[96, 32]"], launcher=[])["load"]
+        load, attitude = linear(number / factor, 1)
+        h.close(f"{name}: load", value(s, head + "load"), load * 101325 * 0.01 * 0.01 * 0.01, 2.5e-3 * value(s, head + "load"))
+        h.close("    attitude", value(s, head + "attitude"), attitude, 2e-3)
+    h.run(deck, "whole", launcher=[])
+
+
+def supply(h):
+    found = h.run(h.source / "inputs/aerostatic/supply.yaml", "whole", launcher=[])
+    [at] = found["supply"]["bifurcations"]
+    [by_speed] = found["speed"]["bifurcations"]
+    h.true("both are Hopf points", at["type"] == by_speed["type"] == "hopf")
+    h.close("the speed of the threshold [rad/s]", by_speed["value"], 2641, 1)
+    h.close("the supply at which this is the threshold [MPa]", at["value"], 0.6, 5e-4)
+
+
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"loads": loads}[sys.argv[3]](harness)
+    {"loads": loads, "pockets": pockets, "self_acting": self_acting, "slip": slip, "supply": supply}[sys.argv[3]](harness)
     harness.finish()
