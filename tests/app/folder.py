@@ -80,7 +80,7 @@ for there in False, True:
     wrong = work / f"wrong {there}"
     if there:
         wrong.mkdir()
-    whirl(*MOTION, "-o", wrong, "--", "-motion_ts_type", "bdf", code=2, err="Lyapunov exponents need the scheme of this program")
+    whirl(*MOTION, "-o", wrong, "--", "-motion_ts_type", "bdf", code=2, err="Lyapunov exponents need the scheme sdirk4")
     true("a wrong run leaves nothing", wrong.exists() == there and (not there or not left(wrong)), str(list(work.iterdir())))
     whirl(*MOTION, "-o", wrong)
 

@@ -129,6 +129,17 @@ inline system::Machine rigid_machine() {
   m.rotor.load = 100;
   m.lubricants["oil"] = {0.02, 870};
   m.bearings.push_back(bearing("B1", 1, film::Short{}, film::Geometry::Bore::cylindrical));
+  film::Gas gas;  // fed through pockets, in a bore of three arcs
+  gas.states = film::States::condensed;
+  gas.cells = {24, 6};
+  gas.orifices = {{.count = 6,
+                   .diameter = 2e-4,
+                   .supply = 6e5,
+                   .law = film::OrificeRow::Law::two_restrictors,
+                   .pocket = film::Pocket{2e-3, 1e-4}}};
+  gas.lobes = film::Lobes{.preload = 0.2};
+  m.bearings.push_back(bearing("B2", 1, gas, film::Geometry::Bore::cylindrical));
+  m.bearings[1].lubricant = film::Lubricant{1.8e-5, 1.2};
   m.unbalance.push_back({"one", {}, {}, "", {{1, {}, {}, 2e-5, 0.3}}});
   return m;
 }

@@ -94,7 +94,7 @@ private:
   // Forces may make the shear force jump, where an element asks for the place.
   static system::Train with_joints(system::Train train, const FrequencyResponseOptions& options) {
     for (const TransferInput& input : options.inputs)
-      if (input.node > 0 && !train.rotor.joints.empty()) train.rotor.joints.push_back(input.node);
+      if (input.node && !train.rotor.joints.empty()) train.rotor.joints.push_back(*input.node);
     return train;
   }
 

@@ -35,7 +35,7 @@ namespace {
 template <class Point>
 void check_place(deck::Description<Point>& d) {
   d.check([](const Point& p, const deck::Report& r) {
-    if ((p.node > 0) == !p.bearing.empty()) r.fail("", "give either 'node' or 'bearing'");
+    if (p.node.has_value() == !p.bearing.empty()) r.fail("", "give either 'node' or 'bearing'");
     if (!p.bearing.empty() && (p.direction == Along::slope_x || p.direction == Along::slope_y))
       r.fail("direction", "bearings are x or y; give the node of the journal for its slopes");
   });
@@ -49,9 +49,9 @@ void check_points(const std::string& key, const std::vector<Point>& points, cons
   const bool rigid = machine.rotor.type == rotor::Options::Type::rigid;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::string path = fmt::format("{}.{}", key, i + 1);
-    if (points[i].node > nodes)
+    if (points[i].node.value_or(0) > nodes)
       report.fail(path + ".node",
-                  fmt::format("node {} does not exist: the shaft has nodes 1 to {}", points[i].node, nodes));
+                  fmt::format("node {} does not exist: the shaft has nodes 1 to {}", *points[i].node, nodes));
     if (!points[i].bearing.empty() && !system::find_bearing(machine, points[i].bearing))
       report.fail(path + ".bearing", fmt::format("there is no bearing '{}'", points[i].bearing));
     if (rigid && (points[i].direction == Along::slope_x || points[i].direction == Along::slope_y))

@@ -23,7 +23,7 @@ std::string word(E value) {
 
 template <class Point>
 std::string place(const Point& p) {
-  return (p.bearing.empty() ? fmt::format("node.{}.", p.node) : fmt::format("bearing.{}.", p.bearing)) +
+  return (p.bearing.empty() ? fmt::format("node.{}.", *p.node) : fmt::format("bearing.{}.", p.bearing)) +
          word(p.direction);
 }
 
@@ -92,14 +92,14 @@ std::vector<double> TransferMatrix::load(const TransferInput& input) const {
   }
   const rotor::Matrices& m = system_.rotor().matrices();
   if (!m.basis) {
-    add(system_.rotor().coordinate(input.node, freedom_of(input.direction)), 1);
+    add(system_.rotor().coordinate(*input.node, freedom_of(input.direction)), 1);
     return out;
   }
   core::Vector full, reduced;
   check(MatCreateVecs(m.basis.get(), reduced.put(), full.put()));
   check(VecSet(full.get(), 0));
   if (core::rank_of(system_.comm()) == 0)
-    check(VecSetValue(full.get(), rotor::full_coordinate(input.node, freedom_of(input.direction)), 1, ADD_VALUES));
+    check(VecSetValue(full.get(), rotor::full_coordinate(*input.node, freedom_of(input.direction)), 1, ADD_VALUES));
   check(VecAssemblyBegin(full.get()));
   check(VecAssemblyEnd(full.get()));
   check(MatMultTranspose(m.basis.get(), full.get(), reduced.get()));
@@ -146,7 +146,7 @@ std::vector<Complex> TransferMatrix::at(double omega) {
       const TransferOutput& output = outputs_[o];
       Complex z;
       if (output.bearing.empty()) {
-        const auto k = static_cast<std::size_t>(rotor::full_coordinate(output.node, freedom_of(output.direction)));
+        const auto k = static_cast<std::size_t>(rotor::full_coordinate(*output.node, freedom_of(output.direction)));
         z = {shaft[0][k], shaft[1][k]};
       } else {
         const int b = bearing_of(system_, output.bearing), d = static_cast<int>(output.direction);

@@ -1,6 +1,7 @@
 #pragma once
 // Frequency response of the machine, linear about its equilibrium: a matrix of transfer functions.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,8 @@ enum class Along { x, y, slope_x, slope_y };
 
 /// A force [N] or moment [N m] on a node of the shaft, or between a journal and its pedestal.
 struct TransferInput {
-  int node = 0;         ///< 1-based; 0: at a bearing
-  std::string bearing;  ///< instead of a node
+  std::optional<int> node;  ///< 1-based
+  std::string bearing;      ///< instead of a node
   Along direction = Along::x;
 };
 void describe(deck::Description<TransferInput>& d);
@@ -23,7 +24,7 @@ void describe(deck::Description<TransferInput>& d);
 /// A motion of a node of the shaft, or of a journal relative to its pedestal.
 struct TransferOutput {
   enum class Quantity { displacement, velocity, acceleration };
-  int node = 0;
+  std::optional<int> node;
   std::string bearing;
   Along direction = Along::x;
   Quantity quantity = Quantity::displacement;
