@@ -125,7 +125,7 @@ def flows(h):
     attractor = h.run(inputs / "lorenz.yaml", "lorenz", launcher=[])["attractor"]
     for k, wanted in enumerate((0.9056, 0.0, -14.572), 1):
         bar = value(attractor, f"lyapunov.{k}.uncertainty")
-        h.true(f"Lorenz, exponent {k}: a small bar", bar < 0.06)
+        h.true(f"Lorenz, exponent {k}: a small bar", bar < 0.09)
         h.close(f"Lorenz, exponent {k}", value(attractor, f"lyapunov.{k}"), wanted, 1.5 * bar)
     h.close("    their sum", sum(value(attractor, f"lyapunov.{k}") for k in (1, 2, 3)), -(10 + 1 + 8 / 3), 1e-3)
     h.true("    chaotic", "motion.chaotic" in attractor["values"])
