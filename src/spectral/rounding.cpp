@@ -53,9 +53,10 @@ DensePencil::Conditioning DensePencil::conditioning() const {
   const std::size_t n = values_.size();
   Conditioning out{std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()), std::vector<int>(n, 1),
                    std::vector<int>(n, 1), left()};
+  // Of what vibrates: how fast the overdamped decay says nothing of slow motions.
   double largest = 0;
   for (const auto& v : values_)
-    if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
+    if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v.imag()));
   const double reach = std::sqrt(std::numeric_limits<double>::epsilon()) * largest;
   for (std::size_t k = 0; k < n; ++k) {
     if (!std::isfinite(std::abs(values_[k]))) continue;

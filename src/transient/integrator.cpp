@@ -90,8 +90,8 @@ struct Integrator::Parts {
     bool breaks = false;
     if (options.forces) {
       const double slack = 1e-9 * step, next = options.forces->next_break(reached + slack);
-      breaks = next < end - slack;
-      if (breaks) end = next;
+      breaks = next <= end + slack;
+      if (next < end - slack) end = next;
     }
     const double left = pace == Pace::by_itself ? step : end - reached;
     // Equal steps to the end, so that none of them is short for nothing.

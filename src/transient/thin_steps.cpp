@@ -80,7 +80,7 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
   value_ = known_ + own * slope_;
   equations_.turn(at);
   // Of the same step in time and speed as the matrix, or nearly so.
-  bool renew = cheap || !has_tangents_ || !inverse_.fits(own, operator_.parameter);
+  bool renew = cheap || !has_tangents_ || !inverse_.fits(own, equations_.system().parameter());
   bool renewed = false;
   double last = 0, rate = std::pow(std::max(rate_, 1e-4), 0.8);
   for (int k = 0; k < most_changes; ++k) {

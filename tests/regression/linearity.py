@@ -113,9 +113,11 @@ def same(h):
     h.true("it moves", value(whole, "peak_to_peak.A.x") > 1e-8, str(value(whole, "peak_to_peak.A.x")))
     h.kill_at_checkpoint(deck, h.work / "killed", more)
     h.run(deck, "killed", more, flags=["--resume"], launcher=[])
-    h.true("killed and resumed: the same to the bit", same_results(h.work / "whole", h.work / "killed", 0))
+    for what, difference, within in same_results(h.work / "whole", h.work / "killed", 0):
+        h.close("killed and resumed: the same to the bit: " + what, difference, 0, within)
     h.run(deck, "two", more, launcher=[*h.launcher, "-n", "2"])
-    h.true("two ranks: the same", same_results(h.work / "whole", h.work / "two", 1e-7))
+    for what, difference, within in same_results(h.work / "whole", h.work / "two", 1e-7):
+        h.close("two ranks: the same: " + what, difference, 0, within)
 
 
 def transfer(k, b, mass, frequency):
@@ -163,7 +165,8 @@ def short(h):
            f"unexplained off resonance: {value(study, 'level.1.unexplained'):.5f} to {value(study, 'level.2.unexplained'):.5f}")
     h.close("displacements grow with the force", value(study, "level.2.rms.x") / value(study, "level.1.rms.x") / 15, 1, 0.1)
     h.run(deck, "two", SHORT, launcher=[*h.launcher, "-n", "2"])
-    h.true("two ranks: the same", same_results(h.work / "short", h.work / "two", 1e-9))
+    for what, difference, within in same_results(h.work / "short", h.work / "two", 1e-9):
+        h.close("two ranks: the same: " + what, difference, 0, within)
 
 
 def whole(h):

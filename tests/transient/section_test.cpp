@@ -34,6 +34,7 @@ std::vector<double> crossings(SmallSystem& s, const problem::Drive& drive, const
 
 // The steady oscillation cos(angle) of a linear oscillator forced with it: crossings at known angles.
 TEST(Section, IsFoundWhereTheMotionCrosses) {
+  if (core::size_of(MPI_COMM_WORLD) > 2) GTEST_SKIP() << "every step of a distributed system costs messages";
   SmallSystem s(PETSC_COMM_WORLD, 2, 1.3, 0, test::LinearOscillator());
   const std::complex<double> z = 1.0 / std::complex<double>(1 - 1.3 * 1.3, 0.26);
   const double value = 0.3 * std::abs(z), end = 3 * two_pi / 1.3;
@@ -60,6 +61,7 @@ TEST(Section, IsFoundWhereTheMotionCrosses) {
 }
 
 TEST(Section, CountsTheSensesAskedFor) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
   SmallSystem s(PETSC_COMM_WORLD, 2, 0.25, 1, test::HopfNormalForm());
   const auto x = test::HopfNormalForm::exact(0.1, 0.25);
   const double end = 5 * test::HopfNormalForm::period(0.25);
@@ -70,6 +72,7 @@ TEST(Section, CountsTheSensesAskedFor) {
 
 // Of a self-excited cycle the returns are its period, whatever the samples.
 TEST(Section, ReturnsOfACycleTakeItsPeriod) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
   SmallSystem s(PETSC_COMM_WORLD, 2, 0.25, 1, test::HopfNormalForm());
   const auto t = crossings(s, {1}, test::HopfNormalForm::exact(0, 0.25), 0.1, transient::Sense::rising, 40, 211, 1e-10);
   ASSERT_GE(t.size(), 4U);
@@ -78,6 +81,7 @@ TEST(Section, ReturnsOfACycleTakeItsPeriod) {
 
 // The search leaves no trace in the motion, nor in its deviations.
 TEST(Section, IsNotNoticedByTheMotion) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
   SmallSystem s(PETSC_COMM_WORLD, 2, 1, 2, test::VanDerPol());
   const Eigen::Vector2d start(2, 0);
   std::vector<double> with, growth[2];

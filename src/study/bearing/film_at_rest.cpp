@@ -139,10 +139,13 @@ Capacity FilmAtRest::capacity(const Pair& load) {
   constexpr double first = 0.05, last = 0.95, step = 0.05;
   Capacity out;
   double angle = 0;
+  bool largest_last = false;  // of the places with an answer
   for (double e = first; e < last + 0.5 * step; e += step) {
     const double up = lifted(load, e, angle);
-    if (!(up > out.load)) continue;
-    out = {up, e, e > last - 0.5 * step};
+    // Beyond a place without an answer nothing is known: the load may go on rising.
+    if (!std::isfinite(up) && largest_last) out.rises = true;
+    largest_last = up > out.load;
+    if (largest_last) out = {up, e, e > last - 0.5 * step};
   }
   if (out.rises || !(out.load > 0)) return out;
   // Golden section about the largest.
@@ -151,7 +154,7 @@ Capacity FilmAtRest::capacity(const Pair& load) {
   double a = low + golden * (high - low), b = high - golden * (high - low);
   double at_a = lifted(load, a, angle), at_b = lifted(load, b, angle);
   while (high - low > narrow) {
-    if (at_a > at_b) {
+    if (at_a > at_b || !std::isfinite(at_b)) {
       high = std::exchange(b, a);
       at_b = at_a;
       a = low + golden * (high - low);

@@ -234,9 +234,11 @@ StudyResult GasBearing::run(Context& context) {
         (void)has_answer(
             [&] { put_gas_summary(there, gas_equilibria(options, other.supports[which]), "equilibrium"); });
       if (!none.empty()) {
-        const Capacity c = FilmAtRest(other.supports[which], beyond).capacity(load_along(options.load));
-        there.set("capacity.load", c.load, "N");
-        there.set("capacity.eccentricity", c.eccentricity, "1");
+        (void)has_answer([&] {
+          const Capacity c = FilmAtRest(other.supports[which], beyond).capacity(load_along(options.load));
+          there.set("capacity.load", c.load, "N");
+          there.set("capacity.eccentricity", c.eccentricity, "1");
+        });
       }
     });
     bars.add(mesh.axis, mesh.spacing, there);

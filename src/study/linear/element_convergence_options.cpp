@@ -29,6 +29,10 @@ void describe(deck::Description<ElementConvergenceOptions>& d) {
 
 void ElementConvergence::validate(const system::Machine& machine, const deck::Report& report) const {
   if (machine.rotor.type == rotor::Options::Type::rigid) report.fail("", "a rigid rotor has no elements");
+  for (std::size_t i = 0; i < options.elements.size(); ++i)
+    if (machine.rotor.shear == rotor::Shear::rigid && options.elements[i] != rotor::Element::rayleigh &&
+        options.elements[i] != rotor::Element::timoshenko)
+      report.fail(fmt::format("elements.{}", i + 1), "a shaft whose sections are rigid in shear has no such element");
   if (!machine.rotor.couplings.empty()) report.fail("", "a shaft with couplings is not cut into shorter elements");
   if (machine.rotor.reduction.type != rotor::Reduction::Type::none)
     report.fail("",

@@ -138,6 +138,10 @@ void describe(deck::Description<FrequencyResponseOptions>& d) {
 }
 
 void FrequencyResponse::validate(const system::Machine& machine, const deck::Report& report) const {
+  if (machine.rotor.reduction.type == rotor::Reduction::Type::craig_bampton_state)
+    return report.fail("",
+                       "forces on nodes of a shaft that is reduced in state space are not known here: take another "
+                       "rotor.reduction, craig_bampton say");
   check_points("inputs", options.inputs, machine, report);
   check_points("outputs", options.outputs, machine, report);
   for (const GivenCoefficients& g : options.given) {

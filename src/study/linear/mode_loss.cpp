@@ -6,6 +6,7 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -131,9 +132,11 @@ void part(const Sparse& a, const Sparse& b, double eta, std::span<Vibration> tog
 void add_loss(const Pencil& p, const system::RotorSystem& system, double eta, std::vector<Vibration>& modes) {
   const int steps = static_cast<int>(std::ceil(eta / 0.05));
   for (std::size_t first = 0, end = 0; first < modes.size(); first = end) {
-    for (end = first + 1; end < modes.size(); ++end)
-      if (std::abs(modes[end].lambda - modes[end - 1].lambda) > eta * std::abs(modes[end].lambda)) break;
     const int sense = system.loss_sense(modes[first].lambda.imag());
+    for (end = first + 1; end < modes.size(); ++end)
+      if (std::abs(modes[end].lambda - modes[end - 1].lambda) > eta * std::abs(modes[end].lambda) ||
+          system.loss_sense(modes[end].lambda.imag()) != sense)
+        break;
     const std::span<Vibration> together(modes.data() + first, end - first);
     for (int step = 1; step <= steps; ++step) {
       const Sparse a = with_loss(p, eta * step / steps, sense);
@@ -167,6 +170,10 @@ std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const 
   for (std::size_t k = 0; k < moving.size(); ++k) {
     spectral::Mode& m = vibrating[k];
     m.lambda = moving[k].lambda;
+    // Those were of the machine without loss.
+    m.condition = std::numeric_limits<double>::quiet_NaN();
+    m.multiplicity = m.vectors = 1;
+    m.left.clear();
     m.rounding = std::max(m.rounding, 1e-12 * std::abs(m.lambda));
     Eigen::Index largest = 0;
     moving[k].shape.cwiseAbs().maxCoeff(&largest);

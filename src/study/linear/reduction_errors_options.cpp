@@ -92,18 +92,17 @@ void ReductionErrors::validate(const system::Machine& machine, const deck::Repor
     if (options.freedoms[i] < options.count)
       report.fail(path, fmt::format("{} freedoms have no {} modes to compare", options.freedoms[i], options.count));
   }
-  if (options.maps > 0) check_freedoms("maps", options.maps, options, machine, report);
+  if (options.maps > 0) {
+    check_freedoms("maps", options.maps, options, machine, report);
+    if (options.maps < options.count)
+      report.fail("maps", fmt::format("{} freedoms have no {} modes to compare", options.maps, options.count));
+  }
   if (!options.orbits) return;
   const int n_nodes = static_cast<int>(machine.rotor.segments.size()) + 1;
   if (options.orbits->node > n_nodes)
     report.fail("orbits.node",
                 fmt::format("node {} does not exist: the shaft has nodes 1 to {}", options.orbits->node, n_nodes));
-  for (std::size_t i = 0; i < options.orbits->unbalance.size(); ++i)
-    if (!system::find_unbalance(machine, options.orbits->unbalance[i]))
-      report.fail(
-          fmt::format("orbits.unbalance.{}", i + 1),
-          fmt::format("there is no unbalance '{}'{}", options.orbits->unbalance[i],
-                      deck::did_you_mean_one_of(options.orbits->unbalance[i], system::unbalance_names(machine))));
+  check_unbalance(options.orbits->unbalance, machine, report.below("orbits"));
   for (std::size_t i = 0; i < options.orbits->freedoms.size(); ++i)
     check_freedoms(fmt::format("orbits.freedoms.{}", i + 1), options.orbits->freedoms[i], options, machine, report);
 }
