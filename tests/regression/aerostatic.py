@@ -49,6 +49,44 @@ def loads(h):
     h.true("    which is below its load", at_most < 49.05)
 
 
+def tables(h):
+    """All loads, flows and losses of the independent computation, bearings A and B; sources over the mesh; other data."""
+    wanted = reference(h, "tables.json")
+    deck = h.source / "inputs/aerostatic/gas_bearing.yaml"
+    numbers = lambda of, unit="": "[" + ", ".join(f"{x:.12g}{unit}" for x in of) + "]"
+
+    def run(name, speeds, eccentricities, bearing="A", supply=5e5, changes=()):
+        ring = "{count: 8, diameter: 0.2 mm, supply: %g Pa, %s}"
+        rings = ", ".join(ring % (supply, f"z: {z} mm") for z in ([0] if bearing == "A" else [-7.5, 7.5]))
+        study = f"{{name: s, speeds: {numbers(speeds, ' rad/s')}, eccentricities: {numbers(eccentricities)}}}"
+        return h.run(deck, name, [f"bearings.A.film.orifices=[{rings}]", f"studies=[{{gas_bearing: {study}}}]", *changes], launcher=[])["s"]
+
+    def same(study, what, wanted, speed, eccentricity, within=0.005):
+        head = f"speed.{speed:.6g}.eccentricity.{eccentricity:g}."
+        for name, key in (("load", "W"), ("mass_flow", "mdot"), ("power_loss", "Ploss")):
+            if key in wanted:
+                h.close(f"{what}: {name}", value(study, head + name), wanted[key], max(within * abs(wanted[key]), 1e-6 if key == "Ploss" else 0))
+
+    for bearing, supply in sorted({(t["bearing"], t["ps"]) for t in wanted["tables"]}):
+        rows = [t for t in wanted["tables"] if (t["bearing"], t["ps"]) == (bearing, supply)]
+        s = run(f"{bearing} {supply / 1e6:g}", sorted({t["omega"] for t in rows}), sorted({t["eps"] for t in rows}), bearing, supply)
+        for t in rows:
+            same(s, f"{bearing}, {supply / 1e6:g} MPa, {t['omega']:g} rad/s, {t['eps']:g}", t, t["omega"], t["eps"])
+    s = run("speeds", [t["omega"] for t in wanted["speeds"]], [0.5])
+    for t in wanted["speeds"]:
+        same(s, f"{t['omega']:g} rad/s", t, t["omega"], 0.5)
+    for t in wanted["meshes"]:
+        if t["N"] < 384:
+            name = f"{t['bearing']} {t['source']} {t['N']}"
+            s = run(name, [1000], [0.6], t["bearing"], changes=[f"bearings.A.film.cells=[{t['N']}, {t['M']}]", f"bearings.A.film.source={t['source']}"])
+            same(s, name, t, 1000, 0.6, 2e-4)
+    row = "bearings.A.film.orifices.1."
+    for name, changes in (("base", []), ("between_orifices", [row + "angle=22.5 deg"]), ("pa_1e5", ["bearings.A.film.ambient=1e5 Pa"]),
+                          ("mu_1.8e-5", ["lubricants.air.viscosity=18 uPa s"]), ("T_293", ["bearings.A.film.temperature=293 K", "lubricants.air.viscosity=18.1 uPa s"]),
+                          ("ps_gauge", [row + "supply=601325 Pa"]), ("curtain_area_model", [row + "law=curtain"])):
+        same(run(name, [1000], [0.6], changes=changes), name, wanted["changes"][name], 1000, 0.6)
+
+
 def linear(number, slender):
     """Load over p_a L D eps and attitude of a small eccentricity, of a bearing number and L/D."""
     k = cmath.sqrt(1 + 1j * number)
@@ -119,5 +157,5 @@ def supply(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"loads": loads, "pockets": pockets, "self_acting": self_acting, "slip": slip, "supply": supply}[sys.argv[3]](harness)
+    {"loads": loads, "tables": tables, "pockets": pockets, "self_acting": self_acting, "slip": slip, "supply": supply}[sys.argv[3]](harness)
     harness.finish()
