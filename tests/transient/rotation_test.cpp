@@ -136,7 +136,7 @@ TEST(Rotation, OfTwoOscillatorsIsTheRatioOfTheirFrequencies) {
         const auto x = core::gather(integrator.scaled());
         points.push_back({x[2], x[3]});
       });
-  for (int k = 1; k <= 8 * 60; ++k) section.advance(two_pi * k / 8, nullptr);
+  for (int k = 1; k <= 8 * 60; ++k) section.advance(two_pi * k / 8);
   ASSERT_EQ(points.size(), 60U);
   const auto r = rotation_number(points);
   EXPECT_NEAR(r.value, w, r.uncertainty + 1e-6);  // beside what the integration loses

@@ -88,7 +88,7 @@ private:
         return period() * (turns_before() * options_.samples + sample) / options_.samples;
       };
       if (record && section_)
-        section_->advance(at(k), carried_);
+        section_->advance(at(k));
       else
         integrator_.advance(at(k), at(options_.samples));
       if (tangents_) {
