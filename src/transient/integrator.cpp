@@ -193,14 +193,15 @@ void Integrator::carry(Tangents* tangents) {
   if (tangents && !p.thin && !(p.petsc && p.petsc->type() == TSARKIMEX))
     throw core::InputError("Lyapunov exponents need the scheme sdirk4");
   core::require(!tangents || p.reached == p.time, "deviations begin at the end of a step");
-  const bool new_ones = tangents && !p.tangents;
   p.tangents = tangents;
   if (tangents && !p.carrier) {
     p.carrier = std::make_unique<StageTangents>(p.equations, p.tableau);
     p.algebraic = !p.equations.why_singular(p.reached + p.offset, p.front.get()).empty();
   }
-  if (new_ones && p.algebraic)
+  if (!tangents || !tangents->are_new()) return;
+  if (p.algebraic)
     p.carrier->make_consistent(p.reached + p.offset, consistent_part * p.step, p.front.get(), *tangents);
+  tangents->were_carried();
 }
 
 void Integrator::restart(double time, double step) {
