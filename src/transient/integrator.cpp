@@ -199,8 +199,7 @@ void Integrator::carry(Tangents* tangents) {
     p.algebraic = !p.equations.why_singular(p.reached + p.offset, p.front.get()).empty();
   }
   if (!tangents || !tangents->are_new()) return;
-  if (p.algebraic)
-    p.carrier->make_consistent(p.reached + p.offset, consistent_part * p.step, p.front.get(), *tangents);
+  if (p.algebraic) p.carrier->make_consistent(p.reached + p.offset, consistent_part * p.step, p.front.get(), *tangents);
   tangents->were_carried();
 }
 

@@ -159,7 +159,8 @@ TEST(Section, LiesOnTheMotionOfSchemesWithTheirOwnPace) {
       std::vector<double> times;
       std::vector<std::vector<double>> states;
       transient::Section section(
-          cut, [&] { return entry(cut.scaled(), 0) - value; }, transient::Sense::rising, [&](double time) {
+          cut, [&] { return entry(cut.scaled(), 0) - value; }, transient::Sense::rising,
+          [&](double time) {
             times.push_back(time);
             states.push_back(core::gather(cut.scaled()));
           });

@@ -61,8 +61,8 @@ public:
   /// Another integrator of the same motion, which stands here, for excursions that this one does not notice. What the
   /// system is at (its parameter) they share.
   [[nodiscard]] std::unique_ptr<Integrator> twin() const;
-  /// Carries small deviations along from now on, by the exact derivative of each discrete step; null: none. New ones are
-  /// made to obey the equations without rates first. They outlive their use here.
+  /// Carries small deviations along from now on, by the exact derivative of each discrete step; null: none. New ones
+  /// are made to obey the equations without rates first. They outlive their use here.
   void carry(Tangents* tangents);
 
   [[nodiscard]] double time() const;
