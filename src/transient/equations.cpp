@@ -38,6 +38,7 @@ Equations::Equations(problem::System& system, const problem::Drive& drive, Algeb
   core::require(drive.acceleration == 0 || system.parameter_is_speed(),
                 "an accelerated shaft needs the speed as parameter");
   if (system.parameter_is_speed()) system.set_parameter(drive.speed);
+  turned_ = system.parameter();
   state_scale_ = core::make_vector(system.comm(), system.local_size(), PETSC_DETERMINE);
   residual_scale_ = core::duplicate(state_scale_.get());
   inverse_ = core::duplicate(state_scale_.get());
@@ -112,8 +113,10 @@ void Equations::unscale(Vec u, Vec x) const {
 void Equations::turn(double t) {
   if (drive_.acceleration == 0) return;
   const double speed = drive_.speed_at(t);
-  if (speed == system_.parameter()) return;
-  system_.set_parameter(speed);
+  // Others may have turned the system meanwhile.
+  if (speed != system_.parameter()) system_.set_parameter(speed);
+  if (speed == turned_) return;
+  turned_ = speed;
   if (point_) point_->refresh_speed();
 }
 

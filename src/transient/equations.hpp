@@ -73,6 +73,7 @@ private:
   const Forces* forces_ = nullptr;
   core::Gate gate_;
   bool thin_ = false;
+  double turned_ = 0;  // the speed that `point_` is at
   core::Vector state_scale_, residual_scale_, inverse_, x_, xdot_;
   std::unique_ptr<solve::ScaledPoint> point_;
   Eigen::VectorXd u_, udot_, f_;

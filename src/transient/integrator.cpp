@@ -76,12 +76,23 @@ struct Integrator::Parts {
   [[nodiscard]] std::string where() const {
     return fmt::format("the motion could not be continued beyond t = {:.9g} s: ", reached);
   }
-  // What is told of a motion that ends is its end.
   void stop_at_front() {
     check(VecCopy(front.get(), u.get()));
     time = reached;
   }
-  // One step towards `end`; with deviations only where they allow it.
+  // One step towards `end`. What is told of a motion that ends is its end.
+  void take(double end) {
+    try {
+      go_on(end);
+    } catch (const core::DomainError& e) {
+      stop_at_front();
+      throw core::DomainError(where() + e.what());
+    } catch (const core::NotConverged& e) {
+      stop_at_front();
+      throw core::NotConverged(where() + e.what());
+    }
+  }
+  // The same with deviations only where they allow it.
   void go_on(double end) {
     const Pace pace = stepper->pace();
     if (const int wanted_steps = equal_steps(options.scheme))
@@ -182,14 +193,14 @@ void Integrator::carry(Tangents* tangents) {
   if (tangents && !p.thin && !(p.petsc && p.petsc->type() == TSARKIMEX))
     throw core::InputError("Lyapunov exponents need the scheme sdirk4");
   core::require(!tangents || p.reached == p.time, "deviations begin at the end of a step");
-  const bool new_ones = tangents && !p.tangents;
   p.tangents = tangents;
   if (tangents && !p.carrier) {
     p.carrier = std::make_unique<StageTangents>(p.equations, p.tableau);
     p.algebraic = !p.equations.why_singular(p.reached + p.offset, p.front.get()).empty();
   }
-  if (new_ones && p.algebraic)
-    p.carrier->make_consistent(p.reached + p.offset, consistent_part * p.step, p.front.get(), *tangents);
+  if (!tangents || !tangents->are_new()) return;
+  if (p.algebraic) p.carrier->make_consistent(p.reached + p.offset, consistent_part * p.step, p.front.get(), *tangents);
+  tangents->were_carried();
 }
 
 void Integrator::restart(double time, double step) {
@@ -216,20 +227,33 @@ void Integrator::advance(double time) {
 void Integrator::advance(double time, double end) {
   Parts& p = *parts_;
   if (p.tangents || p.stepper->pace() == Pace::to_samples) end = time;
-  try {
-    while (p.reached < time) p.go_on(std::max(time, end));
-  } catch (const core::DomainError& e) {
-    p.stop_at_front();
-    throw core::DomainError(p.where() + e.what());
-  } catch (const core::NotConverged& e) {
-    p.stop_at_front();
-    throw core::NotConverged(p.where() + e.what());
-  }
+  while (p.reached < time) p.take(std::max(time, end));
   p.time = time;
   if (p.reached == time)
     check(VecCopy(p.front.get(), p.u.get()));
   else
     p.stepper->interpolate(time + p.offset, p.u.get());
+}
+
+bool Integrator::goes_its_own_pace() const {
+  return parts_->stepper->pace() == Pace::by_itself;
+}
+
+void Integrator::advance_within_step(double time) {
+  Parts& p = *parts_;
+  core::require(goes_its_own_pace(), "a scheme whose steps end where they are told to");
+  if (p.reached <= p.time) p.take(time);
+  advance(std::min(time, p.reached));
+}
+
+std::unique_ptr<Integrator> Integrator::twin() const {
+  const Parts& p = *parts_;
+  IntegratorOptions options = p.options;
+  options.after_step = nullptr;
+  options.first_step = p.step;
+  const core::Vector x = p.equations.make_state();
+  state(x.get());
+  return std::make_unique<Integrator>(p.equations.system(), p.drive, x.get(), std::move(options));
 }
 
 double Integrator::time() const {

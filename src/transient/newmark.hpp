@@ -13,12 +13,19 @@ namespace whirl::transient {
 ///     F(t_1, u_1, r_1) = 0,   r_1 = 2/h (u_1 - u_0) - r_0
 ///
 /// by Newton's method (the Jacobian of (2.57) with the term of the velocities that it lacks, which dF/d(du/dt) brings
-/// in with 2/h), or by one step of it from the films linearised at (u_0, r_0). Where r_0 does not follow from u_0
-/// (dF/d(du/dt) singular) the first step after forget() is Euler's implicit one. Source: Skarolek (2011),
-/// (2.44)-(2.58).
+/// in with 2/h), or by one step of it from the films linearised at (u_0, r_0).
+///
+/// After forget() r_0 is that of F(t_0, u_0, r_0) = 0. Where dF/d(du/dt) is singular it does not follow from that, but
+/// from
+///
+///     F(t_0 + e, v, (v - u_0)/e) = 0,   F(t_0 + 2 e, w, r_0) = 0,   r_0 = (w - v)/e,   e << h
+///
+/// two of Euler's implicit steps so short that the first one moves nothing but what disobeys the equations without
+/// rates. If they fail the first step is Euler's. Source: Skarolek (2011), (2.44)-(2.58).
 class NewmarkSteps : public Stepper {
 public:
-  /// `tolerance` of Newton's method, on the scaled states; `regular` if dF/d(du/dt) is. `equations` outlive this.
+  /// `tolerance` of Newton's method, on the scaled states; `regular` false if dF/d(du/dt) is known to be singular.
+  /// `equations` outlive this.
   NewmarkSteps(Equations& equations, bool linearised, bool regular, double tolerance);
 
   [[nodiscard]] Taken step(double time, double wanted, Vec u) override;
@@ -38,11 +45,13 @@ protected:
 
 private:
   void set_rate(double length, Vec u, Vec rate);
+  void begin(double time, double wanted, Vec u);
+  [[nodiscard]] bool newton(double time, double length, Vec u, Vec rate);
 
   Equations& equations_;
   bool linearised_;
   double tolerance_;
-  core::Vector rate_, end_, end_rate_, f_, change_;
+  core::Vector rate_, end_, end_rate_, f_, change_, consistent_;
   core::Matrix matrix_, rates_;
   core::LinearSolver solver_;
   bool regular_, has_rate_ = false, euler_ = false;

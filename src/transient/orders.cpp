@@ -15,6 +15,14 @@ std::span<const double> piece(const ByAngle& signal, const Pieces& pieces, int k
   return signal.samples.subspan(first, static_cast<std::size_t>(pieces.revolutions * signal.per_revolution));
 }
 
+// Weight of sample i of a piece, which stands i + 1 samples behind its beginning: weights begin with that of the
+// beginning itself, which is that of the end too. So they are symmetric about the middle of the piece.
+std::vector<double> centred(Window window, std::size_t n) {
+  std::vector<double> w = weights(window, n);
+  std::rotate(w.begin(), w.begin() + 1, w.end());
+  return w;
+}
+
 int revolutions(const ByAngle& signal) {
   return static_cast<int>(signal.samples.size()) / signal.per_revolution;
 }
@@ -35,7 +43,7 @@ std::vector<std::complex<double>> order_track(const ByAngle& signal, double orde
                 "an order is a line of a piece, and below half the samples of a revolution");
   const auto n = static_cast<std::size_t>(pieces.revolutions * signal.per_revolution);
   // Weights that are symmetric about the middle of the piece keep the phase of an amplitude that changes.
-  std::vector<double> w = weights(pieces.window, n);
+  const std::vector<double> w = centred(pieces.window, n);
   double gain = 0;
   for (const double v : w) gain += v;
   std::vector<std::complex<double>> kernel(n), out;
@@ -58,7 +66,11 @@ std::vector<std::vector<double>> waterfall(const ByAngle& signal, double highest
   std::vector<std::vector<double>> out;
   const auto lines = static_cast<std::size_t>(std::floor(highest * pieces.revolutions * (1 + 1e-12))) + 1;
   for (int k = 0; k < count(pieces, revolutions(signal)); ++k) {
-    Spectrum s = amplitude_spectrum(piece(signal, pieces, k), 1.0 / signal.per_revolution, pieces.window);
+    // The last sample goes first, to where its weight is: no amplitude depends on where a piece begins to turn.
+    const auto here = piece(signal, pieces, k);
+    std::vector<double> turned(here.begin(), here.end());
+    std::rotate(turned.begin(), turned.end() - 1, turned.end());
+    Spectrum s = amplitude_spectrum(turned, 1.0 / signal.per_revolution, pieces.window);
     s.amplitude.resize(std::min(lines, s.amplitude.size()));
     out.push_back(std::move(s.amplitude));
   }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t fewest = 24;
 constexpr double most_disorder = 0.01, accident = 0.01;
+constexpr double flattest = 1e-6;  // width over length, below which points are on a line
 
 // In [0, 1).
 double fraction(double x) {
@@ -29,7 +30,6 @@ std::vector<double> angles(const std::vector<std::array<double, 2>>& points) {
       high[d] = std::max(high[d], p[d]);
     }
   // Axes of the box for those of the curve: a flat ellipse is seen as a circle, a line stays one.
-  constexpr double flattest = 1e-6;
   std::array<double, 2> width{high[0] - low[0], high[1] - low[1]};
   const double widest = std::max({width[0], width[1], std::numeric_limits<double>::min()});
   for (double& w : width)
@@ -41,6 +41,24 @@ std::vector<double> angles(const std::vector<std::array<double, 2>>& points) {
     out.push_back(fraction(std::atan2(z[1], z[0]) / (2 * std::numbers::pi)));
   }
   return out;
+}
+
+// By the moments of the points about their mean.
+bool on_a_line(const std::vector<std::array<double, 2>>& points) {
+  const auto n = static_cast<double>(points.size());
+  double mx = 0, my = 0, xx = 0, xy = 0, yy = 0;
+  for (const auto& [x, y] : points) {
+    mx += x / n;
+    my += y / n;
+  }
+  for (const auto& [x, y] : points) {
+    xx += (x - mx) * (x - mx);
+    xy += (x - mx) * (y - my);
+    yy += (y - my) * (y - my);
+  }
+  // The roots of l^2 - (xx + yy) l + xx yy - xy^2, squares of length and width.
+  const double length = (xx + yy + std::hypot(xx - yy, 2 * xy)) / 2, width = (xx * yy - xy * xy) / length;
+  return !(width > flattest * flattest * length);
 }
 
 // Advance from each point to the next, in one branch: those of a map of the circle leave a gap, at which they are cut.
@@ -141,8 +159,15 @@ RotationNumber locked_rotation(const std::vector<std::array<double, 2>>& points,
     r.reason = "too few points";
     return r;
   }
+  const std::vector<std::array<double, 2>> once(points.begin(), points.begin() + period);
+  // Two points have one order on every circle through them; of three or more on a line the order is rounding's.
+  if (q > 2 && on_a_line(once)) {
+    r.value = r.uncertainty = std::numeric_limits<double>::quiet_NaN();
+    r.reason = "the points are on a line, which has no sense of turning";
+    return r;
+  }
   // The map keeps the order of q points on a circle: it moves each by the same number of places.
-  const std::vector<double> angle = angles({points.begin(), points.begin() + period});
+  const std::vector<double> angle = angles(once);
   std::vector<std::size_t> order(q), place(q);
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r2) { return angle[l] < angle[r2]; });

@@ -27,24 +27,41 @@ Section::Section(Integrator& integrator, Height height, Sense sense, Found found
   for (core::Vector& n : nodes_) n = core::duplicate(integrator.scaled());
 }
 
-void Section::advance(double time, Tangents* carried) {
+// A point on the surface belongs to the side it came to, so that it counts once.
+bool Section::counts(double low, double high) const {
+  const bool rises = low < 0 && high >= 0, falls = low >= 0 && high < 0;
+  return (rises && sense_ != Sense::falling) || (falls && sense_ != Sense::rising);
+}
+
+void Section::advance(double time) {
   if (!last_) last_ = height_();
+  if (integrator_.goes_its_own_pace()) return step_by_step(time);
   const double from = integrator_.time(), low = *last_;
   step_before_ = integrator_.step();
   check(VecCopy(integrator_.scaled(), before_.get()));
   integrator_.advance(time);
   const double high = height_();
   last_ = high;
-  // A point on the surface belongs to the side it came to, so that it counts once.
-  const bool rises = low < 0 && high >= 0, falls = low >= 0 && high < 0;
-  if (!(rises && sense_ != Sense::falling) && !(falls && sense_ != Sense::rising)) return;
-  const double step = integrator_.step();
+  if (!counts(low, high)) return;
   check(VecCopy(integrator_.scaled(), after_.get()));
-  integrator_.carry(nullptr);
   locate(from, time, low, high);
   check(VecCopy(after_.get(), integrator_.scaled()));
-  integrator_.restart(time, step);
-  integrator_.carry(carried);
+}
+
+void Section::step_by_step(double time) {
+  while (integrator_.time() < time) {
+    const double from = integrator_.time(), low = *last_;
+    integrator_.advance_within_step(time);
+    const double to = integrator_.time(), high = height_();
+    last_ = high;
+    if (!counts(low, high)) continue;
+    const auto at = [this](double t) {
+      integrator_.advance(t);
+      return height_();
+    };
+    found_(root(at, from, to, low < 0, std::max(std::abs(low), std::abs(high))));
+    integrator_.advance(to);
+  }
 }
 
 // The bracket shrinks to an eighth of a step by false position, each try a step from its left end; states at five times
@@ -56,10 +73,12 @@ void Section::locate(double from, double to, double low, double high) {
   const double width = std::min(to - from, step_before_) / 8;
   bool left_moved = false;
   check(VecCopy(before_.get(), nodes_[0].get()));
+  if (!twin_) twin_ = integrator_.twin();
   const auto go = [&](double start, Vec state, double time) {
-    check(VecCopy(state, integrator_.scaled()));
-    integrator_.restart(start, step_before_);
-    integrator_.advance(time);
+    check(VecCopy(state, twin_->scaled()));
+    twin_->restart(start, step_before_);
+    twin_->advance(time);
+    check(VecCopy(twin_->scaled(), integrator_.scaled()));
   };
   constexpr int most = 60;
   for (int k = 0; k < most && b - a > 1.001 * width; ++k) {
@@ -78,10 +97,11 @@ void Section::locate(double from, double to, double low, double high) {
     go(a + static_cast<double>(k - 1) * spacing, nodes_[k - 1].get(), a + static_cast<double>(k) * spacing);
     check(VecCopy(integrator_.scaled(), nodes_[k].get()));
   }
-  found_(a + spacing * root(below, std::max(std::abs(low), std::abs(high))));
+  const auto at = [this](double x) { return between(x); };
+  found_(a + spacing * root(at, 0, nodes - 1, below, std::max(std::abs(low), std::abs(high))));
 }
 
-double Section::at(double x) {
+double Section::between(double x) {
   check(VecSet(integrator_.scaled(), 0));
   for (std::size_t k = 0; k < nodes; ++k) {
     double weight = 1;
@@ -92,12 +112,15 @@ double Section::at(double x) {
   return height_();
 }
 
-// False position that halves the value of an end which stays (Dowell and Jarratt 1971), over the number of the node.
-double Section::root(bool below, double size) {
-  double a = 0, b = nodes - 1, left = at(a), right = at(b);
+// False position that halves the value of an end which stays (Dowell and Jarratt 1971).
+double Section::root(const At& at, double a, double b, bool below, double size) {
+  double right = at(b), left = at(a);
   // The last step may have gone another way than the one that told the side, by its error.
   if ((left < 0) != below) return a;
-  if ((right < 0) == below) return b;
+  if ((right < 0) == below) {
+    (void)at(b);
+    return b;
+  }
   const double level = 1e-14 * size;
   int stayed = 0;
   double x = b;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "whirl/core/error.hpp"
 
@@ -21,6 +22,15 @@ constexpr int most_refinements = 12;
 // A dense inverse wins up to here: one product without a dependence of one row on the next. It is used with refinement
 // or in Newton's method only.
 constexpr Index dense_until = 160;
+
+// Whether `inverse` of `m` is one beyond rounding. The largest entry of diag(|M| |M^-1|), a condition number that no
+// scale of rows or columns changes, tells how much rounding grows: without bound where columns depend on each other,
+// which elimination turns into a zero or into what rounding leaves of one.
+bool is_regular(const MatrixXd& m, const MatrixXd& inverse) {
+  if (!inverse.allFinite()) return false;
+  constexpr double most = 1e-2 / std::numeric_limits<double>::epsilon();
+  return m.cwiseAbs().cwiseProduct(inverse.transpose().cwiseAbs()).rowwise().sum().maxCoeff() < most;
+}
 
 bool near(double a, double b, double ratio) {
   return std::abs(a - b) <= ratio * std::abs(b);
@@ -67,6 +77,9 @@ void ThinInverse::factorise_film(const ThinOperator& a, std::size_t which, Film&
 }
 
 ThinInverse::Factors& ThinInverse::factorise(const ThinOperator& a) {
+  // Nothing is ready if this throws.
+  now_ = nullptr;
+  prepared_ = nullptr;
   const double tau = a.alpha / a.sigma;
   std::unique_ptr<Factors> made;
   // In place of those for the same step, or of those that were not used for longest.
@@ -86,7 +99,9 @@ ThinInverse::Factors& ThinInverse::factorise(const ThinOperator& a) {
   const Sparse m = blocks.l1 + tau * blocks.l0;
   const MatrixXd b = blocks.b;
   if (m.rows() <= dense_until) {
-    made->inverse = MatrixXd(m).partialPivLu().inverse();
+    const MatrixXd whole(m);
+    made->inverse = whole.partialPivLu().inverse();
+    if (!is_regular(whole, made->inverse)) throw core::NotConverged("the matrix of the rotor is singular");
     made->lead.noalias() = made->inverse * b;
   } else {
     if (!made->sparse) made->sparse = std::make_unique<Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>>>();
@@ -181,7 +196,11 @@ void ThinInverse::solve(const ThinOperator& a, const VectorXd& y, VectorXd& x, d
   }
   for (;;) {
     apply(a, y, x);
-    if (exact(a)) break;
+    if (exact(a)) {
+      // What is left is the matrix of the journals' forces.
+      if (!x.allFinite() && y.allFinite()) throw core::NotConverged("the matrix of a step in time is singular");
+      break;
+    }
     double norm = y.norm();
     const double wanted = tolerance * norm;
     bool good = false;

@@ -136,6 +136,38 @@ TEST(Integrator, CarriesDeviationsExactly) {
   }
 }
 
+// x' = -x y, 0 = y - 1 - x^2/2: deviations obey the second equation from where they are carried first, and go on to the
+// bit where another integrator takes them over. Made to obey it a second time they would lag behind.
+TEST(Integrator, TakesOverDeviationsAsTheyAre) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  const auto decay = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
+    test::Column<T> f(2);
+    f << xdot(0) + x(0) * x(1), x(1) - 1.0 - 0.5 * x(0) * x(0);
+    return f;
+  };
+  SmallSystem s(MPI_COMM_WORLD, 2, 1, 1, decay);
+  const core::Vector start = s.vector(Eigen::Vector2d(1, 1.5));
+  Integrator whole(s, {1}, start.get());
+  transient::Tangents tangents(whole.scaled(), 1), taken(whole.scaled(), 1);
+  EXPECT_TRUE(tangents.are_new());
+  whole.carry(&tangents);
+  EXPECT_FALSE(tangents.are_new());
+  const Eigen::VectorXd first = s.gather(tangents.column(0));
+  EXPECT_NEAR(first(1), first(0), 1e-6 * std::abs(first(0)));  // dy = x dx
+  whole.advance(0.5);
+  whole.close_revolution(0);
+  Integrator second(s, {1}, start.get());
+  core::check(VecCopy(whole.scaled(), second.scaled()));
+  second.restart(0.5, whole.step());
+  core::check(VecCopy(tangents.column(0), taken.column(0)));
+  taken.were_carried();
+  second.carry(&taken);
+  EXPECT_EQ(s.gather(taken.column(0)), s.gather(tangents.column(0)));
+  whole.advance(1);
+  second.advance(1);
+  EXPECT_EQ(s.gather(taken.column(0)), s.gather(tangents.column(0)));
+}
+
 TEST(Integrator, EndsWhereAFilmEnds) {
   const auto film = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
     if (std::real(x(0)) > 1) throw core::DomainError("the film is gone");

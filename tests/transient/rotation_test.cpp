@@ -89,6 +89,27 @@ TEST(Rotation, LocksInTheTonguesOfTheCircleMap) {
   EXPECT_EQ(repeated.uncertainty, 0);
 }
 
+// Three points on a sloping line are on no circle, though each of the two orders that rounding may find is one of a
+// turn; a slightly bent line is one, and two points always are.
+TEST(Rotation, OfPointsOnALineIsNone) {
+  const auto three = [](double bend) {
+    Points out;
+    for (int i = 0; i < 8; ++i) {
+      const double s = 0.1 + i % 3;
+      out.push_back({1 + 0.3 * s, -2 + 0.7 * s + bend * s * s});
+    }
+    return out;
+  };
+  const auto line = locked_rotation(three(0), 3);
+  EXPECT_TRUE(std::isnan(line.value)) << line.value;
+  EXPECT_FALSE(line.reason.empty());
+  const auto bent = locked_rotation(three(0.2), 3);
+  EXPECT_TRUE(bent.value == 1.0 / 3 || bent.value == 2.0 / 3) << bent.reason;
+  Points two;
+  for (int i = 0; i < 4; ++i) two.push_back({i % 2 ? 1.0 : 0.0, i % 2 ? 3.0 : 0.0});
+  EXPECT_EQ(locked_rotation(two, 2).value, 0.5);
+}
+
 TEST(Rotation, OfPointsInNoOrderIsNone) {
   Points chaos;  // Henon's map
   double x = 0.1, y = 0.1;
@@ -136,7 +157,7 @@ TEST(Rotation, OfTwoOscillatorsIsTheRatioOfTheirFrequencies) {
         const auto x = core::gather(integrator.scaled());
         points.push_back({x[2], x[3]});
       });
-  for (int k = 1; k <= 8 * 60; ++k) section.advance(two_pi * k / 8, nullptr);
+  for (int k = 1; k <= 8 * 60; ++k) section.advance(two_pi * k / 8);
   ASSERT_EQ(points.size(), 60U);
   const auto r = rotation_number(points);
   EXPECT_NEAR(r.value, w, r.uncertainty + 1e-6);  // beside what the integration loses

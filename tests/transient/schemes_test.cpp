@@ -4,6 +4,7 @@
 
 #include "solve/cycle_systems.hpp"
 #include "whirl/transient/integrator.hpp"
+#include "whirl/transient/signal.hpp"
 
 using namespace whirl;
 using test::SmallSystem;
@@ -138,6 +139,65 @@ TEST(Schemes, TakeAlgebraicStatesOrSayWhyNot) {
     } catch (const core::InputError& e) {
       EXPECT_NE(std::string(e.what()).find("dF/d(dx/dt) is singular"), std::string::npos) << e.what();
     }
+  }
+}
+
+// A wheel on a spring under a table of forces, which breaks at every sample: with the spring's force as a state of its
+// own, which has no rate, Newmark's method takes the same steps as without it.
+TEST(Schemes, BreaksOfForcesCostNewmarkNoOrder) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  const auto direct = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
+    test::Column<T> f(2);
+    f << xdot(0) - x(1), xdot(1) + x(0);
+    return f;
+  };
+  const auto split = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
+    test::Column<T> f(3);
+    f << xdot(0) - x(1), xdot(1) + x(2), x(2) - x(0);
+    return f;
+  };
+  transient::Series series;
+  for (int k = 0; k <= 100; ++k) series.table.push_back({0.05 * k, std::sin(0.7 * k * k)});
+  const auto end = [&](SmallSystem& s, const Eigen::VectorXd& x, const Scheme& scheme) {
+    transient::Forces forces;
+    forces.add(transient::make_signal(series), {{1, 1.0}});
+    Integrator integrator(s, {1}, s.vector(x).get(), {.scheme = scheme, .tolerance = 1e-8, .forces = &forces});
+    integrator.advance(4.9);
+    return state(s, integrator);
+  };
+  SmallSystem whole(MPI_COMM_WORLD, 2, 1, 1, direct), parts(MPI_COMM_WORLD, 3, 1, 1, split);
+  for (const Scheme& scheme : {Scheme(transient::Newmark{64}), Scheme(transient::NewmarkLinearised{64})}) {
+    const Eigen::VectorXd wanted = end(whole, Eigen::Vector2d(1, 0), scheme),
+                          found = end(parts, Eigen::Vector3d(1, 0, 1), scheme);
+    EXPECT_LT((found.head(2) - wanted).norm(), 1e-5) << transient::name_of(scheme);
+    EXPECT_NEAR(found(2), found(0), 1e-8);
+  }
+}
+
+// L1 x' + x = 0 with an L1 of rank two whose rows are not zero, told as structure: no scheme that needs rates has any,
+// and Newmark's does without.
+TEST(Schemes, SeeRowsThatDependOnEachOther) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the same on every rank";
+  test::Blocks blocks;
+  blocks.l0 = Eigen::Matrix3d::Identity();
+  blocks.l0p = Eigen::Matrix3d::Zero();
+  blocks.b = Eigen::Vector3d::Zero();
+  blocks.c = Eigen::RowVector3d::Zero();
+  const auto load = []<class T>(double, T) -> test::Column<T> { return test::Column<T>::Zero(3); };
+  const auto forces = []<class T>(const test::Column<T>&, T) -> test::Column<T> { return test::Column<T>::Zero(1); };
+  const Eigen::Vector3d b(0, 1, 1), start(1, 2, 0);
+  // Elimination leaves a zero of the first one, and something of the size of rounding of the second one.
+  for (const double by : {1.0, 0.7}) {
+    const Eigen::Vector3d a = by * start;
+    blocks.l1 = a * a.transpose() + b * b.transpose();
+    test::StructuredSystem s(1, 1, blocks, load, forces);
+    const auto end = [&](const Scheme& scheme) {
+      Integrator integrator(s, {1}, s.vector(start).get(), {.scheme = scheme, .tolerance = 1e-8});
+      integrator.advance(1.5);
+      return state(s, integrator);
+    };
+    EXPECT_THROW((void)end(transient::AdamsMoulton{}), core::NotConverged);
+    EXPECT_LT((end(transient::Newmark{512}) - end(transient::Sdirk4{})).norm(), 2e-5);
   }
 }
 

@@ -27,7 +27,7 @@ std::vector<double> crossings(SmallSystem& s, const problem::Drive& drive, const
     found.push_back(time);
     if (heights) heights->push_back(height());
   });
-  for (int k = 1; k <= samples; ++k) section.advance(end * k / samples, nullptr);
+  for (int k = 1; k <= samples; ++k) section.advance(end * k / samples);
   if (ends) *ends = core::gather(integrator.scaled());
   return found;
 }
@@ -95,7 +95,7 @@ TEST(Section, IsNotNoticedByTheMotion) {
         integrator, [&] { return entry(integrator.scaled(), 0); }, transient::Sense::both, [&](double) { ++found; });
     for (int k = 1; k <= 60; ++k) {
       if (cut)
-        section.advance(0.5 * k, &tangents);
+        section.advance(0.5 * k);
       else
         integrator.advance(0.5 * k);
       for (const double g : tangents.orthonormalise()) growth[cut].push_back(g);
@@ -106,6 +106,84 @@ TEST(Section, IsNotNoticedByTheMotion) {
   transient::Integrator plain(s, {1}, s.vector(start).get(), {.tolerance = 1e-7});
   for (int k = 1; k <= 60; ++k) plain.advance(0.5 * k);
   EXPECT_EQ(core::gather(plain.scaled()), with);
+}
+
+// Van der Pol's oscillator as a machine that tells its structure, whose steps keep predictions and factors.
+TEST(Section, LeavesPredictionsAndFactorsAlone) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the same on every rank";
+  test::Blocks blocks;
+  blocks.l1 = blocks.c = Eigen::Matrix2d::Identity();
+  blocks.l0 = (Eigen::Matrix2d() << 0, -1, 1, 0).finished();
+  blocks.l0p = Eigen::Matrix2d::Zero();
+  blocks.b = Eigen::Vector2d(0, 1);
+  const auto load = []<class T>(double, T) -> test::Column<T> { return test::Column<T>::Zero(2); };
+  const auto forces = []<class T>(const test::Column<T>& w, T p) {
+    test::Column<T> f(1);
+    f << p * (1.0 - w(0) * w(0)) * w(1);
+    return f;
+  };
+  test::StructuredSystem s(1, 2, blocks, load, forces);
+  std::vector<double> states[2];
+  for (const bool cut : {false, true}) {
+    transient::Integrator integrator(s, {1}, s.vector(Eigen::Vector2d(2, 0)).get(), {.tolerance = 1e-5});
+    int found = 0;
+    transient::Section section(
+        integrator, [&] { return entry(integrator.scaled(), 0); }, transient::Sense::both, [&](double) { ++found; });
+    for (int k = 1; k <= 60; ++k) {
+      if (cut)
+        section.advance(0.5 * k);
+      else
+        integrator.advance(0.5 * k);
+      for (const double x : core::gather(integrator.scaled())) states[cut].push_back(x);
+    }
+    EXPECT_EQ(found > 5, cut);
+  }
+  EXPECT_EQ(states[0], states[1]);
+}
+
+// Schemes that go their own pace: the crossings lie on the motion that they have without a section, which goes on as it
+// does without, and come nearer to the exact ones with the tolerance.
+TEST(Section, LiesOnTheMotionOfSchemesWithTheirOwnPace) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  const double speed = 1.3, end = 3 * two_pi / speed, value = 0.5;
+  SmallSystem s(PETSC_COMM_WORLD, 2, speed, 0, test::ManufacturedDuffing());
+  const core::Vector start = s.vector(test::ManufacturedDuffing::exact(0, speed));
+  // exp(sin(angle)) = 0.5 where it rises.
+  const double angle = two_pi + std::asin(std::log(value));
+  for (const transient::Scheme& scheme :
+       {transient::Scheme(transient::GeneralizedAlpha{}), transient::Scheme(transient::Bdf{3})}) {
+    double last = 0;
+    for (const double tolerance : {1e-5, 1e-7}) {
+      const transient::IntegratorOptions options{.scheme = scheme, .tolerance = tolerance};
+      transient::Integrator cut(s, {speed}, start.get(), options), plain(s, {speed}, start.get(), options);
+      std::vector<double> times;
+      std::vector<std::vector<double>> states;
+      transient::Section section(
+          cut, [&] { return entry(cut.scaled(), 0) - value; }, transient::Sense::rising,
+          [&](double time) {
+            times.push_back(time);
+            states.push_back(core::gather(cut.scaled()));
+          });
+      // Samples further apart than steps, so that crossings lie in steps before the last one too.
+      for (int k = 1; k <= 24; ++k) section.advance(end * k / 24);
+      ASSERT_EQ(times.size(), 3U) << transient::name_of(scheme);
+      double worst = 0;
+      for (std::size_t k = 0; k < times.size(); ++k) {
+        plain.advance(times[k]);
+        const std::vector<double> there = core::gather(plain.scaled());
+        EXPECT_NEAR(there[0], value, 1e-12);
+        for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(states[k][i], there[i], 1e-12);
+        worst = std::max(worst, std::abs(times[k] - (angle + two_pi * static_cast<double>(k)) / speed));
+      }
+      plain.advance(cut.time());
+      EXPECT_EQ(core::gather(plain.scaled()), core::gather(cut.scaled())) << transient::name_of(scheme);
+      EXPECT_EQ(plain.work().steps, cut.work().steps);
+      if (last > 0) {
+        EXPECT_LT(worst, last / 5) << transient::name_of(scheme);
+      }
+      last = worst;
+    }
+  }
 }
 
 }  // namespace

@@ -52,8 +52,17 @@ public:
   /// The same with steps that end at `end` but need not at `time` <= end: the state there is interpolated, to the
   /// tolerance. With deviations carried along they do end there.
   void advance(double time, double end);
-  /// Carries small deviations along from now on, by the exact derivative of each discrete step; null: none. They
-  /// outlive their use here.
+  /// Whether steps choose their own ends, so that a state at a wanted time is interpolated in any case. advance() then
+  /// goes back too, as far as the beginning of the last step.
+  [[nodiscard]] bool goes_its_own_pace() const;
+  /// Of such a scheme: to `time` or to the end of one step, the next one where the motion stands at an end; whichever
+  /// comes first, as time() tells.
+  void advance_within_step(double time);
+  /// Another integrator of the same motion, which stands here, for excursions that this one does not notice. What the
+  /// system is at (its parameter) they share.
+  [[nodiscard]] std::unique_ptr<Integrator> twin() const;
+  /// Carries small deviations along from now on, by the exact derivative of each discrete step; null: none. New ones
+  /// are made to obey the equations without rates first. They outlive their use here.
   void carry(Tangents* tangents);
 
   [[nodiscard]] double time() const;

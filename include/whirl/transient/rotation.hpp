@@ -40,7 +40,8 @@ struct RotationNumber {
 /// (1995), sec. 11.1.
 [[nodiscard]] RotationNumber rotation_number(const std::vector<std::array<double, 2>>& points);
 
-/// The same of points that repeat themselves after `period` returns: exactly p/period.
+/// The same of points that repeat themselves after `period` returns: exactly p/period. None where three or more of them
+/// are on a line, whose order about its middle means nothing.
 [[nodiscard]] RotationNumber locked_rotation(const std::vector<std::array<double, 2>>& points, int period);
 
 }  // namespace whirl::transient

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -17,10 +18,16 @@ enum class Sense { rising, falling, both };
 
 /// Goes along a motion and stops where a function g of the state vanishes.
 ///
-/// A crossing is seen by the sign of g at the ends of advance(), and located by the integrator itself: shorter steps
+/// A crossing is seen by the sign of g at the ends of advance(), and located by a twin of the integrator: shorter steps
 /// from the last state before it enclose it in an eighth of a step, and g vanishes along the polynomial of degree four
-/// through five states there. The point is thus as exact as the motion, whatever the scheme. Two crossings within one
-/// advance() are not seen.
+/// through five states there. Two crossings within one advance() are not seen.
+///
+/// Steps of a scheme that goes its own pace cannot be repeated without their history. There a crossing is seen by the
+/// sign of g at the ends of steps too, and g vanishes along the polynomial by which the integrator tells all states
+/// between these ends, which is as exact as they are.
+///
+/// So the point is as exact as the motion, whatever the scheme, and the motion does not notice: no state, prediction or
+/// factor of the integrator changes.
 class Section {
 public:
   /// g of the state where the integrator stands, the same on all ranks; collective.
@@ -30,24 +37,27 @@ public:
 
   Section(Integrator& integrator, Height height, Sense sense, Found found);
 
-  /// The integrator goes on to `time`, and through all the same steps as without a section. `carried` are the
-  /// deviations that it carries, which the search leaves alone; null: none. Throws as Integrator::advance().
-  /// Collective. A crossing costs some seven short steps.
-  void advance(double time, Tangents* carried);
+  /// The integrator goes on to `time`, and through all the same steps as without a section. Throws as
+  /// Integrator::advance(). Collective. A crossing costs some seven short steps, or some ten evaluations of g.
+  void advance(double time);
   /// The motion goes on from another state.
   void forget() { last_.reset(); }
 
 private:
   static constexpr std::size_t nodes = 5;
+  using At = std::function<double(double x)>;  // g where the integrator then stands
+  void step_by_step(double time);
+  [[nodiscard]] bool counts(double low, double high) const;
   void locate(double from, double to, double low, double high);
-  double at(double x);  // g between the nodes; the integrator stands there
-  double root(bool below, double size);
+  double between(double x);  // g over the number of the node
+  static double root(const At& at, double a, double b, bool below, double size);
 
   Integrator& integrator_;
   Height height_;
   Sense sense_;
   Found found_;
-  std::optional<double> last_;  // g where the integrator stands
+  std::unique_ptr<Integrator> twin_;  // made at the first crossing
+  std::optional<double> last_;        // g where the integrator stands
   core::Vector before_, after_;
   std::array<core::Vector, nodes> nodes_;  // states at equal times around a crossing
   double step_before_ = 0;

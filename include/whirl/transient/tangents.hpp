@@ -21,7 +21,13 @@ public:
   /// last time [count]. Collective.
   std::vector<double> orthonormalise();
 
+  /// Directions of nothing but numbers need not obey equations that hold no rates, until an integrator has seen to it
+  /// once. Those that were carried before, by this or another one, do.
+  [[nodiscard]] bool are_new() const { return new_; }
+  void were_carried() { new_ = false; }
+
 private:
+  bool new_ = true;
   std::vector<core::Vector> columns_;
 };
 

@@ -59,8 +59,7 @@ public:
     std::string status = "completed";
     try {
       for (; done_ < total; ++done_) {
-        // Directions need time to turn to those that grow most, before their growth counts.
-        if (tangents_ && done_ >= options_.discard - std::max(2, options_.discard / 4)) carried_ = &*tangents_;
+        if (tangents_ && done_ >= first_carried()) carried_ = &*tangents_;
         integrator_.carry(carried_);
         if (done_ >= options_.discard && !section_) cut();
         revolve(done_ >= options_.discard);
@@ -75,6 +74,8 @@ public:
 
 private:
   [[nodiscard]] double period() const { return 2 * std::numbers::pi / options_.speed.value; }
+  // Directions need time to turn to those that grow most, before their growth counts.
+  [[nodiscard]] int first_carried() const { return options_.discard - std::max(2, options_.discard / 4); }
   [[nodiscard]] double turns_before() const { return forces_.empty() ? 0 : done_; }
   // External forces change while the motion is recorded.
   [[nodiscard]] bool driven() const {
@@ -88,7 +89,7 @@ private:
         return period() * (turns_before() * options_.samples + sample) / options_.samples;
       };
       if (record && section_)
-        section_->advance(at(k), carried_);
+        section_->advance(at(k));
       else
         integrator_.advance(at(k), at(options_.samples));
       if (tangents_) {
@@ -159,6 +160,7 @@ private:
     integrator_.restart(state.real("time"), state.real("step"));
     for (int k = 0; tangents_ && k < tangents_->count(); ++k)
       take_vector(state, fmt::format("tangent_{}", k + 1), tangents_->column(k));
+    if (tangents_ && done_ > first_carried()) tangents_->were_carried();
     record_.load(state.group("record"));
     if (state.has_group("watch")) watch_.load(state.group("watch"));
     context_.results.add_earlier_seconds(state.real("seconds"));
