@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,6 +12,13 @@
 #include "whirl/film/describe.hpp"
 
 namespace whirl::film {
+namespace {
+
+bool has_pocket(const OrificeRow& row) {
+  return row.pocket.has_value();
+}
+
+}  // namespace
 
 std::span<const deck::Name<Gas::Source>> names(Gas::Source) {
   static constexpr deck::Name<Gas::Source> table[] = {
@@ -106,6 +114,10 @@ void describe(deck::Description<Gas>& d) {
   d.add("lobes", &Gas::lobes, "arcs of a larger radius in place of the circle of a cylindrical bore");
   d.add("grooves", &Gas::grooves,
         "axial grooves, full of gas of a pressure; a pressure of zero, or none, is that of the ends");
+  d.check([](const Gas& o, const deck::Report& r) {
+    if (o.source == Gas::Source::node && std::ranges::any_of(o.orifices, has_pocket))
+      r.fail("source", "a pocket has the pressure along its rim, not that of a node: leave 'source: node' out");
+  });
 }
 
 void refine(Gas& options, const std::array<double, 2>& factor) {

@@ -31,9 +31,12 @@ GasFeed::GasFeed(const OrificeRow& row, int k, const Gas& gas, double viscosity,
 }
 
 // Points along the rim of a pocket, or the one in the middle, each in the proportions of its cell. Nodes stop one short
-// of the ends, where the pressure is given.
+// of the ends, where the pressure is given. Two points or more go to a cell: a ring then is smeared over its cells, and
+// its nodes have less pressure than its rim, the less the finer the mesh. Points further apart than cells are wells of
+// their own, whose nodes have more: the rim would resist negatively.
 void GasFeed::spread(const GasMesh& mesh, bool ring) {
-  constexpr int around = 32;
+  const double cells = 2.0 * pi * rim_ / std::min(mesh.dx, mesh.dz);
+  const int around = std::max(32, static_cast<int>(std::ceil(2.0 * cells)));
   std::map<std::pair<int, int>, double> weights;  // by line and place
   const int points = ring ? around : 1;
   for (int n = 0; n < points; ++n) {

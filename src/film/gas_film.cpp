@@ -34,6 +34,7 @@ void check(const Geometry& g, const Gas& o, const Lubricant& l) {
            "a pocket is wider than its orifice, and deep");
     demand(r.law != OrificeRow::Law::two_restrictors || r.pocket, "two restrictors need a pocket");
     demand(r.law != OrificeRow::Law::curtain || !r.pocket, "the curtain is that of an orifice without pocket");
+    demand(o.source == Gas::Source::rim || !r.pocket, "a pocket has the pressure along its rim, not that of a node");
   }
 }
 

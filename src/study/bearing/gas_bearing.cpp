@@ -136,7 +136,14 @@ void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasBearin
     for (const auto source : {film::Gas::Source::rim, film::Gas::Source::node}) {
       gas.source = source;
       const auto at = gas_place(o.eccentricities.back(), o.direction, s.geometry.clearance);
-      load[source == film::Gas::Source::rim ? 0 : 1].push_back(gas_at(there, o.speeds.front().value, at).load);
+      double found = io::no_value;
+      const auto compute = [&] { found = gas_at(there, o.speeds.front().value, at).load; };
+      // Pockets have no source in a node.
+      if (source == film::Gas::Source::rim)
+        compute();
+      else
+        (void)has_answer(compute);
+      load[source == film::Gas::Source::rim ? 0 : 1].push_back(found);
     }
   }
   auto& table = group.child("meshes");
