@@ -189,8 +189,56 @@ TEST(GasFeed, RefusesWhatDoesNotFit) {
   o = aerostatic(1, 5e5, {24, 8});
   o.orifices[0].pocket = Pocket{2e-3, 50e-6};
   EXPECT_EQ(facts_of(o, spindle()).misplaced.option, "orifices.1.law");
-  o.orifices[0].pocket->depth = 15e-6;
+  o.orifices[0].pocket->depth = 15e-6;  // (20 um + 15 um)/0.2 mm = 0.175
+  EXPECT_EQ(facts_of(o, spindle()).misplaced.option, "orifices.1.law");
+  o.orifices[0].law = Law::reynolds;
   EXPECT_TRUE(facts_of(o, spindle()).misplaced.reason.empty());
+  EXPECT_NO_THROW((void)make(spindle(), o, air()));
+}
+
+// Beside the pads of a lemon bore, over each other, or next to an end.
+TEST(GasFeed, RefusesWhereNoOrificeFits) {
+  Geometry lemon = spindle();
+  lemon.type = Geometry::Bore::lemon_bore;
+  lemon.arc = 150.0 / 180.0 * pi;
+  const auto option = [](const Geometry& g, const Gas& o) { return facts_of(o, g).misplaced.option; };
+  Gas o = aerostatic(1, 5e5, {48, 16});
+  EXPECT_EQ(option(lemon, o), "orifices.1.angle");  // at 0 deg
+  EXPECT_THROW((void)make(lemon, o, air()), core::InputError);
+  o.orifices[0].count = 2;
+  o.orifices[0].angle = 0.5 * pi;
+  EXPECT_EQ(option(lemon, o), "");
+  EXPECT_NO_THROW((void)make(lemon, o, air()));
+  // Half an orifice over the edge at 165 deg.
+  o.orifices[0].angle = (165.0 - 0.1) / 180.0 * pi;
+  EXPECT_EQ(option(lemon, o), "orifices.1.angle");
+
+  // Eight pockets of 11.7 mm go around a circle of 94.2 mm; two rows 7 mm apart are not wide enough for them.
+  o = aerostatic(1, 5e5, {48, 16});
+  o.orifices[0].law = Law::two_restrictors;
+  o.orifices[0].pocket = Pocket{11.7e-3, 60e-6};
+  EXPECT_EQ(option(spindle(), o), "");
+  o.orifices[0].pocket->diameter = 11.9e-3;
+  EXPECT_EQ(option(spindle(), o), "orifices.1.pocket");
+  EXPECT_THROW((void)make(spindle(), o, air()), core::InputError);
+  o.orifices[0].pocket->diameter = 6e-3;
+  o.orifices.push_back(o.orifices[0]);
+  o.orifices[0].z = -3.5e-3;
+  o.orifices[1].z = 3.5e-3;
+  EXPECT_EQ(option(spindle(), o), "");
+  o.orifices[0].pocket->diameter = 8.2e-3;
+  EXPECT_EQ(option(spindle(), o), "orifices.2.pocket");
+  o.orifices[1].angle = pi / 8;  // between those of the other row
+  EXPECT_EQ(option(spindle(), o), "");
+
+  // Cells of 1.875 mm: up to 13.125 mm from the middle.
+  o = aerostatic(1, 5e5, {48, 16});
+  o.orifices[0].z = 13.125e-3;
+  EXPECT_EQ(option(spindle(), o), "");
+  o.orifices[0].z = -13.2e-3;
+  EXPECT_EQ(option(spindle(), o), "orifices.1.z");
+  o.cells[1] = 20;
+  EXPECT_EQ(option(spindle(), o), "");
 }
 
 }  // namespace
