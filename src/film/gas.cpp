@@ -137,9 +137,10 @@ Misplaced too_deep(const OrificeRow& r, const std::string& path, double clearanc
                                        "back too, which 'two_restrictors' counts (Skarolek 2011, eq. 3.9)",
                                        depth)};
   if (depth >= 0.1 && r.law == thickness)
-    return {path + ".law", fmt::format("(clearance + depth)/diameter is {:.3g}: from 0.1 on the coefficient of a pocket "
-                                       "falls with the Reynolds number, as 'reynolds' says (Skarolek 2011, eq. 3.9)",
-                                       depth)};
+    return {path + ".law",
+            fmt::format("(clearance + depth)/diameter is {:.3g}: from 0.1 on the coefficient of a pocket "
+                        "falls with the Reynolds number, as 'reynolds' says (Skarolek 2011, eq. 3.9)",
+                        depth)};
   return {};
 }
 

@@ -36,9 +36,9 @@ public:
   Capacity most;
 };
 
-/// Runs `compute` (which must not communicate) on every rank of `comm`. Where it threw NoPlace on any of them, all ranks
-/// get that of the lowest one: all compute the same, but at the most that a film carries the last digit decides, and
-/// ranks that part there would wait for each other. Throws as core::agree(). Collective.
+/// Runs `compute` (which must not communicate) on every rank of `comm`. Where it threw NoPlace on any of them, all
+/// ranks get that of the lowest one: all compute the same, but at the most that a film carries the last digit decides,
+/// and ranks that part there would wait for each other. Throws as core::agree(). Collective.
 [[nodiscard]] std::optional<NoPlace> agreed_place(MPI_Comm comm, const std::function<void()>& compute);
 
 /// A journal at rest and the film that has come to rest with it.
