@@ -34,6 +34,7 @@ struct FrequencyCoefficients::Space {
   MatrixXd by_position, by_velocity;  // V^T dg/dw, V^T dg/dw' [k x ports]
   MatrixXd d_position, d_velocity;
   bool ended = false;
+  bool known = false;  // dg/ds is regular
 };
 
 FrequencyCoefficients::FrequencyCoefficients(Film& film, const JournalMotion& motion, std::span<const double> states)
@@ -44,6 +45,7 @@ FrequencyCoefficients::FrequencyCoefficients(Film& film, const JournalMotion& mo
 
 FrequencyCoefficients::~FrequencyCoefficients() = default;
 
+// A film whose dg/ds is singular has coefficients at frequencies all the same, but no such space.
 void FrequencyCoefficients::begin() {
   const auto n = static_cast<Index>(at_.residual.size()), p = static_cast<Index>(film_.ports().size());
   const Share& whole = film_.whole();
@@ -51,7 +53,8 @@ void FrequencyCoefficients::begin() {
   Space& s = *space_;
   FilmMatrix<double> a(whole, whole.d_states);
   s.lu.compute(a.filled(at_.d_states));
-  if (s.lu.info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+  if (s.lu.info() != Eigen::Success) return;
+  s.known = true;
   FilmMatrix<double> e(whole, whole.d_rates);
   s.rates = e.filled(at_.d_rates);
   s.d_position = columns(at_.d_position, n, p);
@@ -131,6 +134,7 @@ bool FrequencyCoefficients::by_krylov(double omega, Eigen::MatrixXcd& out) {
   if (!at_.force_d_rates.empty()) return false;
   if (!space_) begin();
   Space& s = *space_;
+  if (!s.known) return false;
   const Index p = s.start.cols();
   const auto ready = [&](Index blocks) {
     while (s.hessenberg.cols() < blocks * p && !s.ended) grow();

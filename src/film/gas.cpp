@@ -3,14 +3,23 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "film/gas_feed.hpp"
 #include "film/gas_film.hpp"
 #include "film/refine.hpp"
 #include "whirl/film/describe.hpp"
 
 namespace whirl::film {
+namespace {
+
+bool has_pocket(const OrificeRow& row) {
+  return row.pocket.has_value();
+}
+
+}  // namespace
 
 std::span<const deck::Name<Gas::Source>> names(Gas::Source) {
   static constexpr deck::Name<Gas::Source> table[] = {
@@ -106,6 +115,10 @@ void describe(deck::Description<Gas>& d) {
   d.add("lobes", &Gas::lobes, "arcs of a larger radius in place of the circle of a cylindrical bore");
   d.add("grooves", &Gas::grooves,
         "axial grooves, full of gas of a pressure; a pressure of zero, or none, is that of the ends");
+  d.check([](const Gas& o, const deck::Report& r) {
+    if (o.source == Gas::Source::node && std::ranges::any_of(o.orifices, has_pocket))
+      r.fail("source", "a pocket has the pressure along its rim, not that of a node: leave 'source: node' out");
+  });
 }
 
 void refine(Gas& options, const std::array<double, 2>& factor) {
@@ -114,21 +127,36 @@ void refine(Gas& options, const std::array<double, 2>& factor) {
 
 namespace {
 
-// A pocket so deep that its rim holds back too.
-Misplaced too_deep(const Gas& o, const Geometry& geometry) {
+// A pocket so deep that the law does not count all that holds back there.
+Misplaced too_deep(const OrificeRow& r, const std::string& path, double clearance) {
+  using enum OrificeRow::Law;
+  if (!r.pocket || r.law == two_restrictors) return {};
+  const double depth = (clearance + r.pocket->depth) / r.diameter;
+  if (depth >= 0.2)
+    return {path + ".law", fmt::format("(clearance + depth)/diameter is {:.3g}: from 0.2 on the rim of a pocket holds "
+                                       "back too, which 'two_restrictors' counts (Skarolek 2011, eq. 3.9)",
+                                       depth)};
+  if (depth >= 0.1 && r.law == thickness)
+    return {path + ".law",
+            fmt::format("(clearance + depth)/diameter is {:.3g}: from 0.1 on the coefficient of a pocket "
+                        "falls with the Reynolds number, as 'reynolds' says (Skarolek 2011, eq. 3.9)",
+                        depth)};
+  return {};
+}
+
+// What coarser meshes move to the next line of nodes, those of error bars too, the mesh of a deck does not.
+Misplaced misplaced(const Gas& o, const Geometry& geometry) {
+  if (Misplaced m = misplaced_orifice(o, geometry); !m.option.empty()) return m;
+  const double cell = geometry.length / o.cells[1];
   for (std::size_t k = 0; k < o.orifices.size(); ++k) {
     const OrificeRow& r = o.orifices[k];
     const std::string path = "orifices." + std::to_string(k + 1);
+    if (Misplaced m = too_deep(r, path, geometry.clearance); !m.option.empty()) return m;
     const double rim = r.pocket ? 0.5 * r.pocket->diameter : 0.0;
-    if (std::abs(r.z) + rim >= 0.5 * geometry.length)
-      return {path + ".z", "orifices and pockets lie within the bearing"};
-    if (!r.pocket || r.law == OrificeRow::Law::two_restrictors) continue;
-    const double depth = (geometry.clearance + r.pocket->depth) / r.diameter;
-    if (depth >= 0.2)
-      return {path + ".law",
-              fmt::format("(clearance + depth)/diameter is {:.3g}: from 0.2 on the rim of a pocket holds "
-                          "back too, which 'two_restrictors' counts (Skarolek 2011, eq. 3.9)",
-                          depth)};
+    if (std::abs(r.z) + rim > 0.5 * geometry.length - cell * (1 - 1e-9))
+      return {path + ".z", fmt::format("the {} lie less than a cell from an end, where there are no nodes to feed: "
+                                       "'cells' are {:.3g} mm long along the bearing",
+                                       r.pocket ? "pockets" : "orifices", 1e3 * cell)};
   }
   return {};
 }
@@ -144,7 +172,7 @@ Facts facts_of(const Gas& o, const Geometry& geometry) {
   if (!o.orifices.empty())
     f.smoothness = {1, "flow through orifices has kinks in its slope where it becomes choked or nearly stops"};
   if (geometry.radius > 0.0) {
-    f.misplaced = too_deep(o, geometry);
+    f.misplaced = misplaced(o, geometry);
     if (o.lobes && geometry.type != Geometry::Bore::cylindrical)
       f.misplaced = {"lobes", "lobes take the place of a circle: a cylindrical bore"};
   }

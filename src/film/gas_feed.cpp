@@ -1,17 +1,78 @@
 #include "film/gas_feed.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "film/lattice.hpp"
+#include "film/pad.hpp"
 
 namespace whirl::film {
 
 using std::numbers::pi;
+
+namespace {
+
+// Of the pocket, or of the orifice.
+double rim_of(const OrificeRow& row) {
+  return 0.5 * (row.pocket ? row.pocket->diameter : row.diameter);
+}
+
+double angle_of(const OrificeRow& row, int k) {
+  return row.angle + 2.0 * pi * k / row.count;
+}
+
+// The orifices of two rows that overlap, if any do.
+std::optional<std::array<int, 2>> overlap(const OrificeRow& a, const OrificeRow& b, double radius) {
+  const double least = rim_of(a) + rim_of(b), along = a.z - b.z;
+  if (!(std::abs(along) < least)) return std::nullopt;
+  for (int k = 0; k < a.count; ++k)
+    for (int n = 0; n < b.count; ++n)
+      if (std::hypot(radius * std::remainder(angle_of(a, k) - angle_of(b, n), 2.0 * pi), along) < least)
+        return std::array<int, 2>{k, n};
+  return std::nullopt;
+}
+
+}  // namespace
+
+Misplaced misplaced_orifice(const Gas& gas, const Geometry& g) {
+  std::vector<Pad> pads;
+  if (g.type != Geometry::Bore::cylindrical) pads = make_pads(g);
+  for (std::size_t row = 0; row < gas.orifices.size(); ++row) {
+    const OrificeRow& r = gas.orifices[row];
+    const std::string path = "orifices." + std::to_string(row + 1), widest = r.pocket ? path + ".pocket" : path;
+    const double rim = rim_of(r);
+    if (std::abs(r.z) + rim >= 0.5 * g.length) return {path + ".z", "orifices and pockets lie within the bearing"};
+    const auto on = [&](double angle) {
+      return pads.empty() || std::ranges::any_of(pads, [&](const Pad& pad) {
+               const double away = std::abs(std::remainder(angle - pad.start - 0.5 * pad.arc, 2.0 * pi));
+               return g.radius * (0.5 * pad.arc - away) > rim;
+             });
+    };
+    for (int k = 0; k < r.count; ++k) {
+      const double turn = 180.0 / pi * angle_of(r, k);
+      if (!on(angle_of(r, k)))
+        return {path + ".angle", fmt::format("orifice {} of the row, at {:.4g} deg, does not lie on a pad, free of its "
+                                             "edges",
+                                             k + 1, turn - 360.0 * std::floor(turn / 360.0))};
+    }
+    if (r.count > 1 && 2.0 * pi * g.radius / r.count < 2.0 * rim)
+      return {widest, fmt::format("the {} of the row overlap: there are {:.3g} mm from one to the next",
+                                  r.pocket ? "pockets" : "orifices", 2e3 * pi * g.radius / r.count)};
+    for (std::size_t other = 0; other < row; ++other)
+      if (const auto both = overlap(r, gas.orifices[other], g.radius))
+        return {widest, fmt::format("orifice {} of the row overlaps orifice {} of row {}, pockets counted",
+                                    (*both)[0] + 1, (*both)[1] + 1, other + 1)};
+  }
+  return {};
+}
 
 GasFeed::GasFeed(const OrificeRow& row, int k, const Gas& gas, double viscosity, const GasMesh& mesh)
     : row_(row),
@@ -22,8 +83,8 @@ GasFeed::GasFeed(const OrificeRow& row, int k, const Gas& gas, double viscosity,
             : row.law == OrificeRow::Law::two_restrictors ? Kind::deep
                                                           : Kind::shallow),
       depth_(row.pocket ? row.pocket->depth : 0),
-      rim_(0.5 * (row.pocket ? row.pocket->diameter : row.diameter)),
-      angle_(row.angle + 2.0 * pi * k / row.count),
+      rim_(rim_of(row)),
+      angle_(angle_of(row, k)),
       z_(row.z) {
   if (row.pocket) capacity_ = pi * rim_ * rim_ * depth_ / (gas.gas_constant * gas.temperature);
   spread(mesh, row.pocket.has_value());
@@ -31,9 +92,12 @@ GasFeed::GasFeed(const OrificeRow& row, int k, const Gas& gas, double viscosity,
 }
 
 // Points along the rim of a pocket, or the one in the middle, each in the proportions of its cell. Nodes stop one short
-// of the ends, where the pressure is given.
+// of the ends, where the pressure is given. Two points or more go to a cell: a ring then is smeared over its cells, and
+// its nodes have less pressure than its rim, the less the finer the mesh. Points further apart than cells are wells of
+// their own, whose nodes have more: the rim would resist negatively.
 void GasFeed::spread(const GasMesh& mesh, bool ring) {
-  constexpr int around = 32;
+  const double cells = 2.0 * pi * rim_ / std::min(mesh.dx, mesh.dz);
+  const int around = std::max(32, static_cast<int>(std::ceil(2.0 * cells)));
   std::map<std::pair<int, int>, double> weights;  // by line and place
   const int points = ring ? around : 1;
   for (int n = 0; n < points; ++n) {

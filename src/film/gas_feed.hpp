@@ -4,9 +4,14 @@
 #include <array>
 #include <vector>
 
+#include "whirl/film/bore.hpp"
 #include "whirl/film/gas.hpp"
 
 namespace whirl::film {
+
+/// The first orifice that reaches over an end of the bearing, lies beside the pads of a bore with pads or overlaps
+/// another one, pockets counted; none of a film whose orifices fit.
+[[nodiscard]] Misplaced misplaced_orifice(const Gas& gas, const Geometry& geometry);
 
 /// The mesh of a film of gas: lines of nodes around the bore, and nodes of a line between its ends.
 struct GasMesh {

@@ -28,13 +28,14 @@ void check(const Geometry& g, const Gas& o, const Lubricant& l) {
          "pressures and temperatures of a gas are absolute and positive, and its ratio of heats is above 1");
   for (const OrificeRow& r : o.orifices) {
     demand(r.count >= 1 && r.diameter > 0.0 && r.supply > 0.0, "orifices need a number, a diameter and a supply");
-    const double rim = r.pocket ? 0.5 * r.pocket->diameter : 0.0;
-    demand(std::abs(r.z) + rim < 0.5 * g.length, "orifices and their pockets lie between the ends of the bearing");
     demand(!r.pocket || (r.pocket->diameter > r.diameter && r.pocket->depth > 0.0),
            "a pocket is wider than its orifice, and deep");
     demand(r.law != OrificeRow::Law::two_restrictors || r.pocket, "two restrictors need a pocket");
     demand(r.law != OrificeRow::Law::curtain || !r.pocket, "the curtain is that of an orifice without pocket");
+    demand(o.source == Gas::Source::rim || !r.pocket, "a pocket has the pressure along its rim, not that of a node");
   }
+  const Misplaced orifice = misplaced_orifice(o, g);
+  demand(orifice.reason.empty(), orifice.reason);
 }
 
 }  // namespace

@@ -42,6 +42,54 @@ TEST(FrequencyCoefficients, AreThoseOfAComplexFactorisation) {
   agree_with_factors(solved(spindle(), self_acting({20, 6}), {0.5, -0.2}, 2000), 1e-8);
 }
 
+// What forgets nothing: g = s' - v, force = -k s. dg/ds is zero, and the film a spring at every frequency.
+class Integrator final : public Film {
+public:
+  static constexpr double stiffness = 3e6;
+  using Film::evaluate;
+  void evaluate(const JournalMotion& motion, const Share&, std::span<const double> states,
+                std::span<const double> rates, Need, StateResponse& r) override {
+    r.journal = {};
+    r.residual.assign(2, 0);
+    r.d_states.assign(2, 0);
+    r.d_rates.assign(2, 1);
+    r.d_speed.assign(2, 0);
+    r.force_d_rates.clear();
+    for (PortColumns* columns : {&r.d_position, &r.d_velocity, &r.force_d_states})
+      columns->assign(2, std::vector<double>(2, 0));
+    for (std::size_t i = 0; i < 2; ++i) {
+      r.residual[i] = rates[i] - motion.velocity[i];
+      r.d_velocity[i][i] = -1;
+      r.force_d_states[i][i] = -stiffness;
+      r.journal.force[i] = -stiffness * states[i];
+    }
+  }
+  FilmReport summary(const JournalMotion&, std::span<const double>) override { return {}; }
+  std::vector<NodalField> fields(const JournalMotion&, std::span<const double>) override { return {}; }
+  [[nodiscard]] double least_thickness(const JournalMotion&, std::span<const double>) override { return 1; }
+  [[nodiscard]] std::size_t states() const override { return 2; }
+  [[nodiscard]] Share share(int begin, int end) const override {
+    Share out{begin, end, {0, 1}, {}, {}};
+    out.d_states.add({0, 0, 2});
+    out.d_rates.add({0, 0, 2});
+    return out;
+  }
+};
+
+TEST(FrequencyCoefficients, OfAFilmThatIsSingularAtRest) {
+  Integrator film;
+  const std::vector<double> states(2, 0);
+  FrequencyCoefficients c(film, {}, states);
+  for (const double omega : {10.0, 1000.0}) {
+    const PortCoefficients k = c.at(omega);
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t j = 0; j < 2; ++j) {
+        EXPECT_NEAR(k.stiffness[i][j], i == j ? Integrator::stiffness : 0, 1e-9 * Integrator::stiffness);
+        EXPECT_NEAR(omega * k.damping[i][j], 0, 1e-9 * Integrator::stiffness);
+      }
+  }
+}
+
 TEST(FrequencyCoefficients, RefuseAFrequencyOfZero) {
   const SolvedGas at = solved(spindle(), aerostatic(1, 6e5, {16, 4}), {0.1, 0}, 1000);
   FrequencyCoefficients c(*at.film, at.motion, at.states);

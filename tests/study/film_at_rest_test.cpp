@@ -9,6 +9,7 @@
 #include "study/bearing/film_at_rest.hpp"
 #include "study/bearing/gas_point.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/petsc.hpp"
 
 using namespace whirl;
 using study::FilmAtRest;
@@ -99,6 +100,31 @@ TEST(FilmAtRest, KnowsTheMostThatAFilmCarries) {
   }
   // A film of oil carries the more the closer to the wall.
   EXPECT_TRUE(FilmAtRest(oil(false), 300).capacity({0, -1}).rises);
+}
+
+// At the edge of what a film carries one rank may find a place and another one none.
+TEST(FilmAtRest, OneRankWithoutAPlaceSpeaksForAll) {
+  const int last = core::size_of(MPI_COMM_WORLD) - 1, rank = core::rank_of(MPI_COMM_WORLD);
+  int done = 0;
+  const auto none = study::agreed_place(MPI_COMM_WORLD, [&] {
+    if (rank == last) throw study::NoPlace("no equilibrium", 300, {30.5, 0.8, true});
+    ++done;
+  });
+  EXPECT_EQ(done, rank == last ? 0 : 1);
+  ASSERT_TRUE(none.has_value());
+  EXPECT_STREQ(none->what(), "no equilibrium");
+  EXPECT_EQ(none->speed, 300);
+  EXPECT_EQ(none->most.load, 30.5);
+  EXPECT_EQ(none->most.eccentricity, 0.8);
+  EXPECT_TRUE(none->most.rises);
+  EXPECT_FALSE(study::agreed_place(MPI_COMM_WORLD, [] {}).has_value());
+  // What is graver goes first, on all ranks.
+  EXPECT_THROW((void)study::agreed_place(MPI_COMM_WORLD,
+                                         [&] {
+                                           if (rank == last) throw core::InputError("a mesh too coarse");
+                                           throw study::NoPlace("no equilibrium", 300, {});
+                                         }),
+               core::InputError);
 }
 
 TEST(GasPoint, MeanFreePathOfAir) {

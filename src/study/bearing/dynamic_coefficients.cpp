@@ -41,7 +41,8 @@ std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, system:
     motion.speed = speed.value;
     if (!options.load.values.empty()) {
       FilmAtRest carrier(support, speed.value);
-      if (!out.empty()) carrier.hold({motion.position[0], motion.position[1]});
+      // Where the film does not come to rest at the last place, the search begins by itself.
+      if (!out.empty()) (void)has_answer([&] { carrier.hold({motion.position[0], motion.position[1]}); });
       carrier.carry(load_along(options.load));
       motion = carrier.motion();
     }
@@ -173,20 +174,10 @@ StudyResult DynamicCoefficients::run(Context& context) {
   auto& group = context.results.group();
 
   std::vector<AtSpeed> found;
-  std::string none;  // why there is no equilibrium
-  Capacity most;
-  core::agree(context.comm, [&] {
-    try {
-      found = computed(options, train.supports[which]);
-    } catch (const NoPlace& error) {
-      none = error.what();
-      most = error.most;
-    }
-  });
-  if (!none.empty()) {
-    summary.set("capacity.load", most.load, "N");
-    summary.set("capacity.eccentricity", most.eccentricity, "1");
-    return context.results.finish(none, false);
+  if (const auto none = agreed_place(context.comm, [&] { found = computed(options, train.supports[which]); })) {
+    summary.set("capacity.load", none->most.load, "N");
+    summary.set("capacity.eccentricity", none->most.eccentricity, "1");
+    return context.results.finish(none->what(), false);
   }
   put_summary(summary, options, clearance, found);
 

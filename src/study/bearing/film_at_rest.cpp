@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::study {
@@ -32,6 +33,32 @@ std::string in_words(const Capacity& most) {
   return fmt::format(
       "Where it pushes to no side the film carries at most {:.6g} N, at an eccentricity of {:.3g} clearances{}",
       most.load, most.eccentricity, most.rises ? ", and more closer to the wall" : "");
+}
+
+std::optional<NoPlace> agreed_place(MPI_Comm comm, const std::function<void()>& compute) {
+  std::optional<NoPlace> none;
+  core::agree(comm, [&] {
+    try {
+      compute();
+    } catch (const NoPlace& error) {
+      none = error;
+    }
+  });
+  int rank = 0, size = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &size);
+  int mine = none ? rank : size, source = size;
+  MPI_Allreduce(&mine, &source, 1, MPI_INT, MPI_MIN, comm);
+  if (source == size) return std::nullopt;
+  std::string text = none ? none->what() : "";
+  std::array<double, 4> facts{};
+  if (none) facts = {none->speed, none->most.load, none->most.eccentricity, none->most.rises ? 1.0 : 0.0};
+  int length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, source, comm);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, source, comm);
+  MPI_Bcast(facts.data(), static_cast<int>(facts.size()), MPI_DOUBLE, source, comm);
+  return NoPlace(text, facts[0], {facts[1], facts[2], facts[3] != 0});
 }
 
 FilmAtRest::FilmAtRest(const system::Support& support, double speed)

@@ -1,8 +1,12 @@
 #pragma once
 // The film of one bearing with its journal at rest: held at a place, or where it carries a load.
 
+#include <mpi.h>
+
 #include <array>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +35,11 @@ public:
   double speed;  ///< rad/s
   Capacity most;
 };
+
+/// Runs `compute` (which must not communicate) on every rank of `comm`. Where it threw NoPlace on any of them, all
+/// ranks get that of the lowest one: all compute the same, but at the most that a film carries the last digit decides,
+/// and ranks that part there would wait for each other. Throws as core::agree(). Collective.
+[[nodiscard]] std::optional<NoPlace> agreed_place(MPI_Comm comm, const std::function<void()>& compute);
 
 /// A journal at rest and the film that has come to rest with it.
 struct JournalPlace {

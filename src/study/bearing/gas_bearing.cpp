@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
@@ -135,7 +136,14 @@ void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasBearin
     for (const auto source : {film::Gas::Source::rim, film::Gas::Source::node}) {
       gas.source = source;
       const auto at = gas_place(o.eccentricities.back(), o.direction, s.geometry.clearance);
-      load[source == film::Gas::Source::rim ? 0 : 1].push_back(gas_at(there, o.speeds.front().value, at).load);
+      double found = io::no_value;
+      const auto compute = [&] { found = gas_at(there, o.speeds.front().value, at).load; };
+      // Pockets have no source in a node.
+      if (source == film::Gas::Source::rim)
+        compute();
+      else
+        (void)has_answer(compute);
+      load[source == film::Gas::Source::rim ? 0 : 1].push_back(found);
     }
   }
   auto& table = group.child("meshes");
@@ -201,27 +209,20 @@ StudyResult GasBearing::run(Context& context) {
   auto& summary = results.summary();
   auto& group = results.group();
   std::vector<GasPoint> curves, equilibria;
-  std::string none;  // why there is no equilibrium
-  Capacity most;
-  double beyond = 0;  // speed at which there is none
   core::agree(context.comm, [&] {
     curves = gas_curves(options, support);
     if (options.meshes > 0) put_gas_meshes(group, summary, options, support);
     if (options.map) put_gas_map(group, options, support);
-    if (options.load.values.empty()) return;
-    try {
-      equilibria = gas_equilibria(options, support);
-    } catch (const NoPlace& error) {
-      none = error.what();
-      most = error.most;
-      beyond = error.speed;
-    }
   });
+  std::optional<NoPlace> none;
+  if (!options.load.values.empty())
+    none = agreed_place(context.comm, [&] { equilibria = gas_equilibria(options, support); });
+  if (none) equilibria.clear();
   put_gas_summary(summary, curves, "");
   put_gas_summary(summary, equilibria, "equilibrium");
-  if (!none.empty()) {
-    summary.set("capacity.load", most.load, "N");
-    summary.set("capacity.eccentricity", most.eccentricity, "1");
+  if (none) {
+    summary.set("capacity.load", none->most.load, "N");
+    summary.set("capacity.eccentricity", none->most.eccentricity, "1");
   }
 
   SummaryBars bars(summary, law_of(context.machine));
@@ -230,12 +231,12 @@ StudyResult GasBearing::run(Context& context) {
     core::agree(context.comm, [&] {
       const system::Train other = with_film_mesh(train, mesh.factor);
       (void)has_answer([&] { put_gas_summary(there, gas_curves(options, other.supports[which]), ""); });
-      if (none.empty() && !options.load.values.empty())
+      if (!none && !options.load.values.empty())
         (void)has_answer(
             [&] { put_gas_summary(there, gas_equilibria(options, other.supports[which]), "equilibrium"); });
-      if (!none.empty()) {
+      if (none) {
         (void)has_answer([&] {
-          const Capacity c = FilmAtRest(other.supports[which], beyond).capacity(load_along(options.load));
+          const Capacity c = FilmAtRest(other.supports[which], none->speed).capacity(load_along(options.load));
           there.set("capacity.load", c.load, "N");
           there.set("capacity.eccentricity", c.eccentricity, "1");
         });
@@ -267,7 +268,7 @@ StudyResult GasBearing::run(Context& context) {
   put_gas_fields(group, options, curves);
   put_knudsen(group, *film::find<film::Gas>(support.film), support.lubricant.viscosity);
   summary.points = static_cast<long>(curves.size() + equilibria.size());
-  return none.empty() ? results.finish("completed", true) : results.finish(none, false);
+  return none ? results.finish(none->what(), false) : results.finish("completed", true);
 }
 
 }  // namespace whirl::study

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "study/bearing/held_film.hpp"
@@ -58,7 +60,13 @@ void GasBearing::validate(const system::Machine& machine, const deck::Report& re
     report.fail("map", "a map needs clearances and diameters");
   const int least = 1 << std::max(options.meshes - 1, 0);
   if (options.meshes > 1 && (gas->cells[0] / least < 4 || gas->cells[1] / least < 2))
-    report.fail("meshes", "the coarsest of so many meshes has less than 4 x 2 cells");
+    return report.fail("meshes", "the coarsest of so many meshes has less than 4 x 2 cells");
+  if (options.meshes <= 1 || !machine.bearings[*found].geometry) return;
+  film::Gas coarsest = *gas;
+  for (int& n : coarsest.cells) n /= least;
+  const film::Misplaced orifice = film::facts_of(coarsest, *machine.bearings[*found].geometry).misplaced;
+  if (!orifice.option.empty())
+    report.fail("meshes", fmt::format("the coarsest of so many meshes does not do: {}", orifice.reason));
 }
 
 }  // namespace whirl::study
