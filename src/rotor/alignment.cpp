@@ -8,6 +8,7 @@
 #include "planar.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/element.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
@@ -115,6 +116,8 @@ void validate(const Options& o, const std::vector<Support>& supports) {
     if (!seen.insert(s.node).second) throw InputError(fmt::format("alignment: two supports at node {}", s.node));
   }
   if (supports.size() < 2) throw InputError("alignment: rigid supports must be at least two");
+  if (const auto loose = loose_part(o, std::vector<int>(seen.begin(), seen.end())))
+    throw InputError("alignment: " + words(*loose, o, "on rigid supports"));
 }
 
 void validate(const Options& o, const std::vector<Support>& supports, const AlignmentRule& rule) {

@@ -9,6 +9,7 @@
 #include "dense.hpp"
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
@@ -26,11 +27,15 @@ std::vector<double> critical_speeds(const Options& options, const std::vector<in
       throw core::InputError(fmt::format("rotor: node {} is not in 1..{}", node, n_nodes(options)));
     k(2 * (node - 1), 2 * (node - 1)) += stiffness;
   }
+  if (const auto loose = loose_part(options, nodes))
+    throw core::InputError("rotor: " + words(*loose, options, "on springs"));
+  // The eigenvalue solver factorises K and does not say whether that went well.
+  (void)definite(k, "critical speeds: the stiffness of the shaft on its springs");
   const double sign = whirl == Whirl::forward ? -1 : 1;
   const Eigen::MatrixXd inertia = dense(planar.mass.get()) + sign * dense(planar.gyroscopic.get());
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(inertia, k, Eigen::EigenvaluesOnly);
   std::vector<double> out;
-  if (solver.info() != Eigen::Success) throw core::NotConverged("critical speeds: the springs do not hold the shaft");
+  if (solver.info() != Eigen::Success) throw core::NotConverged("critical speeds: no eigenvalues");
   const Eigen::VectorXd& inverse = solver.eigenvalues();  // ascending
   const double rounding = 1e-14 * inverse.cwiseAbs().maxCoeff();
   for (Eigen::Index i = inverse.size() - 1; i >= 0 && static_cast<int>(out.size()) < count; --i)

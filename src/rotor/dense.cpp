@@ -1,5 +1,6 @@
 #include "dense.hpp"
 
+#include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
 
 namespace whirl::rotor {
@@ -17,6 +18,12 @@ Eigen::MatrixXd dense(Mat sparse) {
     core::check(MatRestoreRow(sparse, r, &count, &columns, &values));
   }
   return out;
+}
+
+Eigen::LLT<Eigen::MatrixXd> definite(const Eigen::MatrixXd& a, const std::string& what) {
+  Eigen::LLT<Eigen::MatrixXd> factors(a);
+  if (factors.info() != Eigen::Success) throw core::NotConverged(what + " is not positive definite");
+  return factors;
 }
 
 }  // namespace whirl::rotor

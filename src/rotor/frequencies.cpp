@@ -9,6 +9,7 @@
 #include "planar.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/element.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {
@@ -27,20 +28,18 @@ double bending_scale(const Options& o) {
   return bending / (total_mass(o) * length * length * length * length);
 }
 
-// Planar rigid motions of the free shaft that leave the pinned nodes at rest, restricted to `free`.
-std::vector<core::Vector> rigid_motions(Vec layout, IS free, const std::vector<double>& z,
-                                        const std::vector<int>& pinned) {
+// Motions of the shaft that strain nothing and leave the pinned nodes at rest, restricted to `free`.
+std::vector<core::Vector> unstrained_motions(Vec layout, IS free, const Options& o, const std::vector<int>& pinned) {
+  const Eigen::MatrixXd nodal = free_motions(o, pinned);
   std::vector<core::Vector> motions;
-  PetscInt begin = 0, end = 0, n = 0;
+  PetscInt begin = 0, end = 0;
   check(VecGetOwnershipRange(layout, &begin, &end));
-  check(ISGetLocalSize(free, &n));
-  auto add = [&](double shift, double tilt) {
+  for (Eigen::Index m = 0; m < nodal.cols(); ++m) {
     core::Vector whole = core::duplicate(layout);
     {
       const core::WriteArray a(whole.get());
       // Inner freedoms stand behind the nodes and rest.
-      for (PetscInt i = begin; i < std::min(end, static_cast<PetscInt>(2 * z.size())); ++i)
-        a[i - begin] = i % 2 == 1 ? tilt : shift + tilt * z[static_cast<std::size_t>(i / 2)];
+      for (PetscInt i = begin; i < end; ++i) a[i - begin] = i < nodal.rows() ? nodal(i, m) : 0.0;
     }
     Vec part = nullptr;
     check(VecGetSubVector(whole.get(), free, &part));
@@ -48,12 +47,6 @@ std::vector<core::Vector> rigid_motions(Vec layout, IS free, const std::vector<d
     check(VecCopy(part, copy.get()));
     check(VecRestoreSubVector(whole.get(), free, &part));
     motions.push_back(std::move(copy));
-  };
-  if (pinned.empty()) {
-    add(1, 0);
-    add(-z.back() / 2, 1);
-  } else if (pinned.size() == 1) {
-    add(-z[static_cast<std::size_t>(pinned.front() - 1)], 1);
   }
   return motions;
 }
@@ -84,13 +77,14 @@ std::vector<double> natural_frequencies(MPI_Comm comm, const Options& o, const s
   check(MatCreateSubMatrix(planar.stiffness.get(), free.get(), free.get(), MAT_INITIAL_MATRIX, k.put()));
   check(MatCreateSubMatrix(planar.mass.get(), free.get(), free.get(), MAT_INITIAL_MATRIX, m.put()));
 
-  const std::vector<core::Vector> rigid = rigid_motions(planar.weight.get(), free.get(), node_positions(o), held);
+  const std::vector<core::Vector> rigid = unstrained_motions(planar.weight.get(), free.get(), o, held);
   std::vector<Vec> raw;
   for (const core::Vector& r : rigid) raw.push_back(r.get());
-  // A free shaft has a singular K: a negative shift of the order of the first bending eigenvalue makes it definite.
+  // What strains nothing makes K singular: a negative shift of the order of the first bending eigenvalue helps.
   const double shift = raw.empty() ? 0.0 : -bending_scale(o);
   std::vector<double> frequencies = lowest_eigenvalues(k.get(), m.get(), shift, count, raw);
-  for (double& f : frequencies) f = std::sqrt(f);
+  // Nearly none: a stiffness may be as small as rounding.
+  for (double& f : frequencies) f = std::sqrt(std::max(f, 0.0));
   return frequencies;
 }
 

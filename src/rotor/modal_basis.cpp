@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "eigen.hpp"
 #include "reduction.hpp"
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 
 namespace whirl::rotor {
@@ -66,8 +68,10 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
   const Eigen::MatrixXd at_masters = sum_over_ranks(mine, comm);
   // at_masters^T P = Q R: the first n columns of Q span what moves the masters, the others what holds them.
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(at_masters.transpose());
-  if (qr.rank() < n)
-    throw core::InputError("the modes of the shaft do not tell its masters apart: more modes, or fewer masters");
+  core::agree(comm, [&] {
+    if (qr.rank() < n)
+      throw core::InputError("the modes of the shaft do not tell its masters apart: more modes, or fewer masters");
+  });
   const Eigen::MatrixXd q = qr.householderQ();
   const Eigen::MatrixXd held = modes.rows * q.rightCols(q.cols() - n);
   PlanarBasis basis;
@@ -77,6 +81,10 @@ PlanarBasis modal_basis(const Planar& planar, const Reduction& reduction) {
   if (held.cols() > 0) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> own(projected(k, held),
                                                                         projected(planar.mass.get(), held));
+    core::agree(comm, [&] {
+      if (own.info() != Eigen::Success || !(own.eigenvalues()(0) > 0))
+        throw core::NotConverged(std::string(held_stiffness) + " is not positive definite");
+    });
     Eigen::MatrixXd inner = held * own.eigenvectors();
     // The sign by a generic direction, as the same shaft on other ranks.
     Eigen::RowVectorXd generic = Eigen::RowVectorXd::Zero(inner.cols());

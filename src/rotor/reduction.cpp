@@ -1,12 +1,15 @@
 #include "reduction.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
+#include "dense.hpp"
 #include "eigen.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -103,7 +106,9 @@ PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
     const Eigen::MatrixXd own = basis.rows.rightCols(held);
     const Eigen::MatrixXd load =
         sum_over_ranks(own.transpose() * Eigen::Map<const Eigen::VectorXd>(w.data(), w.size()), comm);
-    if (held > 0) basis.offset -= own * projected(k, own).ldlt().solve(load);
+    if (held == 0) return basis;
+    const Eigen::MatrixXd stiffness = projected(k, own);
+    core::agree(comm, [&] { basis.offset -= own * definite(stiffness, held_stiffness).solve(load); });
     return basis;
   }
   const bool with_modes = reduction.type == Reduction::Type::craig_bampton;
@@ -147,6 +152,10 @@ PlanarBasis planar_basis(const Planar& planar, const Reduction& reduction) {
     if (i >= n_modes) return;
     fix_sign(v);
     scatter(v, basis.rows.col(n_masters + i), 1);
+  });
+  core::agree(comm, [&] {
+    if (!values.empty() && !(values.front() > 0))
+      throw core::NotConverged(std::string(held_stiffness) + " is not positive definite");
   });
   // Taken out of the offset: what the modes carry of the static shape.
   for (PetscInt i = 0; i < n_modes; ++i) {

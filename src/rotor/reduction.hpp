@@ -9,6 +9,9 @@
 
 namespace whirl::rotor {
 
+/// What has to be positive definite in every reduction.
+inline constexpr const char* held_stiffness = "the stiffness of the shaft with its masters held";
+
 /// Freedoms of a plane that are kept, ascending.
 [[nodiscard]] std::vector<int> planar_masters(const Reduction& reduction);
 

@@ -9,6 +9,7 @@
 
 #include "whirl/core/error.hpp"
 #include "whirl/rotor/element.hpp"
+#include "whirl/rotor/hinges.hpp"
 
 namespace whirl::rotor {
 namespace {
@@ -130,6 +131,9 @@ void validate(const Options& o) {
   refuse_unless(o.loss_factor == 0 || o.reduction.type != Reduction::Type::craig_bampton_state,
                 "a shaft with a loss factor has no equations of first order in time to reduce");
   validate(o.reduction, n_nodes(o));
+  if (o.reduction.type == Reduction::Type::none) return;
+  if (const auto loose = loose_part(o, o.reduction.masters, o.reduction.slopes))
+    throw InputError("rotor: " + words(*loose, o, "at its masters"));
 }
 
 int n_nodes(const Options& o) {

@@ -151,7 +151,7 @@ HeldModes held_modes(const Whole& a, double speed, Index states) {
   for (MatrixXd* m : {&out.displacement, &out.velocity, &out.left_displacement, &out.left_velocity})
     m->resize(n, states);
   out.quality.neglected = std::numeric_limits<double>::infinity();
-  const Eigen::LLT<MatrixXd> mass(a.mass);
+  const Eigen::LLT<MatrixXd> mass = definite(a.mass, "the mass of the shaft with its masters held");
   std::vector<bool> pair;  // of this column and the next
   Index at = 0;
   for (Mode& mode : slowest(a.mass, c, k, states)) {
@@ -214,9 +214,10 @@ StateBasis state_basis(const Planar& planar, const Options& options) {
 
   // T of one plane.
   MatrixXd t = MatrixXd::Zero(n, n_masters);
-  t(slaves, Eigen::all) = -k_ss.llt().solve(k(slaves, masters));
+  t(slaves, Eigen::all) = -definite(k_ss, held_stiffness).solve(k(slaves, masters));
   for (Index j = 0; j < n_masters; ++j) t(masters[static_cast<std::size_t>(j)], j) = 1;
-  const MatrixXd per_mass = t * (t.transpose() * m * t).llt().solve(MatrixXd::Identity(n_masters, n_masters));
+  const MatrixXd per_mass =
+      t * definite(t.transpose() * m * t, "the mass of the masters").solve(MatrixXd::Identity(n_masters, n_masters));
 
   const Whole held =
       whole_of(m(slaves, slaves), g(slaves, slaves), k_ss, damping_of(planar, n)(slaves, slaves), options);

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "whirl/io/record.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/study/study.hpp"
 
 namespace whirl::study {
@@ -30,6 +31,13 @@ void check_nodes(const std::string& key, const std::vector<int>& nodes, const sy
     if (nodes[i] > n_nodes)
       report.fail(fmt::format("{}.{}", key, i + 1),
                   fmt::format("node {} does not exist: the shaft has nodes 1 to {}", nodes[i], n_nodes));
+}
+
+void check_held(const system::Machine& machine, const deck::Report& report) {
+  std::vector<int> nodes;
+  for (const system::Bearing& b : machine.bearings) nodes.push_back(b.node);
+  if (const auto loose = rotor::loose_part(machine.rotor, nodes))
+    report.fail("", rotor::words(*loose, machine.rotor, "at its bearings alone"));
 }
 
 }  // namespace whirl::study

@@ -8,8 +8,10 @@
 #include "cost.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
+#include "whirl/film/describe.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/rotor/advice.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 
 namespace whirl::study {
@@ -59,6 +61,19 @@ void check_names(const Deck& deck, const deck::Report& r) {
   }
 }
 
+// A shaft in two bearings at least, which leave no part of it free to move.
+void check_supports(const system::Machine& machine, const deck::Report& r) {
+  if (machine.bearings.size() < 2) return r.fail("bearings", "a shaft needs at least two bearings");
+  std::vector<int> nodes, slopes;
+  for (const system::Bearing& b : machine.bearings) {
+    nodes.push_back(b.node);
+    if (film::facts(b.film).tilts) slopes.push_back(b.node);
+  }
+  if (const auto loose = rotor::loose_part(machine.rotor, nodes, slopes))
+    r.fail(fmt::format("rotor.couplings.{}.tilt_stiffness", loose->coupling + 1),
+           rotor::words(*loose, machine.rotor, "by its bearings"));
+}
+
 }  // namespace
 void describe(deck::Description<Limits>& d) {
   d.add("memory", &Limits::memory, "byte", deck::positive,
@@ -73,8 +88,7 @@ void describe(deck::Description<Deck>& d) {
   d.check([](const Deck& deck, const deck::Report& r) {
     const auto holds = [](const auto& s) { return s->needs_bearings(); };
     const bool shaft = system::is_rotor(deck.machine) && deck.machine.rotor.type != rotor::Options::Type::rigid;
-    if (shaft && deck.machine.bearings.size() < 2 && std::any_of(deck.studies.begin(), deck.studies.end(), holds))
-      r.fail("bearings", "a shaft needs at least two bearings");
+    if (shaft && std::any_of(deck.studies.begin(), deck.studies.end(), holds)) check_supports(deck.machine, r);
     for (std::size_t i = 0; i < deck.studies.size(); ++i) {
       const Study& s = *deck.studies[i];
       const std::string path = fmt::format("studies.{}.{}", i + 1, s.kind());

@@ -173,6 +173,7 @@ void RotorSystem::fill_constant_parts() {
   fill(j_at_rest_.get(), 1, 0, 0);
   fill(j_gyroscopic_.get(), 0, 1, 0);
   fill(j_rates_.get(), 0, 0, 1);
+  loss_left_ = false;
 }
 
 core::Matrix RotorSystem::make_jacobian() {

@@ -6,6 +6,7 @@
 
 #include "whirl/film/describe.hpp"
 #include "whirl/rotor/describe.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/system/options.hpp"
 
 namespace whirl::deck {
@@ -201,6 +202,24 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
   }
 }
 
+// Bearings that are bored in line with the shaft need its shape at rest, in which hinges hang on supports alone: films
+// that tilt hold slopes as well.
+void check_bored(const Machine& m, const deck::Report& r) {
+  std::vector<int> nodes, slopes;
+  bool bored = false;
+  for (const Bearing& b : m.bearings) {
+    nodes.push_back(b.node);
+    if (!film::facts(b.film).tilts) continue;
+    slopes.push_back(b.node);
+    bored = bored || !b.slope;
+  }
+  if (!bored || nodes.size() < 2 || rotor::loose_part(m.rotor, nodes, slopes)) return;
+  if (const auto loose = rotor::loose_part(m.rotor, nodes))
+    r.fail(fmt::format("rotor.couplings.{}.tilt_stiffness", loose->coupling + 1),
+           rotor::words(*loose, m.rotor, "on rigid supports") +
+               ", and bearings whose films tilt are bored in line with the shaft at rest: give their 'slope'");
+}
+
 }  // namespace
 
 void describe(deck::Description<Machine>& d) {
@@ -226,6 +245,7 @@ void describe(deck::Description<Machine>& d) {
     if (!is_rotor(m)) return;
     const int n_nodes = static_cast<int>(m.rotor.segments.size()) + 1;
     check_bearings(m, n_nodes, r);
+    check_bored(m, r);
     check_unbalance(m, n_nodes, r);
   });
 }

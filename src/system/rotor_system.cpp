@@ -91,6 +91,7 @@ void RotorSystem::residual(double angle, Vec x, Vec xdot, Vec f) {
 
 void RotorSystem::jacobian(double /*angle*/, Vec x, Vec xdot, double alpha, double sigma, Mat j) {
   if (!j_at_rest_) make_constant_parts();
+  if (loss_left_) fill_constant_parts();
   check(MatCopy(j_at_rest_.get(), j, SAME_NONZERO_PATTERN));
   if (alpha != 1) check(MatScale(j, alpha));
   if (alpha != 0) check(MatAXPY(j, alpha * speed_, j_gyroscopic_.get(), SAME_NONZERO_PATTERN));
@@ -208,6 +209,12 @@ void RotorSystem::set_loss(const Loss& loss) {
   hub_->set_loss(loss.damping, loss.turning);
   fill_constant_parts();
   hub_entries_.clear();
+}
+
+void RotorSystem::drop_loss() noexcept {
+  hub_->set_loss(0, 0);
+  hub_entries_.clear();
+  loss_left_ = true;
 }
 
 PetscInt RotorSystem::local_size() const {

@@ -120,6 +120,18 @@ def reduction_errors(h):
     size = value(s, "orbit.size")
     h.close("size of the orbit [m], two ranks", value(two, "orbit.size"), size, 1e-8 * size)
     h.close("two ranks", value(two, "craig_bampton_state.12.frequency_error"), at("craig_bampton_state", 12, "frequency"), 1e-9)
+    # Dashpots that creep in place of four modes leave ten freedoms six that vibrate: that size has no answer, the other has.
+    creeping = ("studies=[{reduction_errors: {name: creeping, speed: 1e-3 rad/s, freedoms: [10, 20], methods: [modal_supported, craig_bampton]}}]")
+    for ranks in (1, 2):
+        s = h.run(deck, f"creeping {ranks}", [creeping, "bearings.*.film.damping=1e4 N s/m"], launcher=[*h.launcher, "-n", "2"] if ranks == 2 else [])["creeping"]
+        for name in ("modal_supported", "craig_bampton"):
+            h.true(f"creeping: {name}, 10 freedoms have no answer", value(s, f"{name}.10.frequency_error") is None
+                   and any(w.startswith(f"{name}, 10 freedoms: no errors: ") and "vibrate" in w for w in s["warnings"]), str(s.get("warnings")))
+            h.true("    20 freedoms have one", value(s, f"{name}.20.frequency_error") < 0.1)
+        h.true("    two sizes counted", s["points"] == 2, s["points"])
+    with h5py.File(h.work / "creeping 1/results.h5") as f:
+        table = f["studies/creeping/errors/frequency"][()]
+        h.true("creeping: the table keeps its shape", table.shape == (2, 2, 10) and np.all(np.isnan(table[:, 0])) and np.all(np.isfinite(table[:, 1])))
     # The same orbit integrated in time: that of the left journal of a reduced shaft, with an unbalance large against the tolerance.
     motion = ("studies=[{motion: {name: motion, unbalance: [disc], speed: 10000 rad/s, discard: 0, revolutions: 2, orbit: 2, samples: 96,"
               " exponents: 0, tolerance: 1e-7}}, {reduction_errors: {name: orbits, speed: 10000 rad/s, freedoms: [12], methods: [craig_bampton_state],"

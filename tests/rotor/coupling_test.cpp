@@ -9,8 +9,11 @@
 #include "rotor/shafts.hpp"
 #include "support/dense.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/alignment.hpp"
+#include "whirl/rotor/critical_speeds.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/frequencies.hpp"
+#include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/rotor.hpp"
 #include "whirl/rotor/shaft.hpp"
 
@@ -111,6 +114,60 @@ TEST(Coupling, ItsDampingTurnsWithTheShaft) {
     EXPECT_LE((c * turn + n).norm(), 1e-12 * c.norm());
     EXPECT_LE((c - c.transpose()).norm(), 1e-12 * c.norm());
   }
+}
+
+// Free, the plane has three motions without stiffness: as a rigid body and about the hinge.
+TEST(Coupling, WithoutTiltStiffnessItIsAHinge) {
+  for (const auto element : {rotor::Element::timoshenko, rotor::Element::timoshenko_linear}) {
+    rotor::Options o = two_bars(2.1e11, 3);
+    o.element = element;
+    o.couplings[0].tilt_stiffness = 0;
+    const Eigen::MatrixXd motions = rotor::free_motions(o, {});
+    ASSERT_EQ(motions.cols(), 3);
+    const rotor::Rotor r(MPI_COMM_WORLD, o);
+    const Eigen::MatrixXd k = test::dense(r.matrices().stiffness.get())(Eigen::seq(0, Eigen::last, 2),
+                                                                        Eigen::seq(0, Eigen::last, 2)),
+                          m = test::dense(r.matrices().mass.get())(Eigen::seq(0, Eigen::last, 2),
+                                                                   Eigen::seq(0, Eigen::last, 2));
+    EXPECT_LE((k.leftCols(motions.rows()) * motions).norm(), 1e-12 * k.norm() * motions.norm());
+    const Eigen::VectorXd exact =
+        Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(k, m).eigenvalues().tail(k.rows() - 3).cwiseSqrt();
+    const auto found = rotor::natural_frequencies(MPI_COMM_WORLD, o, {}, 2);
+    ASSERT_EQ(found.size(), 2u);
+    for (Eigen::Index i = 0; i < 2; ++i) EXPECT_NEAR(found[static_cast<std::size_t>(i)] / exact(i), 1, 1e-6) << i;
+    // On two pins, one under each bar, both fold: one motion is left out.
+    EXPECT_EQ(rotor::free_motions(o, {1, 8}).cols(), 1);
+    EXPECT_GT(rotor::natural_frequencies(MPI_COMM_WORLD, o, {1, 8}, 1).at(0), 0.1 * exact(0));
+  }
+}
+
+TEST(Coupling, PartsThatNothingHoldsAreRefused) {
+  rotor::Options o = two_bars(2.1e11);  // nodes 1, 2 | 3, 4
+  EXPECT_FALSE(rotor::loose_part(o, {1, 2}));
+  o.couplings[0].tilt_stiffness = 0;
+  const auto far = rotor::loose_part(o, {1, 2}), all = rotor::loose_part(o, {4, 1});
+  ASSERT_TRUE(far && all);
+  EXPECT_EQ(std::pair(far->from, far->to), std::pair(3, 4));
+  EXPECT_EQ(std::pair(all->from, all->to), std::pair(1, 4));
+  EXPECT_FALSE(rotor::loose_part(o, {1, 2, 4}));
+  EXPECT_FALSE(rotor::loose_part(o, {1, 2}, {3}));
+  EXPECT_EQ(rotor::words(*far, o, "so"),
+            "held so, nodes 3 to 4 are free to move: the coupling of segment 2 has no 'tilt_stiffness'");
+  using enum rotor::Reduction::Type;
+  for (const auto type : {guyan, craig_bampton, craig_bampton_state, modal}) {
+    o.reduction = {type, {1, 2}, 3, 1e6};
+    EXPECT_THROW(rotor::Rotor(MPI_COMM_WORLD, o), core::InputError);
+    o.reduction.masters = {1, 2, 4};
+    EXPECT_NO_THROW(rotor::Rotor(MPI_COMM_WORLD, o));
+  }
+  o.reduction = {};
+  EXPECT_THROW((void)rotor::rigid_static(MPI_COMM_WORLD, o, {{1, 0}, {2, 0}}, 9.81), core::InputError);
+  EXPECT_THROW((void)rotor::critical_speeds(o, {1, 2}, 1e7, rotor::Whirl::forward, 1), core::InputError);
+  // The weight of what hangs on the hinge has a moment about it, which its support takes.
+  const auto rest = rotor::rigid_static(MPI_COMM_WORLD, o, {{1, 0}, {2, 0}, {4, 0}}, 9.81);
+  const double mass = 7850 * pi / 4 * diameter * diameter * bar, half = 7850 * pi / 4 * 0.12 * 0.12 * gap / 2,
+               moment = 9.81 * (mass * (gap / 2 + bar / 2) + half * gap / 4);
+  EXPECT_NEAR(rest.reactions[2] * (gap / 2 + bar) / moment, 1, 1e-9);
 }
 
 TEST(Coupling, WrongOnesAreRefused) {

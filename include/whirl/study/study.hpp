@@ -114,5 +114,7 @@ void check_unbalance(const std::vector<std::string>& names, const system::Machin
 /// Nodes must exist in the shaft.
 void check_nodes(const std::string& key, const std::vector<int>& nodes, const system::Machine& machine,
                  const deck::Report& report);
+/// Springs or rigid supports at the nodes of the bearings must hold every part of a shaft with hinges.
+void check_held(const system::Machine& machine, const deck::Report& report);
 
 }  // namespace whirl::study

@@ -104,8 +104,19 @@ public:
   [[nodiscard]] Loss loss_at(double frequency) const;
   /// The sense s of forward motion there: -1, 0 or 1.
   [[nodiscard]] int loss_sense(double frequency) const;
-  /// From now on jacobian() and entries() have it; residual() never has. Collective.
-  void set_loss(const Loss& loss);
+  /// While it lives jacobian() and entries() have the loss; residual() never has.
+  class WithLoss {
+  public:
+    /// Collective.
+    WithLoss(RotorSystem& system, const Loss& loss) : system_(system) { system_.set_loss(loss); }
+    /// Not collective: it may end by an exception that other ranks do not have.
+    ~WithLoss() { system_.drop_loss(); }
+    WithLoss(const WithLoss&) = delete;
+    WithLoss& operator=(const WithLoss&) = delete;
+
+  private:
+    RotorSystem& system_;
+  };
 
   [[nodiscard]] ShownPlaces places() const override;
   [[nodiscard]] std::vector<PlaceState> shown(const double* x) const override;
@@ -201,6 +212,9 @@ private:
   [[nodiscard]] std::vector<const Part*> parts() const;
   void make_constant_parts();
   void fill_constant_parts();
+  void set_loss(const Loss& loss);
+  // The next jacobian() takes the loss out of the constant parts.
+  void drop_loss() noexcept;
   /// Made when first wanted at this value of the parameter. Collective.
   [[nodiscard]] Slope& slope();
   [[nodiscard]] Moment moment(double angle, Vec x, Vec xdot) const;
@@ -266,6 +280,7 @@ private:
   std::vector<std::array<double, 2>> axes_;
   PetscInt n_ = 0, n_own_ = 0, own_here_ = 0;        // coordinates; own states of films: all, on this rank
   core::Matrix j_at_rest_, j_gyroscopic_, j_rates_;  // constant parts of the Jacobian, made when first wanted
+  bool loss_left_ = false;                           // in j_at_rest_, though no more wanted
   core::EntryStream film_entries_;                   // of the films in matrices of make_jacobian()'s pattern
   struct HubEntry {
     PetscInt row, column;

@@ -17,16 +17,20 @@ bool is_exact(const std::string& name) {
 
 }  // namespace
 
-bool has_answer(const std::function<void()>& compute) {
+bool has_answer(const std::function<void()>& compute, std::string* reason) {
+  const auto none = [&](const core::Error& error) {
+    if (reason) *reason = error.what();
+    return false;
+  };
   try {
     compute();
     return true;
-  } catch (const core::NotConverged&) {
-    return false;
-  } catch (const core::DomainError&) {
-    return false;
-  } catch (const core::InputError&) {
-    return false;
+  } catch (const core::NotConverged& e) {
+    return none(e);
+  } catch (const core::DomainError& e) {
+    return none(e);
+  } catch (const core::InputError& e) {
+    return none(e);
   }
 }
 

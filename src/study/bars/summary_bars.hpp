@@ -41,8 +41,8 @@ private:
 };
 
 /// Runs `compute`; false if a mesh that serves an estimate only has no answer: no convergence, a film that leaves its
-/// validity, grooves that leave nothing of a coarser mesh.
-[[nodiscard]] bool has_answer(const std::function<void()>& compute);
+/// validity, grooves that leave nothing of a coarser mesh. `reason` takes what was said, if it is wanted.
+[[nodiscard]] bool has_answer(const std::function<void()>& compute, std::string* reason = nullptr);
 /// What `compute` returns, or an empty one of its kind where there is no answer.
 template <class F>
 [[nodiscard]] auto answer_of(const F& compute) {

@@ -23,6 +23,7 @@ void describe(deck::Description<AlignmentOptions>& d) {
 void Alignment::validate(const system::Machine& machine, const deck::Report& report) const {
   if (machine.rotor.type == rotor::Options::Type::rigid)
     return report.fail("", "the alignment is that of a shaft; this rotor is rigid");
+  check_held(machine, report);
   check_nodes("zero_moment", options.zero_moment, machine, report);
   for (std::size_t i = 0; i < options.zero_moment.size(); ++i)
     if (const auto here = options.zero_moment.begin() + static_cast<std::ptrdiff_t>(i);

@@ -24,6 +24,7 @@ void CriticalSpeedMap::validate(const system::Machine& machine, const deck::Repo
   if (machine.rotor.type == rotor::Options::Type::rigid)
     report.fail("", "a rigid rotor has no critical speeds but those of its bearings: give 'rotor' segments");
   if (machine.bearings.size() < 2) report.fail("", "a shaft on springs needs two bearings");
+  check_held(machine, report);
   if (!(options.stiffness.from < options.stiffness.to))
     report.fail("stiffness", "the range rises: give the smaller stiffness as 'from'");
 }

@@ -13,10 +13,11 @@ namespace whirl::study {
 // Small: every rank computes the same.
 StudyResult line_modes(Context& context, const ModesOptions& options) {
   const bool torsion = options.motion == ModesOptions::Motion::torsion;
+  rotor::Options shaft = context.machine.rotor;
+  shaft.reduction = {};
   rotor::LineModes modes;
   core::agree(context.comm, [&] {
-    modes = rotor::line_modes(context.machine.rotor, torsion ? rotor::Line::torsion : rotor::Line::axial, options.held,
-                              options.count);
+    modes = rotor::line_modes(shaft, torsion ? rotor::Line::torsion : rotor::Line::axial, options.held, options.count);
   });
   auto& summary = context.results.summary();
   std::vector<double> flat;

@@ -55,7 +55,7 @@ Pencil pencil_of(system::RotorSystem& system, Vec x) {
   check(VecReciprocal(rows.get()));
   core::Matrix j = system.make_jacobian();
   const auto jacobian = [&](double at_rest, double rates, const system::RotorSystem::Loss& loss) {
-    system.set_loss(loss);
+    const system::RotorSystem::WithLoss with(system, loss);
     system.jacobian(0, x, rest.get(), at_rest, rates, j.get());
     check(MatDiagonalScale(j.get(), rows.get(), states.get()));
     return whole(j.get());

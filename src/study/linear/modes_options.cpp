@@ -10,9 +10,10 @@ namespace whirl::study {
 
 std::span<const deck::Name<ModesOptions::Supports>> names(ModesOptions::Supports) {
   using enum ModesOptions::Supports;
-  static constexpr deck::Name<ModesOptions::Supports> table[] = {{films, "films", "linearised films and pedestals"},
-                                                                 {pinned, "pinned", "journals held, slopes free"},
-                                                                 {free, "free", "no bearings"}};
+  static constexpr deck::Name<ModesOptions::Supports> table[] = {
+      {films, "films", "linearised films and pedestals"},
+      {pinned, "pinned", "journals held, slopes free; undamped, not reduced, at rest"},
+      {free, "free", "no bearings; likewise"}};
   return table;
 }
 
@@ -24,6 +25,30 @@ std::span<const deck::Name<ModesOptions::Motion>> names(ModesOptions::Motion) {
       {axial, "axial", "along the axis, likewise"}};
   return table;
 }
+
+namespace {
+
+// Without films the shaft is undamped and at rest: what asks about speeds or damping has no effect.
+void refuse_what_films_take(const ModesOptions& o, const deck::Report& r) {
+  const ModesOptions preset;
+  const bool line = o.motion != ModesOptions::Motion::bending;
+  if (o.range || !o.speeds.empty())
+    r.fail(o.range ? "range" : "speeds", line ? "torsion and axial motion do not depend on the speed: leave it out"
+                                              : "without films the shaft is taken at rest: leave the speed out");
+  const auto refuse = [&](bool given, const char* key) {
+    if (given)
+      r.fail(key, fmt::format("'{}' has no effect on undamped modes {}: leave it out", key,
+                              line ? "of torsion and axial motion" : "without films"));
+  };
+  refuse(line && o.supports != preset.supports, "supports");
+  refuse(!o.range && o.points != preset.points, "points");
+  refuse(o.max_frequency.has_value(), "max_frequency");
+  refuse(o.operating.has_value(), "operating");
+  refuse(o.condition, "condition");
+  refuse(!o.shapes_at.empty(), "shapes_at");
+}
+
+}  // namespace
 
 void describe(deck::Description<ModesOptions>& d) {
   d.add("name", &ModesOptions::name, "name in the results; the kind if not given");
@@ -50,11 +75,8 @@ void describe(deck::Description<ModesOptions>& d) {
     if (o.range && !o.speeds.empty()) r.fail("speeds", "give either 'range' or 'speeds', not both");
     if (o.operating && !(o.operating->from <= o.operating->to))
       r.fail("operating", "the lowest operating speed comes first");
-    // Without films the shaft is taken at rest, whatever its speed.
-    if (o.motion != ModesOptions::Motion::bending && (o.range || !o.speeds.empty()))
-      r.fail(o.range ? "range" : "speeds", "torsion and axial motion do not depend on the speed: leave it out");
-    if (o.motion != ModesOptions::Motion::bending) return;
-    if (o.supports != ModesOptions::Supports::films) return;
+    if (o.motion != ModesOptions::Motion::bending || o.supports != ModesOptions::Supports::films)
+      return refuse_what_films_take(o, r);
     if (!o.range && o.speeds.empty()) r.fail("", "'range' is missing (of speeds), or a list 'speeds'");
   });
 }
@@ -96,7 +118,11 @@ double Modes::memory(const system::Machine& machine, const LayoutOptions& /*layo
 
 void Modes::validate(const system::Machine& machine, const deck::Report& report) const {
   if (options.motion != ModesOptions::Motion::bending) return validate_line(machine, report);
-  if (options.supports != ModesOptions::Supports::films) return;
+  if (options.supports != ModesOptions::Supports::films) {
+    if (machine.rotor.type == rotor::Options::Type::rigid)
+      report.fail("supports", "a rigid rotor has no modes but those in its films");
+    return;
+  }
   bool at_rest = options.range && std::min(options.range->from, options.range->to) <= 0;
   for (const deck::Quantity& s : options.speeds) at_rest = at_rest || s.value <= 0;
   if (!at_rest) return;

@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
+#include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/linear/compared_modes.hpp"
+#include "whirl/core/agree.hpp"
+#include "whirl/core/error.hpp"
 #include "whirl/deck/codecs.hpp"
 #include "whirl/film/describe.hpp"
 #include "whirl/problem/structure.hpp"
@@ -52,11 +56,23 @@ public:
     compare(modes);
     if (options_.maps > 0) put_maps(modes);
     if (options_.orbits) put_orbits(whole, modes);
-    summary.points = static_cast<long>(options_.methods.size() * options_.freedoms.size());
+    summary.points = answered_;
     return results.finish("completed", true);
   }
 
 private:
+  // Whether a reduction has an answer; if not a warning says why, and the others go on. `compute` is the same on all
+  // ranks and does not communicate.
+  [[nodiscard]] bool answers(ReductionMethod method, int freedoms, const std::string& what,
+                             const std::function<void()>& compute) {
+    std::string reason;
+    if (has_answer([&] { core::agree(context_.comm, compute); }, &reason)) return true;
+    std::string& line = context_.results.summary().warnings.emplace_back(
+        fmt::format("{}, {} freedoms: no {}: {}", name_of(method), freedoms, what, reason));
+    if (first_reason_.empty()) first_reason_ = line;
+    return false;
+  }
+
   [[nodiscard]] double mean_stiffness(const MatrixXd& films) const {
     double sum = 0;
     Eigen::Index ports = 0;
@@ -102,8 +118,15 @@ private:
     for (const ReductionMethod method : options_.methods) {
       method_names.push_back(name_of(method));
       for (const int kept : options_.freedoms) {
-        system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
-        const WholeModes::Errors e = modes.errors(small);
+        WholeModes::Errors e;
+        if (!answers(method, kept, "errors", [&] {
+              system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
+              e = modes.errors(small);
+            })) {
+          for (auto* column : {&frequency, &vector, &diagonal}) column->insert(column->end(), count, io::no_value);
+          continue;
+        }
+        ++answered_;
         for (Eigen::Index k = 0; k < e.frequency.size(); ++k) {
           frequency.push_back(e.frequency(k));
           vector.push_back(e.vector(k));
@@ -116,13 +139,15 @@ private:
                                               context_.results.seconds()));
       }
     }
+    if (answered_ == 0) throw core::NotConverged(first_reason_);
     auto& table = context_.results.group().child("errors");
     const io::Shape shape{methods, sizes, count};
     table.put("method", method_names, "reduction of the shaft");
     table.put("freedoms", freedoms, "1", "freedoms kept, of both planes");
     table.put("whole", std::vector<double>(modes.frequencies().begin(), modes.frequencies().end()), "rad/s",
               "whirl frequencies with the whole shaft");
-    table.put("frequency", shape, frequency, "1", "|Im s/Im s_whole - 1| [method][freedoms][mode]");
+    table.put("frequency", shape, frequency, "1",
+              "|Im s/Im s_whole - 1| [method][freedoms][mode], not a number where a reduction has no answer");
     table.put("vector", shape, vector, "1",
               "distance of eigenvectors of length one in the energy norm [method][freedoms][mode]");
     table.put("diagonal", shape, diagonal, "1",
@@ -150,13 +175,20 @@ private:
       return MatrixXd(a(Eigen::seq(row, Eigen::last, 2), Eigen::seq(column, Eigen::last, 2)));
     };
     for (const ReductionMethod method : options_.methods) {
-      system::RotorSystem small(PETSC_COMM_SELF, reduced(method, options_.maps), options_.speed);
+      MatrixXd r, rates, rest;
+      bool in_states = false;
+      if (!answers(method, options_.maps, "maps", [&] {
+            system::RotorSystem small(PETSC_COMM_SELF, reduced(method, options_.maps), options_.speed);
+            r = modes.errors(small).r.cwiseAbs();
+            const auto rotor_rows = Eigen::seqN(0, 2 * small.rotor().size());
+            rates = MatrixXd(small.structure()->l1())(rotor_rows, rotor_rows);
+            rest = MatrixXd(small.structure()->l0())(rotor_rows, rotor_rows);
+            in_states = small.rotor().states().has_value();
+          }))
+        continue;
       auto& of = maps.child(name_of(method));
-      put_matrix(of, "R", modes.errors(small).r.cwiseAbs(), "|R| of R = I - W^T N V*");
-      const auto rotor_rows = Eigen::seqN(0, 2 * small.rotor().size());
-      const MatrixXd rates = MatrixXd(small.structure()->l1())(rotor_rows, rotor_rows),
-                     rest = MatrixXd(small.structure()->l0())(rotor_rows, rotor_rows);
-      if (small.rotor().states()) {
+      put_matrix(of, "R", r, "|R| of R = I - W^T N V*");
+      if (in_states) {
         put_matrix(of, "N", rates, "L^T N R: states of masters, then of modes; the two rows of a pair are exchanged");
         put_matrix(of, "P", rest, "L^T P R at the speed, without films");
       } else {
@@ -190,8 +222,15 @@ private:
     std::vector<double> errors, x, y, freedoms(o.freedoms.begin(), o.freedoms.end());
     for (const ReductionMethod method : options_.methods)
       for (const int kept : o.freedoms) {
-        system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
-        const Orbit found = orbit_from_rest(small, modes.films(), o.node, step, samples);
+        Orbit found;
+        if (!answers(method, kept, "orbit", [&] {
+              system::RotorSystem small(PETSC_COMM_SELF, reduced(method, kept), options_.speed);
+              found = orbit_from_rest(small, modes.films(), o.node, step, samples);
+            })) {
+          errors.push_back(io::no_value);
+          for (auto* to : {&x, &y}) to->insert(to->end(), static_cast<std::size_t>(samples), io::no_value);
+          continue;
+        }
         const double error = (found - exact).colwise().norm().maxCoeff();
         errors.push_back(size > 0 ? error / size : 0);
         summary.set(fmt::format("orbit.{}.{}.error", name_of(method), kept), errors.back(), "1");
@@ -213,6 +252,8 @@ private:
   system::Train train_;
   std::vector<int> masters_, slopes_;
   double support_ = 0;
+  long answered_ = 0;         // reductions with errors
+  std::string first_reason_;  // of those without an answer
 };
 
 }  // namespace

@@ -115,9 +115,8 @@ void TransferMatrix::linearise(Vec x) {
 }
 
 void TransferMatrix::linearise_with_loss(double omega) {
-  system_.set_loss(omega > 0 ? system_.loss_at(omega) : system::RotorSystem::Loss{});
+  const system::RotorSystem::WithLoss loss(system_, omega > 0 ? system_.loss_at(omega) : system::RotorSystem::Loss{});
   solver_.linearise(x_.get());
-  system_.set_loss({});
 }
 
 std::vector<Complex> TransferMatrix::at(double omega) {

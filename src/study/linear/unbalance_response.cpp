@@ -107,10 +107,11 @@ public:
       right[at] = speed * speed * system_.forcing_cosine()[of];
       right[at + 1] = -speed * speed * system_.forcing_sine()[of];
     }
-    const bool hysteretic = system_.train().rotor.loss_factor > 0;
-    if (hysteretic) system_.set_loss(system_.loss_at(speed));
-    solver_.solve(x, speed, right, amplitude);
-    if (hysteretic) system_.set_loss({});  // equilibria know of none
+    {
+      std::optional<system::RotorSystem::WithLoss> loss;  // equilibria know of none
+      if (system_.train().rotor.loss_factor > 0) loss.emplace(system_, system_.loss_at(speed));
+      solver_.solve(x, speed, right, amplitude);
+    }
     std::vector<double> state[2], shaft[2];
     for (std::size_t part = 0; part < 2; ++part) {
       core::Vector v = core::duplicate(x);
