@@ -7,7 +7,7 @@
 
 namespace whirl::rotor {
 
-/// All entries of a square matrix that stands on one rank alone.
+/// All entries of a matrix that stands on one rank alone.
 [[nodiscard]] Eigen::MatrixXd dense(Mat sparse);
 
 }  // namespace whirl::rotor
