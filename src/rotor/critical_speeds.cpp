@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dense.hpp"
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/dense.hpp"
 #include "whirl/rotor/hinges.hpp"
 #include "whirl/rotor/shaft.hpp"
 

@@ -1,4 +1,4 @@
-#include "dense.hpp"
+#include "whirl/rotor/dense.hpp"
 
 #include "whirl/core/error.hpp"
 #include "whirl/core/petsc.hpp"
@@ -6,10 +6,10 @@
 namespace whirl::rotor {
 
 Eigen::MatrixXd dense(Mat sparse) {
-  PetscInt n = 0;
-  core::check(MatGetSize(sparse, &n, nullptr));
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
-  for (PetscInt r = 0; r < n; ++r) {
+  PetscInt rows = 0, width = 0;
+  core::check(MatGetSize(sparse, &rows, &width));
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, width);
+  for (PetscInt r = 0; r < rows; ++r) {
     PetscInt count = 0;
     const PetscInt* columns = nullptr;
     const PetscScalar* values = nullptr;

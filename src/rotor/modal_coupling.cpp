@@ -4,9 +4,9 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "dense.hpp"
 #include "planar.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/dense.hpp"
 #include "whirl/rotor/shaft.hpp"
 
 namespace whirl::rotor {

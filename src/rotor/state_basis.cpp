@@ -10,8 +10,8 @@
 #include <complex>
 #include <limits>
 
-#include "dense.hpp"
 #include "reduction.hpp"
+#include "whirl/rotor/dense.hpp"
 
 namespace whirl::rotor {
 namespace {

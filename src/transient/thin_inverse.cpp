@@ -181,6 +181,11 @@ bool ThinInverse::fits(double tau, double parameter) const {
   return now_ && near(tau, now_->tau, near_step) && near(parameter, now_->parameter, near_parameter);
 }
 
+double ThinInverse::mismatch(double tau, double parameter) const {
+  const double by_parameter = parameter == now_->parameter ? 0 : std::abs(parameter / now_->parameter - 1);
+  return std::abs(tau / now_->tau - 1) + by_parameter;
+}
+
 void ThinInverse::forget() {
   kept_.clear();
   now_ = nullptr;

@@ -43,6 +43,11 @@ public:
   void factorise_at(const ThinOperator& a) { prepare(a, factorise(a)); }
   /// Whether what was made ready is near a step of alpha/sigma = `tau` at `parameter`.
   [[nodiscard]] bool fits(double tau, double parameter) const;
+  /// By how much of an error at most apply() is off for a step of alpha/sigma = `tau` at `parameter`, by the factors
+  /// that were made ready: with A = L1 + tau L0 and A_f of those, A_f^-1 A - 1 = (tau/tau_f - 1) (1 - A_f^-1 L1), whose
+  /// second factor is near one along stiff directions, zero along soft ones; the part of L0 that goes with the speed is
+  /// off by its ratio likewise. Films' own states apart.
+  [[nodiscard]] double mismatch(double tau, double parameter) const;
   /// x = about A^-1 y, without refinement.
   void apply(const ThinOperator& a, const Eigen::VectorXd& y, Eigen::VectorXd& x);
   /// Drops all factors.

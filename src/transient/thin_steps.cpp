@@ -118,7 +118,12 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
       renew = !cheap && !renewed && ratio > slow_ratio;
     }
     last = moved;
-    if (rounding || rate * moved <= newton_part) {
+    // With a contraction q per iteration what is left after a change is q + q^2 + ... = q/(1 - q) of it. The ratio of
+    // two changes tells the q of what they consist of, and that of an earlier stage, with other factors, nothing of
+    // this one: where the factors are not of this tau and speed, an error along stiff directions shrinks by no more
+    // than their mismatch, however small it is among the first changes.
+    const double q = inverse_.mismatch(own, equations_.system().parameter());
+    if (rounding || std::max(rate, q / (1 - q)) * moved <= newton_part) {
       rate_ = rate;
       slopes_.col(i) = slope_;
       return true;

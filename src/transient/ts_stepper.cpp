@@ -107,7 +107,11 @@ void TsStepper::choose(const Scheme& scheme) {
   check(TSSetEquationType(ts, TS_EQ_ODE_IMPLICIT));
   check(TSSetIFunction(ts, nullptr, form_residual, this));
   check(TSSetIJacobian(ts, jacobian_.get(), jacobian_.get(), form_jacobian, this));
-  if (pace_ == Pace::by_itself) check(TSAdaptSetStepLimits(adapt, PETSC_DEFAULT, longest_));
+}
+
+// [s]
+double TsStepper::longest(double time) const {
+  return std::min(longest_, longest_part * 2 * std::numbers::pi / std::abs(equations_.drive().speed_at(time)));
 }
 
 TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, const solve::Tableau& tableau)
@@ -116,8 +120,7 @@ TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, con
       continuous_(continuous_weights(tableau)),
       jacobian_(equations.make_matrix()),
       u_(equations.make_state()),
-      start_(equations.make_state()),
-      longest_(longest_part * 2 * std::numbers::pi / std::abs(equations.system().speed())) {
+      start_(equations.make_state()) {
   register_scheme(tableau);
   for (Eigen::Index i = 0; i < tableau.stages(); ++i) stages_.push_back(equations.make_state());
   problem::System& system = equations.system();
@@ -149,6 +152,9 @@ TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, con
   check(SNESGetKSP(snes(), &ksp));
   equations.configure(ksp);
   check(TSSetFromOptions(ts));
+  TSAdapt adapt = nullptr;
+  check(TSGetAdapt(ts, &adapt));
+  check(TSAdaptGetStepLimits(adapt, nullptr, &longest_));
   // Other schemes by PETSc's options: their own interpolation may be missing.
   if (pace_ == Pace::to_the_end && type() != TSARKIMEX) pace_ = Pace::to_samples;
   check(TSSetSolution(ts, u_.get()));
@@ -170,6 +176,16 @@ Taken TsStepper::try_step(double time, double wanted, Vec u) {
     check(TSSetTimeStep(ts, wanted));
     check(VecCopy(u, u_.get()));
     if (pace_ == Pace::by_itself) remember(time);
+  }
+  if (pace_ == Pace::by_itself) {
+    // A step that was proposed at another speed may be longer than is allowed at this one.
+    const double most = longest(time);
+    TSAdapt adapt = nullptr;
+    check(TSGetAdapt(ts, &adapt));
+    check(TSAdaptSetStepLimits(adapt, PETSC_DEFAULT, most));
+    PetscReal next = 0;
+    check(TSGetTimeStep(ts, &next));
+    if (next > most) check(TSSetTimeStep(ts, most));
   }
   left_.clear();
   gate.rethrow(TSStep(ts));

@@ -32,6 +32,7 @@ private:
   static PetscErrorCode form_rate(TS ts, PetscReal t, Vec u, Vec rate, void* raw);
   [[nodiscard]] SNES snes() const;
   void choose(const Scheme& scheme);
+  [[nodiscard]] double longest(double time) const;
   [[nodiscard]] Taken try_step(double time, double wanted, Vec u);
   void remember(double time);
 
@@ -44,8 +45,8 @@ private:
   std::vector<core::Vector> stages_;
   core::Handle<TS, TSDestroy> ts_;
   Pace pace_ = Pace::to_the_end;
+  double longest_ = 0;                                // [s] by PETSc's options
   bool controlled_ = true;                            // PETSc shortens steps that fail
-  double longest_;                                    // [s]
   bool begun_ = false;                                // a scheme of several steps since forget()
   std::string left_;                                  // why an explicit stage could not be evaluated
   std::deque<std::pair<double, core::Vector>> past_;  // of a scheme of several steps: its last states, the latest first

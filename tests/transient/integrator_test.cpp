@@ -168,6 +168,48 @@ TEST(Integrator, TakesOverDeviationsAsTheyAre) {
   EXPECT_EQ(s.gather(taken.column(0)), s.gather(tangents.column(0)));
 }
 
+// Van der Pol's oscillator and a stiff follower, x_2' = -200 (x_2 - x_0), told as structure. Each step is compared with
+// that of an integrator which begins anew, by factors of this very step: what those of steps of other lengths are off
+// by, they iterate away. A test that trusts the convergence of earlier stages leaves three times as much, a tenth of
+// the tolerance.
+TEST(Integrator, FactorsOfOtherStepsLeaveNoMoreThanAPartOfTheTolerance) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "the same on every rank";
+  test::Blocks blocks;
+  blocks.l1 = Eigen::Matrix3d::Identity();
+  blocks.l0 = (Eigen::Matrix3d() << 0, -1, 0, 1, 0, 0, -200, 0, 200).finished();
+  blocks.l0p = Eigen::Matrix3d::Zero();
+  blocks.b = Eigen::Vector3d(0, 1, 0);
+  blocks.c = Eigen::MatrixXd::Identity(2, 3);
+  const auto load = []<class T>(double, T) -> test::Column<T> { return test::Column<T>::Zero(3); };
+  const auto forces = []<class T>(const test::Column<T>& w, T p) {
+    test::Column<T> f(1);
+    f << p * (1.0 - w(0) * w(0)) * w(1);
+    return f;
+  };
+  test::StructuredSystem s(1, 1, blocks, load, forces);
+  const double tolerance = 1e-8;
+  const core::Vector start = s.vector(Eigen::Vector3d(2, 0, 2));
+  const transient::IntegratorOptions options{.tolerance = tolerance, .first_step = 2e-3};
+  Integrator whole(s, {1}, start.get(), options), anew(s, {1}, start.get(), options);
+  double worst = 0;
+  int compared = 0;
+  for (int k = 0; whole.time() < 12; ++k) {
+    const double from = whole.time(), step = whole.step(), to = from + (k % 7 == 6 ? 0.93 : 1) * step;
+    core::check(VecCopy(whole.scaled(), anew.scaled()));
+    anew.restart(from, step);
+    const long before = whole.work().steps, before_anew = anew.work().steps;
+    whole.advance(to);
+    anew.advance(to);
+    if (whole.work().steps != before + 1 || anew.work().steps != before_anew + 1) continue;  // cut by its error
+    ++compared;
+    const Eigen::VectorXd x = state(s, whole), error = state(s, anew) - x;
+    worst = std::max(worst, (error.array() / (1 + x.array().abs())).matrix().norm() / std::sqrt(3.0));
+  }
+  EXPECT_GT(compared, 400);
+  EXPECT_LT(worst, 0.06 * tolerance);
+  EXPECT_GT(worst, 0.0);
+}
+
 TEST(Integrator, EndsWhereAFilmEnds) {
   const auto film = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
     if (std::real(x(0)) > 1) throw core::DomainError("the film is gone");

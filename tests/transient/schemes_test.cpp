@@ -218,6 +218,33 @@ TEST(Schemes, InterpolateToTheirTolerance) {
   }
 }
 
+// Where nothing else limits them, steps of schemes with their own pace are a sixteenth of the revolution that the shaft
+// is in, not of its first one.
+TEST(Schemes, LongestStepsFollowTheSpeed) {
+  if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
+  const auto still = []<class T>(double, const test::Column<T>& x, const test::Column<T>& xdot, T) {
+    test::Column<T> f(1);
+    f << xdot(0) + x(0);
+    return f;
+  };
+  for (const Scheme& scheme : {Scheme(transient::GeneralizedAlpha{}), Scheme(transient::Bdf{})})
+    for (const problem::Drive& drive : {problem::Drive{1, 0.1}, problem::Drive{4, -0.1}}) {
+      SmallSystem s(MPI_COMM_WORLD, 1, drive.speed, 0, still);
+      double part = 0;
+      int steps = 0;
+      const auto seen = [&](double time, double step) {
+        part = step * drive.speed_at(time - step) / test::two_pi;
+        ++steps;
+        EXPECT_LT(part, (1 + 1e-6) / 16) << transient::name_of(scheme) << " " << time;
+      };
+      Integrator integrator(s, drive, s.vector(Eigen::VectorXd::Zero(1)).get(),
+                            {.scheme = scheme, .tolerance = 1e-4, .after_step = seen});
+      integrator.advance(30);
+      EXPECT_GT(part, 0.9 / 16) << transient::name_of(scheme);
+      EXPECT_GT(steps, 30);
+    }
+}
+
 TEST(Schemes, RestartFromTheirState) {
   if (core::size_of(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "every step of a distributed system costs messages";
   for (const Scheme& scheme : all) {

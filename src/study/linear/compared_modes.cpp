@@ -10,12 +10,12 @@
 
 #include "whirl/core/error.hpp"
 #include "whirl/problem/structure.hpp"
+#include "whirl/rotor/dense.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 
 namespace whirl::study {
 namespace {
 
-using core::check;
 using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -27,18 +27,6 @@ Sparse linearised(problem::Structure& machine, const MatrixXd& films) {
   return machine.l0() - Sparse(machine.b() * Sparse(films.sparseView()) * machine.c());
 }
 
-MatrixXd dense(Mat sparse) {
-  core::Matrix copy;
-  check(MatConvert(sparse, MATSEQDENSE, MAT_INITIAL_MATRIX, copy.put()));
-  PetscInt rows = 0, columns = 0;
-  check(MatGetSize(copy.get(), &rows, &columns));
-  const PetscScalar* values = nullptr;
-  check(MatDenseGetArrayRead(copy.get(), &values));
-  MatrixXd out = Eigen::Map<const MatrixXd>(values, rows, columns);
-  check(MatDenseRestoreArrayRead(copy.get(), &values));
-  return out;
-}
-
 }  // namespace
 
 MatrixXd whole_states(const system::RotorSystem& reduced) {
@@ -46,12 +34,12 @@ MatrixXd whole_states(const system::RotorSystem& reduced) {
   const Index kept = 2 * rotor.size(), others = 2 * reduced.coordinates() - kept;
   MatrixXd q, v;
   if (const auto& states = rotor.states()) {
-    q = dense(states->displacement.get());
-    v = dense(states->velocity.get());
+    q = rotor::dense(states->displacement.get());
+    v = rotor::dense(states->velocity.get());
   } else if (!rotor.matrices().basis) {
     return MatrixXd::Identity(2 * reduced.coordinates(), 2 * reduced.coordinates());
   } else {
-    const MatrixXd t = dense(rotor.matrices().basis.get());
+    const MatrixXd t = rotor::dense(rotor.matrices().basis.get());
     q = v = MatrixXd::Zero(t.rows(), kept);
     for (Index j = 0; j < t.cols(); ++j) {
       q.col(2 * j) = t.col(j);

@@ -8,7 +8,7 @@
 
 namespace whirl::rotor {
 
-/// All entries of a square matrix that stands on one rank alone.
+/// All entries of a matrix that stands on one rank alone.
 [[nodiscard]] Eigen::MatrixXd dense(Mat sparse);
 
 /// The Cholesky factors of a matrix that has to be positive definite, `what` in words. Throws core::NotConverged.
