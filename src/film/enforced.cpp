@@ -21,6 +21,7 @@ using std::numbers::pi;
 
 constexpr int fewest_harmonics = 4, most_harmonics = 32;
 constexpr double small_tail = 1e-7;
+constexpr int restart = 60;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -28,10 +29,16 @@ std::size_t at(Index i) {
 
 }  // namespace
 
+// dg/ds + i k omega dg/ds' at rest, factorised, of k = 0, 1, ...: the same whatever the number of points.
+struct Enforced::Factors {
+  std::vector<std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<Complex>>>> of;
+};
+
 // The film over one period: states [state, point].
 class Enforced::Period {
 public:
-  Period(Film& film, const JournalMotion& rest, const std::vector<double>& states, double omega, int harmonics);
+  Period(Film& film, const JournalMotion& rest, const std::vector<double>& states, double omega, int harmonics,
+         Factors& factors);
   [[nodiscard]] EnforcedForces along(std::size_t port, double amplitude, const std::array<double, 4>& at_rest);
 
 private:
@@ -55,11 +62,11 @@ private:
   std::vector<JournalMotion> motions_;  // at the points
   MatrixXd now_;
   std::vector<StateResponse> here_;
-  std::vector<std::unique_ptr<Eigen::SparseLU<Eigen::SparseMatrix<Complex>>>> lu_;  // of the harmonics
+  Factors& factors_;
 };
 
 Enforced::Period::Period(Film& film, const JournalMotion& rest, const std::vector<double>& states, double omega,
-                         int harmonics)
+                         int harmonics, Factors& factors)
     : film_(film),
       rest_(rest),
       states_(Eigen::Map<const VectorXd>(states.data(), static_cast<Index>(states.size()))),
@@ -71,7 +78,8 @@ Enforced::Period::Period(Film& film, const JournalMotion& rest, const std::vecto
       n_(states_.size()),
       rates_(points_, points_),
       to_points_(harmonics + 1, points_),
-      here_(at(points_)) {
+      here_(at(points_)),
+      factors_(factors) {
   for (const StateField& f : film.state_fields())
     f.each([&](int k) {
       scale_(k) = f.scale;
@@ -126,16 +134,18 @@ MatrixXd Enforced::Period::product(const MatrixXd& x) const {
 }
 
 void Enforced::Period::factor() {
-  if (!lu_.empty()) return;
+  auto& lu = factors_.of;
+  if (lu.size() > static_cast<std::size_t>(harmonics_)) return;
   StateResponse r;
   const std::vector<double> still(at(n_), 0.0);
   film_.evaluate(rest_, std::span(states_.data(), at(n_)), still, Need::tangents, r);
   const Share& whole = film_.whole();
   FilmMatrix<Complex> matrix(whole, whole.d_states, &whole.d_rates);
-  for (int k = 0; k <= harmonics_; ++k) {
-    lu_.push_back(std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<Complex>>>());
-    lu_.back()->compute(matrix.filled(r.d_states, r.d_rates, 1.0, Complex(0.0, k * omega_)));
-    if (lu_.back()->info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+  for (int k = static_cast<int>(lu.size()); k <= harmonics_; ++k) {
+    auto next = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<Complex>>>();
+    next->compute(matrix.filled(r.d_states, r.d_rates, 1.0, Complex(0.0, k * omega_)));
+    if (next->info() != Eigen::Success) throw core::NotConverged("the film by itself is singular");
+    lu.push_back(std::move(next));
   }
 }
 
@@ -144,7 +154,7 @@ MatrixXd Enforced::Period::inverse_at_rest(const MatrixXd& r) {
   Eigen::MatrixXcd out(n_, harmonics_ + 1);
   for (int k = 0; k <= harmonics_; ++k) {
     const Eigen::VectorXcd b = in.col(k);
-    out.col(k) = (k == 0 ? 1.0 : 2.0) * lu_[static_cast<std::size_t>(k)]->solve(b);
+    out.col(k) = (k == 0 ? 1.0 : 2.0) * factors_.of[static_cast<std::size_t>(k)]->solve(b);
   }
   return (out * to_points_).real();
 }
@@ -170,7 +180,7 @@ void Enforced::Period::solve(EnforcedForces& out) {
     in(x, [&](const auto& m) { into(row_scale_.cwiseInverse().asDiagonal() * product(m), y); });
   });
   const core::LinearSolver krylov = core::make_krylov(
-      matrix.get(), gate, {.prefix = "enforced_", .tolerance = 1e-6, .most = 300, .restart = 60},
+      matrix.get(), gate, {.prefix = "enforced_", .tolerance = 1e-6, .most = 300, .restart = restart},
       [&](Vec x, Vec y) { in(x, [&](const auto& m) { into(inverse_at_rest(row_scale_.asDiagonal() * m), y); }); });
   const core::Vector b = core::make_vector(PETSC_COMM_SELF, total, total), x = core::duplicate(b.get());
   double before = std::numeric_limits<double>::infinity();
@@ -241,7 +251,7 @@ EnforcedForces Enforced::Period::along(std::size_t port, double amplitude, const
 }
 
 Enforced::Enforced(Film& film, const JournalMotion& rest, std::vector<double> states, double omega)
-    : film_(film), rest_(rest), states_(std::move(states)), omega_(omega) {
+    : film_(film), rest_(rest), states_(std::move(states)), omega_(omega), factors_(std::make_unique<Factors>()) {
   if (!(omega > 0)) throw core::InputError("film: the frequency of stiffness and damping must be positive");
   StateResponse r;
   const std::vector<double> still(states_.size(), 0.0);
@@ -253,12 +263,19 @@ Enforced::~Enforced() = default;
 
 EnforcedForces Enforced::along(std::size_t port, double amplitude) {
   if (!(amplitude > 0)) throw core::InputError("film: the amplitude of a journal's motion must be positive");
-  std::size_t which = 0;
-  for (int harmonics = fewest_harmonics;; harmonics *= 2, ++which) {
-    if (which == known_.size()) known_.push_back(std::make_unique<Period>(film_, rest_, states_, omega_, harmonics));
-    EnforcedForces out = known_[which]->along(port, amplitude, force_);
+  for (int harmonics = fewest_harmonics;; harmonics *= 2) {
+    Period period(film_, rest_, states_, omega_, harmonics, *factors_);
+    EnforcedForces out = period.along(port, amplitude, force_);
     if (out.tail <= small_tail || harmonics >= most_harmonics) return out;
   }
+}
+
+// Of each state: factors of about 6 log2(n) entries, at each point two evaluations with 25 numbers each, and what GMRES
+// keeps between restarts.
+double Enforced::memory(double states) {
+  constexpr double factors = most_harmonics + 1, points = 2 * most_harmonics + 1, entry = 20;
+  const double of_factors = factors * 6 * std::log2(std::max(states, 2.0)) * entry;
+  return states * (of_factors + points * sizeof(double) * (2 * 25 + restart));
 }
 
 }  // namespace whirl::film

@@ -158,6 +158,9 @@ def refused(h):
     h.true("a train from the centre", done.returncode == 2 and "rigid rotor on one bearing" in done.stderr, done.stderr.strip()[:200])
     # Through the wall: the rest of the study is there.
     s = h.run(deck, "wall", ["bearings.A.film.cells=[24, 8]", study % ", method: enforced, amplitudes: [0.05, 0.9]"], launcher=[])["c"]
+    h.true("    and a warning says why", any("along y with amplitude 0.9" in w and "touch" in w for w in s.get("warnings", [])), str(s.get("warnings")))
+    tail = [value(s, f"speed.2000.ratio.1.amplitude.{a}.tail.y") for a in (0.05, 0.9)]
+    h.true("    the other is resolved in time", 0 <= tail[0] <= 1e-7 and tail[1] is None, str(tail))
     h.true("an amplitude through the wall has no values", value(s, "speed.2000.ratio.1.amplitude.0.9.K.yy") is None and value(s, "speed.2000.ratio.1.amplitude.0.05.K.yy") > 0)
 
 

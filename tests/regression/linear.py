@@ -117,6 +117,14 @@ def response(h):
         found = f["studies/disc/response/given/bearing.left.x.from.bearing.left.x/real"][()]
     for w, g in zip((2, 3), found):
         h.close(f"given: a spring of {w} kN/m [m/N]", g, 1e-3 / w, 1e-5 / w)
+    # A linear film over the speed is at 5000 rad/s the one half-way between its two rows, for every study.
+    modes = "studies+={modes: {name: modes, supports: films, speeds: [5000 rad/s], count: 6}}"
+    over = "bearings.left.film={type: linear, stiffness: 0 N/m, damping: 100 N s/m, table: [{speed: 0 rad/s, k_xx: 1e7 N/m, k_yy: 1e7 N/m}, {speed: 10000 rad/s, k_xx: 3e7 N/m, k_yy: 2e7 N/m, b_yy: 50 N s/m}]}"
+    there = "bearings.left.film={type: linear, damping: [100 N s/m, 0 N s/m, 0 N s/m, 125 N s/m], stiffness: [2e7 N/m, 0 N/m, 0 N/m, 1.5e7 N/m]}"
+    a, b = (h.run(deck, name, [few, modes, film], launcher=[])["modes"]["modes"] for name, film in (("over speed", over), ("at speed", there)))
+    h.close("a film over the speed", np.abs(matrix("over speed") / matrix("at speed") - 1).max(), 0, 1e-9)
+    h.true("    is another one", np.abs(matrix("over speed") / matrix("few") - 1).max() > 0.1)
+    h.close("    its modes [rad/s]", max(abs(p["imag"] - q["imag"]) for p, q in zip(a, b)), 0, 1e-6 * b[-1]["imag"])
     # Far below all resonances: the springs, and the shaft's own compliance.
     stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}]}",
              "bearings.*.film.stiffness=1e3 N/m"]

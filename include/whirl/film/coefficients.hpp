@@ -15,8 +15,8 @@ namespace whirl::film {
 /// The adjoint y = (A + i omega E)^-T df/ds is found in the block Krylov space of A^-T E^T from A^-T df/ds, which is
 /// real and the same at all frequencies: a real LU of A, four solves for each block more, and few blocks where the
 /// film's own decay is faster than omega. The basis grows until the coefficients stand still to 1e-9 and less. Where
-/// they do not, A is singular, or the force depends on rates of states, a complex LU of A + i omega E. Not thread-safe. Source:
-/// moments of transfer functions by Krylov spaces, Antoulas (2005) ch. 11.
+/// they do not, A is singular, or the force depends on rates of states, a complex LU of A + i omega E. Not thread-safe.
+/// Source: moments of transfer functions by Krylov spaces, Antoulas (2005) ch. 11.
 class FrequencyCoefficients {
 public:
   /// About a journal at rest and a film that has come to rest with it. Throws as Film::evaluate().

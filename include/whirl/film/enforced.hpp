@@ -46,15 +46,18 @@ public:
   /// @param amplitude 0 to peak [m, of slopes 1], positive
   /// Throws core::DomainError where the surfaces touch on the way, core::NotConverged where no such film is found.
   [[nodiscard]] EnforcedForces along(std::size_t port, double amplitude);
+  /// Bytes that this takes at most, of a film with `states` states on a mesh.
+  [[nodiscard]] static double memory(double states);
 
 private:
+  struct Factors;
   class Period;
   Film& film_;
   JournalMotion rest_;
   std::vector<double> states_;
   double omega_;
-  std::array<double, 4> force_{};               // at rest
-  std::vector<std::unique_ptr<Period>> known_;  // of each number of points
+  std::array<double, 4> force_{};     // at rest
+  std::unique_ptr<Factors> factors_;  // of the harmonics so far
 };
 
 }  // namespace whirl::film

@@ -41,7 +41,7 @@ struct Misplaced {
 
 /// What a film is like, from its options alone. A default one is a smooth film in closed form on a rigid bore.
 struct Facts {
-  bool coefficients = false;    // constant coefficients alone: no bore, no lubricant, no thickness, no pressure
+  bool coefficients = false;    // coefficients alone: no bore, no lubricant, no thickness, no pressure
   bool gives_way = false;       // the bore is elastic, so that the journal may go beyond the clearance
   bool asperities = false;      // they carry where journal and bore touch
   bool tilts = false;           // it follows the slope of the journal

@@ -180,6 +180,10 @@ StudyResult DynamicCoefficients::run(Context& context) {
     return context.results.finish(none->what(), false);
   }
   put_summary(summary, options, clearance, found);
+  std::vector<std::string> speeds;
+  for (const deck::Quantity& q : options.speeds) speeds.push_back(number_text(q.value, q.unit) + " " + q.unit);
+  for (std::string& line : lost_motions(enforced_of(found), speeds, options.all_frequencies(), options.amplitudes))
+    summary.warnings.push_back(std::move(line));
 
   const MeshLaw law = law_of(context.machine);
   Bars bars(numbers_of(found), law);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/bars/film_mesh.hpp"
+#include "whirl/film/enforced.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/study/bearing/dynamic_coefficients.hpp"
 
@@ -62,9 +64,20 @@ std::vector<double> DynamicCoefficientsOptions::all_frequencies() const {
   return out;
 }
 
-double DynamicCoefficients::memory(const system::Machine&, const LayoutOptions& /*layout*/) const {
-  return 600.0 * static_cast<double>(options.all_frequencies().size() * options.speeds.size() *
-                                     (1 + options.amplitudes.size()));
+double DynamicCoefficients::memory(const system::Machine& machine, const LayoutOptions& layout) const {
+  const double table = 600.0 * static_cast<double>(options.all_frequencies().size() * options.speeds.size() *
+                                                   (1 + options.amplitudes.size()));
+  const auto found =
+      options.bearing.empty() ? std::optional<std::size_t>(0) : system::find_bearing(machine, options.bearing);
+  if (!found || *found >= machine.bearings.size()) return table;
+  const system::Bearing& b = machine.bearings[*found];
+  const auto states_of = [&](const film::Options& film) {
+    return static_cast<double>(film::facts(film, b.geometry.value_or(film::Geometry{})).states);
+  };
+  double states = states_of(b.film);  // of the finest mesh, which error bars need
+  for (const FilmMesh& mesh : film_meshes(machine, layout))
+    states = std::max(states, states_of(film::refined(b.film, mesh.factor)));
+  return table + 5000 * states + (options.amplitudes.empty() ? 0 : film::Enforced::memory(states));
 }
 
 void DynamicCoefficients::validate(const system::Machine& machine, const deck::Report& report) const {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "study/bearing/coefficient_names.hpp"
 #include "whirl/film/enforced.hpp"
@@ -33,6 +35,7 @@ void fill(EnforcedAt& out, std::size_t port, const film::EnforcedForces& f) {
     out.coefficients.damping[i][port] = f.damping[i];
   }
   out.distortion[port] = f.distortion;
+  out.tail[port] = f.tail;
 }
 
 // Of entries that have a size: shifts by shifts and slopes by slopes.
@@ -59,7 +62,7 @@ std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore
   film::Enforced enforced(film, at.motion, at.states, omega);
   const auto ports = film.ports();
   film::EnforcedForces none;
-  none.distortion = std::numeric_limits<double>::quiet_NaN();
+  none.distortion = none.tail = std::numeric_limits<double>::quiet_NaN();
   none.stiffness.fill(none.distortion);
   none.damping.fill(none.distortion);
   std::vector<EnforcedAt> out;
@@ -72,8 +75,10 @@ std::vector<EnforcedAt> enforced_at(film::Film& film, const film::Geometry& bore
       fill(now, port, none);
       try {
         fill(now, port, enforced.along(port, size));
-      } catch (const core::DomainError&) {
-      } catch (const core::NotConverged&) {
+      } catch (const core::DomainError& error) {
+        now.lost[port] = error.what();
+      } catch (const core::NotConverged& error) {
+        now.lost[port] = error.what();
       }
     }
     now.apart = difference(now.coefficients, perturbation);
@@ -91,10 +96,39 @@ void put_enforced(io::StudySummary& summary, const std::string& head, std::span<
         summary.set(at + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
         summary.set(at + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
       }
-    for (std::size_t j = 0; j < c.ports; ++j)
+    for (std::size_t j = 0; j < c.ports; ++j) {
       summary.set(at + "distortion." + port_words[j], found[a].distortion[j], "1");
+      summary.set(at + "tail." + port_words[j], found[a].tail[j], "1");
+    }
     summary.set(at + "from_perturbation", found[a].apart, "1");
   }
+}
+
+std::vector<std::string> lost_motions(const All& found, const std::vector<std::string>& speeds,
+                                      const std::vector<double>& ratios, const std::vector<double>& amplitudes) {
+  std::vector<std::string> out;
+  std::map<std::string, std::pair<std::size_t, int>> known;  // line and how many more, by reason
+  std::vector<std::string> first;
+  for (std::size_t s = 0; s < found.size(); ++s)
+    for (std::size_t f = 0; f < found[s].size(); ++f)
+      for (std::size_t a = 0; a < found[s][f].size(); ++a)
+        for (std::size_t port = 0; port < found[s][f][a].coefficients.ports; ++port) {
+          const std::string& why = found[s][f][a].lost[port];
+          if (why.empty()) continue;
+          const auto [at, is_new] = known.try_emplace(why, first.size(), 0);
+          if (is_new)
+            first.push_back(
+                fmt::format("no values of the enforced motion along {} with amplitude {:.6g} at {:.6g} of "
+                            "the speed {}",
+                            port_words[port], amplitudes[a], ratios[f], speeds[s]));
+          else
+            ++at->second.second;
+        }
+  out.resize(first.size());
+  for (const auto& [why, line] : known)
+    out[line.first] = fmt::format("{}{}: {}", first[line.first],
+                                  line.second > 0 ? fmt::format(", nor of {} more", line.second) : "", why);
+  return out;
 }
 
 void add_numbers(const All& found, std::vector<double>& numbers) {
@@ -135,8 +169,13 @@ void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, co
       }
     }
   for (std::size_t j = 0; j < n; ++j) {
-    std::vector<double> left;
-    each(found, [&](const EnforcedAt& a) { left.push_back(a.distortion[j]); });
+    std::vector<double> left, tail;
+    each(found, [&](const EnforcedAt& a) {
+      left.push_back(a.distortion[j]);
+      tail.push_back(a.tail[j]);
+    });
+    table.put(std::string("tail_") + port_words[j], shape, tail, "1",
+              "highest harmonics of the force over the first one [speed][frequency][amplitude]");
     table.put(
         std::string("distortion_") + port_words[j], shape, left, "1",
         "what stiffness and damping leave of the force, ratio of root mean squares [speed][frequency][amplitude]");

@@ -14,9 +14,11 @@
 
 namespace whirl::study {
 
-/// By motions of one amplitude along each port; not numbers where the surfaces touch on the way.
+/// By motions of one amplitude along each port; not numbers where there is no such motion.
 struct EnforcedAt {
   film::PortCoefficients coefficients;
+  std::array<double, 4> tail{};        ///< of the motion along each port: what the highest harmonics are of the first
+  std::array<std::string, 4> lost{};   ///< why there is none along a port; else empty
   std::array<double, 4> distortion{};  ///< of the forces by the motion along each port: what K and B leave of them
   double apart = 0;                    ///< largest difference from the perturbation, of the largest entry of its block
 };
@@ -30,6 +32,12 @@ struct EnforcedAt {
 /// Values of one speed and frequency under names that begin with `head`.
 void put_enforced(io::StudySummary& summary, const std::string& head, std::span<const double> amplitudes,
                   const std::vector<EnforcedAt>& found);
+
+/// What motions have no values and why, one line a reason with the first of them; speeds in words, [speed].
+[[nodiscard]] std::vector<std::string> lost_motions(const std::vector<std::vector<std::vector<EnforcedAt>>>& found,
+                                                    const std::vector<std::string>& speeds,
+                                                    const std::vector<double>& ratios,
+                                                    const std::vector<double>& amplitudes);
 
 /// Their numbers that may have bars, in the order in which put_enforced_tables() takes these: K and B by entry.
 void add_numbers(const std::vector<std::vector<std::vector<EnforcedAt>>>& found, std::vector<double>& numbers);
