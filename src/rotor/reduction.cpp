@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "dense.hpp"
 #include "eigen.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/rotor/dense.hpp"
 
 namespace whirl::rotor {
 namespace {

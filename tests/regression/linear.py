@@ -129,6 +129,7 @@ def response(h):
     stiff = ["studies.1.frequency_response={name: disc, speed: 0 rad/s, range: {from: 0.1 rad/s, to: 0.2 rad/s}, points: 2, inputs: [{bearing: left, direction: x}]}",
              "bearings.*.film.stiffness=1e3 N/m"]
     s = h.run(deck, "soft", stiff, launcher=[])["disc"]
+    h.true("without film meshes no bars", "uncertainty" not in s["values"]["bearing.left.x.from.bearing.left.x.largest"])
     h.close("a soft spring at rest [m/N]", value(s, "bearing.left.x.from.bearing.left.x.largest"), 1e-3, 1e-6)
 
 
@@ -139,6 +140,24 @@ def coefficients(h):
     s = h.run(deck, "few", few, launcher=[])["journal"]
     h.close("by coefficients at each frequency", value(s, "coefficients.difference"), 0, 1e-8)
     h.true("by those of synchronous whirl", value(s, "constant.1.difference") > 0.05, f"{value(s, 'constant.1.difference'):.3g}")
+    # Bars of the coarse film against one with half the spacing, real and imaginary part together.
+    h.run(deck, "fine", ["studies.1.frequency_response.points=8", "studies.1.frequency_response.coefficients=false",
+                         "studies.1.frequency_response.constant_at=[]", "bearings.A.film.cells=[96, 32]", "layout={refined_states: 1}"], launcher=[])
+    with h5py.File(h.work / "few/results.h5") as f, h5py.File(h.work / "fine/results.h5") as g:
+        bars, tables = f["studies/journal/bars"], [x["studies/journal/response/machine"] for x in (f, g)]
+        frequency = f["studies/journal/response/frequency"][()]
+        at = np.searchsorted(frequency, bars["frequency"][()])
+        h.true("bars: at five frequencies or more", len(at) >= 5 and np.array_equal(frequency[at], bars["frequency"][()]))
+        covered = []
+        for name in tables[0]:
+            coarse, fine = (t[name]["real"][()] + 1j * t[name]["imaginary"][()] for t in tables)
+            bar = bars[name][()]
+            h.true(f"bars: {name} are known and small", np.all(bar > 0) and np.median(bar / np.abs(coarse[at])) < 0.5, np.array2string(bar / np.abs(coarse[at]), precision=2))
+            covered += list(np.abs(fine - coarse)[at] <= bar)
+            entry = s["values"][f"{name}.largest"]
+            h.close("    that of the largest", entry["uncertainty"], bar[list(at).index(int(np.abs(coarse).argmax()))], 1e-12 * entry["value"])
+            h.close("    largest part", value(s, f"{name}.relative_error"), (bar / np.abs(coarse[at])).max(), 1e-9)
+        h.true("bars cover", np.mean(covered) >= 0.8, f"{np.mean(covered):.2f}")
     two = h.run(deck, "ranks", few, launcher=[*h.launcher, "-n", "2"])["journal"]
     for name in ("bearing.A.x.from.bearing.A.x.largest", "constant.1.difference"):
         h.close(f"{name}, two ranks", value(two, name), value(s, name), 1e-5 * value(s, name))

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,7 +13,10 @@
 #include "rotor/shafts.hpp"
 #include "support/dense.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/deck/codecs.hpp"
 #include "whirl/rotor/alignment.hpp"
+#include "whirl/rotor/critical_speeds.hpp"
+#include "whirl/rotor/describe.hpp"
 #include "whirl/rotor/element.hpp"
 #include "whirl/rotor/frequencies.hpp"
 #include "whirl/rotor/rotor.hpp"
@@ -284,6 +288,35 @@ TEST(TrialRotor, InternalDampingHasTheThresholdsOfTheReference) {
     EXPECT_LT(growth(damping, threshold - within), 0);
     EXPECT_GT(growth(damping, threshold + within), 0);
   }
+}
+
+// The same of other elements and of the shaft without its disc, and where the whirl without damping meets the speed.
+TEST(TrialRotor, OtherElementsHaveTheThresholdsAndCriticalSpeedsOfTheReference) {
+  const trial::Reference reference = trial::read();
+  const auto shaft = [](const trial::OfElement& of) {
+    const auto found = std::find_if(all_elements.begin(), all_elements.end(),
+                                    [&](Element e) { return deck::name_of(e) == of.element; });
+    EXPECT_NE(found, all_elements.end()) << of.element;
+    return trial_shaft(found == all_elements.end() ? Element::timoshenko : *found, 10, of.disc);
+  };
+  EXPECT_EQ(reference.other_thresholds.size(), 12u);
+  for (const trial::OfElement& t : reference.other_thresholds) {
+    rotor::Options o = shaft(t);
+    o.internal_damping = reference.internal_damping;
+    const auto growth = [&](double speed) {
+      double most = -INFINITY;
+      for (const test::Whirl& w :
+           test::whirl_modes(o, {{1, 1e7, t.bearing_damping}, {11, 1e7, t.bearing_damping}}, speed))
+        most = std::max(most, w.growth);
+      return most;
+    };
+    EXPECT_LT(growth(t.speed * (1 - 1e-5)), 0) << t.element << ' ' << t.disc << ' ' << t.bearing_damping;
+    EXPECT_GT(growth(t.speed * (1 + 1e-5)), 0) << t.element << ' ' << t.disc << ' ' << t.bearing_damping;
+  }
+  EXPECT_EQ(reference.critical_speeds.size(), 5u);
+  for (const trial::OfElement& c : reference.critical_speeds)
+    EXPECT_NEAR(rotor::critical_speeds(shaft(c), {1, 11}, 1e7, rotor::Whirl::forward, 1).at(0), c.speed, 1e-8 * c.speed)
+        << c.element << ' ' << c.disc;
 }
 
 // Any family, whole and reduced: N is the stiffness across the planes, C the stiffness, and in a frame that turns with

@@ -3,11 +3,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
 
+#include "study/bars/film_mesh.hpp"
+#include "study/bars/summary_bars.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
+#include "study/linear/mode_bars.hpp"
 #include "study/linear/transfer_points.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
@@ -43,11 +50,12 @@ struct Way {
 
 class Transfers {
 public:
+  /// `cells`: of the films over those of the deck.
   Transfers(const Context& context, const Layout& layout, const FrequencyResponseOptions& options,
-            const std::vector<TransferOutput>& outputs)
+            const std::vector<TransferOutput>& outputs, const std::array<double, 2>& cells = {1, 1})
       : options_(options),
         outputs_(outputs),
-        train_(with_joints(system::train_of(context.machine), options)),
+        train_(with_film_mesh(with_joints(system::train_of(context.machine), options), cells)),
         system_(layout.space, train_, options.speed.value),
         walker_(system_),
         matrix_(system_, options.inputs, outputs) {}
@@ -130,6 +138,66 @@ Difference difference(const Matrices& whole, const Matrices& other, const std::v
   return out;
 }
 
+// Where a response is largest.
+std::size_t largest_of(const Matrices& found, std::size_t response) {
+  std::size_t most = 0;
+  for (std::size_t k = 1; k < found.size(); ++k)
+    if (std::abs(found[k][response]) > std::abs(found[most][response])) most = k;
+  return most;
+}
+
+void append(std::vector<double>& out, const std::vector<Complex>& matrix) {
+  for (const Complex& g : matrix) out.insert(out.end(), {g.real(), g.imag()});
+}
+
+// Error bars of complex responses at some of the frequencies, in the units of these; NaN: unknown. Empty without film
+// meshes.
+struct TransferBars {
+  std::vector<std::size_t> at;             // of the frequencies, ascending
+  std::vector<std::vector<double>> error;  // [response][of these]
+  [[nodiscard]] double of(std::size_t response, std::size_t frequency) const {
+    return error[response][static_cast<std::size_t>(std::find(at.begin(), at.end(), frequency) - at.begin())];
+  }
+};
+
+// The machine with its films as they are at a few frequencies, and where each response is largest, on other film
+// meshes. One task is one mesh.
+TransferBars bars_of(const Context& context, const Layout& layout, Pieces& pieces,
+                     const FrequencyResponseOptions& options, const std::vector<TransferOutput>& outputs,
+                     const std::vector<double>& frequencies, const Matrices& found) {
+  TransferBars out;
+  const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
+  if (meshes.empty()) return out;
+  const std::size_t responses = found.front().size();
+  const std::vector<std::size_t> few = few_of(frequencies.size());
+  std::set<std::size_t> at(few.begin(), few.end());
+  for (std::size_t e = 0; e < responses; ++e) at.insert(largest_of(found, e));
+  out.at.assign(at.begin(), at.end());
+  const auto compute = [&](std::size_t i) {
+    std::vector<double> all;
+    const bool answered = has_answer([&] {
+      Transfers there(context, layout, options, outputs, meshes[i].factor);
+      for (const std::size_t k : out.at) append(all, there.at({"machine"}, frequencies[k]));
+    });
+    if (!answered) all.clear();
+    return all;
+  };
+  // Each mesh starts anew and leaves nothing behind.
+  const Trail none{[] { return std::vector<double>{}; }, [](const std::vector<double>&) {}};
+  const auto on_meshes = distribute(layout, meshes.size(), compute, pieces, "film mesh", none);
+  std::vector<double> here;
+  for (const std::size_t k : out.at) append(here, found[k]);
+  Bars bars(here, law_of(context.machine));
+  for (std::size_t i = 0; i < meshes.size(); ++i) bars.add(meshes[i].axis, meshes[i].spacing, on_meshes[i]);
+  out.error.resize(responses);
+  for (std::size_t k = 0; k < out.at.size(); ++k)
+    for (std::size_t e = 0; e < responses; ++e) {
+      const std::size_t real = 2 * (k * responses + e);
+      out.error[e].push_back(std::hypot(bars[real].total(), bars[real + 1].total()));
+    }
+  return out;
+}
+
 }  // namespace
 
 StudyResult FrequencyResponse::run(Context& context) {
@@ -172,11 +240,19 @@ StudyResult FrequencyResponse::run(Context& context) {
     }
   }
 
+  const TransferBars bars = bars_of(context, layout, pieces, options, outputs, frequencies, all[0]);
+
   auto& group = results.group();
   group.set("speed", options.speed.value);
   group.set("frequency_unit", unit);
   auto& response = group.child("response");
   response.put("frequency", frequencies, "rad/s", "of force and motion");
+  if (!bars.at.empty()) {
+    std::vector<double> at;
+    for (const std::size_t k : bars.at) at.push_back(frequencies[k]);
+    group.child("bars").put("frequency", at, "rad/s",
+                            "at which errors are estimated: a few, and where each is largest");
+  }
   for (const Way& way : ways) response.child(way.name).set("frequency", way.frequency);
   const std::size_t inputs = options.inputs.size();
   for (std::size_t o = 0; o < outputs.size(); ++o)
@@ -196,9 +272,20 @@ StudyResult FrequencyResponse::run(Context& context) {
         table.put("amplitude", column[2], of, "0-peak over 0-peak");
         table.put("phase", column[3], "rad", "of the output ahead of the input");
         if (w > 0) continue;
-        const auto most = std::max_element(column[2].begin(), column[2].end()) - column[2].begin();
-        summary.set(name + ".largest", column[2][static_cast<std::size_t>(most)], of);
-        summary.set(name + ".largest_at", deck::from_si(frequencies[static_cast<std::size_t>(most)], unit), unit);
+        const std::size_t e = o * inputs + i, most = largest_of(all[0], e);
+        std::map<std::string, double> bar;
+        if (!bars.at.empty()) bar["uncertainty"] = bars.of(e, most);
+        summary.set(name + ".largest", column[2][most], of, bar);
+        summary.set(name + ".largest_at", deck::from_si(frequencies[most], unit), unit);
+        if (bars.at.empty()) continue;
+        double worst = 0;
+        for (std::size_t k = 0; k < bars.at.size(); ++k) {
+          const double part = bars.error[e][k] / column[2][bars.at[k]];
+          if (!(part <= worst)) worst = part;  // unknown stays unknown
+          if (std::isnan(worst)) break;
+        }
+        summary.set(name + ".relative_error", worst, "1");
+        group.child("bars").put(name, bars.error[e], of, "estimated error of the complex response from the film mesh");
       }
     }
   for (std::size_t w = 1; w < ways.size(); ++w) {

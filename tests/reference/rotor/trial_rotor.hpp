@@ -24,9 +24,18 @@ struct Threshold {
   double bearing_damping = 0, speed = 0;
 };
 
+/// A speed [rad/s] of a shaft of ten elements of a kind: a threshold of whirl with bearings of this damping [N s/m], or
+/// the first forward critical speed.
+struct OfElement {
+  std::string element;
+  bool disc = false;
+  double bearing_damping = 0, speed = 0;
+};
+
 struct Reference {
   std::vector<Case> cases;
   std::vector<Threshold> thresholds;
+  std::vector<OfElement> other_thresholds, critical_speeds;
   double internal_damping = 0;  // s, of the thresholds
 };
 
@@ -39,6 +48,10 @@ inline Reference read() {
         {c.at("name"), c.at("shear"), c.at("disc"), c.at("speed"), c.at("frequency"), c.at("uncertainty")});
   for (const nlohmann::json& t : all.at("thresholds"))
     out.thresholds.push_back({t.at("bearing_damping"), t.at("speed")});
+  for (const nlohmann::json& t : all.at("other_thresholds"))
+    out.other_thresholds.push_back({t.at("element"), t.at("disc"), t.at("bearing_damping"), t.at("speed")});
+  for (const nlohmann::json& c : all.at("critical_speeds"))
+    out.critical_speeds.push_back({c.at("element"), c.at("disc"), 0.0, c.at("speed")});
   out.internal_damping = all.at("internal_damping");
   return out;
 }
