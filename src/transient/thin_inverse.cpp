@@ -70,7 +70,6 @@ void ThinInverse::factorise_film(const ThinOperator& a, std::size_t which, Film&
   Sparse s(own.count, own.count);
   s.setFromTriplets(entries.begin(), entries.end());
   film.lu.compute(s);
-  if (film.lu.info() != Eigen::Success) throw core::NotConverged("the matrix of a film's states is singular");
   film.by_input = film.lu.solve(MatrixXd(rows.asDiagonal() * t.inputs.transpose()));
   film.forces = tau * t.forces * columns.asDiagonal();
   if (t.force_rates.rows() > 0) film.forces += t.force_rates * columns.asDiagonal();
@@ -148,7 +147,7 @@ void ThinInverse::apply(const ThinOperator& a, const VectorXd& y, VectorXd& x) {
     forces_.setZero(structure_.n_forces());
     for (std::size_t i = 0; i < f.films.size(); ++i) {
       const problem::OwnStates& own = structure_.own()[i];
-      x.segment(n + own.first, own.count) = f.films[i]->lu.solve(y.segment(n + own.first, own.count));
+      f.films[i]->lu.solve(y.data() + n + own.first, x.data() + n + own.first);
       forces_.segment(own.first_force, own.forces) += f.films[i]->forces * x.segment(n + own.first, own.count);
     }
     rhs_ += blocks.b * forces_;

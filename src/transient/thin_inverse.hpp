@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "transient/state_factors.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
 
@@ -58,9 +59,9 @@ public:
 private:
   using Sparse = Eigen::SparseMatrix<double>;
   struct Film {
-    Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>> lu;  // of dg/ds' + tau dg/ds
-    Eigen::MatrixXd by_input;                                // its inverse times dg/dw [k x w]
-    Eigen::MatrixXd forces;                                  // df/ds' + tau df/ds [f x k]
+    StateFactors lu;           // of dg/ds' + tau dg/ds
+    Eigen::MatrixXd by_input;  // its inverse times dg/dw [k x w]
+    Eigen::MatrixXd forces;    // df/ds' + tau df/ds [f x k]
   };
   struct Factors {
     double tau = 0, parameter = 0;
