@@ -24,7 +24,7 @@ PICTURES = {
     "reduction_errors": [reductions.draw_errors, reductions.draw_orbits, reductions.draw_maps],
     "unbalance_response": [response.draw],
     "equilibrium_branch": [bifurcation.draw_equilibria, orbits.draw_locus],
-    "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, multipliers.draw],
+    "cycle_branch": [bifurcation.draw_cycles, bifurcation.draw_frequency, orbits.draw, orbits.draw_harmonics, multipliers.draw],
     "linearity": [linearity.draw_transfer, linearity.draw_coherence, linearity.draw_excitation],
     "motion": [motion.draw, motion.draw_full_spectrum, orders.draw_waterfall, orders.draw_orders],
     "run_up": [orders.draw_waterfall, orders.draw_orders],

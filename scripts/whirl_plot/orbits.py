@@ -94,6 +94,39 @@ def draw(study, shown=9):
     return save(figure, study, "orbits", f"{note}; {ROTATION}" if known and len(names) > 2 else note, handles, 5)
 
 
+def draw_harmonics(study, highest=20):
+    """Of some self-excited cycles: what the multiples of their whirl take part in them, bearing by bearing."""
+    period, orbits = study.get("branch/period"), study.orbits
+    if not orbits or period is None or study.attribute("unbalance", "") or any(o.point is None for o in orbits):
+        return []
+    scale, unit = study.micro
+    along = along_branch(study, orbits)
+    pick = np.unique([int(np.argmin(np.abs(along - s))) for s in np.linspace(along[0], along[-1], 4)[1:]])
+    stable = stability(study, [orbits[k] for k in pick])
+    names = orbits[0].places
+    figure, axes = plt.subplots(1, len(names), figsize=(max(5.8, 2.6 * len(names)), 3.2), squeeze=False, sharey=True)
+    colours, handles = plt.cm.viridis(np.linspace(0.1, 0.85, len(pick))), []
+    given = "" if study.attribute("parameter_unit", "1") == "1" else " " + study.attribute("parameter_unit")
+    top = 0.0
+    for k, colour, steady in zip(pick, colours, stable):
+        o, hertz = orbits[k], 1 / period[orbits[k].point]
+        parts = np.fft.fft((o.x + 1j * o.y) * scale, axis=0) / len(o.x)
+        order = np.arange(1, min(highest, (len(o.x) - 1) // 2) + 1)
+        half_axis = np.abs(parts[order]) + np.abs(parts[-order])
+        top = max(top, half_axis.max())
+        for b, axis in enumerate(axes[0]):
+            axis.plot(order * hertz, half_axis[:, b], "-o" if steady is not False else "--o", color=colour, markersize=3, linewidth=0.8)
+        handles.append(Line2D([], [], color=colour, marker="o", markersize=3, linewidth=0.8, linestyle=DASHED if steady is False else "-",
+                              label=f"{o.parameter:.5g}{given}, whirl {hertz:.4g} Hz" + (", unstable" if steady is False else "")))
+    for axis, name in zip(axes[0], names):
+        axis.set_yscale("log")
+        axis.set_ylim(1e-5 * top, 2 * top)
+        axis.set_xlabel("frequency [Hz]")
+        axis.set_title(name)
+    axes[0, 0].set_ylabel(f"larger half-axis [{unit}]")
+    return save(figure, study, "harmonics", f"harmonics of the whirl of each cycle, the larger half-axis of the ellipse of each (0-peak); {study.shown}", handles, 3)
+
+
 def draw_locus(study):
     if not study.has("branch/x", "branch/y") or study.has("places/name"):
         return []

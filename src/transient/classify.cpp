@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace whirl::transient {
@@ -38,6 +39,21 @@ std::optional<Verdict> passing(const Evidence& e, int period, const char* turns)
   return {};
 }
 
+// What does not repeat itself may be on its way to something else. Null if the record has no direction.
+std::optional<Verdict> drifting(const Evidence& e) {
+  constexpr double least = 1.05;
+  const auto& c = e.course;
+  if (c.empty() || !(c.front() > 0) || !(c.back() > 0)) return std::nullopt;
+  const bool up = std::ranges::adjacent_find(c, std::greater_equal{}) == c.end(),
+             down = std::ranges::adjacent_find(c, std::less_equal{}) == c.end();
+  const double ratio = c.back() / c.front();
+  if (!(up || down) || std::max(ratio, 1 / ratio) < least) return std::nullopt;
+  return Verdict{Kind::unsettled, 0, "unsettled",
+                 fmt::format("its points move {} in every eighth of the record, {:.3g} times as far in the last as in "
+                             "the first",
+                             up ? "farther" : "less far", ratio)};
+}
+
 std::string distance(const Evidence& e, int period) {
   return fmt::format("returns within {:.1e} of its size{}", e.returns[static_cast<std::size_t>(period - 1)],
                      known(e) ? ", " + largest(e) : "");
@@ -51,6 +67,7 @@ Verdict forced(const Evidence& e, int period) {
       return {Kind::unsettled, 0, "unsettled", "repeats itself although deviations grow: " + largest(e)};
     return {Kind::periodic, period, fmt::format("period-{}", period), distance(e, period)};
   }
+  if (const auto verdict = drifting(e)) return *verdict;
   const std::string none = fmt::format("no return within {} revolutions", e.returns.size());
   if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + ", no exponents of known uncertainty"};
   if (first == Sign::positive) return {Kind::chaotic, 0, "chaotic", none + ", " + largest(e)};
@@ -66,6 +83,7 @@ Verdict autonomous(const Evidence& e, int period) {
     return {Kind::limit_cycle, period, "limit_cycle",
             fmt::format("period-{} on its section: {}", period, distance(e, period))};
   }
+  if (const auto verdict = drifting(e)) return *verdict;
   const std::string none =
       e.returns.empty() ? "" : fmt::format("no return within {} crossings of the section, ", e.returns.size());
   if (!known(e)) return {Kind::unsettled, 0, "unsettled", none + "no exponents of known uncertainty"};
@@ -103,6 +121,18 @@ std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& po
   std::vector<double> out;
   for (std::size_t k = 0; k < std::min(early.size(), late.size()); ++k)
     out.push_back(early[k] > 0 ? late[k] / early[k] : 1);
+  return out;
+}
+
+std::vector<double> course_of_returns(const std::vector<std::vector<double>>& points, MPI_Comm comm) {
+  constexpr std::size_t pieces = 8, fewest = 8;
+  const std::size_t of_each = points.empty() ? 0 : (points.size() - 1) / pieces;
+  if (of_each < fewest) return {};
+  std::vector<double> out(pieces, 0.0);
+  for (std::size_t i = 0; i < pieces * of_each; ++i)
+    for (std::size_t j = 0; j < points[i].size(); ++j) out[i / of_each] += std::pow(points[i + 1][j] - points[i][j], 2);
+  MPI_Allreduce(MPI_IN_PLACE, out.data(), static_cast<int>(pieces), MPI_DOUBLE, MPI_SUM, comm);
+  for (double& d : out) d = std::sqrt(d / static_cast<double>(of_each));
   return out;
 }
 

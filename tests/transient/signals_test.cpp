@@ -146,6 +146,38 @@ TEST(Verdicts, ASlowTransientIsNoPeriodTwo) {
   EXPECT_EQ(classify(evidence(-1)).name, "period-2");
 }
 
+// Points of a spiral out of a cycle, of its torus, and of a motion that hops about.
+TEST(Verdicts, ASpiralIsNoTorus) {
+  const auto record = [](double growth, int count) {
+    std::vector<std::vector<double>> points;
+    for (int i = 0; i < count; ++i) {
+      const double size = std::pow(growth, i), angle = 2 * M_PI * 0.1608 * i;
+      points.push_back({1 + size * std::cos(angle), 2 + 0.3 * size * std::sin(angle)});
+    }
+    return points;
+  };
+  const auto verdict = [](const std::vector<std::vector<double>>& points) {
+    Evidence e;
+    e.size = 1;
+    e.returns = return_distances(points, 8, 1);
+    e.course = course_of_returns(points);
+    e.exponents = {0.001};
+    e.uncertainties = {0.01};
+    return classify(e);
+  };
+  EXPECT_EQ(verdict(record(1.0003, 400)).kind, Kind::unsettled) << "11 % in 350 revolutions";
+  EXPECT_EQ(verdict(record(0.9997, 400)).kind, Kind::unsettled);
+  EXPECT_EQ(verdict(record(1.00003, 400)).kind, Kind::quasi_periodic) << "1 %";
+  EXPECT_EQ(verdict(record(1, 400)).kind, Kind::quasi_periodic);
+  EXPECT_EQ(verdict(record(1.0003, 60)).kind, Kind::quasi_periodic) << "too few to tell";
+  const auto course = course_of_returns(record(1.001, 801));
+  ASSERT_EQ(course.size(), 8U);
+  EXPECT_NEAR(course[7] / course[0], std::pow(1.001, 700), 1e-3);
+  std::vector<std::vector<double>> hops;
+  for (double x = 0.3; hops.size() < 400; x = 3.9 * x * (1 - x)) hops.push_back({x});
+  EXPECT_EQ(verdict(hops).kind, Kind::quasi_periodic) << "no direction";
+}
+
 TEST(Verdicts, FollowFromTheEvidence) {
   Evidence e;
   e.size = 0.3;

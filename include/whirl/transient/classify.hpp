@@ -19,6 +19,7 @@ struct Evidence {
   std::vector<double> returns;     ///< d_k, k = 1, 2, ...: see return_distances(); of an unforced motion on a section
   double return_tolerance = 1e-4;  ///< d_k below which the motion repeats itself after k revolutions
   std::vector<double> fading;      ///< d_k of the record's second half over that of its first; may be empty
+  std::vector<double> course;      ///< see course_of_returns(); may be empty
   std::vector<double> exponents;   ///< Lyapunov exponents, the largest first; may be empty
   std::vector<double> uncertainties;  ///< of each
 };
@@ -42,12 +43,19 @@ struct Verdict {
 [[nodiscard]] std::vector<double> fading_of_returns(const std::vector<std::vector<double>>& points, int longest,
                                                     MPI_Comm comm = MPI_COMM_SELF);
 
+/// Root mean square of |P_(i+1) - P_i| within each eighth of the record, one after the other; empty if an eighth has
+/// fewer than eight points. Collective on `comm`.
+[[nodiscard]] std::vector<double> course_of_returns(const std::vector<std::vector<double>>& points,
+                                                    MPI_Comm comm = MPI_COMM_SELF);
+
 /// A forced motion is periodic if it returns and its largest exponent is not positive, chaotic if that is positive,
 /// quasi-periodic if it is zero within its uncertainty and nothing returns. Without forcing the number of zero
 /// exponents counts the frequencies, and a limit cycle returns to its section; where no section is known the exponents
 /// decide. Whatever contradicts itself - no return although all deviations die out, a return
 /// although they grow, a return after k revolutions while what keeps it from a shorter one dies out - is unsettled: not
-/// enough revolutions, or an unstable orbit that the motion has not left yet.
+/// enough revolutions, or an unstable orbit that the motion has not left yet. So is what does not return while its
+/// points move farther (or less far) in every eighth of the record than in the one before, by more than 5 % in all: a
+/// spiral on its way into a cycle, or away from one, has zero exponents within their bars for long.
 /// A motion that external forces drive is `driven`: where it is at the same shaft angle says nothing of it, and its
 /// exponents, if there are any, tell only whether it forgets where it began.
 [[nodiscard]] Verdict classify(const Evidence& evidence);

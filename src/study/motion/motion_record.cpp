@@ -71,6 +71,7 @@ transient::Evidence MotionRecord::evidence() const {
   const auto& returning = forced_ ? points_ : section_.states();
   if (e.size >= e.rest) e.returns = transient::return_distances(returning, options_.max_period, e.size, comm);
   e.fading = transient::fading_of_returns(returning, options_.max_period, comm);
+  e.course = transient::course_of_returns(returning, comm);
   if (options_.exponents > 0) {
     e.exponents = exponents_.values();
     e.uncertainties = exponents_.uncertainties();
