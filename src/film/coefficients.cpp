@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/sparse_lu.hpp"
 #include "whirl/film/film_matrix.hpp"
 
 namespace whirl::film {
@@ -27,7 +28,7 @@ MatrixXd columns(const PortColumns& of, Index rows, Index count) {
 
 // V of block Arnoldi [states x ports of each step] on dg/ds^-T dg/ds'^T, and what that does to it.
 struct FrequencyCoefficients::Space {
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
+  core::SparseLu lu;
   Eigen::SparseMatrix<double> rates;  // dg/ds'
   MatrixXd basis, hessenberg;         // [states x k], [k + ports x k]
   MatrixXd start;                     // dg/ds^-T df/ds = V_1 start
@@ -52,8 +53,7 @@ void FrequencyCoefficients::begin() {
   space_ = std::make_unique<Space>();
   Space& s = *space_;
   FilmMatrix<double> a(whole, whole.d_states);
-  s.lu.compute(a.filled(at_.d_states));
-  if (s.lu.info() != Eigen::Success) return;
+  if (!s.lu.compute(a.filled(at_.d_states))) return;
   s.known = true;
   FilmMatrix<double> e(whole, whole.d_rates);
   s.rates = e.filled(at_.d_rates);
@@ -64,7 +64,7 @@ void FrequencyCoefficients::begin() {
   s.by_position.resize(0, p);
   s.by_velocity.resize(0, p);
   const MatrixXd force = columns(at_.force_d_states, n, p);
-  s.start = append(s.lu.transpose().solve(force));
+  s.start = append(s.lu.solve_transposed(force));
 }
 
 // Orthonormalises w against the basis and itself, and appends it; what it was in them [all columns x those of w].
@@ -109,7 +109,7 @@ void FrequencyCoefficients::grow() {
   Space& s = *space_;
   const Index k = s.basis.cols(), p = s.start.cols();
   const MatrixXd last = s.rates.transpose() * s.basis.rightCols(p);
-  const MatrixXd in = append(s.lu.transpose().solve(last));
+  const MatrixXd in = append(s.lu.solve_transposed(last));
   s.hessenberg.conservativeResize(k + p, k);
   s.hessenberg.bottomRows(p).setZero();
   s.hessenberg.rightCols(p) = in;

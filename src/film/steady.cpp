@@ -32,10 +32,7 @@ Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_s
       scale_(k) = f.scale;
       row_weight_(k) = fields.front().row_scale() / f.row_scale();
     });
-  if (BandLu::pays(matrix_.pattern()))
-    band_.emplace(matrix_.pattern(), scale_);
-  else
-    lu_.analyzePattern(matrix_.pattern());
+  if (BandLu::pays(matrix_.pattern())) band_.emplace(matrix_.pattern(), scale_);
   // Measured with bands of 20 and 90.
   price_ = band_ ? 1.0 + BandLu::bandwidth(matrix_.pattern()) / 16.0 : 12.0;
 }
@@ -46,8 +43,7 @@ void Steady::factor() {
   if (factored_ == linear_.d_states) return;
   factored_.clear();
   const auto& matrix = matrix_.filled(linear_.d_states);
-  if (!band_) lu_.factorize(matrix);
-  if (band_ ? !band_->factor(matrix) : lu_.info() != Eigen::Success)
+  if (!(band_ ? band_->factor(matrix) : lu_.compute(matrix)))
     throw core::NotConverged("the film by itself is singular");
   factored_ = linear_.d_states;
   factored_at_ = view(now_);
@@ -60,7 +56,7 @@ void Steady::linearise(std::span<const double> states) {
 }
 
 Eigen::VectorXd Steady::step(const std::vector<double>& residual) {
-  return band_ ? band_->solve(view(residual)) : Eigen::VectorXd(lu_.solve(view(residual)));
+  return band_ ? band_->solve(view(residual)) : Eigen::VectorXd(lu_.solve(Eigen::MatrixXd(view(residual))));
 }
 
 double Steady::size(const Eigen::VectorXd& step) const {
@@ -214,7 +210,7 @@ Eigen::MatrixXd Steady::refined(const Eigen::MatrixXd& b, bool transposed) {
   constexpr double exact = 1e-12, forces = 2.0, too_slow = 0.2;
   const auto solved = [&](const Eigen::MatrixXd& r) -> Eigen::MatrixXd {
     if (band_) return transposed ? band_->solve_transposed(r) : band_->solve_all(r);
-    if (transposed) return lu_.transpose().solve(r);
+    if (transposed) return lu_.solve_transposed(r);
     return lu_.solve(r);
   };
   const bool near =
@@ -264,7 +260,7 @@ void Steady::follow(const JournalMotion& from, const JournalMotion& to, std::vec
     rows += (to.position[w] - from.position[w]) * view(linear_.d_position[p]) +
             (to.velocity[w] - from.velocity[w]) * view(linear_.d_velocity[p]);
   }
-  const Eigen::VectorXd change = band_ ? band_->solve(rows) : Eigen::VectorXd(lu_.solve(rows));
+  const Eigen::VectorXd change = band_ ? band_->solve(rows) : Eigen::VectorXd(lu_.solve(Eigen::MatrixXd(rows)));
   if (!(size(change) <= most)) return;
   for (Eigen::Index k = 0; k < change.size(); ++k) states[static_cast<std::size_t>(k)] -= change(k);
 }

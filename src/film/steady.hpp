@@ -5,7 +5,6 @@
 // than new ones: derivatives and a factorisation cost several residuals. Kept factors change the way to the solution,
 // not what is left at its end.
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "film/band_lu.hpp"
+#include "whirl/core/sparse_lu.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/film/film_matrix.hpp"
 
@@ -74,7 +74,7 @@ private:
   FilmMatrix<double> matrix_;
   // One of both.
   std::optional<BandLu> band_;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
+  core::SparseLu lu_;
   std::vector<double> factored_;  // dg/ds that the factors belong to; empty: there are none
   Eigen::VectorXd factored_at_;   // states that they are of
   double price_;                  // of derivatives and factors, in steps with kept ones

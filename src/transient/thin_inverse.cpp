@@ -69,7 +69,7 @@ void ThinInverse::factorise_film(const ThinOperator& a, std::size_t which, Film&
   add(own.rates, t.rates, 1);
   Sparse s(own.count, own.count);
   s.setFromTriplets(entries.begin(), entries.end());
-  film.lu.compute(s);
+  if (!film.lu.compute(s)) throw core::NotConverged("the matrix of a film's states is singular");
   film.by_input = film.lu.solve(MatrixXd(rows.asDiagonal() * t.inputs.transpose()));
   film.forces = tau * t.forces * columns.asDiagonal();
   if (t.force_rates.rows() > 0) film.forces += t.force_rates * columns.asDiagonal();

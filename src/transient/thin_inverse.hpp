@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "transient/state_factors.hpp"
+#include "whirl/core/sparse_lu.hpp"
 #include "whirl/problem/structure.hpp"
 #include "whirl/solve/cycle/scaled_point.hpp"
 
@@ -59,7 +59,7 @@ public:
 private:
   using Sparse = Eigen::SparseMatrix<double>;
   struct Film {
-    StateFactors lu;           // of dg/ds' + tau dg/ds
+    core::SparseLu lu;         // of dg/ds' + tau dg/ds
     Eigen::MatrixXd by_input;  // its inverse times dg/dw [k x w]
     Eigen::MatrixXd forces;    // df/ds' + tau df/ds [f x k]
   };

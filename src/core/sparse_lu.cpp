@@ -1,27 +1,33 @@
-#include "transient/state_factors.hpp"
+#include "whirl/core/sparse_lu.hpp"
 
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
-#include "whirl/core/error.hpp"
+namespace whirl::core {
 
-namespace whirl::transient {
-
-using core::check;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
 
-constexpr double digits_kept = 1e-8;  // of |S x - y|/|y|; what is left goes by the refinement of who solves
+constexpr double digits_kept = 1e-11;  // of |A x - y|/|y|
 
 }  // namespace
 
-void StateFactors::set_pattern(const ByRows& rows) {
+struct SparseLu::Pivoted {
+  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu;
+};
+
+SparseLu::SparseLu() = default;
+SparseLu::SparseLu(SparseLu&&) noexcept = default;
+SparseLu& SparseLu::operator=(SparseLu&&) noexcept = default;
+SparseLu::~SparseLu() = default;
+
+void SparseLu::set_pattern(const ByRows& rows) {
   const auto n = static_cast<PetscInt>(rows.rows());
   rows_ = rows;
-  // Sorted rows: values go in as they stand.
   check(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 0, nullptr, matrix_.put()));
   check(MatSeqAIJSetPreallocationCSR(matrix_.get(), rows_.outerIndexPtr(), rows_.innerIndexPtr(), rows_.valuePtr()));
   factors_.reset();
@@ -29,8 +35,8 @@ void StateFactors::set_pattern(const ByRows& rows) {
   check(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, nullptr, to_.put()));
 }
 
-bool StateFactors::without_pivots(const Matrix& s) {
-  ByRows rows = s;
+bool SparseLu::without_pivots(const Matrix& a) {
+  ByRows rows = a;
   rows.makeCompressed();
   const auto same = [&] {
     return rows.rows() == rows_.rows() && rows.nonZeros() == rows_.nonZeros() &&
@@ -40,6 +46,7 @@ bool StateFactors::without_pivots(const Matrix& s) {
   if (!matrix_ || !same()) {
     set_pattern(rows);
   } else {
+    // Rows are sorted in both.
     PetscScalar* values = nullptr;
     check(MatSeqAIJGetArrayWrite(matrix_.get(), &values));
     std::copy_n(rows.valuePtr(), rows.nonZeros(), values);
@@ -51,7 +58,7 @@ bool StateFactors::without_pivots(const Matrix& s) {
   MatFactorInfo info;
   check(MatFactorInfoInitialize(&info));
   if (!factors_) {
-    core::IndexSet by_row, by_column;
+    IndexSet by_row, by_column;
     check(MatGetOrdering(matrix_.get(), MATORDERINGND, by_row.put(), by_column.put()));
     check(MatGetFactor(matrix_.get(), MATSOLVERPETSC, MAT_FACTOR_LU, factors_.put()));
     check(MatLUFactorSymbolic(factors_.get(), matrix_.get(), by_row.get(), by_column.get(), &info));
@@ -60,41 +67,48 @@ bool StateFactors::without_pivots(const Matrix& s) {
   MatFactorError failure = MAT_FACTOR_NOERROR;
   check(MatFactorGetError(factors_.get(), &failure));
   if (failure != MAT_FACTOR_NOERROR) return false;
-  work_.resize(s.rows());
-  for (Index i = 0; i < work_.size(); ++i) work_(i) = 1 + 0.5 * std::sin(static_cast<double>(i));
-  VectorXd x(work_.size());
-  solve(work_.data(), x.data());
-  return x.allFinite() && (s * x - work_).norm() <= digits_kept * work_.norm();
+  VectorXd y(a.rows()), x(a.rows());
+  for (Index i = 0; i < y.size(); ++i) y(i) = 1 + 0.5 * std::sin(static_cast<double>(i));
+  solve(y.data(), x.data());
+  return x.allFinite() && (a * x - y).norm() <= digits_kept * y.norm();
 }
 
-void StateFactors::compute(const Matrix& s) {
+bool SparseLu::compute(const Matrix& a) {
   if (!pivoted_) {
-    if (without_pivots(s)) return;
-    pivoted_ = std::make_unique<Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>>>();
+    if (without_pivots(a)) return true;
+    pivoted_ = std::make_unique<Pivoted>();
     matrix_.reset();
     factors_.reset();
   }
-  pivoted_->compute(s);
-  if (pivoted_->info() != Eigen::Success) throw core::NotConverged("the matrix of a film's states is singular");
+  pivoted_->lu.compute(a);
+  return pivoted_->lu.info() == Eigen::Success;
 }
 
-void StateFactors::solve(const double* y, double* x) const {
-  if (pivoted_) {
-    const Index n = pivoted_->rows();
-    Eigen::Map<VectorXd>(x, n) = pivoted_->solve(Eigen::Map<const VectorXd>(y, n));
-    return;
-  }
+void SparseLu::apply(PetscErrorCode (*by)(Mat, Vec, Vec), const double* y, double* x) const {
   check(VecPlaceArray(from_.get(), y));
   check(VecPlaceArray(to_.get(), x));
-  check(MatSolve(factors_.get(), from_.get(), to_.get()));
+  check(by(factors_.get(), from_.get(), to_.get()));
   check(VecResetArray(to_.get()));
   check(VecResetArray(from_.get()));
 }
 
-MatrixXd StateFactors::solve(const MatrixXd& y) const {
+void SparseLu::solve(const double* y, double* x) const {
+  if (!pivoted_) return apply(MatSolve, y, x);
+  const Index n = pivoted_->lu.rows();
+  Eigen::Map<VectorXd>(x, n) = pivoted_->lu.solve(Eigen::Map<const VectorXd>(y, n));
+}
+
+MatrixXd SparseLu::solve(const MatrixXd& y) const {
   MatrixXd x(y.rows(), y.cols());
   for (Index k = 0; k < y.cols(); ++k) solve(y.col(k).data(), x.col(k).data());
   return x;
 }
 
-}  // namespace whirl::transient
+MatrixXd SparseLu::solve_transposed(const MatrixXd& y) const {
+  if (pivoted_) return pivoted_->lu.transpose().solve(y);
+  MatrixXd x(y.rows(), y.cols());
+  for (Index k = 0; k < y.cols(); ++k) apply(MatSolveTranspose, y.col(k).data(), x.col(k).data());
+  return x;
+}
+
+}  // namespace whirl::core
