@@ -30,7 +30,9 @@ MatrixXd columns(const PortColumns& of, Index rows, Index count) {
 struct FrequencyCoefficients::Space {
   core::SparseLu lu;
   Eigen::SparseMatrix<double> rates;  // dg/ds'
-  MatrixXd basis, hessenberg;         // [states x k], [k + ports x k]
+  MatrixXd basis;                     // [states x k] in its first columns, with room for more
+  Index held = 0;                     // k of them
+  MatrixXd hessenberg;                // [k + ports x k]
   MatrixXd start;                     // dg/ds^-T df/ds = V_1 start
   MatrixXd by_position, by_velocity;  // V^T dg/dw, V^T dg/dw' [k x ports]
   MatrixXd d_position, d_velocity;
@@ -70,12 +72,12 @@ void FrequencyCoefficients::begin() {
 // Orthonormalises w against the basis and itself, and appends it; what it was in them [all columns x those of w].
 Eigen::MatrixXd FrequencyCoefficients::append(Eigen::MatrixXd w) {
   Space& s = *space_;
-  const Index k = s.basis.cols(), p = w.cols();
+  const Index k = s.held, p = w.cols();
   MatrixXd in = MatrixXd::Zero(k + p, p);
   const double size = w.norm();
   for (int twice = 0; twice < 2; ++twice) {
-    const MatrixXd more = s.basis.transpose() * w;
-    w -= s.basis * more;
+    const MatrixXd more = s.basis.leftCols(k).transpose() * w;
+    w.noalias() -= s.basis.leftCols(k) * more;
     in.topRows(k) += more;
   }
   s.ended = !(w.norm() > 1e-14 * size);
@@ -95,8 +97,9 @@ Eigen::MatrixXd FrequencyCoefficients::append(Eigen::MatrixXd w) {
     else
       w.col(j).setZero();
   }
-  s.basis.conservativeResize(Eigen::NoChange, k + p);
-  s.basis.rightCols(p) = w;
+  if (s.basis.cols() < k + p) s.basis.conservativeResize(Eigen::NoChange, std::max(8 * p, 2 * k));
+  s.basis.middleCols(k, p) = w;
+  s.held = k + p;
   s.by_position.conservativeResize(k + p, Eigen::NoChange);
   s.by_position.bottomRows(p) = w.transpose() * s.d_position;
   s.by_velocity.conservativeResize(k + p, Eigen::NoChange);
@@ -107,8 +110,8 @@ Eigen::MatrixXd FrequencyCoefficients::append(Eigen::MatrixXd w) {
 // One more block: (dg/ds)^-T (dg/ds')^T of the last one.
 void FrequencyCoefficients::grow() {
   Space& s = *space_;
-  const Index k = s.basis.cols(), p = s.start.cols();
-  const MatrixXd last = s.rates.transpose() * s.basis.rightCols(p);
+  const Index k = s.held, p = s.start.cols();
+  const MatrixXd last = s.rates.transpose() * s.basis.middleCols(k - p, p);
   const MatrixXd in = append(s.lu.solve_transposed(last));
   s.hessenberg.conservativeResize(k + p, k);
   s.hessenberg.bottomRows(p).setZero();
