@@ -24,7 +24,7 @@ Taken AdamsMoultonSteps::step(double time, double wanted, Vec u) {
   check(VecCopy(rate_there_.get(), rate_.get()));
   check(VecCopy(end_.get(), u));
   before_ = taken.length;
-  return {taken.length, taken.length, taken.rejected};
+  return {taken.length, taken.length, taken.rejected, taken.why};
 }
 
 }  // namespace whirl::transient

@@ -115,7 +115,7 @@ Taken GaussSteps::step(double time, double wanted, Vec u) {
     check(VecAXPY(slope_.get(), end_weights_(static_cast<Index>(i)), work_.get()));
   }
   check(VecAXPY(u, 1, slope_.get()));
-  return {taken.length, taken.length, taken.rejected};
+  return {taken.length, taken.length, taken.rejected, taken.why};
 }
 
 }  // namespace whirl::transient

@@ -29,6 +29,8 @@ constexpr double deviation_tolerance = 100;
 constexpr double consistent_part = 1e-6;
 // A proposal that changes the step by less keeps it, and with it the factors of its matrices.
 constexpr double least_change = 0.95, largest_kept = 1.2;
+// In revolutions. A film that closes lets steps shrink with it for ever, and each of them succeeds.
+constexpr double shortest_step = 1e-13;
 
 // -PREFIXassembled takes the other path, for comparison.
 Algebra algebra_of(const IntegratorOptions& o) {
@@ -63,7 +65,9 @@ struct Integrator::Parts {
   bool algebraic = false;                  // some states have no rates, where deviations are carried
   double time = 0, reached = 0, step = 0;  // told, of the front, proposed
   double offset = 0;                       // of the stepper's time before these
+  bool by_revolutions = false;             // `time` begins anew with each
   long steps = 0, rejected = 0;
+  std::string why = "the cause is not known";  // an attempt was last rejected
 
   void choose();
   template <class Made, class... Words>
@@ -74,7 +78,8 @@ struct Integrator::Parts {
     return out;
   }
   [[nodiscard]] std::string where() const {
-    return fmt::format("the motion could not be continued beyond t = {:.9g} s: ", reached);
+    return fmt::format("the motion could not be continued beyond {}{:.9g} s{}: ", by_revolutions ? "" : "t = ", reached,
+                       by_revolutions ? " of the revolution" : "");
   }
   void stop_at_front() {
     check(VecCopy(front.get(), u.get()));
@@ -112,6 +117,12 @@ struct Integrator::Parts {
     check(VecCopy(front.get(), before.get()));
     Taken taken = stepper->step(reached + offset, wanted, front.get());
     rejected += taken.rejected;
+    if (!taken.why.empty()) why = taken.why;
+    if (std::max(taken.length, taken.proposed) <
+        shortest_step * 2 * std::numbers::pi / std::abs(drive.speed_at(reached))) {
+      check(VecCopy(before.get(), front.get()));
+      throw core::DomainError(fmt::format("steps shorter than {:.0e} revolutions: {}", shortest_step, why));
+    }
     if (tangents) {
       for (int i = 0; i < static_cast<int>(tableau.stages()); ++i) carrier->keep(i, stepper->stage(i));
       // The steps suit the deviations too: at an equilibrium the state alone would allow any.
@@ -214,6 +225,7 @@ void Integrator::restart(double time, double step) {
 
 void Integrator::close_revolution(double earlier) {
   Parts& p = *parts_;
+  p.by_revolutions = earlier > 0;
   if (p.stepper->pace() != Pace::by_itself) return restart(p.time - earlier, p.step);
   p.time -= earlier;
   p.reached -= earlier;

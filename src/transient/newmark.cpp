@@ -107,7 +107,7 @@ Taken NewmarkSteps::step(double time, double wanted, Vec u) {
   });
   check(VecCopy(end_.get(), u));
   check(VecCopy(end_rate_.get(), rate_.get()));
-  return {taken.length, taken.length, taken.rejected};
+  return {taken.length, taken.length, taken.rejected, taken.why};
 }
 
 NewmarkFixedPointSteps::NewmarkFixedPointSteps(Equations& equations, bool regular, double tolerance)

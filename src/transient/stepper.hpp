@@ -17,6 +17,7 @@ struct Taken {
   double length = 0;    ///< [s]; shorter than asked for where it had to be
   double proposed = 0;  ///< [s] the next one by the error control; `length` of a scheme without
   int rejected = 0;     ///< attempts before it
+  std::string why{};    ///< the last of these was rejected; empty if none was
 };
 
 /// How steps find the times at which a state is wanted.
@@ -72,7 +73,7 @@ Taken take_step(double wanted, int order, Attempt&& attempt) {
     try {
       if (const std::optional<double> error = attempt(h)) {
         next = allowed_step(h, *error, order);
-        if (*error <= 1) return {h, next, rejected};
+        if (*error <= 1) return {h, next, rejected, rejected > 0 ? why : ""};
         if (rejected > 0) next /= 2;
         why = "the error of a step exceeds its tolerance however short the step";
       }

@@ -232,7 +232,7 @@ Taken TsStepper::step(double time, double wanted, Vec u) {
     (void)try_step(time, h, u);
     return 0.0;
   });
-  return {taken.length, taken.length, taken.rejected};
+  return {taken.length, taken.length, taken.rejected, taken.why};
 }
 
 void TsStepper::interpolate(double time, Vec u) {

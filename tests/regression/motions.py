@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import h5py
+import numpy
 
 from compare import same_results
 from harness import Harness, value
@@ -83,7 +84,6 @@ def floquet(h):
       adapt_every: 2, follow_flips: true, max_points: 60}
   - motion: {name: double, unbalance: [a2], speed: 960 rad/s, discard: 120, revolutions: 32, exponents: 2, samples: 64, tolerance: 1e-7}
 """), "floquet")
-    import h5py
     with h5py.File(h.work / "floquet" / "results.h5") as f:
         branch = f["studies/at rest/branch"]
         h.close("first point of the branch [rad/s]", float(branch["parameter"][0]), 80, 1e-9)
@@ -162,16 +162,53 @@ SHORT = """
 
 
 def growing(h):
-    """The train at G6.3 and 2650 rpm: from its unstable cycle a whirl at 766 +- 12 rpm grows (independent computation, Guyan, 30 x 10)."""
-    s = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", launcher=[])["G6.3 at 2650 rpm"]
+    """The train at G6.3: a whirl at 766 +- 12 rpm (independent computation, Guyan, 30 x 10) leaves the unstable cycle of 2650 rpm,
+    and settles on a torus at 2600 rpm, beyond the supercritical Neimark-Sacker point."""
+    found = h.run(h.source / "inputs/turbine_train/motions.yaml", "growing", launcher=[])
+    s = found["G6.3 at 2650 rpm"]
     h.true("the cycle is unstable", value(s, "cycle.multiplier.1.modulus") > 1)
     whirl = value(s, "cycle.multiplier.1.angle") / TWO_PI * 2650
     h.close("its whirl [rpm]", whirl, 766, 12)
     for bearing in ("B2", "B3", "B4"):
-        found = [value(s, f"tone.{bearing}.y.{k}.frequency") * 60 for k in range(1, 6)]
-        h.close(f"the growing tone in {bearing} [rpm]", min(found, key=lambda f: abs(f - 766)), whirl, 3)
-        h.close("    and its mirror beside the shaft's speed", min(found, key=lambda f: abs(f - 1884)), 2650 - whirl, 3)
-    h.true("quasi-periodic", kind(s) == "quasi_periodic", kind(s))
+        tones = [value(s, f"tone.{bearing}.y.{k}.frequency") * 60 for k in range(1, 6)]
+        h.close(f"the growing tone in {bearing} [rpm]", min(tones, key=lambda f: abs(f - 766)), whirl, 3)
+        h.close("    and its mirror beside the shaft's speed", min(tones, key=lambda f: abs(f - 1884)), 2650 - whirl, 3)
+    h.true("on its way", kind(s) == "unsettled", kind(s))
+    s = found["G6.3 at 2600 rpm"]
+    h.true("the cycle of 2600 rpm is unstable", value(s, "cycle.multiplier.1.modulus") > 1)
+    h.true("its motion is quasi-periodic", kind(s) == "quasi_periodic", kind(s))
+    h.close("whirl on the torus [rpm]", value(s, "rotation") * 2600, 766, 12)
+
+
+def torus(h, whole=False):
+    """The train at G2.5 beyond its Neimark-Sacker point: what leaves the cycle there has the growth and the whirl of its multiplier;
+    at 5050 rpm it ends on a torus. Shortened to what is on its way."""
+    short = [f"studies.{k}.motion.{option}" for k, options in
+             ((2, ("discard=100", "revolutions=300")), (3, ("discard=600", "revolutions=600"))) for option in options]
+    found = h.run(h.source / "inputs/turbine_train/torus.yaml", "torus", [] if whole else short, launcher=[])
+    with h5py.File(h.work / "torus/results.h5") as f:
+        curves = {name: numpy.column_stack([f[f"studies/{name}/poincare/{c}"][:] for c in ("x", "y")])
+                  for name in ("5050 rpm", "5500 rpm")}
+    first = next(b for b in found["cycles"]["bifurcations"] if b["type"] == "neimark_sacker")
+    h.true("the branch loses its stability before both motions", first["value"] < 5050, f"{first['value']:.1f} rpm")
+    h.close("and nearly at the whirl of the first [turns]", first["angle_rad"] / TWO_PI,
+            value(found["5050 rpm"], "cycle.multiplier.1.angle") / TWO_PI, 2e-3)
+    for name, speed in (("5050 rpm", 5050), ("5500 rpm", 5500)):
+        s, points = found[name], curves[name]
+        growth, angle = (value(s, f"cycle.multiplier.1.{what}") for what in ("modulus", "angle"))
+        h.true(f"{name}: the cycle is unstable, by less than 1 %", 1 < growth < 1.01, f"{growth}")
+        tones = [value(s, f"tone.B4.y.{k}.order") for k in range(1, 6)]
+        h.close(f"{name}: the whirl per revolution", min(tones, key=lambda t: abs(t - angle / TWO_PI)), angle / TWO_PI, 3e-3)
+        half = len(points) // 2
+        part = numpy.hanning(half) * numpy.exp(-1j * angle * numpy.arange(half))  # the whirl's, of others none
+        early, late = (numpy.linalg.norm(part @ (points[k:k + half] - points.mean(axis=0))) for k in (0, half))
+        slope = math.log(late / early) / half
+        if name == "5500 rpm":
+            h.close(f"{name}: growth per revolution over that of the multiplier", slope / math.log(growth), 1, 0.1)
+            h.true(f"{name}: on its way", kind(s) == "unsettled", kind(s))
+        elif whole:
+            h.close(f"{name}: no growth any more", slope / math.log(growth), 0, 0.1)
+            h.true(f"{name}: quasi-periodic", kind(s) == "quasi_periodic", kind(s))
 
 
 def ranks(h):
@@ -244,5 +281,8 @@ def pump(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "growing": growing, "ranks": ranks, "resume": resume, "shared": shared, "pump": pump}[sys.argv[3]](harness)
+    cases = {"figure": figure, "chaos": chaos, "floquet": floquet, "compliant": compliant, "train": train, "growing": growing,
+             "torus": torus, "torus.whole": lambda h: torus(h, True), "ranks": ranks, "resume": resume, "shared": shared,
+             "pump": pump}
+    cases[sys.argv[3]](harness)
     harness.finish()

@@ -167,7 +167,8 @@ TEST(Verdicts, ASpiralIsNoTorus) {
   };
   EXPECT_EQ(verdict(record(1.0003, 400)).kind, Kind::unsettled) << "11 % in 350 revolutions";
   EXPECT_EQ(verdict(record(0.9997, 400)).kind, Kind::unsettled);
-  EXPECT_EQ(verdict(record(1.00003, 400)).kind, Kind::quasi_periodic) << "1 %";
+  EXPECT_EQ(verdict(record(1.00015, 400)).kind, Kind::unsettled) << "5 %";
+  EXPECT_EQ(verdict(record(1.00001, 400)).kind, Kind::quasi_periodic) << "0.4 %";
   EXPECT_EQ(verdict(record(1, 400)).kind, Kind::quasi_periodic);
   EXPECT_EQ(verdict(record(1.0003, 60)).kind, Kind::quasi_periodic) << "too few to tell";
   const auto course = course_of_returns(record(1.001, 801));

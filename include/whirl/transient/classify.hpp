@@ -53,9 +53,10 @@ struct Verdict {
 /// exponents counts the frequencies, and a limit cycle returns to its section; where no section is known the exponents
 /// decide. Whatever contradicts itself - no return although all deviations die out, a return
 /// although they grow, a return after k revolutions while what keeps it from a shorter one dies out - is unsettled: not
-/// enough revolutions, or an unstable orbit that the motion has not left yet. So is what does not return while its
-/// points move farther (or less far) in every eighth of the record than in the one before, by more than 5 % in all: a
-/// spiral on its way into a cycle, or away from one, has zero exponents within their bars for long.
+/// enough revolutions, or an unstable orbit that the motion has not left yet. So is what does not return while the
+/// distances between its successive points drift over the record, by more than 1 % and more than five standard errors
+/// of a straight line through the logarithms of `course`: a spiral on its way into a cycle, or away from one, has zero
+/// exponents within their bars for long.
 /// A motion that external forces drive is `driven`: where it is at the same shaft angle says nothing of it, and its
 /// exponents, if there are any, tell only whether it forgets where it began.
 [[nodiscard]] Verdict classify(const Evidence& evidence);

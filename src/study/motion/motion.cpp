@@ -66,8 +66,8 @@ public:
         save();
       }
     } catch (const core::DomainError& e) {
-      if (record_.revolutions() < 2) throw;
       status = fmt::format("ended in revolution {}: {}", done_ + 1, e.what());
+      if (record_.revolutions() < 2) throw core::DomainError(status);
     }
     return report(status);
   }
