@@ -7,8 +7,8 @@
 #include <complex>
 #include <utility>
 
+#include "film/lent_lu.hpp"
 #include "whirl/core/error.hpp"
-#include "whirl/core/sparse_lu.hpp"
 #include "whirl/film/film_matrix.hpp"
 
 namespace whirl::film {
@@ -28,7 +28,9 @@ MatrixXd columns(const PortColumns& of, Index rows, Index count) {
 
 // V of block Arnoldi [states x ports of each step] on dg/ds^-T dg/ds'^T, and what that does to it.
 struct FrequencyCoefficients::Space {
-  core::SparseLu lu;
+  explicit Space(Film& film) : lu(film) {}
+
+  LentLu lu;
   Eigen::SparseMatrix<double> rates;  // dg/ds'
   MatrixXd basis;                     // [states x k] in its first columns, with room for more
   Index held = 0;                     // k of them
@@ -52,10 +54,10 @@ FrequencyCoefficients::~FrequencyCoefficients() = default;
 void FrequencyCoefficients::begin() {
   const auto n = static_cast<Index>(at_.residual.size()), p = static_cast<Index>(film_.ports().size());
   const Share& whole = film_.whole();
-  space_ = std::make_unique<Space>();
+  space_ = std::make_unique<Space>(film_);
   Space& s = *space_;
   FilmMatrix<double> a(whole, whole.d_states);
-  if (!s.lu.compute(a.filled(at_.d_states))) return;
+  if (!s.lu->compute(a.filled(at_.d_states))) return;
   s.known = true;
   FilmMatrix<double> e(whole, whole.d_rates);
   s.rates = e.filled(at_.d_rates);
@@ -66,7 +68,7 @@ void FrequencyCoefficients::begin() {
   s.by_position.resize(0, p);
   s.by_velocity.resize(0, p);
   const MatrixXd force = columns(at_.force_d_states, n, p);
-  s.start = append(s.lu.solve_transposed(force));
+  s.start = append(s.lu->solve_transposed(force));
 }
 
 // Orthonormalises w against the basis and itself, and appends it; what it was in them [all columns x those of w].
@@ -112,7 +114,7 @@ void FrequencyCoefficients::grow() {
   Space& s = *space_;
   const Index k = s.held, p = s.start.cols();
   const MatrixXd last = s.rates.transpose() * s.basis.middleCols(k - p, p);
-  const MatrixXd in = append(s.lu.solve_transposed(last));
+  const MatrixXd in = append(s.lu->solve_transposed(last));
   s.hessenberg.conservativeResize(k + p, k);
   s.hessenberg.bottomRows(p).setZero();
   s.hessenberg.rightCols(p) = in;
@@ -133,7 +135,7 @@ Eigen::MatrixXcd FrequencyCoefficients::by_basis(Index blocks, double omega) con
 
 bool FrequencyCoefficients::by_krylov(double omega, Eigen::MatrixXcd& out) {
   constexpr Index most = 16;
-  constexpr double enough = 1e-11;
+  constexpr double enough = 1e-10, rounding = 1e-11, falls = 0.2;
   if (!at_.force_d_rates.empty()) return false;
   if (!space_) begin();
   Space& s = *space_;
@@ -144,7 +146,7 @@ bool FrequencyCoefficients::by_krylov(double omega, Eigen::MatrixXcd& out) {
     return s.hessenberg.cols() >= blocks * p;
   };
   MatrixXcd before;
-  double close = 0;
+  double close = 0, ratio_before = 1;
   for (Index blocks = 1; blocks <= most; ++blocks) {
     if (!ready(blocks)) break;
     MatrixXcd now = by_basis(blocks, omega);
@@ -159,12 +161,15 @@ bool FrequencyCoefficients::by_krylov(double omega, Eigen::MatrixXcd& out) {
           const double d = std::abs(now(i, j) - before(i, j));
           if (d > 0) moved = std::max(moved, d / std::sqrt(size(i) * size(j)));
         }
-      // Twice in turn, each time by less: what is left is less than what moved last.
-      if (moved <= enough || (moved <= 1e-9 && moved <= 1e-2 * close && close <= 1e-5)) {
+      // The third change of a falling sequence: what is left is less than it, by the larger ratio of two.
+      const double ratio = close > 0 ? moved / close : 1;
+      const double worst = std::max(ratio, ratio_before);
+      if (moved <= rounding || (worst < falls && worst / (1 - worst) * moved <= enough)) {
         out = now;
         return true;
       }
       close = moved;
+      ratio_before = ratio;
     }
     before = std::move(now);
   }

@@ -26,6 +26,9 @@ std::span<const Port> Film::ports() const {
   return std::span(all_ports).first(2);
 }
 
+Film::Film() = default;
+Film::~Film() = default;
+
 const Share& Film::whole() const {
   if (!whole_) whole_ = std::make_unique<const Share>(share(0, static_cast<int>(states())));
   return *whole_;

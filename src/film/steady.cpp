@@ -22,7 +22,7 @@ Map view(const std::vector<double>& v) {
 
 }  // namespace
 
-Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_states) {
+Steady::Steady(Film& film) : film_(film), matrix_(film.whole(), film.whole().d_states), lu_(film) {
   const auto n = static_cast<Eigen::Index>(film.states());
   scale_.resize(n);
   row_weight_.resize(n);
@@ -43,7 +43,7 @@ void Steady::factor() {
   if (factored_ == linear_.d_states) return;
   factored_.clear();
   const auto& matrix = matrix_.filled(linear_.d_states);
-  if (!(band_ ? band_->factor(matrix) : lu_.compute(matrix)))
+  if (!(band_ ? band_->factor(matrix) : lu_->compute(matrix)))
     throw core::NotConverged("the film by itself is singular");
   factored_ = linear_.d_states;
   factored_at_ = view(now_);
@@ -56,7 +56,7 @@ void Steady::linearise(std::span<const double> states) {
 }
 
 Eigen::VectorXd Steady::step(const std::vector<double>& residual) {
-  return band_ ? band_->solve(view(residual)) : Eigen::VectorXd(lu_.solve(Eigen::MatrixXd(view(residual))));
+  return band_ ? band_->solve(view(residual)) : Eigen::VectorXd(lu_->solve(Eigen::MatrixXd(view(residual))));
 }
 
 double Steady::size(const Eigen::VectorXd& step) const {
@@ -210,8 +210,8 @@ Eigen::MatrixXd Steady::refined(const Eigen::MatrixXd& b, bool transposed) {
   constexpr double exact = 1e-12, forces = 2.0, too_slow = 0.2;
   const auto solved = [&](const Eigen::MatrixXd& r) -> Eigen::MatrixXd {
     if (band_) return transposed ? band_->solve_transposed(r) : band_->solve_all(r);
-    if (transposed) return lu_.solve_transposed(r);
-    return lu_.solve(r);
+    if (transposed) return lu_->solve_transposed(r);
+    return lu_->solve(r);
   };
   const bool near =
       !factored_.empty() && contraction_ < 0.1 && forces * std::log(exact) / std::log(contraction_) <= price_;
@@ -260,7 +260,7 @@ void Steady::follow(const JournalMotion& from, const JournalMotion& to, std::vec
     rows += (to.position[w] - from.position[w]) * view(linear_.d_position[p]) +
             (to.velocity[w] - from.velocity[w]) * view(linear_.d_velocity[p]);
   }
-  const Eigen::VectorXd change = band_ ? band_->solve(rows) : Eigen::VectorXd(lu_.solve(Eigen::MatrixXd(rows)));
+  const Eigen::VectorXd change = band_ ? band_->solve(rows) : Eigen::VectorXd(lu_->solve(Eigen::MatrixXd(rows)));
   if (!(size(change) <= most)) return;
   for (Eigen::Index k = 0; k < change.size(); ++k) states[static_cast<std::size_t>(k)] -= change(k);
 }

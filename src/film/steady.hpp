@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "film/band_lu.hpp"
-#include "whirl/core/sparse_lu.hpp"
+#include "film/lent_lu.hpp"
 #include "whirl/film/film.hpp"
 #include "whirl/film/film_matrix.hpp"
 
@@ -74,7 +74,7 @@ private:
   FilmMatrix<double> matrix_;
   // One of both.
   std::optional<BandLu> band_;
-  core::SparseLu lu_;
+  LentLu lu_;
   std::vector<double> factored_;  // dg/ds that the factors belong to; empty: there are none
   Eigen::VectorXd factored_at_;   // states that they are of
   double price_;                  // of derivatives and factors, in steps with kept ones

@@ -15,6 +15,10 @@
 #include "whirl/film/response.hpp"
 #include "whirl/film/share.hpp"
 
+namespace whirl::core {
+class SparseLu;
+}
+
 namespace whirl::film {
 
 /// Rad/s, of a typical whirl: what rates are measured in, per typical magnitude.
@@ -67,10 +71,10 @@ public:
 /// pressure is condensed: force = f(motion), and everything about states is empty. Not thread-safe (own workspace).
 class Film {
 public:
-  Film() = default;
+  Film();
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
-  virtual ~Film() = default;
+  virtual ~Film();
   /// The motions that it sees; of all others it knows nothing, and its force along them is zero.
   [[nodiscard]] virtual std::span<const Port> ports() const;
   /// Fills `response` with the rows of a share and what it adds to the force on the journal; `states` and `rates` are
@@ -128,7 +132,9 @@ public:
   }
 
 private:
+  friend class LentLu;
   mutable std::unique_ptr<const Share> whole_;
+  std::unique_ptr<core::SparseLu> spare_lu_;
 };
 
 /// The film described by the options; throws core::InputError on values outside their range.
