@@ -172,6 +172,37 @@ def train(h):
         h.close(f"B{k + 1}: travel there [m]", travel(table, k, [-1]), wanted, 0.05 * wanted)
 
 
+def follows(h):
+    """A slow run-up of the train at G2.5 keeps to the cycles where they are stable, and leaves them where the branch has lost its
+    stability to a flip. Each amplitude of seven revolutions is held against the cycle of the middle one."""
+    stable, lost = (1200, 1600, 2000, 2400, 2600, 2700, 2800, 3000, 3400, 3800, 4600, 4900), 4200
+    path = h.work / "slow.yaml"
+    path.write_text(f"""base: {h.train / 'motions.yaml'}
+studies:
+  - run_up: {{name: slow, unbalance: [gen_pair], range: {{from: 1000 rpm, to: 5000 rpm}}, duration: 200 s, start: {{from: cycle}},
+      nodes: [120], samples: 32, tolerance: 1e-5}}
+  - cycle_branch: {{name: cycles, unbalance: [gen_pair], range: {{from: 1000 rpm, to: 5000 rpm}}, intervals: 60, degree: 2,
+      step: {{initial: 20 rpm, min: 0.01 rpm, max: 100 rpm}}, at: [{", ".join(f"{n} rpm" for n in sorted((*stable, lost)))}]}}
+""")
+    cycles = h.run(path, "slow", launcher=[])["cycles"]
+    with h5py.File(h.work / "slow/results.h5") as f:
+        t = f["studies/slow/run_up"]
+        table = {k: t[k][()] for k in ("speed", "x_max", "x_min", "y_max", "y_min")}
+
+    def off(speed):
+        middle = int(abs(table["speed"] - speed).argmin())
+        rows = slice(middle - 3, middle + 4)
+        return max(abs((table[f"{axis}_max"] - table[f"{axis}_min"])[rows, k].mean() /
+                       value(cycles, f"at.{speed}.peak_to_peak.B{k + 1}.{axis}") - 1) for k in range(5) for axis in "xy")
+
+    for speed in stable:
+        h.true(f"{speed} rpm: the cycle is stable", value(cycles, f"at.{speed}.multiplier.modulus") < 1)
+        # The curve bends within the revolutions of a resonance.
+        h.close("    largest difference of ten amplitudes", off(speed), 0, 0.03 if 2500 < speed < 2750 else 0.02)
+    h.true(f"{lost} rpm: the cycle is unstable", value(cycles, f"at.{lost}.multiplier.modulus") > 1.01)
+    h.true("    and has been left", off(lost) > 0.5, f"{off(lost):.2f}")
+
+
 def resume(h):
     """Killed and resumed it goes on to the bit, also on two ranks, which both hold the whole of so small a rotor."""
     path = h.source / "inputs/rigid_rotor/run_up.yaml"
@@ -232,5 +263,6 @@ def hysteresis(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"exact": exact, "rigid": rigid, "train": train, "resume": resume, "ranks": ranks, "hysteresis": hysteresis}[sys.argv[3]](harness)
+    {"exact": exact, "rigid": rigid, "train": train, "resume": resume, "ranks": ranks, "hysteresis": hysteresis,
+     "follows": follows}[sys.argv[3]](harness)
     harness.finish()
