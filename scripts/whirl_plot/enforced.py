@@ -27,7 +27,7 @@ def draw_block(study, what, pairs, over, along, label, shown, colours, labels, o
                 axis.plot(over[order], line[order], color=INK, linestyle=DASHED, linewidth=1)
             low, high = axis.get_ylim()
             if low > 0 and high > 0 and pair[0] == pair[1]:
-                axis.set_ylim(bottom=0)
+                axis.set_ylim(0, 1.05 * high)
             axis.axhline(0, color=INK, linewidth=0.7)
             if along == 1:
                 axis.set_xscale("log")
