@@ -130,6 +130,28 @@ def whirl(h):
     h.true("    growing", (np.diff(size[:, 0]) > 0).all())
 
 
+def separatrix(h):
+    """The unstable cycle parts motions that come to rest from those that end in contact: from either side of it a rotor that is
+    let go leaves its amplitude, by little at first."""
+    speed, revolutions = 2900, 100
+    let_go = "".join(f", {{motion: {{name: '{offset}', speed: {speed} rad/s, start: {{offset: [{offset}, 0]}}, discard: 0, samples: 32,"
+                     f" revolutions: {revolutions}, orbit: {revolutions}, tolerance: 1e-6, exponents: 0}}}}" for offset in (0.66, 0.69))
+    s = h.run(h.source / DECKS / "whirl.yaml", "separatrix",
+              [f"studies.1.cycle_branch.at=[{speed} rad/s]", "studies.1.cycle_branch.range={from: 2880 rad/s, to: 3100 rad/s}",
+               f"studies+=[{let_go[2:]}]"], launcher=[], code=None)
+    cycle = {axis: value(s["whirl"], f"at.{speed}.peak_to_peak.A.{axis}") for axis in "xy"}
+    with h5py.File(h.work / "separatrix" / "results.h5") as f:
+        for offset, inside in ((0.66, True), (0.69, False)):
+            for axis in "xy":
+                track = f[f"studies/{offset}/orbit/{axis}"][()].reshape(-1)
+                # In pieces of twenty revolutions, behind what dies out at once.
+                sizes = [np.ptp(piece) for piece in track.reshape(-1, 20 * 32)[1:]]
+                h.close(f"{offset} clearances: {axis} at first over the cycle's", sizes[0] / cycle[axis], 1, 0.05)
+                h.true("    inside and ever smaller" if inside else "    outside and ever larger",
+                       (sizes[0] < cycle[axis]) == inside and (np.diff(sizes) < 0).all() == inside and (np.diff(sizes) > 0).all() != inside,
+                       " ".join(f"{1e6 * size:.2f}" for size in (cycle[axis], *sizes)))
+
+
 def capacity(h):
     """Bearing A at 0.3 MPa and a shaft that hardly turns: all studies say what the film carries."""
     deck = h.source / DECKS / "gas_bearing.yaml"
@@ -166,5 +188,6 @@ def refused(h):
 
 if __name__ == "__main__":
     harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
-    {"enforced": enforced, "pressures": pressures, "path": path, "whirl": whirl, "capacity": capacity, "refused": refused}[sys.argv[3]](harness)
+    {"enforced": enforced, "pressures": pressures, "path": path, "whirl": whirl, "separatrix": separatrix, "capacity": capacity,
+     "refused": refused}[sys.argv[3]](harness)
     harness.finish()
