@@ -284,14 +284,24 @@ std::string of_bearing_map(const io::StudySummary& s, const Values& v) {
   return out + grid.text();
 }
 
-// A row for each speed and frequency of the summary; tilts stand in the tables.
+// A row for each speed, frequency and enforced amplitude of the summary; tilts stand in the tables.
 std::string of_coefficients(const io::StudySummary& s, const Values& v) {
-  Grid grid({"speed", "eccentricity", "omega/Omega", "K xx [N/m]", "K xy", "K yx", "K yy", "B xx [N s/m]", "B xy",
-             "B yx", "B yy"});
-  for (const std::string& speed : Values::between(s, "speed.", ".eccentricity")) {
+  const std::vector<std::string> speeds = Values::between(s, "speed.", ".eccentricity");
+  const std::string amplitude = ".amplitude.";
+  const bool enforced = std::ranges::any_of(
+      s.values, [&](const auto& named) { return named.first.find(amplitude) != std::string::npos; });
+  std::vector<std::string> heads{"speed [" + (speeds.empty() ? "" : v.unit("speed." + speeds.front() + ".speed")) + "]",
+                                 "eccentricity", "omega/Omega"};
+  if (enforced) heads.emplace_back("amplitude");
+  for (const char* head : {"K xx [N/m]", "K xy", "K yx", "K yy", "B xx [N s/m]", "B xy", "B yx", "B yy"})
+    heads.emplace_back(head);
+  Grid grid(heads);
+  for (const std::string& speed : speeds) {
     const std::string head = "speed." + speed + ".";
     for (const std::string& ratio : Values::between(s, head + "ratio.", ".K.xx")) {
-      std::vector<std::string> row{speed, v.cell(head + "eccentricity"), ratio};
+      const std::size_t found = ratio.find(amplitude);
+      std::vector<std::string> row{speed, v.cell(head + "eccentricity"), ratio.substr(0, found)};
+      if (enforced) row.push_back(found == std::string::npos ? "small" : ratio.substr(found + amplitude.size()));
       for (const char* letter : {".K.", ".B."})
         for (const char* pair : {"xx", "xy", "yx", "yy"})
           row.push_back(number(v.get(head + "ratio." + ratio + letter + pair)));

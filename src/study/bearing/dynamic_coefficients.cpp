@@ -92,6 +92,7 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
     const AtSpeed& a = found[s];
     const std::string head = fmt::format("speed.{}.", number_text(options.speeds[s].value, options.speeds[s].unit));
     const auto& at = a.place.motion.position;
+    summary.set(head + "speed", deck::from_si(options.speeds[s].value, options.speeds[s].unit), options.speeds[s].unit);
     summary.set(head + "x", at[0], "m");
     summary.set(head + "y", at[1], "m");
     summary.set(head + "eccentricity", std::hypot(at[0], at[1]) / clearance, "1");
