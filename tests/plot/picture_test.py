@@ -226,6 +226,27 @@ def colours(folder):
         assert results["balanced"].colour == style.INK
 
 
+def harmonics(folder):
+    """Of cycles without unbalance: half-axes over multiples of the whirl; of forced ones no such picture."""
+    pick = np.linspace(0, 139, 20).astype(int)
+
+    def fill(root):
+        group = root["studies/pair, G2.5"]
+        group.attrs["unbalance"] = ""
+        group["orbits/point"] = pick
+
+    with results_with(folder, fill) as results:
+        study = results["pair, G2.5"]
+        axis = Figures().draw(orbits, orbits.draw_harmonics, study)["harmonics"].axes[2]
+        assert not Figures().draw(orbits, orbits.draw_harmonics, results["pair, G6.3"])
+        cycle, period = study.orbits[-1], study.get("branch/period")[139]
+    f, size = lines_of(axis)[-1].T
+    swing = np.ptp(cycle.y[:, 2]) / 2.2 * 1e6  # y = 1.1 swing sin(t + 0.3), x = swing (cos t + 0.1 cos 2 t)
+    larger = np.linalg.svd([[1, 0], [1.1 * np.sin(0.3), 1.1 * np.cos(0.3)]])[1][0]
+    assert np.allclose(f[:3] * period, [1, 2, 3]) and np.allclose(size[:2] / swing, [larger, 0.1], rtol=1e-3), (f[:3] * period, size[:2] / swing)
+    assert (size[2:] < 1e-9 * swing).all()
+
+
 def responses_of_a_sweep(folder):
     """Linear responses are wide, nonlinear ones thin, and dashed means unstable as everywhere; the deck as it stands has a name."""
     def fill(root):
@@ -641,7 +662,7 @@ beams()
 refined()
 legends()
 border_of_stability()
-for check in (sag, mode_shapes, growth, campbell_lines, words, courses, colours, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
+for check in (sag, mode_shapes, growth, campbell_lines, words, courses, colours, harmonics, responses_of_a_sweep, branches_of_a_sweep, stability_factors,
               coefficients, loci, sections, beside, ruptured, heat_flows, velocities, film_sections, films_of_machines):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
