@@ -25,12 +25,24 @@ double FilmLimit::margin(const std::vector<double>& thickness) const {
   return least;
 }
 
-std::string FilmLimit::reason(const std::vector<double>& thickness) const {
-  std::size_t worst = 0;
+std::size_t FilmLimit::worst(const std::vector<double>& thickness) const {
+  std::size_t out = 0;
   for (std::size_t k = 1; k < limits_.size() && k < thickness.size(); ++k)
-    if (margin(thickness[k], k) < margin(thickness[worst], worst)) worst = k;
-  if (limits_[worst] <= 0) return fmt::format("the journal touches bearing {}", names_[worst]);
-  return fmt::format("film of bearing {} falls below {:.3g} um (minimum_film)", names_[worst], limits_[worst] * 1e6);
+    if (margin(thickness[k], k) < margin(thickness[out], out)) out = k;
+  return out;
+}
+
+std::string FilmLimit::reason(const std::vector<double>& thickness) const {
+  const std::size_t at = worst(thickness);
+  if (limits_[at] <= 0) return fmt::format("the journal touches bearing {}", names_[at]);
+  return fmt::format("film of bearing {} falls below {:.3g} um (minimum_film)", names_[at], limits_[at] * 1e6);
+}
+
+std::string FilmLimit::thinnest(const std::vector<double>& thickness) const {
+  if (limits_.empty() || thickness.empty()) return "";
+  const std::size_t at = worst(thickness);
+  if (!std::isfinite(thickness[at])) return "";
+  return fmt::format("; the film of bearing {} is {:.3g} um thick", names_[at], thickness[at] * 1e6);
 }
 
 void FilmLimit::warn(const std::vector<double>& thickness, const std::string& where, io::StudySummary& summary) const {

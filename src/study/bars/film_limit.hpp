@@ -29,11 +29,15 @@ public:
   [[nodiscard]] double margin(const std::vector<double>& thickness) const;
   /// "film of bearing B4 falls below 0.09 um (minimum_film)": of the place of the least margin.
   [[nodiscard]] std::string reason(const std::vector<double>& thickness) const;
+  /// "; the film of bearing B4 is 0.2 um thick": of the same place, for what ended for another reason. Empty without
+  /// films.
+  [[nodiscard]] std::string thinnest(const std::vector<double>& thickness) const;
   /// Adds a warning for each place whose film is thinner than its limit; `where` says of what: "at 3600 rpm".
   void warn(const std::vector<double>& thickness, const std::string& where, io::StudySummary& summary) const;
 
 private:
   [[nodiscard]] double margin(double thickness, std::size_t place) const;
+  [[nodiscard]] std::size_t worst(const std::vector<double>& thickness) const;
   std::vector<std::string> names_;
   std::vector<double> limits_, clearances_;
 };

@@ -66,13 +66,28 @@ public:
         save();
       }
     } catch (const core::DomainError& e) {
-      status = fmt::format("ended in revolution {}: {}", done_ + 1, e.what());
+      status = ended(e.what());
       if (record_.revolutions() < 2) throw core::DomainError(status);
+    } catch (const core::NotConverged& e) {
+      status = ended(e.what() + thinnest());
+      if (record_.revolutions() < 2) throw core::NotConverged(status);
     }
     return report(status);
   }
 
 private:
+  [[nodiscard]] std::string ended(const std::string& why) const {
+    return fmt::format("ended in revolution {}: {}", done_ + 1, why);
+  }
+  // Where the last step arrived.
+  [[nodiscard]] std::string thinnest() {
+    integrator_.state(start_.x.get());
+    try {
+      return films_.thinnest(system_.observe(start_.x.get()).film_thickness);
+    } catch (const core::DomainError&) {
+      return "";
+    }
+  }
   [[nodiscard]] double period() const { return 2 * std::numbers::pi / options_.speed.value; }
   // Directions need time to turn to those that grow most, before their growth counts.
   [[nodiscard]] int first_carried() const { return options_.discard - std::max(2, options_.discard / 4); }
