@@ -264,7 +264,7 @@ std::string of_transfers(const io::StudySummary& s, const Values& v) {
              fmt::format("at [{}]", s.values.empty() ? "" : v.unit(s.values[1].first))});
   for (const auto& [name, q] : s.values)
     if (name.ends_with(".largest"))
-      grid.add({name.substr(0, name.size() - 8), number(q.value), q.unit, v.cell(name + "_at")});
+      grid.add({name.substr(0, name.size() - 8), v.cell(name), q.unit, v.cell(name + "_at")});
   return out + grid.text();
 }
 
@@ -290,8 +290,7 @@ std::string of_coefficients(const io::StudySummary& s, const Values& v) {
   const std::string amplitude = ".amplitude.";
   const bool enforced = std::ranges::any_of(
       s.values, [&](const auto& named) { return named.first.find(amplitude) != std::string::npos; });
-  std::vector<std::string> heads{"speed [" + (speeds.empty() ? "" : v.unit("speed." + speeds.front() + ".speed")) + "]",
-                                 "eccentricity", "omega/Omega"};
+  std::vector<std::string> heads{"speed", "eccentricity", "omega/Omega"};
   if (enforced) heads.emplace_back("amplitude");
   for (const char* head : {"K xx [N/m]", "K xy", "K yx", "K yy", "B xx [N s/m]", "B xy", "B yx", "B yy"})
     heads.emplace_back(head);
@@ -300,11 +299,12 @@ std::string of_coefficients(const io::StudySummary& s, const Values& v) {
     const std::string head = "speed." + speed + ".";
     for (const std::string& ratio : Values::between(s, head + "ratio.", ".K.xx")) {
       const std::size_t found = ratio.find(amplitude);
-      std::vector<std::string> row{speed, v.cell(head + "eccentricity"), ratio.substr(0, found)};
+      std::vector<std::string> row{speed + " " + v.unit(head + "speed"), v.cell(head + "eccentricity"),
+                                   ratio.substr(0, found)};
       if (enforced) row.push_back(found == std::string::npos ? "small" : ratio.substr(found + amplitude.size()));
       for (const char* letter : {".K.", ".B."})
         for (const char* pair : {"xx", "xy", "yx", "yy"})
-          row.push_back(number(v.get(head + "ratio." + ratio + letter + pair)));
+          row.push_back(v.cell(head + "ratio." + ratio + letter + pair));
       grid.add(std::move(row));
     }
   }
@@ -360,6 +360,12 @@ std::string with_uncertainty(double value, double uncertainty, const std::string
   const auto places = [](double x) { return -static_cast<int>(std::floor(std::log10(std::abs(x)))); };
   const int most = value == 0 ? 6 : 6 + places(value);
   if (!std::isfinite(uncertainty) || !(uncertainty > 0)) return fmt::format("{:.7g}{}", value, tail);
+  const int size = -places(std::max(std::abs(value), uncertainty));
+  if (size < -4 || size > 6) {
+    const double unit_of_size = std::pow(10, size);
+    return fmt::format("({})e{:+03d}{}", with_uncertainty(value / unit_of_size, uncertainty / unit_of_size, ""), size,
+                       tail);
+  }
   const int wanted = 1 + places(uncertainty);
   if (wanted > most) return fmt::format("{:.7g} +- {:.1g}{}", value, uncertainty, tail);
   const int decimals = std::max(0, wanted);

@@ -87,6 +87,7 @@ void Equations::configure(KSP ksp) {
   check(KSPGetPC(ksp, &pc));
   if (thin_) {
     auto inverse = std::make_shared<ThinInverse>(*point_, *system_.structure());
+    inverses_.push_back(inverse);
     core::set_shell(pc, gate_,
                     [this, ksp, inverse, y = Eigen::VectorXd(), x = Eigen::VectorXd()](Vec in, Vec out) mutable {
                       Mat a = nullptr;
@@ -100,6 +101,12 @@ void Equations::configure(KSP ksp) {
   }
   check(PCSetType(pc, PCLU));
   if (!dense()) check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+void Equations::forget() {
+  std::erase_if(inverses_, [](const auto& i) { return i.expired(); });
+  for (const auto& i : inverses_)
+    if (const auto inverse = i.lock()) inverse->forget();
 }
 
 void Equations::scale(Vec x, Vec u) const {

@@ -31,6 +31,8 @@ public:
   [[nodiscard]] core::Matrix make_matrix();
   /// A solver of KSP for matrices of make_matrix(): ThinInverse, or LU with row exchanges.
   void configure(KSP ksp);
+  /// What solvers of configure() and make_solver() keep from one matrix to the next: they depend on the next one only.
+  void forget();
   [[nodiscard]] core::LinearSolver make_solver(const std::string& prefix);
   /// x = matrix^-1 b; false if that failed.
   [[nodiscard]] bool solve(KSP ksp, Mat matrix, Vec b, Vec x);
@@ -84,7 +86,8 @@ private:
   bool tangents_ = false;
   long residuals_ = 0, jacobians_ = 0;
   std::vector<std::pair<Mat, std::shared_ptr<ThinOperator>>> operators_;
-  core::Matrix rates_;  // of rate()
+  std::vector<std::weak_ptr<ThinInverse>> inverses_;  // of configure()
+  core::Matrix rates_;                                // of rate()
   core::LinearSolver rate_solver_;
   core::Vector f_rate_, change_;
 };

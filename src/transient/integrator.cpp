@@ -221,6 +221,7 @@ void Integrator::restart(double time, double step) {
   p.step = step;
   check(VecCopy(p.u.get(), p.front.get()));
   p.stepper->forget();
+  p.equations.forget();
 }
 
 void Integrator::close_revolution(double earlier) {

@@ -63,10 +63,13 @@ inline constexpr int max_rejections = 20;
 }
 
 /// Takes attempt(h) -> std::optional<double>, the error in tolerances or nothing where Newton's method failed, until an
-/// error is at most one. Steps that leave a film are cut to a quarter.
+/// error is at most one. Steps that leave a film are cut to a quarter. An error that does not fall with the step is
+/// that of the start, which does not obey the equations that hold no rates as well as the end does: the step is taken.
 template <class Attempt>
 Taken take_step(double wanted, int order, Attempt&& attempt) {
   double h = wanted;
+  constexpr double of_the_start = 10;  // tolerances, at most
+  double error_before = 0;
   std::string why = "Newton's method does not converge in steps however short";
   for (int rejected = 0; rejected <= max_rejections; ++rejected) {
     double next = h / 4;
@@ -74,6 +77,8 @@ Taken take_step(double wanted, int order, Attempt&& attempt) {
       if (const std::optional<double> error = attempt(h)) {
         next = allowed_step(h, *error, order);
         if (*error <= 1) return {h, next, rejected, rejected > 0 ? why : ""};
+        if (rejected > 1 && *error > 0.95 * error_before && *error < of_the_start) return {h, h, rejected, why};
+        error_before = *error;
         if (rejected > 0) next /= 2;
         why = "the error of a step exceeds its tolerance however short the step";
       }

@@ -19,6 +19,9 @@ constexpr double newton_part = 1e-2;
 constexpr double rounding_part = 1e-13;  // of the states' scale: no change is smaller
 constexpr int most_changes = 10;
 constexpr double slow_ratio = 0.3;  // convergence that pays for new tangents
+// Of one stage. Where a film's equations have a kink, as that of an orifice between sonic and still gas has, factors
+// from one side of it may not serve on the other.
+constexpr int most_renewals = 4;
 constexpr std::size_t most_nodes = 5;
 
 }  // namespace
@@ -39,7 +42,7 @@ ThinSteps::ThinSteps(Equations& equations, const solve::Tableau& tableau, double
 
 void ThinSteps::forget() {
   length_ = length_before_ = 0;
-  has_tangents_ = false;
+  has_tangents_ = careful_ = false;
   rate_ = 1;
   inverse_.forget();
 }
@@ -79,9 +82,11 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
   predict(i, length);
   value_ = known_ + own * slope_;
   equations_.turn(at);
+  // After a failure by Newton's method itself, with a matrix of its own for each change.
+  const bool careful = careful_ && !cheap;
   // Of the same step in time and speed as the matrix, or nearly so.
-  bool renew = cheap || !has_tangents_ || !inverse_.fits(own, equations_.system().parameter());
-  bool renewed = false;
+  bool renew = cheap || careful || !has_tangents_ || !inverse_.fits(own, equations_.system().parameter());
+  int renewals = 0;
   double last = 0, rate = std::pow(std::max(rate_, 1e-4), 0.8);
   for (int k = 0; k < most_changes; ++k) {
     equations_.residual(at, value_, slope_, f_, renew ? &operator_.at : nullptr);
@@ -95,7 +100,8 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
         inverse_.place(operator_);
       else
         inverse_.factorise_at(operator_);
-      has_tangents_ = renewed = true;
+      has_tangents_ = true;
+      ++renewals;
       renew = false;
       last = 0;
     }
@@ -108,22 +114,25 @@ bool ThinSteps::solve_stage(Index i, double time, double length) {
     if (last > 0 && !rounding) {
       const double ratio = moved / last;
       if (ratio >= 1) {
-        if (renewed) return false;
+        if (renewals > (cheap ? 0 : most_renewals - 1)) return false;
         renew = true;
+        if (renewals > 0) continue;
         predict(i, length);
         value_ = known_ + own * slope_;
         continue;
       }
       rate = ratio / (1 - ratio);
-      renew = !cheap && !renewed && ratio > slow_ratio;
+      renew = !cheap && ratio > slow_ratio && renewals < most_renewals;
     }
     last = moved;
+    renew = renew || careful;
     // With a contraction q per iteration what is left after a change is q + q^2 + ... = q/(1 - q) of it. The ratio of
     // two changes tells the q of what they consist of, and that of an earlier stage, with other factors, nothing of
     // this one: where the factors are not of this tau and speed, an error along stiff directions shrinks by no more
     // than their mismatch, however small it is among the first changes.
     const double q = inverse_.mismatch(own, equations_.system().parameter());
-    if (rounding || std::max(rate, q / (1 - q)) * moved <= newton_part) {
+    // Careful, the change itself is small enough.
+    if (rounding || (careful ? 1 : std::max(rate, q / (1 - q))) * moved <= newton_part) {
       rate_ = rate;
       slopes_.col(i) = slope_;
       return true;
@@ -136,6 +145,7 @@ std::optional<double> ThinSteps::attempt(double time, double length) {
   weights_ = (tolerance_ * (1 + start_.array().abs())).inverse();
   for (Index i = 0; i < tableau_.stages(); ++i) {
     if (!solve_stage(i, time, length)) {
+      careful_ = true;
       rate_ = 1;
       has_tangents_ = false;
       return std::nullopt;
@@ -155,6 +165,7 @@ Taken ThinSteps::step(double time, double wanted, Vec u) {
     start_ = Eigen::Map<const VectorXd>(a.data(), a.size());
   }
   const Taken taken = take_step(wanted, tableau_.order, [&](double h) { return attempt(time, h); });
+  careful_ = false;
   time_ = time;
   length_ = length_before_ = taken.length;
   before_ = slopes_;

@@ -45,7 +45,8 @@ private:
   ThinInverse inverse_;
   ThinOperator operator_;
   bool has_tangents_ = false;
-  double rate_ = 1;  // by which the last iteration converged
+  bool careful_ = false;  // until the next step that is taken
+  double rate_ = 1;       // by which the last iteration converged
 
   Eigen::VectorXd start_, weights_, known_, value_, slope_, f_, change_, end_;
   Eigen::MatrixXd slopes_, before_;  // K_i of this step and of the last one [n x stages]

@@ -37,8 +37,8 @@ public:
 
   Section(Integrator& integrator, Height height, Sense sense, Found found);
 
-  /// The integrator goes on to `time`, and through all the same steps as without a section. Throws as
-  /// Integrator::advance(). Collective. A crossing costs some seven short steps, or some ten evaluations of g.
+  /// The integrator goes on to `time`, through all the same steps as by Integrator::advance(time), and throws as that
+  /// does. Collective. A crossing costs some seven short steps, or some ten evaluations of g.
   void advance(double time);
   /// The motion goes on from another state.
   void forget() { last_.reset(); }

@@ -69,7 +69,7 @@ public:
       status = ended(e.what());
       if (record_.revolutions() < 2) throw core::DomainError(status);
     } catch (const core::NotConverged& e) {
-      status = ended(e.what() + thinnest());
+      status = ended(e.what() + thinnest(films_, system_, integrator_, start_.x.get()));
       if (record_.revolutions() < 2) throw core::NotConverged(status);
     }
     return report(status);
@@ -78,15 +78,6 @@ public:
 private:
   [[nodiscard]] std::string ended(const std::string& why) const {
     return fmt::format("ended in revolution {}: {}", done_ + 1, why);
-  }
-  // Where the last step arrived.
-  [[nodiscard]] std::string thinnest() {
-    integrator_.state(start_.x.get());
-    try {
-      return films_.thinnest(system_.observe(start_.x.get()).film_thickness);
-    } catch (const core::DomainError&) {
-      return "";
-    }
   }
   [[nodiscard]] double period() const { return 2 * std::numbers::pi / options_.speed.value; }
   // Directions need time to turn to those that grow most, before their growth counts.

@@ -55,4 +55,15 @@ StartState start_state(system::Plant& system, const MotionStart& start) {
   return state;
 }
 
+std::string thinnest(const FilmLimit& films, system::Plant& system, const transient::Integrator& motion, Vec x) {
+  motion.state(x);
+  try {
+    return films.thinnest(system.observe(x).film_thickness);
+  } catch (const core::DomainError&) {
+  } catch (const core::NotConverged&) {
+    // Of walls that yield the film has to be solved.
+  }
+  return "";
+}
+
 }  // namespace whirl::study

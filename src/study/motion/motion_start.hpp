@@ -2,11 +2,14 @@
 // The state a motion begins with.
 
 #include <complex>
+#include <string>
 #include <vector>
 
+#include "study/bars/film_limit.hpp"
 #include "study/layout.hpp"
 #include "whirl/study/motion/motion.hpp"
 #include "whirl/system/plant.hpp"
+#include "whirl/transient/integrator.hpp"
 
 namespace whirl::study {
 
@@ -25,5 +28,10 @@ void check_start(const MotionStart& start, const system::Machine& machine, const
 
 /// The state at shaft angle zero. Collective on the system's communicator; throws core::NotConverged.
 [[nodiscard]] StartState start_state(system::Plant& system, const MotionStart& start);
+
+/// "; the film of bearing B4 is 0.2 um thick" where the motion stands, for one that ended; `x` is room for a state, SI.
+/// Empty without films, and where nothing can be told of them. Collective.
+[[nodiscard]] std::string thinnest(const FilmLimit& films, system::Plant& system, const transient::Integrator& motion,
+                                   Vec x);
 
 }  // namespace whirl::study

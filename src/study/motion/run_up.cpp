@@ -107,7 +107,7 @@ public:
     } catch (const core::DomainError& e) {
       status = ended(e.what());
     } catch (const core::NotConverged& e) {
-      status = ended(e.what() + thinnest());
+      status = ended(e.what() + thinnest(films_, system_, integrator_, x_.get()));
     }
     return report(status);
   }
@@ -115,15 +115,6 @@ public:
 private:
   [[nodiscard]] double speed_at(double revolutions) const {
     return deck::from_si(drive_.speed_at(drive_.time_of(2 * std::numbers::pi * revolutions)), unit_);
-  }
-  // Where the last step arrived.
-  [[nodiscard]] std::string thinnest() {
-    integrator_.state(x_.get());
-    try {
-      return films_.thinnest(system_.observe(x_.get()).film_thickness);
-    } catch (const core::DomainError&) {
-      return "";
-    }
   }
   [[nodiscard]] std::string ended(const std::string& why) const {
     return fmt::format("ended at {:.6g} {}: {}", speed_at(done_), unit_, why);
