@@ -290,7 +290,12 @@ std::string of_coefficients(const io::StudySummary& s, const Values& v) {
   const std::string amplitude = ".amplitude.";
   const bool enforced = std::ranges::any_of(
       s.values, [&](const auto& named) { return named.first.find(amplitude) != std::string::npos; });
-  std::vector<std::string> heads{"speed", "eccentricity", "omega/Omega"};
+  const auto unit_of = [&](const std::string& speed) { return v.unit("speed." + speed + ".speed"); };
+  // In the head where it is the same for all.
+  const bool mixed =
+      std::ranges::any_of(speeds, [&](const auto& other) { return unit_of(other) != unit_of(speeds.front()); });
+  const std::string unit = speeds.empty() || mixed ? "" : " [" + unit_of(speeds.front()) + "]";
+  std::vector<std::string> heads{"speed" + unit, "eccentricity", "omega/Omega"};
   if (enforced) heads.emplace_back("amplitude");
   for (const char* head : {"K xx [N/m]", "K xy", "K yx", "K yy", "B xx [N s/m]", "B xy", "B yx", "B yy"})
     heads.emplace_back(head);
@@ -299,7 +304,7 @@ std::string of_coefficients(const io::StudySummary& s, const Values& v) {
     const std::string head = "speed." + speed + ".";
     for (const std::string& ratio : Values::between(s, head + "ratio.", ".K.xx")) {
       const std::size_t found = ratio.find(amplitude);
-      std::vector<std::string> row{speed + " " + v.unit(head + "speed"), v.cell(head + "eccentricity"),
+      std::vector<std::string> row{mixed ? speed + " " + unit_of(speed) : speed, v.cell(head + "eccentricity"),
                                    ratio.substr(0, found)};
       if (enforced) row.push_back(found == std::string::npos ? "small" : ratio.substr(found + amplitude.size()));
       for (const char* letter : {".K.", ".B."})

@@ -293,8 +293,9 @@ private:
   }
 
   void shift(Node& n, const Relative& r, const Spec& spec) const {
-    if (n.kind == Node::Kind::none)
-      throw InputError(fmt::format("'{}' has no value to start from: the deck does not give it", walked()));
+    if (n.kind == Node::Kind::none || (n.kind == Node::Kind::list && n.items.empty()))
+      throw InputError(fmt::format("'{}' has no value to start from: the deck does not give it{}", walked(),
+                                   r.offset.empty() ? "" : fmt::format(" ('={}' is the value itself)", r.offset)));
     if (names_table(n))
       throw InputError(
           fmt::format("'{}' is the table {}: name its rows and the column, {}.*.COLUMN", walked(), n.text, walked()));

@@ -23,7 +23,9 @@ bool known(const Evidence& e) {
 }
 
 std::string largest(const Evidence& e) {
-  return fmt::format("largest exponent {:.4g} +- {:.2g} 1/s", e.exponents[0], e.uncertainties[0]);
+  // Within their bars they need not be in order.
+  const auto at = static_cast<std::size_t>(std::ranges::max_element(e.exponents) - e.exponents.begin());
+  return fmt::format("largest exponent {:.4g} +- {:.2g} 1/s", e.exponents[at], e.uncertainties[at]);
 }
 
 // A multiplier near -1 lets a motion of period one look like one of period two for long. Null if the return lasts.
