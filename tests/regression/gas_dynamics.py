@@ -132,7 +132,7 @@ def whirl(h):
     # A push beyond it ends where the surfaces touch, whatever the tolerance: on the way pressures behind orifices pass that of
     # the supply, where their equations have kinks.
     pushes = ", ".join(f"{{motion: {{name: '{t}', speed: 3300 rad/s, start: {{offset: [0.7, 0]}}, discard: 0, revolutions: 60, samples: 32,"
-                       f" tolerance: {t}, exponents: 0}}}}" for t in ("1e-3", "1e-4", "1e-5", "1e-6"))
+                       f" tolerance: {t}, exponents: 0}}}}" for t in ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7"))
     for tolerance, push in h.run(deck, "contact", coarse + [f"studies=[{pushes}]"], launcher=[], code=None).items():
         h.true(f"tolerance {tolerance}: contact in revolution 15", push["status"].startswith("ended in revolution 15") and push["status"].endswith("surfaces touch"), push["status"])
 
