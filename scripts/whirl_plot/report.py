@@ -21,7 +21,7 @@ table{border-collapse:collapse;margin:.4em 0 .2em;font-size:.9em} caption{text-a
 th,td{padding:.25em 1.1em .25em 0;text-align:left;border-bottom:1px solid var(--line);vertical-align:top} th{color:var(--grey);font-weight:600}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap} figure{margin:1.2em 0} figcaption{color:var(--grey);font-size:.88em}
 img{max-width:100%;border:1px solid var(--line);border-radius:4px} details{margin:.7em 0} summary{cursor:pointer;color:var(--blue)}
-.bad{color:var(--bad);font-weight:600} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
+.bad{color:var(--bad);font-weight:600} .warn{color:var(--bad);margin:.2em 0;padding-left:1.2em} .scroll{overflow-x:auto} pre{background:#f3f6f9;padding:.8em;overflow-x:auto;font-size:.85em}
 """
 
 # What a picture shows, by the end of its name.
@@ -105,21 +105,33 @@ def all_values(study):
     return [show(t, folded=True) for t in out if t.rows]
 
 
+def warned(warnings):
+    """The warnings of a study or of the machine, which its numbers must not be read without."""
+    return f"<ul class=warn>{''.join(f'<li>{escape(w)}</li>' for w in warnings)}</ul>" if warnings else ""
+
+
+def counted(number, what, several=""):
+    """`1 point`, `2 points`."""
+    return f"{number} {what if number == 1 else several or what + 's'}"
+
+
 def section(study, pictures):
     bad = "" if study.status == "completed" else " class=bad"
-    seconds = study.summary.get("wall_seconds")
+    seconds, points = study.summary.get("wall_seconds"), study.summary.get("points")
     facts = [escape(study.kind.replace("_", " ")), f"<span{bad}>{escape(study.status or 'not finished')}</span>"]
-    if study.summary.get("points") is not None:
-        facts.append(f"{study.summary['points']} points")
+    if points is not None:
+        facts.append(escape(counted(points, "point")))
     if isinstance(seconds, (int, float)):
         facts.append(f"{seconds:.1f} s")
-    return "\n".join([f"<h2 id='{anchor(study.name)}'>{escape(study.name)}</h2><p class=note>{', '.join(facts)}</p>",
+    return "\n".join([f"<h2 id='{anchor(study.name)}'>{escape(study.name)}</h2><p class=note>{', '.join(facts)}</p>", warned(study.warnings),
                       *(show(t) for t in tables.findings(study)), *(picture(p) for p in pictures), *all_values(study)])
 
 
 def in_brief(results):
-    """One line a study."""
-    rows = "".join(f"<tr><td style='white-space:nowrap'><a href='#{anchor(s.name)}'>{escape(s.name)}</a></td><td>{escape(brief.of(s))}</td></tr>" for s in results.studies if brief.of(s))
+    """One line a study, and its warnings below it."""
+    said = [(s, brief.of(s)) for s in results.studies]
+    rows = "".join(f"<tr><td style='white-space:nowrap'><a href='#{anchor(s.name)}'>{escape(s.name)}</a></td><td>{escape(words)}{warned(s.warnings)}</td></tr>"
+                   for s, words in said if words or s.warnings)
     return f"<h2 id=brief>In brief</h2><table>{rows}</table>" if rows else ""
 
 
@@ -175,10 +187,10 @@ def page_of(results):
     ended = [s for s in results.studies if s.status != "completed"]
     facts = [f"whirl {escape(summary.get('version', ''))}"]
     if summary.get("ranks"):
-        facts.append(f"{summary['ranks']} rank{'s' if summary['ranks'] != 1 else ''}")
+        facts.append(escape(counted(summary["ranks"], "rank")))
     if isinstance(summary.get("wall_seconds"), (int, float)):
         facts.append(f"{summary['wall_seconds']:.1f} s")
-    facts.append(f"{len(studies)} studies" + (f", <span class=bad>{len(ended)} ended early</span>" if ended else ""))
+    facts.append(counted(len(studies), "study", "studies") + (f", <span class=bad>{len(ended)} ended early</span>" if ended else ""))
     links = "".join(f"<a href='#{anchor(s.name)}'>{escape(s.name)}</a>" for s, _ in studies)
     machine = [p for p in general if p.stem == "machine"]
     together = [p for p in general if p.stem != "machine"]

@@ -90,16 +90,32 @@ def columns_of(labels, width, most):
     return 1
 
 
+def warning_lines(warnings, width, most=3):
+    """The warnings of a study as lines of `width` characters, the last of which counts those that found no place."""
+    lines, shown = [], 0
+    for words in warnings:
+        more = textwrap.wrap(f"Warning: {words}", width)
+        if shown and len(lines) + len(more) > most:
+            break
+        lines += more
+        shown += 1
+    left = len(warnings) - shown
+    return lines + ([f"and {left} more warning{'s' if left > 1 else ''} in the report"] if left else [])
+
+
 def save(figure, study, what, note="", handles=(), columns=6, of=""):
-    """Adds whose picture it is, the legend below and the conventions, and writes it; `of` is what is repeated in a sweep."""
+    """Adds whose picture it is, the legend below, the conventions and the warnings of the study, and writes it; `of` is what is repeated
+    in a sweep."""
     height = figure.get_figheight()
     columns = columns_of([h.get_label() for h in handles], figure.get_figwidth(), columns)
     rows = -(-len(handles) // columns)
     lines = textwrap.wrap(note, max(40, int(17.5 * figure.get_figwidth())))
-    # A figure grows by what its note needs beyond one line and its legend beyond two.
-    height += 0.15 * max(0, len(lines) - 1) + 0.215 * max(0, rows - 2)
+    warned = warning_lines(study.warnings, max(40, int(14.5 * figure.get_figwidth())))
+    # A figure grows by what its note needs beyond one line, its legend beyond two, and by its warnings.
+    lowest = 0.16 * len(warned)
+    height += 0.15 * max(0, len(lines) - 1) + 0.215 * max(0, rows - 2) + lowest
     figure.set_figheight(height)
-    below = 0.19 * bool(lines) + 0.15 * max(0, len(lines) - 1)
+    below = lowest + 0.19 * bool(lines) + 0.15 * max(0, len(lines) - 1)
     head, foot = 0.58, 0.10 + below + 0.215 * rows  # inches
     figure.set_layout_engine("constrained", rect=(0, foot / height, 1, 1 - (head + foot) / height))
     figure.text(0.01, 1 - 0.2 / height, study.run_title, va="center", fontsize=11.5, fontweight="bold", color=INK)
@@ -109,7 +125,9 @@ def save(figure, study, what, note="", handles=(), columns=6, of=""):
     if handles:
         figure.legend(handles=list(handles), loc="lower left", ncol=columns, borderpad=0.2, borderaxespad=0, columnspacing=1.4,
                       handlelength=2.2, labelspacing=0.35, bbox_to_anchor=(0.005, (0.05 + below) / height))
-    figure.text(0.99, 0.07 / height, "\n".join(lines), ha="right", va="bottom", fontsize=7.5, color=GREY)
+    figure.text(0.99, (0.07 + lowest) / height, "\n".join(lines), ha="right", va="bottom", fontsize=7.5, color=GREY)
+    if warned:
+        figure.text(0.01, 0.05 / height, "\n".join(warned), ha="left", va="bottom", fontsize=8, color=BAD)
     stem = study.file(what)
     files = write(figure, stem)
     plt.close(figure)

@@ -25,6 +25,12 @@ class Subject(whirl.Study):
         return COLOURS[names.index(self.name) % len(COLOURS)] if self.name in names else INK
 
     @property
+    def warnings(self):
+        """Sentences of summary.json that the numbers of the study must not be read without."""
+        found = self.summary.get("warnings", [])
+        return [str(w) for w in found] if isinstance(found, list) else []
+
+    @property
     def shown(self):
         """What the positions of branches and motions are."""
         return str(self.group["places/name"].attrs["description"]) if "places/name" in self.group else "journal relative to the bearing centre"
@@ -49,6 +55,7 @@ class Whole:
 
     def __init__(self, results, name):
         self.results, self.run_title, self.name, self.status = results, results.title, name, ""
+        self.warnings = []
 
     def file(self, what):
         return self.results.directory / what

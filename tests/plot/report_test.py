@@ -11,7 +11,8 @@ import numpy as np
 ROOT = pathlib.Path(__file__).parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
-from whirl_plot import brief, report, tables  # noqa: E402
+import whirl  # noqa: E402
+from whirl_plot import brief, report, style, tables  # noqa: E402
 from whirl_plot.subject import Drawn  # noqa: E402
 
 RPM = np.pi / 30
@@ -147,6 +148,66 @@ def options(folder):
     assert "{" not in page and "[" not in page and "&#x27;" not in page, page
 
 
+def warnings(folder):
+    """Warnings of a study stand in the summary of the page, in its section, and below each of its pictures."""
+    sentence = "the linear motion leaves bearing B3 -4 um of film: no answer between 2120 and 2260 rpm"
+    with results_with(folder, lambda s, _: s["generator pair"].update({"warnings": [sentence, "second <b>"]})) as results:
+        text = report.page_of(results)
+        study = results["generator pair"]
+        lines = style.warning_lines(study.warnings, 200)
+        assert results["balanced"].warnings == [] and style.warning_lines([], 80) == []
+        written = []
+        figure = style.plt.figure()
+        style.write, kept = (lambda figure, stem: written.extend(t.get_text() for t in figure.texts) or []), style.write
+        try:
+            style.save(figure, study, "response")
+        finally:
+            style.write = kept
+    assert text.count(sentence) == 2 and "second &lt;b&gt;" in text, text.count(sentence)
+    assert lines == [f"Warning: {sentence}", "Warning: second <b>"], lines
+    assert any(sentence in t.replace("\n", " ") for t in written), written
+    assert style.warning_lines(["a"] * 5, 80)[-1] == "and 2 more warnings in the report"
+
+
+def foreign(folder):
+    """Markup in any field of a summary that another program wrote comes out as text, or the results are refused."""
+    evil = "<script>alert(1)</script>"
+
+    def places(node, path=()):
+        """Paths of all fields, and whether each is a leaf: keys of objects, objects of lists, and the first of other items of these."""
+        items = node.items() if isinstance(node, dict) else [(k, v) for k, v in enumerate(node) if k == 0 or isinstance(v, dict)] if isinstance(node, list) else []
+        for key, value in items:
+            yield (*path, key), not isinstance(value, (dict, list))
+            yield from places(value, (*path, key))
+
+    with results_with(folder, lambda s, _: s["balanced"].update({"warnings": ["one"], "stability": "loses stability"})):
+        pass
+    path = folder / "summary.json"
+    whole = path.read_text()
+
+    def shown(some):
+        """How many of the places, filled all at once, a page shows; where it refuses them, those of both halves by themselves."""
+        summary = json.loads(whole)
+        for *most, last in some:
+            node = summary
+            for key in most:
+                node = node[key]
+            node[last] = evil
+        path.write_text(json.dumps(summary))
+        try:
+            with Drawn(folder) as results:
+                text = report.page_of(results)
+        except (whirl.Error, AttributeError, IndexError, KeyError, TypeError, ValueError):  # a sentence and exit code 2
+            return 0 if len(some) == 1 else shown(some[:len(some) // 2]) + shown(some[len(some) // 2:])
+        assert "<script" not in text, some
+        return len(some)
+
+    leaves = [p for p, leaf in places(json.loads(whole)) if leaf]
+    # A study of another name has no entry.
+    names = [p for p in leaves if p[0] == "studies" and p[2:] == ("name",)]
+    assert shown([p for p in leaves if p not in names]) > 40 and shown(names) == len(names), leaves
+
+
 def page(folder):
     """The whole page holds the sweep's table and one line of each of its kinds."""
     with results_with(folder, lambda s, _: s["balanced"].update({"stability": "loses stability"})) as results:
@@ -156,7 +217,7 @@ def page(folder):
         assert words in text, words
 
 
-for check in (verdicts, modes, sweep, others_in_brief, options, page):
+for check in (verdicts, modes, sweep, others_in_brief, options, warnings, foreign, page):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("the report says what the results say")
