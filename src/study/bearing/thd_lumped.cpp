@@ -13,8 +13,8 @@ void put_lumped(io::StudySummary& summary, ThdFilm& film, const ThdOptions& opti
   if (film.is_gas()) return;
   thermal::Thd& thd = film.thd();
   const double area = 2 * std::numbers::pi * geometry.radius * geometry.length;
-  const auto wall = [&](const thermal::WallOptions& wall, const std::vector<double>& surface) {
-    const bool adiabatic = wall.type == thermal::WallOptions::Type::adiabatic;
+  const auto wall = [&](const thermal::WallOptions& side, const std::vector<double>& surface) {
+    const bool adiabatic = side.type == thermal::WallOptions::Type::adiabatic;
     return thermal::LumpedWall{adiabatic ? 0 : area, surface_numbers(film, surface).mean};
   };
   const std::array<thermal::LumpedWall, 2> walls{wall(options.bush, thd.bush_surface()),

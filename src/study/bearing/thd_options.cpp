@@ -107,8 +107,8 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
     if (ring.inlet == thermal::OrificeRing::Inlet::bush && options.bush.type == Wall::Type::adiabatic)
       report.fail("orifices", "an adiabatic bush has no temperature that the gas could enter with");
   }
-  for (const auto& [key, wall] : {std::pair{"bush", &options.bush}, {"journal", &options.journal}})
-    if (wall->growth && wall->expansion <= 0) report.fail(key, "'growth' needs the 'expansion' of the solid");
+  for (const auto& [which, wall] : {std::pair{"bush", &options.bush}, {"journal", &options.journal}})
+    if (wall->growth && wall->expansion <= 0) report.fail(which, "'growth' needs the 'expansion' of the solid");
   if (options.bush.type == Wall::Type::solid && options.bush.radius <= g.radius + g.clearance)
     report.fail("bush", "the outer 'radius' of the bush must lie beyond the film");
   if (options.journal.type == Wall::Type::solid) {
