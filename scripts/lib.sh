@@ -6,8 +6,6 @@ whirl_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # nproc counts no more than OMP_NUM_THREADS.
 cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
-# A rank that waits gives its core away: on a busy machine this is the difference between seconds and minutes.
-export OMPI_MCA_mpi_yield_when_idle=1
 if [ "$(id -u)" = 0 ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi

@@ -92,8 +92,17 @@ void Session::one_blas_thread() {
     }
 }
 
+// A rank that polls for messages keeps its core from the rank that it waits for: where ranks outnumber idle cores that
+// is the difference between seconds and minutes. A rank alone waits for nobody, and would give its core away at every
+// poll.
+void Session::yield_to_other_ranks() {
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (size && std::atoi(size) > 1) (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+}
+
 Session::Session(int argc, char** argv) {
   one_blas_thread();
+  yield_to_other_ranks();
   int one = argc > 0 ? 1 : 0;
   check(SlepcInitialize(&one, &argv, nullptr, nullptr));
   check(PetscPushErrorHandler(keep_text, nullptr));

@@ -4,6 +4,7 @@
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <mpi.h>
 #include <petscsys.h>
 
 #include <cstdlib>
@@ -65,6 +66,28 @@ TEST(Session, BlasHasOneThreadUnlessTheUserSaysHowMany) {
     EXPECT_EQ(get(), 1);
   }
   set(before);
+}
+
+// One rank that yields gives its core away at each poll of MPI; two that do not keep each other waiting.
+TEST(Session, RanksYieldToOthersOnly) {
+  const char* chosen = std::getenv("OMPI_MCA_mpi_yield_when_idle");
+  int size = 0, provided = 0, index = 0, n = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  if (size == 1 && chosen) GTEST_SKIP() << "the environment decides";
+  ASSERT_EQ(MPI_T_init_thread(MPI_THREAD_SINGLE, &provided), MPI_SUCCESS);
+  if (MPI_T_cvar_get_index("mpi_yield_when_idle", &index) != MPI_SUCCESS) GTEST_SKIP() << "not Open MPI";
+  MPI_T_cvar_handle handle = nullptr;
+  ASSERT_EQ(MPI_T_cvar_handle_alloc(index, nullptr, &handle, &n), MPI_SUCCESS);
+  bool yields = false;
+  EXPECT_EQ(MPI_T_cvar_read(handle, &yields), MPI_SUCCESS);
+  EXPECT_EQ(MPI_T_cvar_handle_free(&handle), MPI_SUCCESS);
+  EXPECT_EQ(MPI_T_finalize(), MPI_SUCCESS);
+  if (size == 1) {
+    EXPECT_FALSE(yields);
+  } else {
+    ASSERT_NE(chosen, nullptr);
+    EXPECT_EQ(yields, std::string(chosen) == "1");
+  }
 }
 
 TEST(Session, WordsForPetscAreOptionsWithTheirValues) {

@@ -28,6 +28,10 @@ public:
   /// The constructor does it; nothing happens if the library has no such switch.
   static void one_blas_thread();
 
+  /// Ranks that wait give their cores away, unless the environment decides (OMPI_MCA_mpi_yield_when_idle): set before
+  /// MPI starts, for two ranks and more under Open MPI's mpirun. The constructor does it.
+  static void yield_to_other_ranks();
+
   /// Puts words of the command line into PETSc's option database ("-newton_snes_monitor", ...), over what other sources
   /// gave. core::InputError (agreed) for a word that is neither the name of an option nor the value of the one before.
   static void set_options(const std::vector<std::string>& words);
