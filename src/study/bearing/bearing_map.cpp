@@ -164,7 +164,7 @@ void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vec
   for (std::size_t i = 0; i < 4; ++i) {
     table.put(fmt::format("k_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].k[i]; }), "1",
               "stiffness c k/(load/S)");
-    table.put(fmt::format("b_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].b[i]; }), "1",
+    table.put(fmt::format("c_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].b[i]; }), "1",
               "damping c Omega b/(load/S)");
   }
   if (frequencies.size() < 2) return;
@@ -179,7 +179,7 @@ void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vec
       }
     const io::Shape shape{locus.size(), frequencies.size()};
     over.put(fmt::format("k_{}", entries[i]), shape, k, "1", "stiffness [point of the locus][frequency]");
-    over.put(fmt::format("b_{}", entries[i]), shape, b, "1", "damping [point of the locus][frequency]");
+    over.put(fmt::format("c_{}", entries[i]), shape, b, "1", "damping [point of the locus][frequency]");
   }
 }
 
@@ -221,7 +221,7 @@ void put_threshold(io::StudySummary& summary, const Mapper& map, const std::opti
 // What the locus says at one eccentricity, in the order of `with_bars`.
 constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio",
                                                    "k_xx",     "k_xy",       "k_yx",        "k_yy",
-                                                   "b_xx",     "b_xy",       "b_yx",        "b_yy"};
+                                                   "c_xx",     "c_xy",       "c_yx",        "c_yy"};
 std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vector<Point>& like) {
   std::vector<double> out;
   for (const Point& wanted : like) {
