@@ -161,6 +161,7 @@ void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, dou
                     fmt::format("estimated error of {} from the film mesh", name));
       }
     }
+  table.label_each({io::labels_of(ratios)});
   if (!options.amplitudes.empty())
     put_enforced_tables(group, speeds, ratios, options.amplitudes, enforced_of(found), bars, next);
 }

@@ -180,6 +180,7 @@ void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, co
         std::string("distortion_") + port_words[j], shape, left, "1",
         "what stiffness and damping leave of the force, ratio of root mean squares [speed][frequency][amplitude]");
   }
+  table.label_each({io::labels_of(ratios, "ratio"), io::labels_of(amplitudes, "amplitude")});
 }
 
 }  // namespace whirl::study
