@@ -1,6 +1,7 @@
 """Reading a results folder: summary.json and results.h5."""
 import contextlib
 import functools
+import itertools
 import json
 import pathlib
 import typing
@@ -99,6 +100,15 @@ class Study:
         names = self.get("bearings/name", self.get("places/name"))
         return list(names) if names is not None and len(names) == count else [f"bearing {i + 1}" for i in range(count)]
 
+    def labels(self, path):
+        """Names of the places along the axes of a dataset beside the first one, a list for each; numbers from 1 where it stores none."""
+        with damaged(self.results.path):
+            data = self.group[path]
+            stored = [data.attrs.get(f"labels_{k}" if k > 1 else "labels") for k in range(1, data.ndim)]
+            shape = data.shape[1:]
+        return [[text(v) for v in names] if names is not None and len(names) == n else [str(i + 1) for i in range(n)]
+                for names, n in zip(stored, shape)]
+
     @property
     def tables(self):
         """Names of the tables: groups of datasets with one row each per point."""
@@ -116,22 +126,16 @@ class Study:
         with damaged(self.results.path):
             group = self.group[chosen]
             rows = _rows(group)
-            columns = {n: self.get(f"{chosen}/{n}") for n in group if group[n].shape[0] == rows}
+            columns = {n: self.get(f"{chosen}/{n}") for n in group
+                       if isinstance(group[n], h5py.Dataset) and group[n].shape and group[n].shape[0] == rows}
             words = {n: {k: text(v) for k, v in group[n].attrs.items()} for n in columns}
         # Columns in the order of the branch first, then by name.
         first = [n for n in ("parameter", "speed", "name", "eccentricity") if n in columns]
         columns = {n: columns[n] for n in first + sorted(set(columns) - set(first))}
-        places = {n: self._places(chosen, v.shape[1]) for n, v in columns.items() if v.ndim > 1}
+        places = {n: [".".join(p) for p in itertools.product(*self.labels(f"{chosen}/{n}"))] for n, v in columns.items() if v.ndim > 1}
         columns = {n: v.reshape(len(v), -1) if v.ndim > 1 else v for n, v in columns.items()}
         return Table(chosen, columns, {n: words[n].get("unit", "") for n in columns},
                      {n: words[n].get("description", "") for n in columns}, places)
-
-    def _places(self, table, count):
-        nodes = self.get(f"{table}/node") if table != "bearings" else None
-        if nodes is not None and len(np.atleast_1d(nodes)) == count:
-            return [f"node {n}" for n in np.atleast_1d(nodes)]
-        names = self.bearings(count)
-        return names if not names or not names[0].startswith("bearing ") else [str(k + 1) for k in range(count)]
 
     @property
     def values(self):
@@ -171,12 +175,11 @@ class Study:
 
 
 def _rows(group):
-    """Number of rows of a table; nothing if the group is none. `node` may name the second axis instead."""
-    sizes = {name: d.shape[0] if isinstance(d, h5py.Dataset) and d.shape else None for name, d in group.items()}
-    if len(set(sizes.values())) > 1:
-        sizes.pop("node", None)
-    rows = set(sizes.values())
-    return rows.pop() if len(rows) == 1 else None
+    """Number of rows of a table: the first extent of its datasets of most axes; nothing if the group is none."""
+    data = [d for d in group.values() if isinstance(d, h5py.Dataset)]
+    axes = max((d.ndim for d in data), default=0)
+    rows = {d.shape[0] for d in data if d.ndim == axes} if axes else set()
+    return rows.pop() if len(rows) == 1 and len(data) == len(group) else None
 
 
 class Results:

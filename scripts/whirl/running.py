@@ -56,10 +56,7 @@ def run(deck, set=None, ranks=1, output=None, resume=False, options=(), check=Tr
     output = pathlib.Path(output) if output is not None else pathlib.Path("results") / deck.stem
     command = [str(program()), "run", str(deck), "-o", str(output), "--resume" if resume else "--force"]
     for path, value in (set or {}).items():
-        said = word(value)
-        # A bare negative number would be added: `==` sets it.
-        number = isinstance(value, (int, float)) and said.startswith("-")
-        command += ["--set", f"{path}={'=' if number else ''}{said}"]
+        command += ["--set", f"{path}={word(value)}"]
     if ranks > 1:
         command = ["mpirun", "-n", str(ranks), "--quiet", "--bind-to", "none", *command]
     done = subprocess.run([*command, *map(str, options)], env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,

@@ -183,7 +183,7 @@ def draw_frequencies(study):
     picks = sorted({int(np.argmin(np.abs(load - s))) for s in (0.1, 0.5, 1, 2.5, 5) if load[0] <= s <= load[-1]})
     colours = plt.cm.viridis(np.linspace(0, 0.95, len(picks)))
     figure, grid = plt.subplots(2, 4, figsize=(11.4, 5.6), sharex=True)
-    for axes, letter in zip(grid, "kb"):
+    for axes, letter in zip(grid, "kc"):
         for axis, entry in zip(axes, ENTRIES):
             table = study.get(f"frequencies/{letter}_{entry}")
             for i, colour in zip(picks, colours):
@@ -191,7 +191,7 @@ def draw_frequencies(study):
             axis.axhline(0, color=INK, linewidth=0.7)
             axis.set_xscale("log")
             axis.set_title(f"${letter}^*_{{{entry}}}$")
-            if letter == "b":
+            if letter == "c":
                 axis.set_xlabel(r"frequency $\omega/\Omega$")
     handles = [Line2D([], [], color=c, marker=".", label=f"S = {load[i]:.3g}") for i, c in zip(picks, colours)]
     return save(figure, study, "frequencies", SCALE, handles)
@@ -206,5 +206,5 @@ def draw_together(results):
     largest = min(10.0, max(s.get("locus/sommerfeld").max() for s in studies))
     whole = results.whole("bearings by themselves")
     return [*draw_locus(whole, studies, largest), *draw_entries(whole, studies, "k", "stiffness", "stiffness", largest),
-            *draw_entries(whole, studies, "b", "damping", "damping", largest), *draw_stability(whole, studies, largest),
+            *draw_entries(whole, studies, "c", "damping", "damping", largest), *draw_stability(whole, studies, largest),
             *draw_pressure(whole, studies)]

@@ -7,7 +7,7 @@ from .style import INK, save
 
 PORTS = ("x", "y", "slope_x", "slope_y")
 SHORT = {"x": "x", "y": "y", "slope_x": "x'", "slope_y": "y'"}
-UNITS = {"k": ("N/\u00b5m", "N", "N m"), "b": ("N s/m", "N s", "N m s")}
+UNITS = {"k": ("N/\u00b5m", "N", "N m"), "c": ("N s/m", "N s", "N m s")}
 
 
 def blocks_of(study):
@@ -23,7 +23,7 @@ def name_of(letter, pair):
 def draw_block(study, what, pairs, over, along, axis_label, lines, colours, labels):
     figure, grid = plt.subplots(2, 4, figsize=(12.4, 5.6), sharex=True)
     slopes = 2 if what == "tilt" else 0
-    for axes, letter in zip(grid, "kb"):
+    for axes, letter in zip(grid, "kc"):
         factor = 1e-6 if letter == "k" and slopes == 0 else 1
         for axis, pair in zip(axes, pairs):
             table = np.moveaxis(study.get(name_of(letter, pair)), along, -1) * factor
@@ -38,7 +38,7 @@ def draw_block(study, what, pairs, over, along, axis_label, lines, colours, labe
             if along == 1:
                 axis.set_xscale("log")
             axis.set_title(f"${letter}_{{{SHORT[pair[0]]}{SHORT[pair[1]]}}}$ [{UNITS[letter][slopes]}]")
-            if letter == "b":
+            if letter == "c":
                 axis.set_xlabel(axis_label)
     handles = [Line2D([], [], color=c, marker=".", label=label) for c, label in zip(colours, labels)]
     note = "first letter: force (moment), second: motion (slope dx/dz, dy/dz); the force is minus these; bands: error of the film mesh"

@@ -12,7 +12,7 @@ def draw_block(study, what, pairs, over, along, label, shown, colours, labels, o
     figure, grid = plt.subplots(2, 4, figsize=(12.4, 5.6), sharex=True)
     slopes = 2 if what == "tilt" else 0
     order = np.argsort(over, kind="stable")
-    for axes, letter in zip(grid, "kb"):
+    for axes, letter in zip(grid, "kc"):
         factor = 1e-6 if letter == "k" and slopes == 0 else 1
         for axis, pair in zip(axes, pairs):
             small = study.get(name_of(letter, pair)) * factor
@@ -32,7 +32,7 @@ def draw_block(study, what, pairs, over, along, label, shown, colours, labels, o
             if along == 1:
                 axis.set_xscale("log")
             axis.set_title(f"${letter}_{{{SHORT[pair[0]]}{SHORT[pair[1]]}}}$ [{UNITS[letter][slopes]}]")
-            if letter == "b":
+            if letter == "c":
                 axis.set_xlabel(label)
     handles = [Line2D([], [], color=c, marker=".", label=t) for c, t in zip(colours, labels)]
     handles.append(Line2D([], [], color=INK, linestyle=DASHED, label="by perturbation"))

@@ -11,7 +11,7 @@ def places(study):
     """(title, key, index, amplitude in m) of every bearing and node of a study."""
     rows = len(study.get("run_up/speed"))
     amplitude = study.get("run_up/amplitude").reshape(rows, -1)
-    for b, name in enumerate(study.bearings(amplitude.shape[1])):
+    for b, name in enumerate(study.labels("run_up/amplitude")[0]):
         yield f"{name}, journal", ("bearings", name), amplitude[:, b]
     nodes = study.get("node")
     if nodes is not None and np.size(nodes):
@@ -53,7 +53,7 @@ def draw_together(results):
     per_unit = {"rpm": 30 / np.pi, "Hz": 0.5 / np.pi}.get(unit, 1)
     handles = [Line2D([], [], color=s.colour,
                       label=f"{s.name}, {s.attribute('acceleration') * per_unit:+.3g} {unit.removesuffix('/s')}/s".replace("-", "\u2212") + "\u00b2" * unit.endswith("/s")) for s in studies]
-    linear = False
+    linear = started = False
     for axis, (title, key, _) in zip(axes, panels):
         for speed, major in steady(results, key):
             axis.plot(speed * per_unit, major * scale, color=GREY, linewidth=2.6, alpha=0.45, zorder=1)
@@ -61,7 +61,11 @@ def draw_together(results):
         for study in studies:
             for _, other, amplitude in places(study):
                 if other == key:
-                    axis.plot(study.get("run_up/speed"), amplitude * scale, color=study.colour, linewidth=1.2)
+                    speed, starting = study.get("run_up/speed"), study.get("run_up/start_transient")
+                    free = 0 if starting is None else int(np.count_nonzero(starting))
+                    axis.plot(speed[max(free - 1, 0):], amplitude[max(free - 1, 0):] * scale, color=study.colour, linewidth=1.2)
+                    axis.plot(speed[:free], amplitude[:free] * scale, color=study.colour, linewidth=0.8, alpha=0.35)
+                    started = started or free > 1
         ends = np.concatenate([study.get("run_up/speed") for study in studies])
         axis.set_xlim(ends.min(), ends.max())
         axis.set_ylim(bottom=0)
@@ -70,6 +74,8 @@ def draw_together(results):
         axis.set_ylabel(f"amplitude, 0-peak [{length}]")
     if linear:
         handles.append(Line2D([], [], color=GREY, linewidth=2.6, alpha=0.45, label="steady, linear"))
+    if started:
+        handles.append(Line2D([], [], color=GREY, linewidth=0.8, alpha=0.6, label="start: free vibration fades"))
     unbalance = studies[0].attribute("unbalance", "")
     return save(figure, results.whole("run-up"), "run-up",
-                 f"largest distance from the mean position in each revolution; unbalance {unbalance}", handles, columns=4)
+                 f"largest distance in each revolution from the mean position over nine; unbalance {unbalance}", handles, columns=4)

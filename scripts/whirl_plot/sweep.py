@@ -209,11 +209,9 @@ def draw_coefficients(study):
         return []
     order = np.argsort(at)
     files = []
-    for letters, unit, words in (("K", "N/m", "stiffness"), ("CB", "N s/m", "damping")):
+    for letter, unit, words in (("K", "N/m", "stiffness"), ("C", "N s/m", "damping")):
         figure, axes, _ = grid_of(len(heads), width=3.4, height=2.9, columns=min(3, len(heads)))
         for axis, head in zip(axes, heads):
-            # Damping is C of a machine in its equilibrium, B of a bearing by itself.
-            letter = next(k for k in letters if f"{head}.{k}.xx" in columns)
             entries = {c: study.get(f"table/{head}.{letter}.{c}")[order] for c in ("xx", "xy", "yx", "yy")}
             factor, shown = scale_of(unit, max(np.nanmax(np.abs(v)) for v in entries.values()))
             for k, values in enumerate(entries.values()):
@@ -223,7 +221,7 @@ def draw_coefficients(study):
             axis.set_xlabel(label)
             axis.set_ylabel(f"{words} [{shown}]")
             axis.axhline(0, color=INK, linewidth=0.6)
-        handles = [Line2D([], [], color=COLOURS[k], label=f"{letters[0]} {c}") for k, c in enumerate(("xx", "xy", "yx", "yy"))]
+        handles = [Line2D([], [], color=COLOURS[k], label=f"{letter} {c}") for k, c in enumerate(("xx", "xy", "yx", "yy"))]
         files += save(figure, study, words, "minus the derivatives of the film's force on the journal", handles)
     return files
 

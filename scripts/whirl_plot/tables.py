@@ -292,7 +292,7 @@ def run_up(study):
 
 
 def locus(study):
-    rows = [[LOCUS_WORDS.get(c.get("type"), str(c.get("type"))), with_bar(c.get("value"), c.get("uncertainty_parameter")), f"{with_bar(c.get('second_value'), c.get('uncertainty'))}"]
+    rows = [[LOCUS_WORDS.get(c.get("type"), str(c.get("type"))), with_bar(c.get("value"), c.get("value_uncertainty")), f"{with_bar(c.get('second_value'), c.get('second_value_uncertainty'))}"]
             for c in study.summary.get("codimension_two", [])]
     first, second = study.attribute("parameter", ""), study.attribute("second", "").rsplit(".", 1)[-1].replace("_", " ")
     unit = study.attribute("second_unit", "")

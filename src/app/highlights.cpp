@@ -297,7 +297,7 @@ std::string of_coefficients(const io::StudySummary& s, const Values& v) {
   const std::string unit = speeds.empty() || mixed ? "" : " [" + unit_of(speeds.front()) + "]";
   std::vector<std::string> heads{"speed" + unit, "eccentricity", "omega/Omega"};
   if (enforced) heads.emplace_back("amplitude");
-  for (const char* head : {"K xx [N/m]", "K xy", "K yx", "K yy", "B xx [N s/m]", "B xy", "B yx", "B yy"})
+  for (const char* head : {"K xx [N/m]", "K xy", "K yx", "K yy", "C xx [N s/m]", "C xy", "C yx", "C yy"})
     heads.emplace_back(head);
   Grid grid(heads);
   for (const std::string& speed : speeds) {
@@ -307,7 +307,7 @@ std::string of_coefficients(const io::StudySummary& s, const Values& v) {
       std::vector<std::string> row{mixed ? speed + " " + unit_of(speed) : speed, v.cell(head + "eccentricity"),
                                    ratio.substr(0, found)};
       if (enforced) row.push_back(found == std::string::npos ? "small" : ratio.substr(found + amplitude.size()));
-      for (const char* letter : {".K.", ".B."})
+      for (const char* letter : {".K.", ".C."})
         for (const char* pair : {"xx", "xy", "yx", "yy"})
           row.push_back(v.cell(head + "ratio." + ratio + letter + pair));
       grid.add(std::move(row));

@@ -99,8 +99,9 @@ core::Exit dispatch(CommandLine line, bool prints) {
     c->add_option("--set", r.overrides,
                   "PATH=VALUE...: change values. PATH may hold wildcards (bearings.{B2,B3}.geometry.clearance, "
                   "bearings.*.node); "
-                  "list items count from 1. VALUE replaces, x1.2 multiplies, '+500 um' and '-20 um' add, '+20 %' too, "
-                  "'=-5 um' is -5 um itself; PATH+=VALUE appends to a list (studies+='{static: {}}')")
+                  "list items count from 1. VALUE replaces (-20 um too), x1.2 and '+20 %' multiply, 'by +500 um' and "
+                  "'by -20 um' "
+                  "add; PATH+=VALUE appends to a list (studies+='{static: {}}')")
         ->allow_extra_args(false)
         ->type_name("PATH=VALUE");
   };

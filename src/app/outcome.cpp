@@ -26,7 +26,7 @@ std::string text_of(const io::StudySummary& s) {
       text += fmt::format("    estimated error of the shaft's reduction: {:+.2g} {}\n", error->second, b.unit);
   }
   for (const io::CodimensionTwo& c : s.codimension_two) {
-    const auto bar = c.more.find("uncertainty_parameter");
+    const auto bar = c.more.find("value_uncertainty");
     text +=
         fmt::format("  {}{} at {} {}, {} {}\n", c.more.contains("end_of_curve") ? "ends at " : "", c.type, c.parameter,
                     with_uncertainty(c.value.value, bar == c.more.end() ? io::no_value : bar->second, c.value.unit),

@@ -94,19 +94,42 @@ struct Relative {
   std::string offset;  // empty if it is a factor
 };
 std::optional<Relative> relative_of(std::string_view text, bool append) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  Relative r;
-  const char first = text.empty() ? ' ' : text[0];
-  if (first == 'x' && !append) {
-    const Split s = split_quantity(text.substr(1));
+  const Written written = written_as(text);
+  if (append && written.as != Written::As::change) return Relative{1, std::string(written.rest)};
+  if (written.as == Written::As::value) return std::nullopt;
+  const Split s = split_quantity(written.rest);
+  if (written.as == Written::As::factor) {
     if (!s.unit.empty()) throw InputError(fmt::format("a factor is a bare number, not '{}'", text));
-    r.factor = s.number;
-    return r;
+    return Relative{s.number, {}};
   }
-  if (first != '+' && first != '-' && !append) return std::nullopt;
-  r.offset = text;
-  if (const Split s = split_quantity(text); s.unit == "%") return Relative{1 + s.number / 100, {}};
-  return r;
+  if (s.unit == "%") return Relative{1 + s.number / 100, {}};
+  return Relative{1, std::string(written.rest)};
+}
+
+// A number of this value that is not zero, as it is written; empty if there is none.
+std::string not_zero(const Node& n) {
+  for (const Node& i : n.items)
+    if (std::string text = not_zero(i); !text.empty()) return text;
+  if (n.kind != Node::Kind::scalar) return {};
+  try {
+    return split_quantity(n.text).number == 0 ? std::string() : n.text;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+// A length with a sign used to be added to the value. For one version it is refused where the two readings differ, so
+// that no deck or command of before silently runs another machine.
+void refuse_two_readings(std::string_view text, const Node& now, const Spec& spec) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  if (text.empty() || (text[0] != '+' && text[0] != '-')) return;
+  const Split s = split_quantity(text);
+  if (spec.unit != "m" && (spec.unit != "*" || !same_kind(s.unit, "m"))) return;
+  if (const std::string base = not_zero(now); !base.empty())
+    throw InputError(fmt::format(
+        "'{}' could be a change of the value here, {}, or the value itself: write 'by {}' to change it, '={}' for the "
+        "value itself",
+        text, base, text, text));
 }
 
 // `text` after the factor or the offset, in the unit that it had.
@@ -270,11 +293,16 @@ private:
       if (const auto r = relative_of(edit_.value.text, add_number)) {
         after = std::move(now);
         shift(after, *r, *leaf.spec);
+      } else {
+        refuse_two_readings(after.text, now, *leaf.spec);
       }
     } else if (edit_.append) {
       after = joined(std::move(now));
     }
-    if (!edit_.append && after.kind == Node::Kind::scalar && after.text.starts_with("=")) after.text.erase(0, 1);
+    if (!edit_.append && after.kind == Node::Kind::scalar) {
+      if (after.text.starts_with("=")) after.text.erase(0, 1);
+      if (leaf.spec && after.text.starts_with("+")) after.text.erase(0, 1);  // 5 and +5 alike, of whole numbers too
+    }
     after.key = at.key;
     after.key_place = edit_.place;
     change.after = to_line(after);
@@ -295,7 +323,7 @@ private:
   void shift(Node& n, const Relative& r, const Spec& spec) const {
     if (n.kind == Node::Kind::none || (n.kind == Node::Kind::list && n.items.empty()))
       throw InputError(fmt::format("'{}' has no value to start from: the deck does not give it{}", walked(),
-                                   r.offset.empty() ? "" : fmt::format(" ('={}' is the value itself)", r.offset)));
+                                   r.offset.empty() ? "" : fmt::format(" ('{}' is the value itself)", r.offset)));
     if (names_table(n))
       throw InputError(
           fmt::format("'{}' is the table {}: name its rows and the column, {}.*.COLUMN", walked(), n.text, walked()));
@@ -342,6 +370,19 @@ private:
 };
 
 }  // namespace
+
+Written written_as(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  if (text.starts_with("x")) return {Written::As::factor, text.substr(1)};
+  if (text.starts_with("by ") || text.starts_with("by+") || text.starts_with("by-")) {
+    text.remove_prefix(2);
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    return {Written::As::change, text};
+  }
+  const bool has_sign = text.starts_with("+") || text.starts_with("-");
+  if (has_sign && text.ends_with("%")) return {Written::As::change, text};
+  return {Written::As::value, text};
+}
 
 Edit make_edit(std::string path, Node value) {
   const Place place = value.place;

@@ -153,6 +153,56 @@ std::string lower(std::string_view s) {
   return t;
 }
 
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  for (const char c : lower(name)) {
+    if (c != '_' && c != '.' && c != ' ' && c != '-')
+      words.back() += c;
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  // One and several are the same word.
+  for (std::string& w : words)
+    if (w.size() > 3 && w.back() == 's') w.pop_back();
+  return words;
+}
+
+// The letters of a symbol such as k_xx, Kxx or c_y: a quantity and axes; empty for all else.
+std::string symbol(std::string_view name) {
+  std::string s;
+  for (const char c : lower(name))
+    if (c != '_') s += c;
+  const bool axes = s.size() >= 2 && s.size() <= 3 && s.find_first_not_of("xyz", 1) == std::string::npos;
+  return axes && s[0] >= 'a' && s[0] <= 'w' ? s : std::string();
+}
+
+// Names of quantities and what tells one of a pair from the other; as words_of() has them.
+bool is_a_quantity(const std::string& word) {
+  static const std::unordered_set<std::string> known{
+      "acceleration", "amplitude", "angle",     "arc",    "area",     "axial",     "clearance",    "compliance",
+      "conductivity", "damping",   "density",   "depth",  "diameter", "direct",    "eccentricity", "elevation",
+      "force",        "fraction",  "frequency", "from",   "height",   "inertia",   "inner",        "left",
+      "length",       "load",      "maximum",   "max",    "mas",      "minimum",   "min",          "modulu",
+      "moment",       "offset",    "outer",     "period", "phase",    "polar",     "power",        "preload",
+      "pressure",     "radiu",     "ratio",     "right",  "slope",    "speed",     "stiffnes",     "temperature",
+      "thicknes",     "tilt",      "to",        "torque", "velocity", "viscosity", "volume",       "width"};
+  return known.contains(word);
+}
+
+// Whether a hint would put another quantity in the place of one that is spelled right: damping for stiffness, an outer
+// for an inner diameter, k_xx for c_xx. A hint mends spelling only.
+bool crosses_quantities(std::string_view word, std::string_view candidate) {
+  const std::string a = symbol(word), b = symbol(candidate);
+  if (!a.empty() || !b.empty()) return a != b;
+  const std::vector<std::string> have = words_of(word), want = words_of(candidate);
+  const auto in = [](const std::string& w, const std::vector<std::string>& all) {
+    return std::find(all.begin(), all.end(), w) != all.end();
+  };
+  const bool lacks = std::any_of(want.begin(), want.end(), [&](const auto& w) { return !in(w, have); });
+  return lacks &&
+         std::any_of(have.begin(), have.end(), [&](const auto& w) { return !in(w, want) && is_a_quantity(w); });
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
@@ -166,7 +216,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
     const std::size_t apart = c.size() > word.size() ? c.size() - word.size() : word.size() - c.size();
     if (!part && apart >= least) continue;
     const std::size_t d = part ? 1 : distance(wanted, lower(c));
-    if (d < least && d < word.size()) {
+    if (d < least && d < word.size() && !crosses_quantities(word, c)) {
       least = d;
       best = c;
     }

@@ -54,14 +54,27 @@ bool Structure::applies(const Option& o, const void* object) const {
 
 namespace {
 
-// The key that was meant, also where it was nearly another word for it.
-std::string hint_for(const Structure& s, const std::string& word) {
-  std::vector<std::string> words = s.keys();
-  for (const Option& o : s.options)
+// Whether the unit that was written with `value` is of another kind than that of `o`: then it was not meant.
+bool is_of_another_kind(const Node& value, const Option& o) {
+  const Spec* spec = o.codec->spec();
+  if (value.kind != Node::Kind::scalar || !spec || spec->unit == "*") return false;
+  try {
+    const Split s = split_quantity(value.text);
+    return !s.unit.empty() && !same_kind(s.unit, spec->unit);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// The key that was meant, or another word for it, where the value does not say that it is another quantity.
+std::string hint_for(const Structure& s, const Node& entry) {
+  std::vector<std::string> words;
+  for (const Option& o : s.options) {
+    if (is_of_another_kind(entry, o)) continue;
+    words.push_back(o.key);
     for (const Alias& a : o.aliases) words.push_back(a.key);
-  std::string near = nearest(word, words);
-  if (double factor = 1; const Option* o = s.aliased(near, factor)) near = o->key;
-  return near.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", near);
+  }
+  return did_you_mean(entry.key, words);
 }
 
 // The entry of `node` for `o`, under its key or another word for it, which goes to `meant`; null if there is none.
@@ -103,7 +116,7 @@ void Structure::read(const Node& node, void* object, Reading& r) const {
       r.problems.add(entry.key_place, entry.key);
       continue;
     }
-    const std::string hint = hint_for(*this, entry.key);
+    const std::string hint = hint_for(*this, entry);
     r.problems.add(entry.key_place,
                    fmt::format("unknown key '{}'{}", entry.key,
                                hint.empty() ? fmt::format("; valid keys are {}", fmt::join(keys(), ", ")) : hint));

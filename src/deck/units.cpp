@@ -134,7 +134,10 @@ const std::map<std::string, double, std::less<>>& units_of_memory() {
   return units;
 }
 
-Unit parse_unit(std::string_view text) {
+std::vector<std::string> common_units_of(std::string_view si);
+
+// `si` is the kind that is expected, for the hint.
+Unit parse_unit(std::string_view text, std::string_view si = "*") {
   refuse_traps(text);
   if (text.empty() || text == "1") return {};
   if (const auto memory = units_of_memory().find(text); memory != units_of_memory().end()) {
@@ -144,7 +147,7 @@ Unit parse_unit(std::string_view text) {
     return u;
   }
   const UnitPtr unit(ut_parse(unit_system(), std::string(text).c_str(), UT_UTF8));
-  if (!unit) throw InputError(fmt::format("unknown unit '{}'{}", text, did_you_mean(text, common_units())));
+  if (!unit) throw InputError(fmt::format("unknown unit '{}'{}", text, did_you_mean(text, common_units_of(si))));
   UnitParts s;
   if (ut_accept_visitor(unit.get(), &visitor, &s) != UT_SUCCESS || !s.coherent)
     throw InputError(fmt::format("unit '{}' cannot be used here", text));
@@ -166,6 +169,15 @@ constexpr std::string_view difference = "delta K";
 std::string_view plain(std::string_view si) {
   if (si == "1") return {};
   return si == difference ? std::string_view("K") : si;
+}
+
+// A hint does not make a pressure (MPa) of a viscosity (mPas).
+std::vector<std::string> common_units_of(std::string_view si) {
+  std::vector<std::string> units = common_units();
+  if (si == "*") return units;
+  const auto powers = parse_unit(plain(si)).powers;
+  std::erase_if(units, [&](const std::string& u) { return parse_unit(u).powers != powers; });
+  return units;
 }
 
 std::string expected(std::string_view si) {
@@ -263,7 +275,7 @@ bool same_kind(std::string_view unit, std::string_view other) {
 }
 
 void check_kind(std::string_view unit, std::string_view si) {
-  require_kind(parse_unit(plain(unit)), unit, si);
+  require_kind(parse_unit(plain(unit), si), unit, si);
 }
 
 std::string write_number(double value) {

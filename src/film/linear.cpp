@@ -17,7 +17,7 @@ namespace {
 using Eight = std::array<double, 8>;  // of stiffness, then of damping: xx xy yx yy
 
 Eight entries(const LinearAt& a) {
-  return {a.k_xx, a.k_xy, a.k_yx, a.k_yy, a.b_xx, a.b_xy, a.b_yx, a.b_yy};
+  return {a.k_xx, a.k_xy, a.k_yx, a.k_yy, a.c_xx, a.c_xy, a.c_yx, a.c_yy};
 }
 
 // Slope at a row between intervals of lengths h and slopes d, zero where these turn: the curve does not overshoot.
@@ -38,7 +38,7 @@ double slope_at_end(double h0, double h1, double d0, double d1) {
 // SIAM J. Sci. Stat. Comput. 5, 300.
 class OverSpeed {
 public:
-  explicit OverSpeed(const std::vector<LinearAt>& table) {
+  OverSpeed(const std::vector<LinearAt>& table, bool holds) : holds_(holds) {
     for (const LinearAt& row : table) {
       if (!speed_.empty() && !(row.speed > speed_.back()))
         throw core::InputError("film: the speeds of the coefficients of a linear film rise");
@@ -63,15 +63,17 @@ public:
   struct At {
     Eight value{}, slope{};
   };
-  // Of one row at all speeds. Throws core::DomainError beyond several.
+  // Of one row at all speeds. Throws core::DomainError beyond several, unless the ends hold.
   [[nodiscard]] At operator()(double speed) const {
     if (speed_.empty()) return {};
     if (speed_.size() == 1) return {value_.front(), {}};
     const double low = speed_.front(), high = speed_.back(), rounding = 1e-9 * high;
-    if (!(speed >= low - rounding && speed <= high + rounding))
+    const bool within = speed >= low - rounding && speed <= high + rounding;
+    if (!within && holds_) return {speed < low ? value_.front() : value_.back(), {}};
+    if (!within)
       throw core::DomainError(
-          fmt::format("linear film: its coefficients are known from {:.6g} to {:.6g} rad/s, and "
-                      "the speed is {:.6g} rad/s",
+          fmt::format("linear film: its coefficients are known from {:.6g} to {:.6g} rad/s, and the speed is {:.6g} "
+                      "rad/s; 'extrapolate: hold' keeps those of the nearest end",
                       low, high, speed));
     const double x = std::clamp(speed, low, high);
     const auto above = std::upper_bound(speed_.begin() + 1, speed_.end() - 1, x);
@@ -87,6 +89,7 @@ public:
   }
 
 private:
+  bool holds_;
   std::vector<double> speed_;
   std::vector<Eight> value_, slope_;
 };
@@ -95,7 +98,9 @@ private:
 class LinearFilm final : public Film {
 public:
   explicit LinearFilm(const Linear& options)
-      : stiffness_(options.stiffness), damping_(options.damping), over_speed_(options.table) {}
+      : stiffness_(options.stiffness),
+        damping_(options.damping),
+        over_speed_(options.table, options.extrapolate == Linear::Beyond::hold) {}
 
   void evaluate(const JournalMotion& motion, const Share& /*share*/, std::span<const double> /*states*/,
                 std::span<const double> /*rates*/, Need need, StateResponse& all) override {
@@ -129,6 +134,13 @@ private:
 
 }  // namespace
 
+std::span<const deck::Name<Linear::Beyond>> names(Linear::Beyond) {
+  static constexpr deck::Name<Linear::Beyond> table[] = {
+      {Linear::Beyond::none, "none", "there are none: a study ends there"},
+      {Linear::Beyond::hold, "hold", "those of the nearest end of the table"}};
+  return table;
+}
+
 void describe(deck::Description<LinearAt>& d) {
   using P = LinearAt;
   d.add("speed", &P::speed, "rad/s", deck::non_negative, "of the shaft").required();
@@ -136,10 +148,10 @@ void describe(deck::Description<LinearAt>& d) {
   d.add("k_xy", &P::k_xy, "N/m", deck::any, "force along x by a motion along y");
   d.add("k_yx", &P::k_yx, "N/m", deck::any, "force along y by a motion along x");
   d.add("k_yy", &P::k_yy, "N/m", deck::any, "force along y by a motion along y").required();
-  d.add("b_xx", &P::b_xx, "N s/m", deck::any, "damping, likewise");
-  d.add("b_xy", &P::b_xy, "N s/m", deck::any, "likewise");
-  d.add("b_yx", &P::b_yx, "N s/m", deck::any, "likewise");
-  d.add("b_yy", &P::b_yy, "N s/m", deck::any, "likewise");
+  d.add("c_xx", &P::c_xx, "N s/m", deck::any, "damping, likewise").alias("b_xx");
+  d.add("c_xy", &P::c_xy, "N s/m", deck::any, "likewise").alias("b_xy");
+  d.add("c_yx", &P::c_yx, "N s/m", deck::any, "likewise").alias("b_yx");
+  d.add("c_yy", &P::c_yy, "N s/m", deck::any, "likewise").alias("b_yy");
 }
 
 void describe(deck::Description<Linear>& d) {
@@ -150,9 +162,9 @@ void describe(deck::Description<Linear>& d) {
       .isotropic()
       .continuable();
   d.table("table", &Linear::table,
-          "coefficients over the speed, which add to those; cubic between the rows without overshooting, unknown "
-          "beyond them",
+          "coefficients over the speed, which add to those; cubic between the rows without overshooting",
           "Fritsch and Butland 1984");
+  d.add("extrapolate", &Linear::extrapolate, "coefficients at speeds beyond the table");
   d.check([](const Linear& o, const deck::Report& r) {
     for (std::size_t i = 1; i < o.table.size(); ++i)
       if (!(o.table[i].speed > o.table[i - 1].speed))
@@ -160,8 +172,11 @@ void describe(deck::Description<Linear>& d) {
   });
 }
 
-Facts facts_of(const Linear& /*options*/, const Geometry& /*geometry*/) {
-  return {.coefficients = true};
+Facts facts_of(const Linear& options, const Geometry& /*geometry*/) {
+  Facts f{.coefficients = true};
+  if (options.table.size() > 1) f.known_speeds = {options.table.front().speed, options.table.back().speed};
+  f.holds_beyond = options.extrapolate == Linear::Beyond::hold;
+  return f;
 }
 
 std::unique_ptr<Film> make(const Geometry& /*geometry*/, const Linear& options, const Lubricant& /*lubricant*/) {

@@ -158,7 +158,10 @@ std::span<const deck::Name<Reynolds::Cavitation>> names(Reynolds::Cavitation) {
 
 void describe(deck::Description<Reynolds>& d) {
   d.add("cavitation", &Reynolds::cavitation,
-        "what happens where the pressure would be negative; half_sommerfeld, the cheapest, unless given");
+        "what happens where the pressure would be negative; reynolds unless given. half_sommerfeld is the cheapest, "
+        "but lacks "
+        "part of the stiffness and of the cross damping, and can put a threshold at half its speed",
+        "Lund and Thomsen 1978");
   d.add("edge_fill", &Reynolds::edge_fill, "1", deck::Check{.min = 0, .max = 1, .min_open = true},
         "part of the gap that is full of oil where it enters a pad, of mass_conserving films")
       .continuable();

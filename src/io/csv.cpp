@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -50,80 +51,89 @@ std::vector<std::string> order(const Group& group) {
     for (std::string word; std::getline(words, word, between);)
       if (group.has_dataset(word)) names.push_back(word);
   }
-  for (const std::size_t axes : {1UL, 2UL})
+  for (const std::size_t axes : {1UL, 2UL, 3UL})
     for (const auto& [name, d] : group.datasets())
       if (d.shape.size() == axes && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   return names;
 }
 
-class Columns {
-public:
-  explicit Columns(const Group& tree) {
-    for (const char* group : {"bearings", "places"})
-      if (tree.has_group(group) && tree.group(group).has_dataset("name")) places_ = &tree.group(group).dataset("name");
-  }
-
-  // Nothing if the group is no table.
-  [[nodiscard]] std::string text(const Group& group) const {
-    for (const auto& [name, d] : group.datasets())
-      if (d.shape.size() > 2 || d.share) return {};
-    std::size_t rows = 0;
-    bool known = false, two = false;
-    for (const std::size_t axes : {2UL, 1UL}) {
-      for (const auto& [name, d] : group.datasets()) {
-        if (d.shape.size() != axes) continue;
-        if (known && !two && d.shape[0] != rows) return {};
-        if (known && two && axes == 2 && d.shape[0] != rows) return {};
-        if (!known || axes == 2) rows = d.shape[0];
-        known = true;
-        two = two || axes == 2;
-      }
-    }
-    struct Column {
-      std::string head;
-      const Dataset* data;
-      std::size_t first, stride;
-    };
-    std::vector<Column> columns;
-    for (const std::string& name : order(group)) {
-      const Dataset& d = group.dataset(name);
-      if (d.shape.empty() || d.shape.size() > 2 || d.shape[0] != rows) continue;
-      const std::string unit = d.unit.empty() || d.unit == "1" ? "" : " [" + d.unit + "]";
-      const std::size_t width = d.shape.size() == 2 ? d.shape[1] : 1;
-      for (std::size_t k = 0; k < width; ++k)
-        columns.push_back(
-            {name + (d.shape.size() == 2 ? "." + label(group, rows, width, k) : "") + unit, &d, k, width});
-    }
-    if (columns.empty() || columns.size() * std::max<std::size_t>(rows, 1) > most_cells) return {};
-    std::string out;
-    for (const Column& c : columns) out += (&c == &columns.front() ? "" : ",") + quoted(c.head);
-    out += '\n';
-    for (std::size_t row = 0; row < rows; ++row) {
-      for (const Column& c : columns)
-        out += (&c == &columns.front() ? "" : ",") + quoted(value(*c.data, row * c.stride + c.first));
-      out += '\n';
-    }
-    return out;
-  }
-
-private:
-  [[nodiscard]] std::string label(const Group& group, std::size_t rows, std::size_t width, std::size_t k) const {
-    if (width != rows)
-      for (const auto& [name, d] : group.datasets())
-        if (d.shape.size() == 1 && d.shape[0] == width) return value(d, k);
-    if (places_ && places_->size() == width) return value(*places_, k);
-    return std::to_string(k + 1);
-  }
-
-  const Dataset* places_ = nullptr;
+struct Column {
+  std::string head;
+  const Dataset* data;
+  std::size_t first, stride;
 };
 
-void collect(const Columns& columns, const Group& group, const std::string& path, std::vector<CsvFile>& out) {
+// Of all axes but the first: `name.B1`, `name.order 2.B1`; places without a name are numbered from 1.
+void add_columns(const std::string& name, const Dataset& d, std::vector<Column>& columns) {
+  const std::string unit = d.unit.empty() || d.unit == "1" ? "" : " [" + d.unit + "]";
+  std::size_t width = 1;
+  for (std::size_t axis = 1; axis < d.shape.size(); ++axis) width *= d.shape[axis];
+  for (std::size_t k = 0; k < width; ++k) {
+    std::string head;
+    std::size_t rest = k;
+    for (std::size_t axis = d.shape.size(); axis-- > 1;) {
+      const std::size_t place = rest % d.shape[axis];
+      rest /= d.shape[axis];
+      const bool named = axis <= d.labels.size() && d.labels[axis - 1].size() == d.shape[axis];
+      head = "." + (named ? d.labels[axis - 1][place] : std::to_string(place + 1)) + head;
+    }
+    columns.push_back({name + head + unit, &d, k, width});
+  }
+}
+
+// A dataset of three axes is a table where all its places have names.
+bool fits_a_table(const Dataset& d) {
+  if (d.share) return false;
+  return d.shape.size() < 3 || (d.shape.size() == 3 && d.labels.size() == 2 && !d.labels[0].empty());
+}
+
+// Rows of a table: the first extent of its widest datasets, which the others share; nothing if the group is no table.
+std::optional<std::size_t> rows_of(const Group& group) {
+  std::optional<std::size_t> rows;
+  std::size_t most = 0;
+  for (const auto& [name, d] : group.datasets()) {
+    if (!fits_a_table(d)) return {};
+    most = std::max(most, d.shape.size());
+  }
+  if (most == 0) return {};
+  for (const auto& [name, d] : group.datasets()) {
+    if (d.shape.size() != most) continue;
+    if (rows && *rows != d.shape[0]) return {};
+    rows = d.shape[0];
+  }
+  return rows;
+}
+
+// Nothing if the group is no table.
+std::string text_of(const Group& group) {
+  const std::optional<std::size_t> rows = rows_of(group);
+  if (!rows) return {};
+  std::vector<Column> columns;
+  const bool wide = std::any_of(group.datasets().begin(), group.datasets().end(),
+                                [](const auto& d) { return !d.second.labels.empty(); });
+  for (const std::string& name : order(group)) {
+    const Dataset& d = group.dataset(name);
+    // Nodes that name columns are no column, were they as many as there are rows.
+    if (wide && name == "node" && d.shape.size() == 1) continue;
+    if (!d.shape.empty() && d.shape[0] == *rows) add_columns(name, d, columns);
+  }
+  if (columns.empty() || columns.size() * std::max<std::size_t>(*rows, 1) > most_cells) return {};
+  std::string out;
+  for (const Column& c : columns) out += (&c == &columns.front() ? "" : ",") + quoted(c.head);
+  out += '\n';
+  for (std::size_t row = 0; row < *rows; ++row) {
+    for (const Column& c : columns)
+      out += (&c == &columns.front() ? "" : ",") + quoted(value(*c.data, row * c.stride + c.first));
+    out += '\n';
+  }
+  return out;
+}
+
+void collect(const Group& group, const std::string& path, std::vector<CsvFile>& out) {
   if (group.has_attribute("restart")) return;
   if (!path.empty())
-    if (std::string text = columns.text(group); !text.empty()) out.push_back({path, std::move(text), {}});
-  for (const auto& [name, inner] : group.groups())
-    collect(columns, inner, path.empty() ? name : path + "." + name, out);
+    if (std::string text = text_of(group); !text.empty()) out.push_back({path, std::move(text), {}});
+  for (const auto& [name, inner] : group.groups()) collect(inner, path.empty() ? name : path + "." + name, out);
 }
 
 }  // namespace
@@ -134,7 +144,7 @@ void write_csv(const std::filesystem::path& path, const CsvFile& table) {
 
 std::vector<CsvFile> csv_tables(const Group& tree) {
   std::vector<CsvFile> out;
-  collect(Columns(tree), tree, "", out);
+  collect(tree, "", out);
   std::set<std::string> taken;
   for (CsvFile& table : out) {
     const std::string name = plain_name(table.name);

@@ -35,6 +35,44 @@ void write_attribute(hid_t at, const std::string& name, const Attribute& value) 
   }
 }
 
+// Names along an axis: `labels` of the second one, `labels_2` of the third. An attribute holds 64 kB; longer ones are
+// left out.
+std::string name_of_labels(std::size_t k) {
+  return k == 0 ? "labels" : "labels_" + std::to_string(k + 1);
+}
+
+void write_labels(hid_t at, const Dataset& data) {
+  for (std::size_t k = 0; k < data.labels.size(); ++k) {
+    std::vector<const char*> texts;
+    for (const std::string& s : data.labels[k]) texts.push_back(s.c_str());
+    const hsize_t n = texts.size();
+    if (n == 0 || n > 4000) continue;
+    const Space space(H5Screate_simple(1, &n, nullptr));
+    const Type type(utf8());
+    const Attr a(H5Acreate2(at, name_of_labels(k).c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT));
+    check(H5Awrite(a, type, texts.data()));
+  }
+}
+
+std::vector<std::vector<std::string>> read_labels(hid_t at) {
+  std::vector<std::vector<std::string>> labels;
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (H5Aexists(at, name_of_labels(k).c_str()) <= 0) continue;
+    labels.resize(k);
+    const Attr a(H5Aopen(at, name_of_labels(k).c_str(), H5P_DEFAULT));
+    const Space space(H5Aget_space(a));
+    std::vector<char*> texts(static_cast<std::size_t>(H5Sget_select_npoints(space)), nullptr);
+    const Type memory(utf8());
+    check(H5Aread(a, memory, static_cast<void*>(texts.data())));
+    auto& out = labels.emplace_back();
+    for (char* c : texts) {
+      out.emplace_back(c ? c : "");
+      H5free_memory(c);
+    }
+  }
+  return labels;
+}
+
 // How a file says that a dataset is shared: it is never filled, as ranks write their rows into the room it is given.
 constexpr H5D_fill_time_t of_rows = H5D_FILL_TIME_NEVER;
 
@@ -50,6 +88,7 @@ void write_dataset(hid_t at, const std::string& name, const Dataset& data) {
     if (data.size() > 0 && !data.share) check(H5Dwrite(d, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
     if (!data.unit.empty()) write_attribute(d, "unit", data.unit);
     if (!data.description.empty()) write_attribute(d, "description", data.description);
+    write_labels(d, data);
   };
   if (const auto* x = std::get_if<std::vector<double>>(&data.values)) {
     store(H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, x->data());
@@ -161,6 +200,7 @@ Dataset read_dataset(hid_t at, const char* name, const Reader* reader) {
   };
   data.unit = text("unit");
   data.description = text("description");
+  data.labels = read_labels(d);
   return data;
 }
 

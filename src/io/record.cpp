@@ -1,5 +1,8 @@
 #include "whirl/io/record.hpp"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <bit>
 
 #include "whirl/core/error.hpp"
@@ -86,6 +89,8 @@ public:
           d.values);
     text(d.unit);
     text(d.description);
+    for (const auto& axis : d.labels)
+      for (const std::string& label : axis) text(label);
   }
   void value(const Attribute& a) {
     word(a.index());
@@ -184,6 +189,40 @@ void Group::put(const std::string& name, std::vector<std::int64_t> values, std::
 void Group::put(const std::string& name, std::vector<std::string> values, std::string description) {
   const std::size_t n = values.size();
   put(name, Dataset{{n}, std::move(values), "", std::move(description)});
+}
+
+void Group::label(const std::string& name, std::vector<std::vector<std::string>> labels) {
+  Dataset data = dataset(name);
+  core::require(labels.size() < std::max<std::size_t>(data.shape.size(), 1), "labels of axes that a dataset lacks");
+  for (std::size_t k = 0; k < labels.size(); ++k)
+    core::require(labels[k].empty() || labels[k].size() == data.shape[k + 1], "as many labels as places along an axis");
+  data.labels = std::move(labels);
+  datasets_[name] = std::move(data);
+}
+
+void Group::label_each(const std::vector<std::vector<std::string>>& labels) {
+  std::vector<std::string> names;
+  for (const auto& [name, data] : datasets_)
+    if (data.shape.size() == labels.size() + 1) names.push_back(name);
+  for (const std::string& name : names) label(name, labels);
+}
+
+std::vector<std::string> labels_of(const std::vector<double>& values, const std::string& word) {
+  std::vector<std::string> labels;
+  for (const double x : values) labels.push_back(fmt::format("{}{}{:.10g}", word, word.empty() ? "" : " ", x));
+  return labels;
+}
+
+std::vector<std::string> node_labels(const std::vector<int>& nodes) {
+  std::vector<std::string> labels;
+  for (const int n : nodes) labels.push_back(fmt::format("node {}", n));
+  return labels;
+}
+
+std::vector<std::string> numbered(std::size_t count, const std::string& word) {
+  std::vector<std::string> labels;
+  for (std::size_t k = 1; k <= count; ++k) labels.push_back(fmt::format("{} {}", word, k));
+  return labels;
 }
 
 const Dataset& Group::dataset(const std::string& name) const {

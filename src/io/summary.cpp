@@ -88,7 +88,7 @@ Json to_json(const CodimensionTwo& c) {
             {"second_parameter", c.second_parameter},
             {"second_value", number(c.second_value.value)},
             {"second_unit", c.second_value.unit},
-            {"uncertainty", number(c.uncertainty)}};
+            {"second_value_uncertainty", number(c.uncertainty)}};
   for (const auto& [name, value] : c.more) j[name] = number(value);
   return j;
 }
@@ -105,7 +105,7 @@ CodimensionTwo codimension_two(Json j) {
   c.value = {number(take("value")), take("unit")};
   c.second_parameter = take("second_parameter");
   c.second_value = {number(take("second_value")), take("second_unit")};
-  c.uncertainty = number(take("uncertainty"));
+  c.uncertainty = number(take("second_value_uncertainty"));
   for (const auto& [key, v] : j.items()) c.more[key] = number(v);
   return c;
 }

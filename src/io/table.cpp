@@ -54,6 +54,7 @@ void Table::write(Group& group) const {
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     const Column& c = columns_[k];
     group.put(c.name, full_shape(c, rows_), values_[k], c.unit, c.description);
+    if (!c.labels.empty()) group.label(c.name, {c.labels});
   }
 }
 

@@ -136,6 +136,10 @@ void describe(deck::Description<Disc>& d) {
       .continuable();
   d.add("skew_phase", &Disc::skew_phase, "rad", deck::any,
         "angle of the direction from +x in which the axis of the disc leans, at shaft angle zero, counter-clockwise");
+  d.add(
+      "rotor", &Disc::rotor,
+      "name of the rotor that the disc belongs to, for balance grades; that of the segments at its node if not given, "
+      "so that it is needed only where two rotors meet");
   d.add("hub", &Disc::hub, positive,
         "nodes at both ends of the hub: the disc tilts as the line through them, the mean slope of the deflection; not "
         "given: as the section of the shaft at its node",

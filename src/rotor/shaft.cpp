@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -248,6 +249,51 @@ double mass_between(const Options& o, int from, int to) {
   for (const Disc& d : o.discs)
     if (d.node >= from && d.node < to) mass += resolved(d, o.material).mass;
   return mass;
+}
+
+namespace {
+
+bool has_one_name(const Options& o) {
+  const std::string* first = nullptr;
+  for (const Segment& s : o.segments) {
+    if (s.rotor.empty()) continue;
+    if (first && *first != s.rotor) return false;
+    first = &s.rotor;
+  }
+  return true;
+}
+
+// Names of the segments at both sides of a node; the same twice at an end of the shaft.
+std::array<std::string_view, 2> rotors_at(const Options& o, int node) {
+  const auto n = static_cast<int>(o.segments.size());
+  const auto of = [&](int segment) {
+    return std::string_view(o.segments[static_cast<std::size_t>(std::clamp(segment, 1, n) - 1)].rotor);
+  };
+  return {of(node - 1), of(node)};
+}
+
+}  // namespace
+
+double mass_of(const Options& o, std::string_view name) {
+  if (o.type == Options::Type::rigid || name.empty() || has_one_name(o)) return total_mass(o);
+  double mass = 0;
+  for (const Segment& s : o.segments)
+    if (s.rotor == name) mass += segment_mass(s, o.material);
+  for (const Disc& d : o.discs) {
+    const auto [left, right] = rotors_at(o, d.node);
+    if (d.rotor.empty() ? left == name && right == name : d.rotor == name) mass += resolved(d, o.material).mass;
+  }
+  return mass;
+}
+
+std::optional<std::size_t> disc_of_no_rotor(const Options& o, std::string_view name) {
+  if (o.type == Options::Type::rigid || name.empty() || has_one_name(o)) return {};
+  for (std::size_t i = 0; i < o.discs.size(); ++i) {
+    const auto [left, right] = rotors_at(o, o.discs[i].node);
+    if (left != right && (left == name || right == name) && o.discs[i].rotor != left && o.discs[i].rotor != right)
+      return i;
+  }
+  return {};
 }
 
 double slenderness(const Options& o, int from, int to) {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "cost.hpp"
+#include "premises.hpp"
 #include "whirl/deck/load.hpp"
 #include "whirl/deck/output.hpp"
 #include "whirl/film/describe.hpp"
@@ -135,6 +136,9 @@ Deck load(MPI_Comm comm, const std::string& path, const std::vector<std::string>
 
 std::vector<std::string> warnings(const Deck& d) {
   std::vector<std::string> all = rotor::advice(d.machine.rotor);
+  const auto add = [&all](std::vector<std::string> lines) { all.insert(all.end(), lines.begin(), lines.end()); };
+  add(unbalance_warnings(d.machine));
+  for (const auto& s : d.studies) add(table_warnings(d.machine, *s));
   const std::vector<std::string> own = all;
   for (const auto& s : d.studies) {
     const auto* sweep = dynamic_cast<const Sweep*>(s.get());

@@ -1,6 +1,7 @@
 #include "run_studies.hpp"
 
 #include "findings.hpp"
+#include "premises.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/study/sweep/sweep.hpp"
 #include "writer.hpp"
@@ -15,7 +16,9 @@ void run_one(Study& study, MPI_Comm comm, const Deck& deck, const Say& say, bool
     const auto part = [&](const std::string& name) { return store.checkpoint_path(study.name() + " " + name); };
     Context context{comm,   deck.machine, deck.layout, findings, store.studies(), store.summaries(),
                     resume, deck.studies, part};
-    store.add(result_of(study, context));
+    StudyResult result = result_of(study, context);
+    put_premises(result, deck.machine, study);
+    store.add(std::move(result));
     if (findings.shows_progress()) say("", false);
   }
   for (const auto& more : study.further(store.studies().group(io::safe_name(study.name()))))

@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -45,10 +46,56 @@ private:
   Spec spec_{"m/s", positive, "G"};
 };
 
+// `rotor`, `span`, or `1200 kg`.
+class BalanceMassCodec : public Codec {
+public:
+  void read(const Node& node, void* value, Reading& r) const override {
+    using Of = system::BalanceMass::Of;
+    auto& mass = *static_cast<system::BalanceMass*>(value);
+    if (node.kind == Node::Kind::scalar && (node.text == "rotor" || node.text == "span")) {
+      mass = {node.text == "rotor" ? Of::rotor : Of::span, 0};
+      return;
+    }
+    const std::size_t before = r.problems.size();
+    double kilograms = 0;
+    number_->read(node, &kilograms, r);
+    if (r.problems.size() == before) mass = {Of::given, kilograms};
+  }
+  Node write(const void* value) const override {
+    using Of = system::BalanceMass::Of;
+    const auto& mass = *static_cast<const system::BalanceMass*>(value);
+    return mass.of == Of::given ? number_->write(&mass.given)
+                                : Node::scalar(mass.of == Of::rotor ? "rotor" : "span", true);
+  }
+  Node schema(bool whole) const override {
+    Node words = Node::map(), list = Node::list();
+    for (const char* word : {"rotor", "span"}) list.push(Node::scalar(word, true));
+    words.set("enum", std::move(list));
+    Node n = Node::map(), either = Node::list();
+    either.push(std::move(words));
+    either.push(number_->schema(whole));
+    n.set("anyOf", std::move(either));
+    return n;
+  }
+  std::string type() const override { return "rotor, span, or a mass such as 1200 kg"; }
+  const Spec* spec() const override { return number_->spec(); }
+  Access find(void* value, std::span<const std::string> path) const override {
+    auto& mass = *static_cast<system::BalanceMass*>(value);
+    if (mass.of != system::BalanceMass::Of::given) throw InputError("the mass is no number");
+    return number_->find(&mass.given, path);
+  }
+
+private:
+  CodecPtr number_ = real_codec({"kg", positive});
+};
+
 }  // namespace
 
 std::shared_ptr<const Codec> CodecOf<system::BalanceGrade>::make(const Spec&) {
   return std::make_shared<GradeCodec>();
+}
+std::shared_ptr<const Codec> CodecOf<system::BalanceMass>::make(const Spec&) {
+  return std::make_shared<BalanceMassCodec>();
 }
 
 }  // namespace whirl::deck
@@ -116,12 +163,20 @@ void describe(deck::Description<Plane>& d) {
 void describe(deck::Description<Unbalance>& d) {
   d.add("grade", &Unbalance::grade, "balance grade, e Omega at the service speed", "ISO 21940-11").continuable();
   d.add("service_speed", &Unbalance::service_speed, "rad/s", positive, "speed for which the grade holds");
-  d.add("rotor", &Unbalance::rotor, "rotor to which the grade applies, by the name in its segments");
+  d.add("rotor", &Unbalance::rotor,
+        "rotor to which the grade applies, by the name in its segments; not needed where they have one name or none");
+  d.add(
+      "mass", &Unbalance::mass,
+      "mass to which the grade applies: rotor, its segments and the discs on their nodes, as the standard has it; "
+      "span, "
+      "what lies between the two neighbouring bearings between which the middle of the rotor lies (004 eq. 2.2); or a "
+      "given mass",
+      "ISO 21940-11");
   d.add("planes", &Unbalance::planes, "where the unbalance sits").required();
   d.check([](const Unbalance& u, const deck::Report& r) {
     if (u.planes.empty()) r.fail("planes", "'planes' is empty");
     if (u.grade && !u.service_speed) r.fail("grade", "a grade needs 'service_speed'");
-    if (u.grade && u.rotor.empty()) r.fail("grade", "a grade needs 'rotor', the name of the rotor it applies to");
+    if (!u.grade && u.mass.of != BalanceMass::Of::rotor) r.fail("mass", "'mass' has no meaning without 'grade'");
     if (!u.grade && u.service_speed) r.fail("service_speed", "'service_speed' has no meaning without 'grade'");
     for (std::size_t i = 0; i < u.planes.size(); ++i) {
       const std::string path = fmt::format("planes.{}", i + 1);
@@ -193,12 +248,24 @@ void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
       else if (u.planes[i].node > n_nodes)
         r.fail(fmt::format("{}.planes.{}.node", path, i + 1),
                fmt::format("node {} does not exist: the shaft has nodes 1 to {}", u.planes[i].node, n_nodes));
-    if (u.rotor.empty()) continue;
-    if (std::find(rotors.begin(), rotors.end(), u.rotor) == rotors.end())
+    if (u.rotor.empty() && u.grade && rotors.size() > 1 && u.mass.of != BalanceMass::Of::given)
+      r.fail(path + ".grade", fmt::format("a grade needs 'rotor', the name of the rotor it applies to: one of {}",
+                                          fmt::join(rotors, ", ")));
+    if (u.rotor.empty() && rotors.size() > 1) continue;
+    if (!u.rotor.empty() && std::find(rotors.begin(), rotors.end(), u.rotor) == rotors.end())
       r.fail(path + ".rotor",
              fmt::format("there is no rotor '{}'{}", u.rotor, deck::did_you_mean_one_of(u.rotor, rotors)));
-    else if (u.grade && !enclosing_bearings(m, u.rotor))
-      r.fail(path + ".rotor", fmt::format("the middle of rotor '{}' does not lie between two bearings", u.rotor));
+    else if (u.grade && u.mass.of == BalanceMass::Of::span && !enclosing_bearings(m, u.rotor))
+      r.fail(path + ".mass", u.rotor.empty()
+                                 ? "the middle of the shaft does not lie between two bearings"
+                                 : fmt::format("the middle of rotor '{}' does not lie between two bearings", u.rotor));
+    else if (u.grade && u.mass.of == BalanceMass::Of::rotor) {
+      if (const auto disc = rotor::disc_of_no_rotor(m.rotor, u.rotor))
+        r.fail(fmt::format("rotor.discs.{}", *disc + 1),
+               fmt::format("two rotors meet at node {}: give the disc 'rotor', the name of the one that it belongs to, "
+                           "for the mass of rotor '{}' in unbalance '{}'",
+                           m.rotor.discs[*disc].node, u.rotor, u.name));
+    }
   }
 }
 

@@ -59,7 +59,7 @@ std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, s
   const std::vector<double> z = rotor::node_positions(m.rotor);
   double from = z.back(), to = z.front();
   for (std::size_t i = 0; i < m.rotor.segments.size(); ++i) {
-    if (m.rotor.segments[i].rotor != rotor) continue;
+    if (!rotor.empty() && m.rotor.segments[i].rotor != rotor) continue;
     from = std::min(from, z[i]);
     to = std::max(to, z[i + 1]);
   }
@@ -77,14 +77,16 @@ std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& m, s
   return {};
 }
 
+double graded_mass(const Machine& m, const Unbalance& u) {
+  if (u.mass.of == BalanceMass::Of::given) return u.mass.given;
+  if (u.mass.of == BalanceMass::Of::rotor) return rotor::mass_of(m.rotor, u.rotor);
+  const auto pair = enclosing_bearings(m, u.rotor);
+  core::require(pair.has_value(), "an unbalance whose rotor does not lie between two bearings was not refused");
+  return rotor::mass_between(m.rotor, m.bearings[(*pair)[0]].node, m.bearings[(*pair)[1]].node);
+}
+
 std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u) {
-  double whole = 0;
-  if (u.grade) {
-    const auto pair = enclosing_bearings(m, u.rotor);
-    core::require(pair.has_value(), "an unbalance whose rotor does not lie between two bearings was not refused");
-    whole = rotor::mass_between(m.rotor, m.bearings[(*pair)[0]].node, m.bearings[(*pair)[1]].node) * u.grade->velocity /
-            *u.service_speed;
-  }
+  const double whole = u.grade ? graded_mass(m, u) * u.grade->velocity / *u.service_speed : 0;
   std::vector<UnbalanceMass> masses;
   for (const Plane& p : u.planes) {
     const double amount = u.grade ? *p.fraction * whole : p.eccentricity ? *p.eccentricity * m.rotor.mass : *p.amount;

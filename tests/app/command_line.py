@@ -58,7 +58,7 @@ whirl("run", deck, "-o", work / "out", code=2, err=f"{deck}:6:16: unknown key 'c
 whirl("run", train / "static.yaml", "--set", "gravity=9.81", "-o", work / "out", code=2, err="--set gravity=9.81: ")
 if not few:
     # Several values after one --set, with the deck behind them; each change is told.
-    wild = ["bearings.{B2,B3,B4}.geometry.clearance=x1.2", "bearings.B5.elevation=+500 um", "studies+={modes: {speeds: [3600 rpm]}}"]
+    wild = ["bearings.{B2,B3,B4}.geometry.clearance=x1.2", "bearings.B5.elevation=by +500 um", "studies+={modes: {speeds: [3600 rpm]}}"]
     whirl("check", "--set", *wild, train / "static.yaml", code=0, out="  modes (modes)")
     whirl("check", train / "static.yaml", "--set", *wild, code=0, out="set bearings.B4.geometry.clearance: 360 um, was 300 um")
     whirl("check", train / "static.yaml", "--set", "gravity=x2", "--set", "title=a", code=0,

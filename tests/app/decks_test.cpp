@@ -230,12 +230,12 @@ TEST(TurbineTrain, OverridesKnowDiametersAndBalanceGrades) {
   EXPECT_EQ(d.machine.unbalance[0].grade->velocity, 4e-3);
   EXPECT_EQ(d.machine.unbalance[1].grade->velocity, 12.6e-3);
   try {
-    (void)load(train, {"unbalance.gen_pair.grade=+1 mm/s"});
+    (void)load(train, {"unbalance.gen_pair.grade=by +1 mm/s"});
     ADD_FAILURE() << "an offset of a grade";
   } catch (const core::InputError& e) {
     EXPECT_STREQ(
         e.what(),
-        "--set unbalance.gen_pair.grade=+1 mm/s: 'unbalance.gen_pair.grade': 'G2.5' takes a factor (x2, +20 %) or "
+        "--set unbalance.gen_pair.grade=by +1 mm/s: 'unbalance.gen_pair.grade': 'G2.5' takes a factor (x2, +20 %) or "
         "a new value, not the offset '+1 mm/s'");
   }
 }

@@ -58,6 +58,7 @@ system::Train shaft(int segments) {
     s.geometry = {film::Geometry::Bore::cylindrical, 0.05, 0.05, 1e-4, 0, 0, 0};
     film::Reynolds film;
     film.cells = {24, 6};
+    film.cavitation = film::Reynolds::Cavitation::half_sommerfeld;
     s.film = film;
     s.lubricant = {0.02, 860};
     t.supports.push_back(s);

@@ -174,7 +174,9 @@ TEST(Description, OtherWordsAndOneValueForAll) {
   EXPECT_EQ(stand("damping: 5 N s/m").damping, (std::array<double, 4>{5, 0, 0, 5}));
   EXPECT_EQ(wrong("diameter: 1 m\nradius: 2 m"),
             "d.yaml:1:1: 'diameter' says the same as 'radius', which d.yaml:2:1 gives: keep one of them");
-  EXPECT_EQ(wrong("diametre: 1 m"), "d.yaml:1:1: unknown key 'diametre' (did you mean 'radius'?)");
+  EXPECT_EQ(wrong("diametre: 1 m"), "d.yaml:1:1: unknown key 'diametre' (did you mean 'diameter'?)")
+      << "not the radius, which is half of it";
+  EXPECT_EQ(wrong("radiu: 1 kg").find("did you mean"), std::string::npos) << "a mass is no radius";
   EXPECT_EQ(wrong("diameter: -1 m"), "d.yaml:1:11: 'diameter' must be positive, not -0.5 m");
   EXPECT_NE(wrong("mass: [1 kg]").find("'mass' must have 2 items, not 1"), std::string::npos);
   EXPECT_EQ(wrong("mass: 1e-300 kg"),

@@ -140,7 +140,7 @@ TEST(Edit, AnotherWordForAnOptionIsThatOption) {
   const std::string g = "bearings.B1.geometry.";
   EXPECT_NEAR(radius({g + "radius=200 mm", g + "diameter=x1.1"}), 0.22, 1e-15);
   EXPECT_NEAR(radius({g + "diameter=500 mm", g + "radius=x1.1"}), 0.275, 1e-15);
-  EXPECT_NEAR(radius({g + "diameter=500 mm", g + "bore=+10 mm"}), 0.255, 1e-15);
+  EXPECT_NEAR(radius({g + "diameter=500 mm", g + "bore=by +10 mm"}), 0.255, 1e-15);
   EXPECT_NEAR(radius({g + "diameter=x1.1"}), 0.11, 1e-15) << "from the default, of which it is twice the value";
   EXPECT_EQ(radius({g + "radius=200 mm", g + "diameter=300 mm"}), 0.15);
   EXPECT_EQ(radius({g + "radius=200 mm", g + "diameter="}), 0.1) << "taken away";
@@ -152,14 +152,32 @@ TEST(Edit, AnotherWordForAnOptionIsThatOption) {
 }
 
 TEST(Edit, OffsetsAreInAnyUnitOfTheKind) {
-  EXPECT_EQ(after("bearings.B1.geometry.clearance=+500 um").bearings["B1"].geometry.clearance, 680e-6);
-  EXPECT_EQ(after("bearings.B1.geometry.clearance=-0.02 mm").bearings["B1"].geometry.clearance, 160e-6);
-  EXPECT_EQ(after("bearings.B2.elevation=+500 um").bearings["B2"].elevation, 480e-6);
-  EXPECT_EQ(after("bearings.B2.elevation=-20 um").bearings["B2"].elevation, -4e-5);
+  EXPECT_EQ(after("bearings.B1.geometry.clearance=by +500 um").bearings["B1"].geometry.clearance, 680e-6);
+  EXPECT_EQ(after("bearings.B1.geometry.clearance=by 500 um").bearings["B1"].geometry.clearance, 680e-6);
+  EXPECT_EQ(after("bearings.B1.geometry.clearance=by -0.02 mm").bearings["B1"].geometry.clearance, 160e-6);
+  EXPECT_EQ(after("bearings.B2.elevation=by +500 um").bearings["B2"].elevation, 480e-6);
+  EXPECT_EQ(after("bearings.B2.elevation=by -20 um").bearings["B2"].elevation, -4e-5);
   EXPECT_EQ(after("bearings.B1.elevation+=5 um").bearings["B1"].elevation, 5e-6) << "what += is for a number";
-  EXPECT_NEAR(after("bearings.B1.geometry.temperature=+20 K").bearings["B1"].geometry.temperature, 353.15, 1e-12);
-  EXPECT_NEAR(after("speeds.1=+10 rev/s").speeds[0].value, 40 * std::numbers::pi, 1e-12);
-  EXPECT_EQ(after("speeds.1=+10 rev/s").speeds[0].unit, "rpm") << "the value keeps its unit";
+  EXPECT_NEAR(after("bearings.B1.geometry.temperature=by +20 K").bearings["B1"].geometry.temperature, 353.15, 1e-12);
+  EXPECT_NEAR(after("speeds.1=by +10 rev/s").speeds[0].value, 40 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(after("speeds.1=by +10 rev/s").speeds[0].unit, "rpm") << "the value keeps its unit";
+}
+
+// A sign is part of the value; for one version a length with a sign is refused where it was a change before.
+TEST(Edit, ASignIsPartOfTheValue) {
+  EXPECT_EQ(after("bearings.B1.elevation=-20 um").bearings["B1"].elevation, -2e-5);
+  EXPECT_EQ(after("bearings.B1.elevation=+20 um").bearings["B1"].elevation, 2e-5);
+  EXPECT_EQ(after("bearings.B2.elevation==+30 um").bearings["B2"].elevation, 3e-5);
+  EXPECT_EQ(after("speeds.1=+10 rev/s").speeds[0].value, 20 * std::numbers::pi);
+  EXPECT_EQ(after("range.from=-10 rpm").range.from, -after("range.from=10 rpm").range.from);
+  EXPECT_EQ(after("bearings.B1.geometry.cells.1=+66").bearings["B1"].geometry.cells[0], 66);
+  for (const std::string sign : {"-", "+"})
+    EXPECT_EQ(refusal("bearings.B1.geometry.clearance=" + sign + "20 um"),
+              "--set bearings.B1.geometry.clearance=" + sign + "20 um: '" + sign +
+                  "20 um' could be a change of the value here, 180 um, or the value itself: write 'by " + sign +
+                  "20 um' to change it, '=" + sign + "20 um' for the value itself");
+  EXPECT_NE(refusal("bearings.B3.geometry.clearance=+20 um").find("the value here, 0.0001 m"), std::string::npos)
+      << "the default counts";
 }
 
 TEST(Edit, WildcardsNameSeveralEachByItsOwnValue) {
@@ -202,21 +220,21 @@ TEST(Edit, TablesAreReplacedChangedAndExtended) {
     problems.raise();
     return m;
   };
-  EXPECT_EQ(load({"segments.*.outer=x1.5", "segments.2.length=+1 m"}).segments[1].outer, 0.3);
+  EXPECT_EQ(load({"segments.*.outer=x1.5", "segments.2.length=by +1 m"}).segments[1].outer, 0.3);
   EXPECT_EQ(load({"segments+={length: 4 m, outer: 1 m}"}).segments.size(), 4U);
   fs::remove_all(folder);
 }
 
 TEST(Edit, ErrorsCiteTheArgument) {
-  EXPECT_EQ(refusal("bearings.B1.geometry.clearance=-180 um"),
-            "--set bearings.B1.geometry.clearance=-180 um: 'clearance' must be positive, not 0 um");
+  EXPECT_EQ(refusal("bearings.B1.geometry.clearance=by -180 um"),
+            "--set bearings.B1.geometry.clearance=by -180 um: 'clearance' must be positive, not 0 um");
   EXPECT_EQ(refusal("bearings.B1.mass=x2"),
             "--set bearings.B1.mass=x2: 'bearings.B1.mass' has no value to start from: the deck does not give it");
-  EXPECT_NE(refusal("bearings.B1.elevation=+5").find("has no unit: expected a length"), std::string::npos);
+  EXPECT_NE(refusal("bearings.B1.elevation=by 5").find("has no unit: expected a length"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=+5 kg").find("expected a length"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.elevation=x5 um").find("a factor is a bare number"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.geometry.temperature=x2").find("write it in K"), std::string::npos);
-  EXPECT_NE(refusal("bearings.B1.geometry.temperature=+20 degC").find("temperature difference"), std::string::npos);
+  EXPECT_NE(refusal("bearings.B1.geometry.temperature=by +20 degC").find("temperature difference"), std::string::npos);
   EXPECT_NE(refusal("bearings.B1.geometry.cells.1=x1.01").find("whole number, not 60.6"), std::string::npos);
   EXPECT_EQ(refusal("bearings.C*.elevation=x2"), "--set bearings.C*.elevation=x2: nothing in 'bearings' fits 'C*'");
   EXPECT_EQ(refusal("bearings.{B1,B2.elevation=x2"),
@@ -230,7 +248,7 @@ TEST(Edit, ErrorsCiteTheArgument) {
 
 TEST(Edit, OfADeckKeepsThePlaceInIt) {
   deck::Node root = deck::parse_yaml(text, "d.yaml");
-  const deck::Node values = deck::parse_yaml("values: [x2, \"+1 um\", 5 kg]\n", "sweep.yaml");
+  const deck::Node values = deck::parse_yaml("values: [x2, by +1 um, 5 kg]\n", "sweep.yaml");
   for (const deck::Node& value : values.find("values")->items)
     (void)deck::apply(deck::make_edit("bearings.B1.geometry.clearance", value), root, deck::structure_of<Machine>(),
                       files);
@@ -241,7 +259,7 @@ TEST(Edit, OfADeckKeepsThePlaceInIt) {
         try {
           problems.raise();
         } catch (const core::InputError& e) {
-          EXPECT_EQ(std::string(e.what()).find("sweep.yaml:1:23: 'clearance'"), 0U) << e.what();
+          EXPECT_EQ(std::string(e.what()).find("sweep.yaml:1:24: 'clearance'"), 0U) << e.what();
           throw;
         }
       },

@@ -205,3 +205,17 @@ TEST(Nearest, IsCloseEnoughToBeMeant) {
   EXPECT_EQ(deck::nearest("x", {"y", "z"}), "");
   EXPECT_EQ(deck::nearest("banana", {"radius", "clearance"}), "");
 }
+
+// A hint mends spelling; it never names another quantity.
+TEST(Nearest, IsNoOtherQuantity) {
+  for (const char* word : {"c_xx", "m_xx", "k_xz", "kxy"}) EXPECT_EQ(deck::nearest(word, {"k_xx", "k_yy"}), "") << word;
+  EXPECT_EQ(deck::nearest("K_xx", {"k_xx", "k_yy"}), "k_xx");
+  EXPECT_EQ(deck::nearest("kxx", {"k_yy", "k_xx"}), "k_xx");
+  EXPECT_EQ(deck::nearest("stiffness", {"thickness"}), "");
+  EXPECT_EQ(deck::nearest("thicknes", {"thickness"}), "thickness");
+  EXPECT_EQ(deck::nearest("inner_diameter", {"outer_diameter"}), "");
+  EXPECT_EQ(deck::nearest("outer_diametre", {"inner_diameter", "outer_diameter"}), "outer_diameter");
+  EXPECT_EQ(deck::nearest("max_speed", {"min_speed"}), "");
+  EXPECT_EQ(deck::nearest("speed", {"speeds"}), "speeds");
+  EXPECT_EQ(deck::nearest("tilt_damping", {"tilt_stiffness", "damping"}), "");
+}

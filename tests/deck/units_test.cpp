@@ -98,6 +98,8 @@ TEST(Units, WhatIsNoQuantity) {
   EXPECT_NE(refusal("3 m @ 2", "m").find("not a unit"), std::string::npos);
   EXPECT_NE(refusal("3 s since 2000-01-01", "s").find("not a unit"), std::string::npos);
   EXPECT_NE(refusal("180 uM", "m").find("did you mean 'um'?"), std::string::npos);
+  EXPECT_NE(refusal("15 mPas", "Pa s").find("did you mean 'mPa s'?"), std::string::npos) << "not the pressure MPa";
+  EXPECT_EQ(refusal("15 mPas", "Pa").find("mPa s"), std::string::npos);
 }
 
 TEST(Units, OfMemory) {

@@ -167,7 +167,7 @@ std::vector<std::array<double, 8>> locus(std::array<int, 2> cells) {
   return rows;
 }
 
-// With whole cells in the cavity or out of it b_xx scattered by 13 % about the fine mesh on 60 x 16 cells.
+// With whole cells in the cavity or out of it c_xx scattered by 13 % about the fine mesh on 60 x 16 cells.
 TEST(Rupture, CoefficientsDoNotScatterOverEccentricity) {
   const auto coarse = locus({60, 16}), middle = locus({120, 32}), fine = locus({240, 64});
   std::array<double, 8> far{}, near{};

@@ -23,7 +23,7 @@ std::string text(const std::vector<CsvFile>& files, const std::string& name) {
 
 TEST(Csv, HasTheColumnsOfATableInItsOrderWithUnitsAndNames) {
   Group tree;
-  Table t({{"parameter", "rpm", ""}, {"stable", "1", ""}, {"a", "m", "", {2}}});
+  Table t({{"parameter", "rpm", ""}, {"stable", "1", ""}, Table::wide("a", "m", "", {"B1", "B,2"})});
   t.append({{3600}, {1}, {1e-6, 0.1}});
   t.append({{4000.5}, {0}, {std::numeric_limits<double>::quiet_NaN(), -1.0 / 3}});
   t.write(tree.child("branch"));
@@ -36,14 +36,27 @@ TEST(Csv, HasTheColumnsOfATableInItsOrderWithUnitsAndNames) {
   EXPECT_EQ(text(files, "bearings"), "load [N],name\n1.5,B1\n2,\"B,2\"\n");
 }
 
-TEST(Csv, ASecondAxisIsNamedByTheDatasetOfItsLength) {
+// A dataset says itself what its places are: others of the same length, here two bearings, say nothing.
+TEST(Csv, PlacesHaveTheLabelsOfTheirDataset) {
   Group tree;
+  tree.child("bearings").put("name", std::vector<std::string>{"a", "b"}, "");
   auto& g = tree.child("response");
   g.put("speed", {1, 2, 3}, "rad/s", "");
-  g.put("node", std::vector<std::int64_t>{6, 120}, "");
   g.put("amplitude", {3, 2}, {1, 2, 3, 4, 5, 6}, "m", "");
+  g.put("bare", {3, 2}, {1, 2, 3, 4, 5, 6}, "m", "");
+  g.label("amplitude", {node_labels({6, 120})});
   EXPECT_EQ(text(csv_tables(tree), "response"),
-            "speed [rad/s],amplitude.6 [m],amplitude.120 [m]\n1,1,2\n2,3,4\n3,5,6\n");
+            "speed [rad/s],amplitude.node 6 [m],amplitude.node 120 [m],bare.1 [m],bare.2 [m]\n1,1,2,1,2\n2,3,4,3,4\n"
+            "3,5,6,5,6\n");
+  auto& o = tree.child("orders");
+  o.put("speed", {1, 2}, "rad/s", "");
+  o.put("order", {0.5, 1}, "1", "");
+  o.put("x", {2, 2, 2}, {1, 2, 3, 4, 5, 6, 7, 8}, "m", "");
+  EXPECT_EQ(text(csv_tables(tree), "orders"), "") << "nobody knows what is what";
+  o.label_each({labels_of({0.5, 1}, "order"), {"a", "b"}});
+  EXPECT_EQ(text(csv_tables(tree), "orders"),
+            "order,speed [rad/s],x.order 0.5.a [m],x.order 0.5.b [m],x.order 1.a [m],x.order 1.b [m]\n0.5,1,1,2,3,4\n"
+            "1,2,5,6,7,8\n");
 }
 
 TEST(Csv, TwoTablesAreNeverOneFile) {

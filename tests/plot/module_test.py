@@ -86,7 +86,7 @@ def command_lines():
         finally:
             del os.environ["WHIRL_PROGRAM"]
         assert [w for k, w in enumerate(words) if words[k - 1] == "--set"] == \
-            ["a=1.5", "b==-2", "c==-0.25", "d=[-1, 2]", "e=-20 um", "f=true"], words
+            ["a=1.5", "b=-2", "c=-0.25", "d=[-1, 2]", "e=-20 um", "f=true"], words
 
 
 def labels():

@@ -119,7 +119,7 @@ def others_in_brief(folder):
             {"name": "up", "kind": "run_up", "status": "completed", "values": {"bearing.left.peak.amplitude": {"value": 2.3178e-5, "unit": "m"},
                                                                               "bearing.left.peak.speed": {"value": 639.35, "unit": "rad/s"}}},
             {"name": "flips", "kind": "locus", "status": "completed", "values": {}, "codimension_two": [
-                {"type": "resonance_1_2", "value": 1384.59138, "uncertainty_parameter": 0.42, "second_value": 6.8193, "uncertainty": 0.015}]},
+                {"type": "resonance_1_2", "value": 1384.59138, "value_uncertainty": 0.42, "second_value": 6.8193, "second_value_uncertainty": 0.015}]},
             {"name": "hard", "kind": "bearing_map", "status": "completed", "values": {"threshold.speed": {"value": 437.642, "unit": "rad/s"}}}]
 
     def fill(root):

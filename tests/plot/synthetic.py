@@ -17,7 +17,10 @@ def put(group, **datasets):
         if values.dtype.kind in "US":
             group.create_dataset(name, data=values.astype(object), dtype=h5py.string_dtype())
         else:
-            group.create_dataset(name, data=values)
+            data = group.create_dataset(name, data=values)
+            # As the program stores them: every dataset names its places.
+            if values.ndim > 1 and values.shape[-1] == len(NAMES):
+                data.attrs["labels" if values.ndim == 2 else f"labels_{values.ndim - 1}"] = NAMES
 
 
 def study(root, name, kind, status="completed", **attributes):

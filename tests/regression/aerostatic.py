@@ -106,7 +106,7 @@ def pockets(h):
         v = whole["load"]["values"][at + name]
         h.close(f"{name} within its bar of a finer mesh", v["value"], value(fine["load"], at + name), v["uncertainty"])
         h.true(f"{name}: pockets carry half as much again, for gas", 1.4 < v["value"] / value(bare["load"], at + name) < 1.6)
-    b = [value(s["coefficients"], "speed.1000.ratio.0.1.B.xx") for s in (bare, whole, deep)]
+    b = [value(s["coefficients"], "speed.1000.ratio.0.1.C.xx") for s in (bare, whole, deep)]
     h.true("volumes of pockets take damping away, down to below zero", b[0] > b[1] > 0 > b[2], str(b))
     for changes, said in (([f"{row}.law=thickness"], "two_restrictors"), ([f"{row}.law=curtain"], "without pocket"),
                           ([f"{row}.pocket.diameter=0.1 mm"], "wider than its orifice"), ([f"{row}.z=14.5 mm"], "lie within the bearing"),

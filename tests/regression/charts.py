@@ -61,12 +61,12 @@ def rigid(h):
     h.true("upper folds end there", run["small whirl jumps"]["status"] == "completed" and len(ends) == 1
            and ends[0]["end_of_curve"] == 1, f"{run['small whirl jumps']['status']}, {ends}")
     for c, end in zip(points, ends):
-        h.close("upper folds end there, load [N]", end["second_value"], c["second_value"], c["uncertainty"] + end["uncertainty"])
+        h.close("upper folds end there, load [N]", end["second_value"], c["second_value"], c["second_value_uncertainty"] + end["second_value_uncertainty"])
         # Both places lie on the Hopf curve, whose slope carries the load's bar over to the speed.
         slope = np.gradient(hopf[0], hopf[1])[np.argmin(np.abs(hopf[1] - c["second_value"]))]
         h.close("upper folds end there, speed [rad/s]", end["value"], c["value"],
-                end["uncertainty_parameter"] + abs(slope) * c["uncertainty"])
-        h.true("bars of a hundredth of a percent", max(c["uncertainty"], end["uncertainty"]) < 1e-4 * c["second_value"],
+                end["value_uncertainty"] + abs(slope) * c["second_value_uncertainty"])
+        h.true("bars of a hundredth of a percent", max(c["second_value_uncertainty"], end["second_value_uncertainty"]) < 1e-4 * c["second_value"],
                f"{c['uncertainty']}, {end['uncertainty']}")
         h.close("last point of the curve, speed [rad/s]", jump[0][np.argmin(jump[1])], c["value"], 1e-3 * c["value"])
     h.true("amplitudes fall to a fiftieth of a clearance", 0.0199 < amplitudes(h, "chart", "small whirl jumps").min() < 0.0201)
@@ -125,7 +125,7 @@ def folds(h):
         run = h.run(deck, name, code=None)["curve"]
         ends = run.get("codimension_two") or []
         h.true(f"from {load} N: ends at a generalised Hopf point", run["status"] == "completed" and len(ends) == 1, run["status"])
-        found += [(load, c["value"], c["uncertainty_parameter"], c["second_value"], c["uncertainty"]) for c in ends]
+        found += [(load, c["value"], c["value_uncertainty"], c["second_value"], c["second_value_uncertainty"]) for c in ends]
     h.true("three ends", len(found) == 3)
     for k, a in enumerate(found):
         # From 1.15 N with a tolerance of 1e-12; twelve points of a run in long steps extrapolate to the same.

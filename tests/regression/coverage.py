@@ -272,7 +272,7 @@ def all_values(folder, run):
         for column in locus:
             if column + "_uncertainty" in locus:
                 for e, value, bar in zip(locus["eccentricity"][:], locus[column][:], locus[column + "_uncertainty"][:]):
-                    kind = "k" if column.startswith("k_") else "b" if column.startswith("b_") else column
+                    kind = "k" if column.startswith("k_") else "c" if column.startswith("c_") else column
                     out["map", kind, f"{column} at {e:.3g}"] = (value, bar)
     return out
 

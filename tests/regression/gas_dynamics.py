@@ -35,7 +35,7 @@ def enforced(h):
             low, high = (value(study, f"{head}amplitude.{k}.distortion.{axis}") for k in (a, b))
             h.true(f"what K and B leave of the forces grows with the amplitude, {axis}", 0 < low < high < 0.5, f"{low:.3g} {high:.3g}")
     for axis in "xy":
-        k = [value(study, f"{head}amplitude.{a}.B.{axis}{axis}") for a in ("0.02", "0.2", "0.475")]
+        k = [value(study, f"{head}amplitude.{a}.C.{axis}{axis}") for a in ("0.02", "0.2", "0.475")]
         h.true(f"damping B.{axis}{axis} grows with the amplitude", k[0] < k[1] < k[2], " ".join(f"{v:.1f}" for v in k))
     mixed = max(abs(value(study, f"{head}amplitude.0.475.K.{p}")) for p in pairs(4) if p.count("slope") == 1)
     h.close("shifts make no moments, however large [N]", mixed, 0, 1e-6 * 1e7 * 0.03)
@@ -44,9 +44,9 @@ def enforced(h):
     found = []
     for r in (0.05, 1, 3, 5):
         wanted = next(w for w in reference if w["ratio"] == r)["B"][0][0]
-        found.append(value(s["over frequency"], f"speed.2000.ratio.{r:g}.amplitude.0.3.B.yy"))
+        found.append(value(s["over frequency"], f"speed.2000.ratio.{r:g}.amplitude.0.3.C.yy"))
         small = h_small(h, deck, few, r)
-        h.close(f"b_yy at {r:g} of the speed, small amplitude [N s/m]", small, wanted, 0.02 * wanted)
+        h.close(f"c_yy at {r:g} of the speed, small amplitude [N s/m]", small, wanted, 0.02 * wanted)
     h.true("damping falls with the frequency", all(a > b for a, b in zip(found, found[1:])), " ".join(f"{v:.0f}" for v in found))
     scaled = [r * b for r, b in zip((0.05, 1, 3, 5), found)]
     h.true("    its product with the frequency rises, then saturates", scaled[0] < scaled[1] < scaled[2] and abs(scaled[3] / scaled[2] - 1) < 0.1)
@@ -56,12 +56,12 @@ SMALL = {}
 
 
 def h_small(h, deck, few, ratio):
-    """B.yy at a small amplitude; all frequencies are run at once."""
+    """C.yy at a small amplitude; all frequencies are run at once."""
     if not SMALL:
         study = "studies=[{dynamic_coefficients: {name: s, load: 49.05 N, speeds: [2000 rad/s], frequencies: [0.05, 1, 3, 5], method: enforced, amplitudes: [0.01]}}]"
         # On 24 x 8 cells the damping at high frequencies is 4 % off.
         s = h.run(deck, "frequencies", [*few, "bearings.A.film.cells=[64, 20]", study], launcher=[])["s"]
-        SMALL.update({r: value(s, f"speed.2000.ratio.{r:g}.amplitude.0.01.B.yy") for r in (0.05, 1, 3, 5)})
+        SMALL.update({r: value(s, f"speed.2000.ratio.{r:g}.amplitude.0.01.C.yy") for r in (0.05, 1, 3, 5)})
         for r in SMALL:
             h.close(f"at {r:g} of the speed, from perturbation", value(s, f"speed.2000.ratio.{r:g}.amplitude.0.01.from_perturbation"), 0, 1e-3)
     return SMALL[ratio]
@@ -87,7 +87,7 @@ def pressures(h):
         at = f"speed.{speed}.ratio.1.amplitude.0.025."
         h.close(f"{speed} rad/s, from perturbation", value(one, at + "from_perturbation"), 0, 1e-3)
         k = {p: value(one, at + "K." + p) for p in ("xx", "xy", "yx", "yy")}
-        b = {p: value(one, at + "B." + p) for p in ("xx", "xy", "yx", "yy")}
+        b = {p: value(one, at + "C." + p) for p in ("xx", "xy", "yx", "yy")}
         # Eight orifices: the same in both directions, and the opposite across.
         h.close("    K.xx over K.yy", k["xx"] / k["yy"], 1, 1e-6)
         h.close("    K.xy over -K.yx", -k["xy"] / k["yx"], 1, 1e-5)

@@ -106,20 +106,20 @@ def response(h):
     # An isotropic rotor: what a force along x does along y, a force along y does against x.
     h.close("isotropic: G_yx = -G_xy", np.abs(whole[1, 0] / whole[0, 1] + 1).max(), 0, 1e-6)
     # Coefficients given over the frequency: those of the deck say the same, others what they say.
-    row = "{frequency: %g rad/s, k_xx: %g N/m, k_yy: %g N/m, b_xx: 100 N s/m, b_yy: 100 N s/m}"
+    row = "{frequency: %g rad/s, k_xx: %g N/m, k_yy: %g N/m, c_xx: 100 N s/m, c_yy: 100 N s/m}"
     study = "studies.1.frequency_response+={given: {left: {table: [%s, %s]}}}"
     same = h.run(deck, "given", [few, study % (row % (1, 1e7, 1e7), row % (3e4, 1e7, 1e7))], launcher=[])["disc"]
     h.close("given: those of the deck", value(same, "given.difference"), 0, 1e-9)
     one = "studies=[{frequency_response: {name: disc, speed: 0 rad/s, range: {from: 2 rad/s, to: 3 rad/s}, points: 2, inputs: [{bearing: left, direction: x}], given: {left: {table: [%s, %s]}}}}]"
     rows = [row % (1, 1e3, 1e7), row % (4, 4e3, 1e7)]
-    h.run(deck, "rising", [one % tuple(r.replace("b_xx: 100", "b_xx: 0") for r in rows), "rotor.discs=[]", "rotor.material.density=1 kg/m^3"], launcher=[])
+    h.run(deck, "rising", [one % tuple(r.replace("c_xx: 100", "c_xx: 0") for r in rows), "rotor.discs=[]", "rotor.material.density=1 kg/m^3"], launcher=[])
     with h5py.File(h.work / "rising" / "results.h5") as f:
         found = f["studies/disc/response/given/bearing.left.x.from.bearing.left.x/real"][()]
     for w, g in zip((2, 3), found):
         h.close(f"given: a spring of {w} kN/m [m/N]", g, 1e-3 / w, 1e-5 / w)
     # A linear film over the speed is at 5000 rad/s the one half-way between its two rows, for every study.
     modes = "studies+={modes: {name: modes, supports: films, speeds: [5000 rad/s], count: 6}}"
-    over = "bearings.left.film={type: linear, stiffness: 0 N/m, damping: 100 N s/m, table: [{speed: 0 rad/s, k_xx: 1e7 N/m, k_yy: 1e7 N/m}, {speed: 10000 rad/s, k_xx: 3e7 N/m, k_yy: 2e7 N/m, b_yy: 50 N s/m}]}"
+    over = "bearings.left.film={type: linear, stiffness: 0 N/m, damping: 100 N s/m, table: [{speed: 0 rad/s, k_xx: 1e7 N/m, k_yy: 1e7 N/m}, {speed: 10000 rad/s, k_xx: 3e7 N/m, k_yy: 2e7 N/m, c_yy: 50 N s/m}]}"
     there = "bearings.left.film={type: linear, damping: [100 N s/m, 0 N s/m, 0 N s/m, 125 N s/m], stiffness: [2e7 N/m, 0 N/m, 0 N/m, 1.5e7 N/m]}"
     a, b = (h.run(deck, name, [few, modes, film], launcher=[])["modes"]["modes"] for name, film in (("over speed", over), ("at speed", there)))
     h.close("a film over the speed", np.abs(matrix("over speed") / matrix("at speed") - 1).max(), 0, 1e-9)

@@ -63,7 +63,7 @@ def main():
                 row["normal_uncertainty"], 1e-6 * row["normal_uncertainty"])
     turn = {s: next(c for c in run["codimension_two"] if c["type"] == "meeting_over_second") for s, run in
             (("coarse", coarse), ("fine", fine))}
-    for value, bar in (("value", "uncertainty_parameter"), ("second_value", "uncertainty")):
+    for value, bar in (("value", "value_uncertainty"), ("second_value", "second_value_uncertainty")):
         error = abs(turn["coarse"][value] - turn["fine"][value])
         h.true(f"turn, {value}: {turn['coarse'][value]:.6g} +- {turn['coarse'][bar]:.2g}", error < turn["coarse"][bar], f"error {error:.2g}")
         h.true(f"turn, {value}: its bar shrinks with the mesh", turn["fine"][bar] < turn["coarse"][bar] / 4, str(turn["fine"][bar]))
@@ -72,10 +72,10 @@ def main():
     for study in ("flips", "Neimark-Sacker points"):
         c = next(c for c in loci[study]["codimension_two"] if c["type"] == "resonance_1_2")
         resonances.append(c)
-        h.true(f"1:2 resonance on the curve of {study}: bars of both parameters", c["uncertainty"] > 0 and
-               c.get("uncertainty_parameter", 0) > 0, f"{c['uncertainty']}, {c.get('uncertainty_parameter')}")
+        h.true(f"1:2 resonance on the curve of {study}: bars of both parameters", c["second_value_uncertainty"] > 0 and
+               c.get("value_uncertainty", 0) > 0, f"{c['second_value_uncertainty']}, {c.get('value_uncertainty')}")
     a, b = resonances
-    for value, bar in (("value", "uncertainty_parameter"), ("second_value", "uncertainty")):
+    for value, bar in (("value", "value_uncertainty"), ("second_value", "second_value_uncertainty")):
         h.close(f"1:2 resonance on both curves, {value}", a[value], b[value], a.get(bar, 0) + b.get(bar, 0))
     h.finish()
 

@@ -108,7 +108,7 @@ TEST(Contact, ABranchGoesOnWhereItTouched) {
 // Films of finite length on a rigid bore: the limit of fine meshes is 2.5262, and 2.5265 that of compliant films as B
 // vanishes (meshes 40 x 8 and 60 x 12 with B = 0.03 and 0.01, extrapolated).
 TEST(ClosedFilm, HopfPointOfARigidRotor) {
-  const std::string film = "={type: reynolds, turbulence: laminar, cells: [60, 12]}";
+  const std::string film = "={type: reynolds, cavitation: half_sommerfeld, cells: [60, 12]}";
   study::Deck deck = study::load(MPI_COMM_WORLD, std::string(WHIRL_SOURCE_DIR) + "/inputs/rigid_rotor/short_f1.yaml",
                                  {"bearings.left.film" + film, "bearings.right.film" + film,
                                   "studies.1.equilibrium_branch.range={from: 320 rad/s, to: 480 rad/s}"});

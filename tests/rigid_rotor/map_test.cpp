@@ -73,7 +73,7 @@ TEST(BearingMap, ShortBearing) {
   EXPECT_NEAR(m.values.at("threshold.eccentricity"), 0.112974, 1e-6);
   const auto& locus = m.group.group("locus");
   const auto &e = locus.reals("eccentricity"), &S = locus.reals("sommerfeld"), &gamma = locus.reals("attitude"),
-             &k = locus.reals("k_xx"), &b = locus.reals("b_xy");
+             &k = locus.reals("k_xx"), &b = locus.reals("c_xy");
   ASSERT_EQ(e.size(), 95U);
   for (std::size_t i = 0; i < e.size(); ++i) {
     const double e2 = e[i] * e[i], q = 1 - e2, n = 16 * e2 + pi * pi * q;
@@ -176,7 +176,7 @@ TEST(BearingMap, StiffLinersGiveTheRigidCoefficients) {
     for (std::size_t i = 0; i < 8; ++i) {
       EXPECT_NEAR(b.reals("sommerfeld")[i], a.reals("sommerfeld")[i], 2e-3 * a.reals("sommerfeld")[i]);
       EXPECT_NEAR(b.reals("attitude")[i], a.reals("attitude")[i], 2e-3);
-      for (const char letter : {'k', 'b'}) {
+      for (const char letter : {'k', 'c'}) {
         double size = 0;
         for (const char* e : entries) size = std::max(size, std::abs(a.reals(std::string{letter, '_'} + e)[i]));
         for (const char* e : entries) {

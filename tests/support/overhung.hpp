@@ -11,6 +11,7 @@ namespace whirl::test {
 
 inline film::Reynolds pads(bool tilt, std::array<int, 2> cells = {30, 10}) {
   film::Reynolds o;
+  o.cavitation = film::Reynolds::Cavitation::half_sommerfeld;
   o.tilt = tilt;
   o.cells = cells;
   return o;

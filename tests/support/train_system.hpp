@@ -32,6 +32,7 @@ inline system::Train train(std::array<int, 2> cells, bool guyan) {
     s.geometry.preload = std::stod(row["preload"]);
     film::Reynolds film;
     film.cells = cells;
+    film.cavitation = film::Reynolds::Cavitation::half_sommerfeld;  // as the source has it
     film.turbulence = film::Turbulence::constantinescu;
     s.film = film;
     s.lubricant = {std::stod(row["viscosity_Pa_s"]), std::stod(row["oil_density_kg_m3"])};

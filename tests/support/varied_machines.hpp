@@ -55,6 +55,7 @@ inline system::Machine reduced_machine() {
   m.lubricants["oil"] = {0.02, 870};
   film::Reynolds turbulent;
   turbulent.cells = {24, 6};
+  turbulent.cavitation = film::Reynolds::Cavitation::half_sommerfeld;
   turbulent.turbulence = film::Turbulence::constantinescu;
   turbulent.tilt = true;  // in line with the shaft, which all that bends it turns
   m.bearings.push_back(bearing("B1", 1, turbulent, lemon_bore));

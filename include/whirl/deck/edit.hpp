@@ -4,9 +4,11 @@
 //   PATH = VALUE     PATH leads to a value: `bearings.B2.geometry.clearance`, list items count from 1.
 //                    Wildcards stand for several: `bearings.{B2,B3}.geometry.clearance`, `bearings.*.node`, `B*`.
 //   VALUE   264 um   replaces what is there (any YAML: quantities, lists, maps, names of tables)
+//           -20 um   the same: a sign is part of the value
 //           x1.2     multiplies it, each item where it is a list
-//           +500 um  adds to it; -20 um subtracts; +20 % and -20 % are of the value itself
-//           =-20 um  is -20 um itself, for values that begin with one of these signs
+//           +20 %    raises it by a part of itself, -20 % lowers it
+//           by +500 um, by -20 um    adds to it
+//           =-20 um  is -20 um itself, where a length with a sign is refused (see apply)
 //           (empty)  takes the key away, so that the default holds
 //   PATH += VALUE    appends to a list (the items of VALUE if that is a list), joins a map, adds to a number
 //
@@ -38,6 +40,15 @@ struct Change {
   std::string after;   ///< empty if the key was taken away
 };
 
+/// How the text of a scalar is to be read: a value, a factor (`x1.2`) or a change (`by -20 um`, `+20 %`); `rest` is
+/// what stands behind the `x` or the `by`.
+struct Written {
+  enum class As { value, factor, change };
+  As as = As::value;
+  std::string_view rest;
+};
+[[nodiscard]] Written written_as(std::string_view text);
+
 /// `PATH=VALUE` or `PATH+=VALUE`; VALUE is YAML. Errors, now and later, cite `cited` and the argument (`--set a.b=1`).
 /// Names of tables in it are relative to the working directory. Throws core::InputError.
 [[nodiscard]] Edit parse_edit(const std::string& argument, std::string_view cited = "--set");
@@ -49,7 +60,8 @@ struct Change {
 /// Applies `edit` to the tree of a deck whose options `structure` describes; reads tables on its way. Every value that
 /// it wrote has the edit's place, so that later errors cite it. One Change per value, in the order of the deck.
 /// Throws core::InputError if the path leads nowhere or a factor or an offset does not suit the value; whether a plain
-/// value suits its option is found when the tree is read. Collective (tables).
+/// value suits its option is found when the tree is read. For one version it also refuses a length with a sign on a
+/// value that is not zero, which earlier versions added. Collective (tables).
 std::vector<Change> apply(const Edit& edit, Node& root, const Structure& structure, const Files& files);
 
 }  // namespace whirl::deck

@@ -82,8 +82,8 @@ private:
   std::string prefix_;
 };
 
-/// The candidate closest to `word` by edit distance, empty if none is near enough to be what was meant. Looks at the
-/// first 5000 candidates, and at no word above 60 characters.
+/// The candidate closest to `word` by edit distance; empty if none is near enough, or if it is another quantity (k_xx
+/// for c_xx, inner for outer). Looks at the first 5000 candidates, and at no word above 60 characters.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 /// ` (did you mean 'x'?)`, or nothing.
 [[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);

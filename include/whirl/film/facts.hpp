@@ -2,6 +2,7 @@
 // What others may ask of a film without knowing its kind.
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -41,7 +42,10 @@ struct Misplaced {
 
 /// What a film is like, from its options alone. A default one is a smooth film in closed form on a rigid bore.
 struct Facts {
-  bool coefficients = false;    // coefficients alone: no bore, no lubricant, no thickness, no pressure
+  bool coefficients = false;  // coefficients alone: no bore, no lubricant, no thickness, no pressure
+  // Speeds at which they are known [rad/s], and whether those of the nearest end are kept beyond.
+  std::array<double, 2> known_speeds{0, std::numeric_limits<double>::infinity()};
+  bool holds_beyond = false;
   bool gives_way = false;       // the bore is elastic, so that the journal may go beyond the clearance
   bool asperities = false;      // they carry where journal and bore touch
   bool tilts = false;           // it follows the slope of the journal

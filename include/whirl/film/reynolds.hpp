@@ -22,7 +22,7 @@ struct Reynolds {
   static constexpr std::string_view key = "reynolds", text = "two-dimensional Reynolds equation, pressure condensed";
   enum class Cavitation { half_sommerfeld, reynolds, mass_conserving, none };
   using States = film::States;
-  Cavitation cavitation = Cavitation::half_sommerfeld;
+  Cavitation cavitation = Cavitation::reynolds;
   double edge_fill = 1.0;             // -, part of the gap that is full of oil where it enters a pad (mass_conserving)
   States states = States::condensed;  // of a mass_conserving film: does its cavity fill and empty in time?
   double bulk_modulus = 1.5e9;        // Pa, of the oil where the gap is full, of a film with dynamic states

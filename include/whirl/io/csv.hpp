@@ -17,12 +17,12 @@ struct CsvFile {
 
 /// The tables in a tree of results, as CSV.
 ///
-/// A group is a table if its datasets share their first extent, the rows; where it has datasets of two axes, those give
-/// the rows, and a dataset of one axis as long as their second one names their columns: `x.B1 [m]`. Failing that,
-/// `bearings/name` or `places/name` of the tree does, or numbers from 1. Numbers are as short as they can be without
-/// loss, `nan` where there is none.
-/// Left out: groups with the attribute `restart` and all below them, groups with datasets of three and more axes,
-/// tables of more than a million cells, and datasets that fit no table.
+/// A group is a table if its datasets share their first extent, the rows; where it has datasets of two or three axes,
+/// those give the rows, and datasets of one axis with another length stay out. Columns of the other axes bear the
+/// labels of the dataset, `x.B1 [m]` and `amplitude.order 2.B1 [m]`, or numbers from 1 where it has none. Numbers are
+/// as short as they can be without loss, `nan` where there is none. Left out: groups with the attribute `restart` and
+/// all below them, groups with datasets of three axes without labels or of more axes, tables of more than a million
+/// cells, and datasets that fit no table.
 [[nodiscard]] std::vector<CsvFile> csv_tables(const Group& tree);
 
 /// Writes one of them; atomic, makes the folder if it is missing.

@@ -31,6 +31,8 @@ struct Dataset {
   std::string unit;                 ///< UDUNITS text, "1" if dimensionless, empty for names and counts
   std::string description;          ///< what a reader of the file should know
   std::optional<RowRange> share{};  ///< numbers only; none: all is here
+  /// Names of the places along the second axis, the third axis, ...: each as long as its axis, or empty.
+  std::vector<std::vector<std::string>> labels{};
 
   /// Shape of the whole array.
   [[nodiscard]] Shape whole_shape() const;
@@ -62,6 +64,10 @@ public:
   void put(const std::string& name, Shape shape, std::vector<double> values, std::string unit, std::string description);
   void put(const std::string& name, std::vector<std::int64_t> values, std::string description);
   void put(const std::string& name, std::vector<std::string> values, std::string description);
+  /// Names the places along the second axis and those after it of a dataset that is there.
+  void label(const std::string& name, std::vector<std::vector<std::string>> labels);
+  /// Does so for all datasets with that many axes beside the first, so that they must have the same places.
+  void label_each(const std::vector<std::vector<std::string>>& labels);
   [[nodiscard]] bool has_dataset(const std::string& name) const { return datasets_.contains(name); }
   [[nodiscard]] const Dataset& dataset(const std::string& name) const;
   /// The values of a dataset that is not shared; core::Error if it is.
@@ -85,6 +91,12 @@ private:
   std::map<std::string, Dataset> datasets_;
   std::map<std::string, Group> groups_;
 };
+
+/// Labels of places that are numbers or nodes: `2.5`, `order 2.5` with a word before, `node 12`.
+[[nodiscard]] std::vector<std::string> labels_of(const std::vector<double>& values, const std::string& word = {});
+[[nodiscard]] std::vector<std::string> node_labels(const std::vector<int>& nodes);
+/// `WORD 1` to `WORD count`.
+[[nodiscard]] std::vector<std::string> numbered(std::size_t count, const std::string& word);
 
 /// Name in a file for any text of a user: '/' becomes '_', an empty name or "." becomes "_".
 [[nodiscard]] std::string safe_name(const std::string& text);

@@ -10,17 +10,25 @@ namespace whirl::io {
 
 /// A table of real columns, each of one number or of a fixed row of numbers per table row.
 ///
-///     Table t({{"parameter", "rpm", "speed"}, {"x", "m", "journal position per bearing", {5}}});
+///     Table t({{"parameter", "rpm", "speed"}, Table::wide("x", "m", "journal position", {"B1", "B2"})});
 ///     t.append({{3600.0}, x});
-///     t.write(group);        // datasets parameter[rows], x[rows][5]
+///     t.write(group);        // datasets parameter[rows], x[rows][2]
 class Table {
 public:
   struct Column {
     std::string name;
     std::string unit;
     std::string description;
-    Shape row_shape = {};  ///< shape of one cell; empty is a single number
+    Shape row_shape = {};                  ///< shape of one cell; empty is a single number
+    std::vector<std::string> labels = {};  ///< of the numbers of a cell with one axis
   };
+
+  /// A column of as many numbers per row as there are labels, which name them.
+  [[nodiscard]] static Column wide(std::string name, std::string unit, std::string description,
+                                   std::vector<std::string> labels) {
+    const std::size_t n = labels.size();
+    return {std::move(name), std::move(unit), std::move(description), {n}, std::move(labels)};
+  }
 
   Table() = default;
   explicit Table(std::vector<Column> columns);

@@ -44,6 +44,7 @@ struct Disc {
   double skew = 0, skew_phase = 0;                  // rad
   // Nodes at both ends of its hub: the disc then tilts as the line through them. Empty: as the section at its node.
   std::vector<int> hub{};
+  std::string rotor{};  // name of the rotor it belongs to; that of the segments at its node if empty
   friend bool operator==(const Disc&, const Disc&) = default;
 };
 

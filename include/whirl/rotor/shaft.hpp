@@ -1,6 +1,8 @@
 #pragma once
 // Facts of a shaft that need no linear algebra: lengths, masses, material, and the check of the options.
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "whirl/rotor/freedom.hpp"
@@ -60,6 +62,15 @@ struct TurningForce {
 /// Mass of the segments between nodes `from` < `to` and of the discs with from <= node < to, in kg: adjoining spans
 /// share nothing.
 [[nodiscard]] double mass_between(const Options& options, int from, int to);
+
+/// Mass of the rotor `name` in kg: of the segments that have its name, and of the discs on their nodes; at a border
+/// between two rotors, of those discs that name it. All of the shaft if its segments have one name or none, or if
+/// `name` is empty; the mass of a rigid rotor.
+[[nodiscard]] double mass_of(const Options& options, std::string_view name);
+
+/// The first disc on a border of rotor `name` that names neither of the rotors that meet there, so that the mass of
+/// this one is not known; empty if there is none.
+[[nodiscard]] std::optional<std::size_t> disc_of_no_rotor(const Options& options, std::string_view name);
 
 /// Slenderness L/D_eq of the span between two nodes, D_eq = sum(D_OS L)/sum(L) the mean of the outer stiffness
 /// diameter. Source: Gavalas (2022), sec. 4.4, A_S read as the area of the longitudinal profile.

@@ -82,6 +82,10 @@ public:
   [[nodiscard]] virtual double memory(const system::Machine& /*machine*/, const LayoutOptions& /*layout*/) const {
     return 0;
   }
+  /// Names of the unbalances that it applies to the machine.
+  [[nodiscard]] virtual std::vector<std::string> unbalances() const { return {}; }
+  /// Speeds of the shaft that it asks for, in no order; of a range both ends [rad/s].
+  [[nodiscard]] virtual std::vector<double> speeds() const { return {}; }
   /// Name of the study whose bifurcations this one goes on from; empty if it needs none.
   [[nodiscard]] virtual std::string starts_from() const { return {}; }
   /// True if that study is `earlier`, or one that `earlier` adds to the results.
@@ -96,12 +100,58 @@ public:
 /// Runs `study`; what it cannot deliver is a result with a reason. Collective.
 [[nodiscard]] StudyResult result_of(Study& study, Context& context);
 
+/// `unbalance` of options that have it.
+template <class Options>
+std::vector<std::string> unbalances_of(const Options& o) {
+  if constexpr (requires { o.unbalance.front().size(); })
+    return o.unbalance;
+  else if constexpr (requires { o.orbits->unbalance; })
+    return o.orbits ? o.orbits->unbalance : std::vector<std::string>();
+  else
+    return {};
+}
+
+/// Those of `speed`, `speeds` and `operating_speed`, and the ends of `range` and of the range of the parameter where
+/// that is the speed. Options with one `speed` have a `range` of something else.
+template <class Options>
+std::vector<double> speeds_of(const Options& o) {
+  std::vector<double> all;
+  const auto add = [&all](const auto& x) {
+    if constexpr (requires { x.from; })
+      all.insert(all.end(), {x.from, x.to});
+    else if constexpr (requires { x.value; })
+      all.push_back(x.value);
+    else
+      all.push_back(x);
+  };
+  const auto each = [&add](const auto& x) {
+    if constexpr (requires { x.has_value(); }) {
+      if (x) add(*x);
+    } else if constexpr (requires { x.begin(); }) {
+      for (const auto& one : x) add(one);
+    } else {
+      add(x);
+    }
+  };
+  if constexpr (requires { o.parameter.path; })
+    if (o.parameter.path == "speed") add(o.parameter.range);
+  if constexpr (requires { o.speed; })
+    each(o.speed);
+  else if constexpr (requires { o.range; })
+    each(o.range);
+  if constexpr (requires { o.speeds; }) each(o.speeds);
+  if constexpr (requires { o.operating_speed; }) each(o.operating_speed);
+  return all;
+}
+
 /// What all kinds share: options with a `name`.
 template <class Options>
 class StudyWith : public Study {
 public:
   Options options;
   [[nodiscard]] std::string name() const override { return options.name.empty() ? std::string(kind()) : options.name; }
+  [[nodiscard]] std::vector<std::string> unbalances() const override { return unbalances_of(options); }
+  [[nodiscard]] std::vector<double> speeds() const override { return speeds_of(options); }
 };
 
 /// All kinds, in the order in which they are listed.

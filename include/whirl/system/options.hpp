@@ -46,19 +46,27 @@ struct BalanceGrade {
 /// mass of a rigid rotor.
 struct Plane {
   int node = 0;                        ///< 1-based
-  std::optional<double> fraction;      ///< of M_k e_u
+  std::optional<double> fraction;      ///< of M e_u
   std::optional<double> amount;        ///< U [kg m]
   std::optional<double> eccentricity;  ///< U/m of a rigid rotor [m]
   double phase = 0;                    ///< [rad]
 };
 
-/// A named unbalance. With a grade: U = fraction M_k e_u, e_u = grade / service_speed, M_k the mass between the two
-/// neighbouring bearings between which the middle of `rotor` lies. Source: Gavalas (2022), eq. (2.2).
+/// The mass to which a grade applies: that of the rotor (ISO 21940-11), that between the two neighbouring bearings
+/// between which the middle of the rotor lies (Gavalas 2022, eq. 2.2), or a given one.
+struct BalanceMass {
+  enum class Of { rotor, span, given };
+  Of of = Of::rotor;
+  double given = 0;  ///< [kg]
+};
+
+/// A named unbalance. With a grade: U = fraction M e_u, e_u = grade / service_speed. Source: ISO 21940-11.
 struct Unbalance {
   std::string name;
   std::optional<BalanceGrade> grade;
   std::optional<double> service_speed;  ///< [rad/s]
-  std::string rotor;
+  std::string rotor;                    ///< empty: the whole shaft
+  BalanceMass mass;
   std::vector<Plane> planes;
 };
 
@@ -99,12 +107,15 @@ inline constexpr std::string_view unbalance_of_discs = "discs";
 /// Nodes on which the unbalance `name` acts, or its discs stand; empty if there is none.
 [[nodiscard]] std::vector<int> unbalance_nodes(const Machine& machine, std::string_view name);
 
-/// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies; empty if
-/// there is no such rotor or no such pair.
+/// Positions in order of nodes of the two neighbouring bearings between which the middle of rotor `name` lies (of the
+/// whole shaft if it is empty); empty if there is no such rotor or no such pair.
 [[nodiscard]] std::optional<std::array<std::size_t, 2>> enclosing_bearings(const Machine& machine,
                                                                            std::string_view rotor);
 
-/// Masses of one unbalance, U = fraction M_k e_u or the given amounts, for a machine that was checked.
+/// M of an unbalance with a grade [kg], for a machine that was checked.
+[[nodiscard]] double graded_mass(const Machine& machine, const Unbalance& unbalance);
+
+/// Masses of one unbalance, U = fraction M e_u or the given amounts, for a machine that was checked.
 [[nodiscard]] std::vector<UnbalanceMass> unbalance_masses(const Machine& machine, const Unbalance& unbalance);
 
 /// The machine with all names resolved and the named unbalances applied (all at once; `discs`: what the discs do by
@@ -117,6 +128,10 @@ inline constexpr std::string_view unbalance_of_discs = "discs";
 namespace whirl::deck {
 template <>
 struct CodecOf<system::BalanceGrade> {
+  static std::shared_ptr<const Codec> make(const Spec&);
+};
+template <>
+struct CodecOf<system::BalanceMass> {
   static std::shared_ptr<const Codec> make(const Spec&);
 };
 }  // namespace whirl::deck

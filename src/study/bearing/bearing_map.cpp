@@ -164,8 +164,8 @@ void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vec
   for (std::size_t i = 0; i < 4; ++i) {
     table.put(fmt::format("k_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].k[i]; }), "1",
               "stiffness c k/(load/S)");
-    table.put(fmt::format("b_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].b[i]; }), "1",
-              "damping c Omega b/(load/S)");
+    table.put(fmt::format("c_{}", entries[i]), column(locus, [i](const P& p) { return p.coefficients[0].b[i]; }), "1",
+              "damping c Omega C/(load/S)");
   }
   if (frequencies.size() < 2) return;
   auto& over = group.child("frequencies");
@@ -179,8 +179,9 @@ void put_locus(io::Group& group, const std::vector<Point>& locus, const std::vec
       }
     const io::Shape shape{locus.size(), frequencies.size()};
     over.put(fmt::format("k_{}", entries[i]), shape, k, "1", "stiffness [point of the locus][frequency]");
-    over.put(fmt::format("b_{}", entries[i]), shape, b, "1", "damping [point of the locus][frequency]");
+    over.put(fmt::format("c_{}", entries[i]), shape, b, "1", "damping [point of the locus][frequency]");
   }
+  over.label_each({io::labels_of(frequencies)});
 }
 
 void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<Loaded>& loaded) {
@@ -193,7 +194,7 @@ void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<L
     summary.set(head + "whirl_ratio", l.point.at.whirl_ratio, "1");
     for (std::size_t i = 0; i < 4; ++i) {
       summary.set(fmt::format("{}k.{}", head, entries[i]), l.point.coefficients[0].k[i], "1");
-      summary.set(fmt::format("{}b.{}", head, entries[i]), l.point.coefficients[0].b[i], "1");
+      summary.set(fmt::format("{}c.{}", head, entries[i]), l.point.coefficients[0].b[i], "1");
     }
     if (l.profile.pressure.empty()) continue;
     sommerfeld.push_back(l.sommerfeld);
@@ -207,6 +208,7 @@ void put_loaded(io::Group& group, io::StudySummary& summary, const std::vector<L
   table.put("theta", loaded.back().profile.theta, "rad", "angle from +x");
   table.put("pressure", shape, pressure, "1", "(c/R)^2 p/(6 mu Omega) in the mid-plane [load][theta]");
   table.put("thickness", shape, thickness, "1", "film thickness in clearances [load][theta]");
+  table.label_each({io::labels_of(loaded.back().profile.theta)});
 }
 
 void put_threshold(io::StudySummary& summary, const Mapper& map, const std::optional<system::Groups>& groups) {
@@ -221,7 +223,7 @@ void put_threshold(io::StudySummary& summary, const Mapper& map, const std::opti
 // What the locus says at one eccentricity, in the order of `with_bars`.
 constexpr std::array<const char*, 12> with_bars = {"attitude", "sommerfeld", "speed_limit", "whirl_ratio",
                                                    "k_xx",     "k_xy",       "k_yx",        "k_yy",
-                                                   "b_xx",     "b_xy",       "b_yx",        "b_yy"};
+                                                   "c_xx",     "c_xy",       "c_yx",        "c_yy"};
 std::vector<double> numbers_of(const std::vector<Point>& locus, const std::vector<Point>& like) {
   std::vector<double> out;
   for (const Point& wanted : like) {
@@ -314,6 +316,7 @@ StudyResult BearingMap::run(Context& context) {
     table.put("angle", map->angles, "rad", "from the squeeze velocity to the journal, counter-clockwise");
     table.put("W_along", shape, map->along, "1", "impedance [eccentricity][angle], resisting the squeeze");
     table.put("W_across", shape, map->across, "1", "impedance [eccentricity][angle], to the left of the squeeze");
+    table.label_each({io::labels_of(map->angles)});
   }
   put_threshold(summary, *map, groups);
   put_bars(context, options, which, *map, groups);

@@ -105,7 +105,7 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
       for (std::size_t i = 0; i < c.ports; ++i)
         for (std::size_t j = 0; j < c.ports; ++j) {
           summary.set(at_ratio + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
-          summary.set(at_ratio + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
+          summary.set(at_ratio + "C." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
         }
       if (!a.enforced.empty()) put_enforced(summary, at_ratio, options.amplitudes, a.enforced[f]);
     }
@@ -152,7 +152,7 @@ void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, dou
             if (bars) errors[k].push_back((*bars)[next].total());
         }
       for (std::size_t k = 0; k < 2; ++k) {
-        const std::string name = (k == 0 ? "k_" : "b_") + pair_name(i, j, "_");
+        const std::string name = (k == 0 ? "k_" : "c_") + pair_name(i, j, "_");
         const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
         const char* what = k == 0 ? "stiffness" : "damping";
         table.put(name, shape, values[k], unit, fmt::format("{} [speed][frequency]", what));
@@ -161,6 +161,7 @@ void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, dou
                     fmt::format("estimated error of {} from the film mesh", name));
       }
     }
+  table.label_each({io::labels_of(ratios)});
   if (!options.amplitudes.empty())
     put_enforced_tables(group, speeds, ratios, options.amplitudes, enforced_of(found), bars, next);
 }

@@ -94,7 +94,7 @@ void put_enforced(io::StudySummary& summary, const std::string& head, std::span<
     for (std::size_t i = 0; i < c.ports; ++i)
       for (std::size_t j = 0; j < c.ports; ++j) {
         summary.set(at + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
-        summary.set(at + "B." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
+        summary.set(at + "C." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
       }
     for (std::size_t j = 0; j < c.ports; ++j) {
       summary.set(at + "distortion." + port_words[j], found[a].distortion[j], "1");
@@ -159,7 +159,7 @@ void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, co
           if (bars) errors[k].push_back((*bars)[next].total());
       });
       for (std::size_t k = 0; k < 2; ++k) {
-        const std::string name = (k == 0 ? "k_" : "b_") + pair_name(i, j, "_");
+        const std::string name = (k == 0 ? "k_" : "c_") + pair_name(i, j, "_");
         const char* unit = (k == 0 ? stiffness_units : damping_units)[slopes_in(i, j)];
         table.put(name, shape, values[k], unit,
                   fmt::format("{} [speed][frequency][amplitude]", k == 0 ? "stiffness" : "damping"));
@@ -180,6 +180,7 @@ void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, co
         std::string("distortion_") + port_words[j], shape, left, "1",
         "what stiffness and damping leave of the force, ratio of root mean squares [speed][frequency][amplitude]");
   }
+  table.label_each({io::labels_of(ratios, "ratio"), io::labels_of(amplitudes, "amplitude")});
 }
 
 }  // namespace whirl::study

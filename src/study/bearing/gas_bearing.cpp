@@ -180,6 +180,7 @@ void put_gas_map(io::Group& group, const GasBearingOptions& o, const system::Sup
   table.put("load", shape, load, "N", "at the eccentricity of the map [clearance][diameter]");
   table.put("mass_flow", shape, flow, "kg/s", "the same");
   table.put("power_loss", shape, power, "W", "the same");
+  table.label_each({io::labels_of(values_of(map.diameters))});
   table.set("eccentricity", map.eccentricity);
 }
 

@@ -59,8 +59,9 @@ Extremes extremes(const std::vector<double>& motion, std::size_t bearings) {
 
 std::vector<io::Table::Column> columns(const system::ShownPlaces& places, const std::string& unit,
                                        std::size_t multipliers) {
-  const io::Shape b{places.names.size()}, m{multipliers};
+  const std::vector<std::string>&b = places.names, m = io::numbered(multipliers, "multiplier");
   const std::string& length = places.unit;
+  const auto wide = io::Table::wide;
   return {
       {"parameter", unit, "parameter of the branch"},
       {"period", "s", "period of the cycle"},
@@ -69,16 +70,18 @@ std::vector<io::Table::Column> columns(const system::ShownPlaces& places, const 
       {"step", unit, "arclength from the previous point"},
       {"newton_iterations", "1", "of the accepted step"},
       {"intervals", "1", "of the time mesh"},
-      {"x_max", length, "largest x of " + places.text, b},
-      {"x_min", length, "smallest", b},
-      {"y_max", length, "largest y of " + places.text, b},
-      {"y_min", length, "smallest", b},
-      {"eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b},
-      {"film_min", length,
-       "smallest film thickness over the cycle, at mid-plane of films that do not tilt, not a number without a film",
-       b},
-      {"multipliers_real", "1", "leading Floquet multipliers, the largest first; not a number: beyond those found", m},
-      {"multipliers_imag", "1", "their imaginary parts", m}};
+      wide("x_max", length, "largest x of " + places.text, b),
+      wide("x_min", length, "smallest", b),
+      wide("y_max", length, "largest y of " + places.text, b),
+      wide("y_min", length, "smallest", b),
+      wide("eccentricity_max", "1", "largest eccentricity per clearance; zero where there is no clearance", b),
+      wide(
+          "film_min", length,
+          "smallest film thickness over the cycle, at mid-plane of films that do not tilt, not a number without a film",
+          b),
+      wide("multipliers_real", "1", "leading Floquet multipliers, the largest first; not a number: beyond those found",
+           m),
+      wide("multipliers_imag", "1", "their imaginary parts", m)};
 }
 
 std::vector<io::Table::Column> columns_of_birth(const system::ShownPlaces& places, const std::string& unit) {
@@ -237,6 +240,7 @@ void CycleRecord::write_orbits(io::Group& group, int count) const {
   group.put("point", point, "its row in the table of the branch, from 0");
   group.put("x", shape, x, places_.unit, "x of " + places_.text + " [orbit][time][bearing]");
   group.put("y", shape, y, places_.unit, "y of " + places_.text + " [orbit][time][bearing]");
+  group.label_each({{}, places_.names});
 }
 
 void write_cycle(io::Group& group, const solve::Cycle& cycle, const SharedRows& like) {

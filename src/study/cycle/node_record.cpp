@@ -11,18 +11,19 @@ namespace {
 
 constexpr int samples_per_turn = 128;
 
-std::vector<io::Table::Column> columns(const std::string& unit, std::size_t nodes) {
-  const io::Shape n{nodes};
+std::vector<io::Table::Column> columns(const std::string& unit, const std::vector<int>& nodes) {
+  const std::vector<std::string> n = io::node_labels(nodes);
+  const auto wide = io::Table::wide;
   return {{"parameter", unit, "parameter of the branch"},
-          {"amplitude", "m", "largest distance of the shaft's node from its mean position over the cycle", n},
-          {"x", "m", "half the travel of the node in x", n},
-          {"y", "m", "half the travel of the node in y", n}};
+          wide("amplitude", "m", "largest distance of the shaft's node from its mean position over the cycle", n),
+          wide("x", "m", "half the travel of the node in x", n),
+          wide("y", "m", "half the travel of the node in y", n)};
 }
 
 }  // namespace
 
 NodeRecord::NodeRecord(std::vector<int> nodes, std::string unit)
-    : nodes_(std::move(nodes)), unit_(std::move(unit)), table_(columns(unit_, nodes_.size())) {}
+    : nodes_(std::move(nodes)), unit_(std::move(unit)), table_(columns(unit_, nodes_)) {}
 
 void NodeRecord::append(double parameter, const solve::Cycle& cycle, const solve::Scheme& scheme,
                         system::Plant& system) {

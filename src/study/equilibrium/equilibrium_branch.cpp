@@ -109,19 +109,19 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   problem.from_state(x.get(), range.from, u.get());
 
   const system::ShownPlaces places = system->places();
-  io::Table table({{"parameter", unit, "parameter of the branch"},
-                   {"stable", "1", "1 if no eigenvalue has a positive real part"},
-                   {"unstable_count", "1", "eigenvalues with positive real part"},
-                   {"undamped_count", "1", "eigenvalues whose real part is rounding"},
-                   {"step", unit, "arclength from the previous point"},
-                   {"leading_real", "1/s", "real part of the least stable eigenvalue"},
-                   {"leading_imag", "rad/s", "its imaginary part"},
-                   {"x", places.unit, places.text, {places.names.size()}},
-                   {"y", places.unit, places.text, {places.names.size()}},
-                   {"film",
-                    places.unit,
-                    "smallest film thickness, at mid-plane of films that do not tilt, not a number without a film",
-                    {places.names.size()}}});
+  io::Table table(
+      {{"parameter", unit, "parameter of the branch"},
+       {"stable", "1", "1 if no eigenvalue has a positive real part"},
+       {"unstable_count", "1", "eigenvalues with positive real part"},
+       {"undamped_count", "1", "eigenvalues whose real part is rounding"},
+       {"step", unit, "arclength from the previous point"},
+       {"leading_real", "1/s", "real part of the least stable eigenvalue"},
+       {"leading_imag", "rad/s", "its imaginary part"},
+       io::Table::wide("x", places.unit, places.text, places.names),
+       io::Table::wide("y", places.unit, places.text, places.names),
+       io::Table::wide("film", places.unit,
+                       "smallest film thickness, at mid-plane of films that do not tilt, not a number without a film",
+                       places.names)});
   std::vector<Located> located;      // one for each bifurcation of the summary
   std::vector<BorderEvent> borders;  // likewise
   BranchVerdict verdict;

@@ -51,6 +51,11 @@ void put_films(Context& context, system::RotorSystem& system, const std::vector<
       pad.put(name, dataset_of(std::move(f), sharing));
     }
     if (fields.empty()) continue;
+    if (sharing == MPI_COMM_NULL)
+      for (const auto& [name, of] : group.child("films").child(io::safe_name(names[k])).groups()) {
+        auto& pad = group.child("films").child(io::safe_name(names[k])).child(name);
+        if (of.has_dataset("z")) pad.label_each({io::labels_of(of.reals("z"))});
+      }
     io::FilmPlace place;
     place.radius = support.geometry.radius;
     place.centre_y = support.elevation;

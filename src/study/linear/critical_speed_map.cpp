@@ -64,6 +64,7 @@ StudyResult CriticalSpeedMap::run(Context& context) {
         if (!std::isnan(speeds[w][at * count + k]))
           results.summary().set(fmt::format("{}.{}.{}", end, names[w], k + 1), speeds[w][at * count + k], "rad/s");
   }
+  table.label_each({io::numbered(count, "critical")});
   results.summary().points = static_cast<long>(points);
   return results.finish("completed", true);
 }

@@ -175,6 +175,7 @@ StudyResult ElementConvergence::run(Context& context) {
     table.put("frequency", {meshes, count}, frequency, "rad/s", "damped frequencies [mesh][mode], the lowest");
     table.put("forward_share", {meshes, count}, forward, "1", "of their kinetic energy, backward negative");
     table.put("error", {meshes, count}, error, "1", "relative distance from the last mesh");
+    table.label_each({io::numbered(count, "mode")});
     table.put("shift", shift, "1", "of the last mesh from the first kind of element, relative");
     if (options.condition) {
       const char* const names[] = {"condition_vectors", "condition_stiffness", "condition_mass"};

@@ -96,7 +96,7 @@ private:
         if (g.bearing != train_.supports[b].name) continue;
         const CoefficientsAt c = interpolated(g.table, frequency);
         films[b].stiffness = {{{c.k_xx, c.k_xy}, {c.k_yx, c.k_yy}}};
-        films[b].damping = {{{c.b_xx, c.b_xy}, {c.b_yx, c.b_yy}}};
+        films[b].damping = {{{c.c_xx, c.c_xy}, {c.c_yx, c.c_yy}}};
       }
   }
   // Forces may make the shear force jump, where an element asks for the place.

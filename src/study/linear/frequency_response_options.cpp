@@ -85,10 +85,10 @@ void describe(deck::Description<CoefficientsAt>& d) {
   d.add("k_xy", &P::k_xy, "N/m", deck::any, "force along x by a motion along y");
   d.add("k_yx", &P::k_yx, "N/m", deck::any, "force along y by a motion along x");
   d.add("k_yy", &P::k_yy, "N/m", deck::any, "force along y by a motion along y").required();
-  d.add("b_xx", &P::b_xx, "N s/m", deck::any, "damping, likewise");
-  d.add("b_xy", &P::b_xy, "N s/m", deck::any, "likewise");
-  d.add("b_yx", &P::b_yx, "N s/m", deck::any, "likewise");
-  d.add("b_yy", &P::b_yy, "N s/m", deck::any, "likewise");
+  d.add("c_xx", &P::c_xx, "N s/m", deck::any, "damping, likewise").alias("b_xx");
+  d.add("c_xy", &P::c_xy, "N s/m", deck::any, "likewise").alias("b_xy");
+  d.add("c_yx", &P::c_yx, "N s/m", deck::any, "likewise").alias("b_yx");
+  d.add("c_yy", &P::c_yy, "N s/m", deck::any, "likewise").alias("b_yy");
 }
 
 void describe(deck::Description<GivenCoefficients>& d) {
@@ -110,7 +110,7 @@ CoefficientsAt interpolated(const std::vector<CoefficientsAt>& table, double fre
   const double part = (frequency - a.frequency) / (b.frequency - a.frequency);
   CoefficientsAt out{.frequency = frequency};
   for (const auto member : {&CoefficientsAt::k_xx, &CoefficientsAt::k_xy, &CoefficientsAt::k_yx, &CoefficientsAt::k_yy,
-                            &CoefficientsAt::b_xx, &CoefficientsAt::b_xy, &CoefficientsAt::b_yx, &CoefficientsAt::b_yy})
+                            &CoefficientsAt::c_xx, &CoefficientsAt::c_xy, &CoefficientsAt::c_yx, &CoefficientsAt::c_yy})
     out.*member = a.*member + part * (b.*member - a.*member);
   return out;
 }

@@ -61,6 +61,7 @@ void ModeTables::put_map(io::Group& map) const {
   map.put("z", z_, "m", "axial position of the nodes");
   map.put("turning", {frequency_.size(), z_.size()}, turning_, "1",
           "how each node turns [row of the spectrum][node]: 1 a forward circle, -1 a backward one, 0 a line");
+  map.label_each({io::numbered(z_.size(), "node")});
 }
 
 void ModeTables::warn(io::StudySummary& summary, const std::map<double, ModeSearch>& searches) const {
@@ -117,6 +118,7 @@ void ModeTables::put_shapes(io::Group& shapes, const std::vector<double>& speeds
                k < 4 ? "shape [mode][node], largest displacement one" : "its derivative along the shaft");
   shapes.put("turning", {at_speed.size(), z_.size()}, turning, "1",
              "how each node turns [mode][node]: 1 a forward circle, -1 a backward one, 0 a line");
+  shapes.label_each({io::numbered(z_.size(), "node")});
   shapes.put("speed", at_speed, "rad/s", "speed of the shapes");
   shapes.put("mode", at_mode, "mode followed by its shape");
   shapes.put("z", z_, "m", "axial position of the nodes");

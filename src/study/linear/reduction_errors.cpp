@@ -152,6 +152,7 @@ private:
               "distance of eigenvectors of length one in the energy norm [method][freedoms][mode]");
     table.put("diagonal", shape, diagonal, "1",
               "|R_kk| of R = I - W^T N V*, vectors of length one in the energy norm [method][freedoms][mode]");
+    table.label_each({io::labels_of(freedoms, "freedoms"), io::numbered(count, "mode")});
   }
 
   void put_matrix(io::Group& to, const char* name, const MatrixXd& a, const char* text) {
@@ -245,6 +246,7 @@ private:
     group.put("reduced_y", shape, y, "m", "the same of the reduced shafts [method][freedoms][time]");
     group.put("error", {shape[0], shape[1]}, errors, "1",
               "largest distance from the orbit of the whole shaft over the size of this [method][freedoms]");
+    group.label("error", {io::labels_of(freedoms, "freedoms")});
   }
 
   Context& context_;

@@ -369,8 +369,10 @@ StudyResult UnbalanceResponse::run(Context& context) {
   response.put("speed", speeds, "rad/s", "shaft speed");
   response.put("node", std::vector<std::int64_t>(nodes.begin(), nodes.end()), "shaft nodes, 1-based");
   put_motion(response, curve, &Response::nodes, "absolute motion of the shaft");
+  response.label_each({io::node_labels(nodes)});
   put_bearings(group, context.machine);
   put_motion(group.child("bearings"), curve, &Response::bearings, "journal relative to its pedestal");
+  group.child("bearings").label_each({names_of_bearings(context.machine)});
   group.set("speed_unit", unit);
   group.set("unbalance", fmt::format("{}", fmt::join(options.unbalance, ", ")));
   summary.points = static_cast<long>(curve.size());

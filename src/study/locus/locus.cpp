@@ -335,16 +335,21 @@ StudyResult LocusFollower::run() {
   auto& group = results.group();
   put_curve(all, bars_of(all, back.size()));
   std::vector<std::string> types;
-  std::vector<double> first, second;
+  std::vector<double> first, second, first_bar, second_bar;
   for (const auto& c : results.summary().codimension_two) {
     types.push_back(c.type);
     first.push_back(c.value.value);
     second.push_back(c.second_value.value);
+    const auto bar = c.more.find("value_uncertainty");
+    first_bar.push_back(bar == c.more.end() ? io::no_value : bar->second);
+    second_bar.push_back(c.uncertainty);
   }
   auto& points = group.child("codimension_two");
   points.put("type", types, "kind of point");
   points.put("parameter", first, first_range_.unit, "first parameter");
   points.put("second", second, range.unit, "second parameter");
+  points.put("parameter_uncertainty", first_bar, first_range_.unit, "estimated error of the first parameter");
+  points.put("second_uncertainty", second_bar, range.unit, "of the second one");
   group.set("bifurcation", solve::name_of(seed_.event));
   group.set("of", options_.of);
   group.set("parameter", first_.path);

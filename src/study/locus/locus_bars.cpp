@@ -272,9 +272,10 @@ void LocusFollower::put_bars(io::CodimensionTwo& c, Vec whole, double location) 
   }
   const double first_unit = first_scale_ / deck::number_to_si(1, first_range_.unit),
                second_unit = second_scale_ / deck::number_to_si(1, options_.second.range.unit);
-  c.more["uncertainty_parameter"] = first.total() * first_unit;
+  c.more["value_uncertainty"] = first.total() * first_unit;
   c.uncertainty = second.total() * second_unit;
-  for (const auto& [part, value] : second.parts(cycles_ != nullptr)) c.more[part] = value * second_unit;
+  for (const auto& [part, value] : second.parts(cycles_ != nullptr))
+    c.more["second_value_" + part] = value * second_unit;
 }
 
 namespace {

@@ -88,7 +88,7 @@ bool LocusFollower::end_at_generalised_hopf() {
   });
   record_row(generalised_hopf, row, second.bar / second_scale_);
   auto& c = context_.results.summary().codimension_two.back();
-  c.more["uncertainty_parameter"] = first.bar / deck::number_to_si(1, first_range_.unit);
+  c.more["value_uncertainty"] = first.bar / deck::number_to_si(1, first_range_.unit);
   c.more["end_of_curve"] = 1;
   return true;
 }

@@ -95,13 +95,14 @@ std::vector<double> MotionRecord::signal(std::size_t bearing, std::size_t direct
 void MotionRecord::write_orbit(io::Group& group) const {
   const std::size_t n = places_.names.size(), all = samples_.size() / (2 * n),
                     kept = std::min(all, static_cast<std::size_t>(options_.orbit * options_.samples));
-  const io::Shape row{n};
+  const std::vector<std::string>& row = places_.names;
+  const auto wide = io::Table::wide;
   io::Table table({{"revolutions", "1", "shaft angle over 2 pi since the record began"},
                    {"time", "s", "since the record began"},
-                   {"x", places_.unit, places_.text, row},
-                   {"y", places_.unit, places_.text, row},
-                   {"x_relative", "1", "x per clearance; zero where there is no clearance", row},
-                   {"y_relative", "1", "y per clearance", row}});
+                   wide("x", places_.unit, places_.text, row),
+                   wide("y", places_.unit, places_.text, row),
+                   wide("x_relative", "1", "x per clearance; zero where there is no clearance", row),
+                   wide("y_relative", "1", "y per clearance", row)});
   for (std::size_t k = all - kept; k < all; ++k) {
     std::vector<std::vector<double>> p(4, std::vector<double>(n));
     for (std::size_t b = 0; b < n; ++b)
@@ -117,14 +118,15 @@ void MotionRecord::write_orbit(io::Group& group) const {
 
 void MotionRecord::write_points(io::Group& group) const {
   const std::size_t n = places_.names.size();
-  const io::Shape row{n};
+  const std::vector<std::string>& row = places_.names;
+  const auto wide = io::Table::wide;
   io::Table table({{"revolution", "1", "at whose end, shaft angle zero"},
-                   {"x", places_.unit, places_.text, row},
-                   {"y", places_.unit, places_.text, row},
-                   {"velocity_x", places_.rate_unit, "rate of x", row},
-                   {"velocity_y", places_.rate_unit, "rate of y", row},
-                   {"x_relative", "1", "x per clearance; zero where there is no clearance", row},
-                   {"y_relative", "1", "y per clearance", row}});
+                   wide("x", places_.unit, places_.text, row),
+                   wide("y", places_.unit, places_.text, row),
+                   wide("velocity_x", places_.rate_unit, "rate of x", row),
+                   wide("velocity_y", places_.rate_unit, "rate of y", row),
+                   wide("x_relative", "1", "x per clearance; zero where there is no clearance", row),
+                   wide("y_relative", "1", "y per clearance", row)});
   for (std::size_t k = 0; k < points_.size(); ++k) {
     std::vector<std::vector<double>> p(6, std::vector<double>(n));
     for (std::size_t b = 0; b < n; ++b) {
@@ -174,6 +176,7 @@ void MotionRecord::write_spectrum(io::Group& group, io::StudySummary& summary) c
   g.put("order", order, "1", "frequency per running speed");
   g.put("x", shape, x, places_.unit, "amplitude 0-peak of x [line][bearing]");
   g.put("y", shape, y, places_.unit, "amplitude 0-peak of y [line][bearing]");
+  g.label_each({places_.names});
   write_full_spectrum(group, window);
 }
 
@@ -193,6 +196,7 @@ void MotionRecord::write_full_spectrum(io::Group& group, transient::Window windo
   g.put("frequency", frequency, "Hz", "of the lines; positive turns from x to y, as the shaft does");
   g.put("order", order, "1", "frequency per running speed");
   g.put("amplitude", shape, amplitude, places_.unit, "radius 0-peak of the circle of this frequency [line][bearing]");
+  g.label_each({places_.names});
 }
 
 void MotionRecord::write_exponents(io::Group& group, io::StudySummary& summary) const {
@@ -215,6 +219,7 @@ void MotionRecord::write_exponents(io::Group& group, io::StudySummary& summary) 
   g.put("value", e.exponents, "1/s", "Lyapunov exponents, the largest first");
   g.put("uncertainty", e.uncertainties, "1/s", "half the interval that holds it with 99 % probability");
   g.put("running", {exponents_.spans(), e.exponents.size()}, running, "1/s", "mean up to each revolution");
+  g.label_each({io::numbered(e.exponents.size(), "exponent")});
 }
 
 void MotionRecord::write(io::Group& group, io::StudySummary& summary) const {

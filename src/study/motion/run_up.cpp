@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "study/bars/film_limit.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/motion/motion_start.hpp"
+#include "study/motion/revolution.hpp"
 #include "study/motion/short_time.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
@@ -28,46 +30,28 @@ problem::Drive drive_of(const RunUpOptions& o) {
   return {o.range.from, o.duration ? change / o.duration->value : std::copysign(o.acceleration->value, change)};
 }
 
-// What one revolution was, at each place: extremes in x and y, and the largest distance from the mean of the samples.
-struct Revolution {
-  std::vector<std::vector<std::array<double, 2>>> samples;  // [place][sample]
-
-  [[nodiscard]] double extreme(std::size_t place, std::size_t direction, double sign) const {
-    double most = -std::numeric_limits<double>::infinity();
-    for (const auto& s : samples[place]) most = std::max(most, sign * s[direction]);
-    return sign * most;
-  }
-  [[nodiscard]] double amplitude(std::size_t place) const {
-    std::array<double, 2> mean{};
-    for (const auto& s : samples[place])
-      for (std::size_t d = 0; d < 2; ++d) mean[d] += s[d] / static_cast<double>(samples[place].size());
-    double most = 0;
-    for (const auto& s : samples[place]) most = std::max(most, std::hypot(s[0] - mean[0], s[1] - mean[1]));
-    return most;
-  }
-  [[nodiscard]] double eccentricity(std::size_t place, double clearance) const {
-    double most = 0;
-    for (const auto& s : samples[place]) most = std::max(most, std::hypot(s[0], s[1]));
-    return clearance > 0 ? most / clearance : 0;
-  }
-};
-
-std::vector<io::Table::Column> columns(const std::string& unit, std::size_t bearings, std::size_t nodes) {
-  const io::Shape b{bearings}, n{nodes};
+std::vector<io::Table::Column> columns(const std::string& unit, const std::vector<std::string>& bearings,
+                                       const std::vector<int>& nodes) {
+  const auto wide = io::Table::wide;
   std::vector<io::Table::Column> all{
       {"revolution", "1", "since the beginning"},
       {"time", "s", "at its end"},
       {"speed", unit, "in its middle"},
-      {"amplitude", "m", "largest distance of the journal from its mean position in this revolution", b},
-      {"x_max", "m", "largest x of the journal relative to the bearing centre", b},
-      {"x_min", "m", "smallest", b},
-      {"y_max", "m", "largest y of the journal relative to the bearing centre", b},
-      {"y_min", "m", "smallest", b},
-      {"eccentricity_max", "1", "largest eccentricity per clearance; zero for a bearing without clearance", b}};
-  if (nodes > 0) {
-    all.push_back({"node_amplitude", "m", "largest distance of the shaft's node from its mean position", n});
-    all.push_back({"node_x", "m", "half the travel of the node in x", n});
-    all.push_back({"node_y", "m", "half the travel of the node in y", n});
+      {"start_transient", "1", "1 while the free vibration of the start may be more than 5 % of the amplitude, else 0"},
+      wide("amplitude", "m",
+           "largest distance of the journal in this revolution from its mean position over the revolutions about it",
+           bearings),
+      wide("x_max", "m", "largest x of the journal relative to the bearing centre", bearings),
+      wide("x_min", "m", "smallest", bearings),
+      wide("y_max", "m", "largest y of the journal relative to the bearing centre", bearings),
+      wide("y_min", "m", "smallest", bearings),
+      wide("eccentricity_max", "1", "largest eccentricity per clearance; zero for a bearing without clearance",
+           bearings)};
+  if (!nodes.empty()) {
+    const std::vector<std::string> names = io::node_labels(nodes);
+    all.push_back(wide("node_amplitude", "m", "as `amplitude`, of the shaft's node", names));
+    all.push_back(wide("node_x", "m", "half the travel of the node in x", names));
+    all.push_back(wide("node_y", "m", "half the travel of the node in y", names));
   }
   return all;
 }
@@ -88,7 +72,7 @@ public:
                     {.scheme = options.integrator.scheme, .tolerance = options.tolerance, .forces = acting(forces_)}),
         places_(system_.places()),
         films_(places_),
-        table_(columns(unit_, places_.names.size(), options.nodes.size())) {
+        table_(columns(unit_, places_.names, options.nodes)) {
     system_.set_acceleration(drive_.acceleration);
     const double from = options.range.from, to = options.range.to,
                  turned = (to * to - from * from) / (2 * drive_.acceleration);
@@ -97,6 +81,7 @@ public:
   }
 
   StudyResult run() {
+    slowest_ = slowest_decay();
     if (context_.resume && context_.results.has_checkpoint()) restore(context_.results.load_checkpoint());
     std::string status = "completed";
     try {
@@ -142,33 +127,61 @@ private:
     }
     // Where a checkpoint may lie nothing is remembered but what it holds.
     integrator_.close_revolution(0);
-    record(r);
     keep(r);
+    neighbours_.add(std::move(r));
+    record(neighbours_.ready());
     context_.results.progress(fmt::format("{}: revolution {} of {}, {:.1f} {}, step {:.3g} of a revolution, {:.1f} s",
                                           context_.results.summary().name, done_ + 1, total_, speed_at(done_ + 1),
                                           unit_, integrator_.step() * system_.speed() / (2 * std::numbers::pi),
                                           context_.results.seconds()));
   }
 
-  void record(const Revolution& r) {
+  // Real part of the least damped vibration about the equilibrium at the start [1/s]: its free vibration fades from the
+  // start on. Not negative: it does not fade, or nothing starts; not a number: not known.
+  double slowest_decay() {
+    if (options_.start.from == MotionStart::From::cycle) return 0;
+    double slowest = -std::numeric_limits<double>::infinity();
+    core::Vector rest = core::duplicate(x_.get());
+    check(VecCopy(x_.get(), rest.get()));
+    const auto find = [&] {
+      if (!find_rest(system_, rest.get()).converged) throw core::NotConverged("no equilibrium");
+      for (const auto& s : equilibrium_stability(system_, rest.get()).values)
+        if (s.imag() != 0) slowest = std::max(slowest, s.real());
+    };
+    if (!has_answer(find)) return io::no_value;
+    return slowest;
+  }
+
+  // Rows of the revolutions before `end` that have none yet.
+  void record(long end) {
+    for (auto k = static_cast<long>(table_.rows()); k < end; ++k) append(k);
+    neighbours_.forget_before(static_cast<long>(table_.rows()));
+  }
+
+  void append(long revolution) {
+    const Revolution& r = neighbours_.at(revolution);
     const std::size_t n = places_.names.size();
     std::vector<double> amplitude, x_max, x_min, y_max, y_min, eccentricity, node, node_x, node_y;
+    const auto about_mean = [&](std::size_t i) { return r.distance(i, neighbours_.centre(revolution, i)); };
     for (std::size_t b = 0; b < n; ++b) {
-      amplitude.push_back(r.amplitude(b));
+      amplitude.push_back(about_mean(b));
       x_max.push_back(r.extreme(b, 0, 1));
       x_min.push_back(r.extreme(b, 0, -1));
       y_max.push_back(r.extreme(b, 1, 1));
       y_min.push_back(r.extreme(b, 1, -1));
-      eccentricity.push_back(r.eccentricity(b, places_.clearances[b]));
+      const double c = places_.clearances[b];
+      eccentricity.push_back(c > 0 ? r.distance(b, {0, 0}) / c : 0);
     }
     for (std::size_t i = n; i < r.samples.size(); ++i) {
-      node.push_back(r.amplitude(i));
+      node.push_back(about_mean(i));
       node_x.push_back((r.extreme(i, 0, 1) - r.extreme(i, 0, -1)) / 2);
       node_y.push_back((r.extreme(i, 1, 1) - r.extreme(i, 1, -1)) / 2);
     }
-    std::vector<std::vector<double>> row{{static_cast<double>(done_ + 1)},
-                                         {integrator_.time()},
-                                         {speed_at(done_ + 0.5)},
+    const double time = drive_.time_of(2 * std::numbers::pi * (static_cast<double>(revolution) + 1));
+    std::vector<std::vector<double>> row{{static_cast<double>(revolution + 1)},
+                                         {time},
+                                         {speed_at(static_cast<double>(revolution) + 0.5)},
+                                         {in_transient(time, amplitude) ? 1.0 : 0.0},
                                          amplitude,
                                          x_max,
                                          x_min,
@@ -177,6 +190,17 @@ private:
                                          eccentricity};
     if (!node.empty()) row.insert(row.end(), {node, node_x, node_y});
     table_.append(row);
+  }
+
+  // The free vibration of the start is as large as the first revolution at most, and fades with the least damped mode.
+  [[nodiscard]] bool in_transient(double time, const std::vector<double>& amplitude) const {
+    if (!(slowest_ < 0)) return false;
+    if (table_.rows() == 0) return true;
+    if (table_.column("start_transient").back() == 0) return false;
+    const auto& all = table_.column("amplitude");
+    for (std::size_t b = 0; b < amplitude.size(); ++b)
+      if (all[b] * std::exp(slowest_ * time) > 0.05 * amplitude[b]) return true;
+    return false;
   }
 
   // Samples of all places, where spectra of them are wanted.
@@ -195,6 +219,9 @@ private:
     io::Group state;
     state.set("done", done_ + 1);
     state.put("kept", kept_, "m", "samples [sample][place][x, y]");
+    state.put("neighbours", neighbours_.flat(), "m",
+              "samples of the last revolutions [revolution][place][sample][x, y]");
+    state.set("first_neighbour", neighbours_.first());
     state.set("time", integrator_.time());
     state.set("step", integrator_.step());
     state.set("seconds", context_.results.seconds());
@@ -210,6 +237,8 @@ private:
     integrator_.restart(state.real("time"), state.real("step"));
     table_.read(state.group("run_up"));
     kept_ = state.reals("kept");
+    neighbours_.set(state.integer("first_neighbour"), state.reals("neighbours"),
+                    places_.names.size() + options_.nodes.size(), static_cast<std::size_t>(options_.samples));
     context_.results.add_earlier_seconds(state.real("seconds"));
   }
 
@@ -227,14 +256,27 @@ private:
     if (options_.waterfall) write_waterfall(group, r, *options_.waterfall);
   }
 
-  // The largest amplitude of each place and where it was.
+  // The largest amplitude of each place beyond the start, and where it was; a larger one of the start is told.
   void put_peaks(io::StudySummary& summary, const std::string& column, const std::vector<std::string>& names) const {
     const auto& speed = table_.column("speed");
     const auto& all = table_.column(column);
+    const auto& transient = table_.column("start_transient");
+    const auto settled =
+        static_cast<std::size_t>(std::find(transient.begin(), transient.end(), 0.0) - transient.begin());
     for (std::size_t p = 0; p < names.size(); ++p) {
-      std::size_t best = 0;
-      for (std::size_t k = 1; k < speed.size(); ++k)
-        if (all[k * names.size() + p] > all[best * names.size() + p]) best = k;
+      const auto largest = [&](std::size_t from, std::size_t to) {
+        std::size_t best = from;
+        for (std::size_t k = from; k < to; ++k)
+          if (all[k * names.size() + p] > all[best * names.size() + p]) best = k;
+        return best;
+      };
+      const std::size_t best = settled < speed.size() ? largest(settled, speed.size()) : largest(0, speed.size());
+      const std::size_t first = largest(0, std::min(settled, speed.size()));
+      if (settled > 0 && all[first * names.size() + p] > all[best * names.size() + p])
+        summary.warnings.push_back(fmt::format(
+            "{}: {:.4g} um at {:.6g} {} is larger than the peak, but belongs to the start, whose free vibration fades "
+            "until {:.6g} {}",
+            names[p], 1e6 * all[first * names.size() + p], speed[first], unit_, speed[settled], unit_));
       summary.set(names[p] + ".peak.amplitude", all[best * names.size() + p], "m");
       summary.set(names[p] + ".peak.speed", speed[best], unit_);
     }
@@ -245,7 +287,14 @@ private:
     auto& summary = results.summary();
     put_groups(summary, system_.groups());
     summary.set("acceleration", drive_.acceleration, "rad/s^2");
+    record(neighbours_.added());
     if (table_.rows() > 0) {
+      const auto& transient = table_.column("start_transient");
+      const auto settled = std::find(transient.begin(), transient.end(), 0.0) - transient.begin();
+      if (slowest_ < 0) summary.set("start_transient.revolutions", static_cast<double>(settled), "1");
+      if (settled == static_cast<std::ptrdiff_t>(transient.size()))
+        summary.warnings.emplace_back(
+            "the free vibration of the start has not faded when the run ends: amplitudes contain it");
       std::vector<std::string> bearings, nodes;
       for (const auto& name : places_.names) bearings.push_back("bearing." + name);
       for (const int node : options_.nodes) nodes.push_back(fmt::format("node.{}", node));
@@ -277,6 +326,8 @@ private:
   FilmLimit films_;
   io::Table table_;
   std::vector<double> kept_;  // [sample][place and node][x, y]
+  Neighbours neighbours_;
+  double slowest_ = 0;
   int total_ = 0, done_ = 0;
   double last_saved_ = -1e9;
 };

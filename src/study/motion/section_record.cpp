@@ -49,12 +49,13 @@ std::array<double, 2> SectionRecord::interval(int k) const {
 
 void SectionRecord::write(io::Group& group, const system::ShownPlaces& places, const std::string& text) const {
   const std::size_t n = places.names.size();
-  const io::Shape row{n};
+  const std::vector<std::string>& row = places.names;
+  const auto wide = io::Table::wide;
   io::Table table({{"time", "s", "since the record began"},
-                   {"x", places.unit, places.text, row},
-                   {"y", places.unit, places.text, row},
-                   {"vx", places.rate_unit, "its rate", row},
-                   {"vy", places.rate_unit, "its rate", row}});
+                   wide("x", places.unit, places.text, row),
+                   wide("y", places.unit, places.text, row),
+                   wide("vx", places.rate_unit, "its rate", row),
+                   wide("vy", places.rate_unit, "its rate", row)});
   for (std::size_t k = 0; k < times_.size(); ++k) {
     std::vector<std::vector<double>> p(4, std::vector<double>(n));
     for (std::size_t b = 0; b < n; ++b)

@@ -61,6 +61,7 @@ void write_orders(io::Group& group, const AngleRecord& r, const OrderOptions& o)
     g.put(name + "_phase", {n, orders, places}, phase, "rad",
           "of " + name + ", ahead of the order times the shaft angle [piece][order][place]");
   }
+  g.label_each({io::labels_of(o.track, "order"), r.names});
 }
 
 void write_waterfall(io::Group& group, const AngleRecord& r, const WaterfallOptions& o) {
@@ -87,6 +88,7 @@ void write_waterfall(io::Group& group, const AngleRecord& r, const WaterfallOpti
   std::vector<double> order;
   for (std::size_t l = 0; l < lines; ++l) order.push_back(static_cast<double>(l) / o.revolutions);
   g.put("order", order, "1", "of the lines: frequency per speed of the shaft");
+  g.label_each({io::labels_of(order, "order"), r.names});
 }
 
 }  // namespace whirl::study

@@ -16,12 +16,12 @@ void describe(deck::Description<SweepOptions>& d) {
         "given. What they start from is repeated with them");
   d.add("variants", &O::variants,
         "a map NAME: {PATH: VALUE, ...} of variants, each of which changes all its quantities at once. PATH and VALUE "
-        "are those of --set: wildcards bearings.{B2,B3}.geometry.clearance, factors x1.2, offsets +500 um or -20 %, "
+        "are those of --set: wildcards bearings.{B2,B3}.geometry.clearance, factors x1.2 or -20 %, changes by +500 um, "
         "names of tables. `at: NUMBER` among them places the variant on the axis of trends; if not given, that is its "
         "first quantity that changes as a number");
   d.add("grid", &O::grid,
         "a map PATH: VALUES of quantities of which every combination is a variant; VALUES is a list or {from, to, "
-        "points, spacing: linear or log}, whose ends may be factors or offsets. Together with `variants`: each of them "
+        "points, spacing: linear or log}, whose ends may be factors or changes. Together with `variants`: each of them "
         "at every point of the grid");
   d.add("at", &O::at, deck::any,
         "place of the deck as it stands on the axis of trends, beside the `at` of the variants");

@@ -66,31 +66,37 @@ SweepAxis named(const Node& variants) {
   return axis;
 }
 
-// A value of a range: what stands before and behind its number.
+// A value of a range: how it is written, and what stands behind its number.
 struct End {
-  std::string sign;  // "x", "+" or "-" of factors and offsets
+  deck::Written::As as = deck::Written::As::value;
   double number = 0;
   std::string unit;
 };
 End end_of(const Node& range, const char* which) {
   const Node* n = range.find(which);
   if (!n || n->kind != Node::Kind::scalar) fail(range.place, fmt::format("a range has '{}'", which));
-  End e;
-  std::string text = n->text;
-  if (text.starts_with("x")) {
-    e.sign = "x";
-    text.erase(0, 1);
-  } else if (text.starts_with("+") || text.starts_with("-")) {
-    e.sign = "+";
-  }
+  const deck::Written written = deck::written_as(n->text);
   try {
-    const deck::Split s = deck::split_quantity(text);
-    e.number = s.number;
-    e.unit = s.unit;
+    const deck::Split s = deck::split_quantity(written.rest.starts_with("=") ? written.rest.substr(1) : written.rest);
+    return {written.as, s.number, s.unit};
   } catch (const InputError& wrong) {
     fail(n->place, wrong.what());
   }
-  return e;
+}
+
+bool has_sign(const Node& n) {
+  return n.kind == Node::Kind::scalar && (n.text.starts_with("+") || n.text.starts_with("-"));
+}
+
+// Values among which some have no sign are all values: 0 um beside -20 um says how -20 um is meant. `=` says so to the
+// edit, which refuses a length with a sign alone.
+void mark_values(std::vector<Node>& all) {
+  const auto is_value = [](const Node& n) {
+    return n.kind == Node::Kind::scalar && deck::written_as(n.text).as == deck::Written::As::value;
+  };
+  if (std::none_of(all.begin(), all.end(), [&](const Node& n) { return is_value(n) && !has_sign(n); })) return;
+  for (Node& n : all)
+    if (is_value(n) && has_sign(n)) n.text.insert(0, "=");
 }
 
 std::vector<Node> values_of(const Node& n) {
@@ -101,8 +107,12 @@ std::vector<Node> values_of(const Node& n) {
     if (i.key != "from" && i.key != "to" && i.key != "points" && i.key != "spacing")
       fail(i.key_place, fmt::format("a range has from, to, points and spacing, not '{}'", i.key));
   const End from = end_of(n, "from"), to = end_of(n, "to");
-  if (from.sign != to.sign || !deck::same_kind(from.unit, to.unit))
-    fail(n.place, "both ends of a range are factors, or offsets, or values, of the same kind");
+  if (from.as != to.as || !deck::same_kind(from.unit, to.unit))
+    fail(n.place, "both ends of a range are factors, or changes, or values, of the same kind");
+  using As = deck::Written::As;
+  const bool part = from.as == As::change && from.unit == "%";  // of the value: +20 %
+  const bool both_signed = from.as == As::value && has_sign(*n.find("from")) && has_sign(*n.find("to"));
+  const std::string before = from.as == As::factor ? "x" : from.as == As::change && !part ? "by " : "";
   const Node* count = n.find("points");
   const auto points = count ? number(*count) : std::nullopt;
   if (!points || *points < 2 || *points != std::floor(*points) || *points > most_variants)
@@ -117,8 +127,9 @@ std::vector<Node> values_of(const Node& n) {
   for (int k = 0; k < static_cast<int>(*points); ++k) {
     const double s = k / (*points - 1);
     const double value = k == 0 ? a : s == 1 ? b : log ? a * std::pow(b / a, s) : a + s * (b - a);
-    Node v = Node::scalar(fmt::format("{}{:.12g}{}{}", from.sign == "+" && value < 0 ? "" : from.sign, value,
-                                      from.unit.empty() ? "" : " ", from.unit));
+    const std::string number =
+        from.as == As::change || both_signed ? fmt::format("{:+.12g}", value) : fmt::format("{:.12g}", value);
+    Node v = Node::scalar(fmt::format("{}{}{}{}", before, number, from.unit.empty() ? "" : " ", from.unit));
     v.place = n.place;
     all.push_back(std::move(v));
   }
@@ -128,8 +139,15 @@ std::vector<Node> values_of(const Node& n) {
 SweepAxis gridded(const Node& values) {
   SweepAxis axis{values.key, {}};
   const std::string last = values.key.substr(values.key.rfind('.') + 1);
-  for (const Node& v : values_of(values))
-    axis.settings.push_back({fmt::format("{} {}", last, deck::to_line(v)), {deck::make_edit(values.key, v)}, {}});
+  const std::vector<Node> written = values_of(values);
+  std::vector<Node> meant = written;
+  mark_values(meant);
+  for (std::size_t k = 0; k < written.size(); ++k) {
+    Node shown = written[k];
+    if (shown.kind == Node::Kind::scalar && shown.text.starts_with("=")) shown.text.erase(0, 1);
+    axis.settings.push_back(
+        {fmt::format("{} {}", last, deck::to_line(shown)), {deck::make_edit(values.key, meant[k])}, {}});
+  }
   if (axis.settings.empty()) fail(values.place, fmt::format("there are no values of '{}'", values.key));
   return axis;
 }

@@ -36,7 +36,7 @@ void describe(deck::Description<TransferOutput>& d);
 struct CoefficientsAt {
   double frequency = 0;
   double k_xx = 0, k_xy = 0, k_yx = 0, k_yy = 0;
-  double b_xx = 0, b_xy = 0, b_yx = 0, b_yy = 0;
+  double c_xx = 0, c_xy = 0, c_yx = 0, c_yy = 0;
 };
 void describe(deck::Description<CoefficientsAt>& d);
 

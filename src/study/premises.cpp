@@ -1,0 +1,77 @@
+#include "premises.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::study {
+
+std::vector<std::string> unbalance_warnings(const system::Machine& machine) {
+  std::vector<std::string> lines;
+  for (const system::Unbalance& u : machine.unbalance) {
+    if (!u.grade) continue;
+    double sum = 0;
+    for (const system::Plane& p : u.planes) sum += p.fraction.value_or(0);
+    if (std::abs(sum - 1) > 1e-3)
+      lines.push_back(
+          fmt::format("unbalance '{}': the fractions of its planes sum to {:.4g}, not to 1: the whole is {:.4g} times "
+                      "what the grade "
+                      "permits",
+                      u.name, sum, sum));
+  }
+  return lines;
+}
+
+std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study) {
+  const std::vector<double> speeds = study.speeds();
+  if (speeds.empty() || !system::is_rotor(machine)) return {};
+  const auto [least, most] = std::minmax_element(speeds.begin(), speeds.end());
+  std::vector<std::string> lines;
+  for (const system::Bearing& b : machine.bearings) {
+    const film::Facts film = film::facts(b.film);
+    const double from = film.known_speeds[0], to = film.known_speeds[1], rounding = 1e-9 * to;
+    if (*least >= from - rounding && *most <= to + rounding) continue;
+    lines.push_back(fmt::format(
+        "'{}' asks for speeds from {:.6g} to {:.6g} rad/s, and the table of bearing {} goes from {:.6g} to {:.6g} "
+        "rad/s: "
+        "beyond it {}",
+        study.name(), *least, *most, b.name, from, to,
+        film.holds_beyond ? "the coefficients of its nearest end are kept (extrapolate: hold)"
+                          : "there is no answer; 'extrapolate: hold' keeps the coefficients of its nearest end"));
+  }
+  return lines;
+}
+
+void put_premises(StudyResult& result, const system::Machine& machine, const Study& study) {
+  if (!system::is_rotor(machine)) return;
+  for (std::string& line : table_warnings(machine, study)) result.summary.warnings.push_back(std::move(line));
+  std::vector<std::string> names;
+  std::vector<std::int64_t> planes, nodes;
+  std::vector<double> amounts, phases;
+  for (const std::string& name : study.unbalances()) {
+    const auto i = system::find_unbalance(machine, name);
+    if (!i) continue;  // what eccentric and skewed discs do
+    const system::Unbalance& u = machine.unbalance[*i];
+    if (u.grade) result.summary.set("unbalance." + name + ".mass", system::graded_mass(machine, u), "kg");
+    std::int64_t plane = 0;
+    for (const system::UnbalanceMass& x : system::unbalance_masses(machine, u)) {
+      result.summary.set(fmt::format("unbalance.{}.plane.{}", name, ++plane), x.amount, "kg m");
+      names.push_back(name);
+      planes.push_back(plane);
+      nodes.push_back(x.node);
+      amounts.push_back(x.amount);
+      phases.push_back(x.phase);
+    }
+  }
+  if (names.empty()) return;
+  io::Group& table = result.group.child("unbalance");
+  table.set("columns", "unbalance plane node amount phase");
+  table.put("unbalance", std::move(names), "name in the deck");
+  table.put("plane", std::move(planes), "its planes, in the order of the deck");
+  table.put("node", std::move(nodes), "node of the plane, 1-based");
+  table.put("amount", std::move(amounts), "kg m", "U: the force is U Omega^2");
+  table.put("phase", std::move(phases), "rad", "angle from +x at shaft angle zero, counter-clockwise");
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,21 @@
+#pragma once
+// What the numbers of a study rest on beside its own options: the unbalance that is applied, tables over the speed.
+
+#include <string>
+#include <vector>
+
+#include "whirl/study/study.hpp"
+
+namespace whirl::study {
+
+/// Fractions of a balance grade that do not sum to one, a line each.
+[[nodiscard]] std::vector<std::string> unbalance_warnings(const system::Machine& machine);
+
+/// Speeds of `study` at which the coefficients of a bearing are not known, a line for each bearing.
+[[nodiscard]] std::vector<std::string> table_warnings(const system::Machine& machine, const Study& study);
+
+/// Adds the unbalance that the study applies: the mass of each grade, `unbalance.NAME.mass` [kg], U of each plane,
+/// `unbalance.NAME.plane.K` [kg m], and a table `unbalance` of all planes; and the lines of table_warnings().
+void put_premises(StudyResult& result, const system::Machine& machine, const Study& study);
+
+}  // namespace whirl::study
