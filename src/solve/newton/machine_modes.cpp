@@ -11,6 +11,7 @@
 #include "solve/newton/port_elimination.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
+#include "whirl/spectral/whirl.hpp"
 
 namespace whirl::solve {
 
@@ -32,7 +33,7 @@ bool by_transfer(const problem::System& system) {
 constexpr int most_searches = 6;
 
 bool vibrates(const spectral::Mode& m) {
-  return m.lambda.imag() > 1e-7 * std::abs(m.lambda);
+  return m.lambda.imag() > 0 && spectral::vibrates(m.lambda);
 }
 
 bool enough(const std::vector<spectral::Mode>& modes, const Wanted& wanted) {
