@@ -64,11 +64,6 @@ std::vector<Complex> in_si(const std::vector<Complex>& row, const std::vector<do
   return out;
 }
 
-// The scales of states and rows, whole.
-struct Scales {
-  std::vector<double> states, rows;
-};
-
 // Whether rounding may decide the sign of a real part, so that its size must be estimated.
 bool doubtful(const EigenSolver& eps, double infinite) {
   PetscInt converged = 0;
@@ -85,14 +80,14 @@ bool doubtful(const EigenSolver& eps, double infinite) {
 
 // What a solver has found, at least `wanted` of them, below `infinite`; `scales` make the vectors SI. `iterated`: what
 // a search leaves counts as rounding.
-std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const Scales& scales, PetscInt wanted,
+std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const ScaledPencil& scales, PetscInt wanted,
                            const EigenOptions& options, DensePencil* pencil, LeftVectors* search, double infinite,
                            bool iterated) {
   const std::vector<double>& scale = scales.states;
   const bool vectors = options.shapes || options.left;
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
-  if (converged < wanted)
+  if (converged == 0 || (converged < wanted && !iterated))
     throw core::NotConverged(fmt::format("only {} of {} eigenvalues converged", converged, options.count));
   core::Vector re, im;
   check(MatCreateVecs(a, re.put(), im.put()));
@@ -162,17 +157,8 @@ Eigen::EigenSolver<Eigen::MatrixXd> solve_small(const Eigen::MatrixXd& matrix, b
 }  // namespace
 
 std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options) {
-  core::Vector rest = core::duplicate(x), xs = core::duplicate(x), fs = core::duplicate(x);
-  check(VecSet(rest.get(), 0.0));
-  system.scales(xs.get(), fs.get());
-  const Scales scale{core::gather(xs.get()), core::gather(fs.get())};
-  check(VecReciprocal(fs.get()));
-  core::Matrix a = system.make_jacobian(), b = system.make_jacobian();
-  system.jacobian(0, x, rest.get(), 1, 0, a.get());
-  system.jacobian(0, x, rest.get(), 0, -1, b.get());  // dF/dx u = lambda (-dF/dxdot) u
-  check(MatDiagonalScale(a.get(), fs.get(), xs.get()));
-  check(MatDiagonalScale(b.get(), fs.get(), xs.get()));
-
+  ScaledPencil scale = scaled_pencil(system, x);
+  core::Matrix a = std::move(scale.a), b = std::move(scale.b);
   const bool dense = system.size() <= std::max(options.dense_below, 3);  // Krylov wants n - 2 > 0
   MPI_Comm comm = dense ? PETSC_COMM_SELF : system.comm();
   if (dense) {

@@ -1,4 +1,4 @@
-#include "spectral/pencil_count.hpp"
+// Counts eigenvalues of sparse pencils by the winding number of their determinant.
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
@@ -7,14 +7,15 @@
 #include <numbers>
 #include <optional>
 
+#include "spectral/pencil_search.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/petsc.hpp"
+#include "whirl/spectral/count.hpp"
 
 namespace whirl::spectral {
 namespace {
 
 using core::check;
-using Complex = std::complex<double>;
 using Sparse = Eigen::SparseMatrix<Complex>;
 
 constexpr double most_entries = 2e6;
@@ -121,6 +122,22 @@ public:
     return sum;
   }
 
+  // About where the quotient changes its sign on the real axis between two places; zero: nowhere.
+  [[nodiscard]] double real_above(double low, double high) {
+    const auto sign = [&](double at) {
+      const auto value = quotient(at);
+      return value ? value->real() : 0.0;
+    };
+    const double first = sign(low);
+    if (!(first * sign(high) < 0)) return 0;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high), value = sign(middle);
+      if (value == 0) return middle;
+      (value * first > 0 ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
+  }
+
   int factorisations = 0;
 
 private:
@@ -143,8 +160,8 @@ double radius_in(const std::vector<Complex>& known) {
   return best;
 }
 
-PencilCount count_here(Sparse a, Sparse b, const std::vector<Complex>& known) {
-  PencilCount out;
+EigenCount count_here(Sparse a, Sparse b, const std::vector<Complex>& known) {
+  EigenCount out;
   const double radius = radius_in(known);
   const double fastest = a.norm() / b.norm();
   Contour contour(std::move(a), std::move(b), known);
@@ -157,30 +174,31 @@ PencilCount count_here(Sparse a, Sparse b, const std::vector<Complex>& known) {
   out.missed = static_cast<int>(std::lround(missing));
   out.sure = turn && std::abs(missing - out.missed) < 0.1 && out.missed >= 0;
   out.counted += std::max(out.missed, 0);
-  // Beyond all eigenvalues the sign is that of the leading coefficient.
-  const auto near = contour.quotient(radius), far = contour.quotient(1e6 * std::max(fastest, radius));
-  out.real = near && far && near->real() * far->real() < 0;
+  out.real = contour.real_above(radius, 1e6 * std::max(fastest, radius));
   out.factorisations = contour.factorisations;
   return out;
 }
 
 }  // namespace
 
-PencilCount count_near_zero(Mat a, Mat b, const std::vector<Complex>& known) {
-  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(a));
-  std::vector<double> numbers(6, 0.0);
+EigenCount count_eigenvalues(problem::System& system, Vec x, const std::vector<Mode>& found) {
+  std::vector<Complex> known;
+  for (const Mode& m : found) {
+    known.push_back(m.lambda);
+    if (m.lambda.imag() > 0) known.push_back(std::conj(m.lambda));
+  }
   if (known.size() < 4) return {};
-  Sparse left = whole(a), right = whole(b);
-  core::agree(comm, [&] {
-    if (core::rank_of(comm) != 0) return;
-    const PencilCount c = count_here(std::move(left), std::move(right), known);
-    numbers = {
-        c.radius,           static_cast<double>(c.counted),       static_cast<double>(c.missed), c.real ? 1.0 : 0.0,
-        c.sure ? 1.0 : 0.0, static_cast<double>(c.factorisations)};
+  const ScaledPencil pencil = scaled_pencil(system, x);
+  Sparse a = whole(pencil.a.get()), b = whole(pencil.b.get());
+  std::vector<double> numbers(6, 0.0);
+  core::agree(system.comm(), [&] {
+    if (core::rank_of(system.comm()) != 0) return;
+    const EigenCount c = count_here(std::move(a), std::move(b), known);
+    numbers = {c.radius, 1.0 * c.counted, 1.0 * c.missed, c.real, c.sure ? 1.0 : 0.0, 1.0 * c.factorisations};
   });
-  core::share(comm, numbers.data(), numbers.size());
-  return {numbers[0],       static_cast<int>(numbers[1]), static_cast<int>(numbers[2]), numbers[3] > 0.5,
-          numbers[4] > 0.5, static_cast<int>(numbers[5])};
+  core::share(system.comm(), numbers.data(), numbers.size());
+  const auto whole_number = [&](std::size_t k) { return static_cast<int>(numbers[k]); };
+  return {numbers[0], whole_number(1), whole_number(2), numbers[3], numbers[4] > 0.5, whole_number(5)};
 }
 
 }  // namespace whirl::spectral
