@@ -22,4 +22,4 @@ def draw_map(study):
     axis.set_xlabel("stiffness of each bearing [N/m]")
     axis.set_ylabel("undamped critical speed [rad/s]")
     handles = [Line2D([], [], color=INK, linestyle=line, label=f"{name} whirl") for name, line in LINES]
-    return save(figure, study, "critical-speeds", "equal springs at all bearings; no damping, films or pedestals", handles=handles)
+    return save(figure, study, "critical-speeds", "equal springs at all bearings, with their pedestals; no damping or films", handles=handles)

@@ -97,9 +97,9 @@ def all_values(study):
     out.append(tables.Table("All about the bifurcations", ["type", "value", "more"], more))
     doubts = [[f"{digits(s.get('from'), 6)} to {digits(s.get('to'), 6)} {s.get('unit', '')}", s.get("reason", "")] for s in study.summary.get("suspected", [])]
     out.append(tables.Table("Not resolved: bifurcations may lie here", ["where", "why"], doubts))
-    modes = [[digits(m.get("speed"), 6), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4), m.get("whirl") or ""]
-             for m in study.modes]
-    out.append(tables.Table("All modes", ["speed", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "whirl"], modes))
+    modes = [[digits(m.get("speed"), 6), digits(m.get("mode"), 4), digits(m.get("real"), 5), digits(m.get("imag"), 5), digits(m.get("log_decrement"), 4),
+              digits(m.get("damping_ratio"), 4), m.get("whirl") or "", m.get("stability") or ""] for m in study.modes]
+    out.append(tables.Table("All modes", ["speed", "mode", "real part [1/s]", "imaginary part [rad/s]", "log. decrement", "damping ratio", "whirl", ""], modes))
     if study.kind == "sweep":
         out += sweep_tables.everything(study, tables.Table)
     return [show(t, folded=True) for t in out if t.rows]

@@ -75,7 +75,7 @@ def modes(study):
     if study.has("critical/speed"):
         decrement = study.get("critical/log_decrement")
         operating = operating_range(study)
-        rows, known = [], any(k.startswith("critical.") and k.endswith(".separation_margin") for k in study.values)
+        rows, damped, known = [], [], any(k.startswith("critical.") and k.endswith(".separation_margin") for k in study.values)
         for k, (speed, mode) in enumerate(zip(np.atleast_1d(study.get("critical/speed")), np.atleast_1d(study.get("critical/mode")))):
             delta = None if decrement is None else float(np.atleast_1d(decrement)[k])
             head = f"critical.{k + 1}."
@@ -84,16 +84,29 @@ def modes(study):
             rows.append([bar("speed", digits(float(speed * to_speed), 5)), int(mode), bar("log_decrement", "\u2013" if delta is None else digits(delta, 3)),
                          bar("amplification_factor", "\u2013" if factor is None else digits(factor, 3)),
                          *(told_margins(study, head) if known else margins(speed, factor, operating))])
+            if factor is not None and factor < 2.5:
+                damped.append(rows.pop())
         head = [f"speed [{unit}]", "mode", "log. decrement", "amplification \u03c0/\u03b4"] + (MARGIN_HEAD if operating or known else [])
         note = f"operating speed {range_in(operating, to_speed)} {unit}; {MARGIN_NOTE}" if operating else MARGIN_NOTE if known else ""
         out.append(Table("Critical speeds: damped frequency equal to the speed", head, rows, note))
+        if damped:
+            out.append(Table("Damped, not critical: amplification factor below 2.5 (API 684)", head, damped))
     if study.has("spectrum/speed", "spectrum/log_decrement"):
-        rows = {k: study.get(f"spectrum/{k}") for k in ("speed", "mode", "frequency", "log_decrement", "whirl")}
-        last = rows["speed"] == rows["speed"][-1]
+        names = ["mode", "frequency", "log_decrement", "damping_ratio", "whirl", "stability"]
+        rows = {k: study.get(f"spectrum/{k}") for k in ("speed", *names)}
+        count = len(rows["speed"])
+        rows = {k: [None] * count if v is None else v for k, v in rows.items()}
+        shown = lambda v, n: "\u2013" if v is None or not math.isfinite(v) else digits(float(v), n)  # noqa: E731
         out.append(Table(f"Modes at {digits(float(rows['speed'][-1] * to_speed), 5)} {unit}",
-                         ["mode", f"frequency [{frequency_unit}]", "log. decrement", "whirl"],
-                         [[int(m), digits(float(f * to_frequency), 5), digits(float(d), 3), str(w)] for m, f, d, w in
-                          zip(rows["mode"][last], rows["frequency"][last], rows["log_decrement"][last], rows["whirl"][last])]))
+                         ["mode", f"frequency [{frequency_unit}]", "log. decrement", "damping ratio", "whirl", ""],
+                         [[int(m), digits(float(f * to_frequency), 5), shown(d, 3), shown(z, 3), str(w), "" if s in (None, "stable") else str(s)]
+                          for speed, m, f, d, z, w, s in zip(rows["speed"], *(rows[k] for k in names)) if speed == rows["speed"][-1]]))
+    if study.has("unstable/from"):
+        columns = [np.atleast_1d(study.get(f"unstable/{k}")) for k in ("from", "to", "mode", "whirl", "frequency")]
+        if len(columns[0]):
+            out.append(Table("Unstable speeds", [f"from [{unit}]", f"to [{unit}]", "mode", "whirl", f"frequency [{frequency_unit}]"],
+                             [[digits(float(a * to_speed), 5), digits(float(b * to_speed), 5), int(m), str(w), digits(float(f * to_frequency), 5)]
+                              for a, b, m, w, f in zip(*columns)], "a range that begins or ends with the speeds of the study may go on"))
     elif study.modes:
         out.append(Table("Natural frequencies at rest", ["mode", "frequency [Hz]"],
                          [[k, digits(m["imag"] / (2 * math.pi), 5)] for k, m in enumerate(study.modes, 1) if m.get("imag") is not None]))

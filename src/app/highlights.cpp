@@ -113,36 +113,80 @@ std::string of_alignment(const io::StudySummary& s, const Values& v) {
   return grid.text();
 }
 
-// The least damped modes at the last speed.
-std::string least_damped(const io::StudySummary& s) {
-  constexpr std::size_t most = 8;
+// The modes at the last speed by their numbers; of many all that grow and the lowest of the others.
+std::string last_modes(const io::StudySummary& s, const Values& v) {
+  constexpr std::size_t most = 10;
   std::vector<io::ModeEntry> last;
   for (const io::ModeEntry& m : s.modes)
-    if (m.speed == s.modes.back().speed && m.imag > 0) last.push_back(m);
-  std::stable_sort(last.begin(), last.end(),
-                   [](const io::ModeEntry& a, const io::ModeEntry& b) { return a.log_decrement < b.log_decrement; });
+    if (m.speed == s.modes.back().speed) last.push_back(m);
   if (last.empty()) return {};
-  Grid grid({fmt::format("mode at {:.6g} {}", last.front().speed, last.front().speed_unit), "[Hz]", "log decrement",
-             "whirl", ""});
-  for (std::size_t k = 0; k < std::min(most, last.size()); ++k)
-    grid.add({fmt::format("{}", k + 1), number(last[k].imag / (2 * std::numbers::pi)), number(last[k].log_decrement),
-              last[k].whirl.empty() ? "-" : last[k].whirl, last[k].stability == "stable" ? "" : last[k].stability});
-  if (last.size() <= most) return grid.text();
-  return grid.text() + fmt::format("    {} more, better damped, stand in summary.json\n", last.size() - most);
+  const auto extra = [](const io::ModeEntry& m, const char* name) {
+    const auto at = m.more.find(name);
+    return at == m.more.end() ? std::nullopt : std::optional(at->second);
+  };
+  // Of supports without films there is no speed.
+  const bool turns = extra(last.front(), "mode").has_value();
+  Grid grid({turns ? fmt::format("mode at {:.6g} {}", last.front().speed, last.front().speed_unit) : "mode", "[Hz]",
+             "log decrement", "damping ratio", "whirl", ""});
+  std::size_t shown = 0;
+  for (std::size_t k = 0; k < last.size(); ++k) {
+    const io::ModeEntry& m = last[k];
+    const bool grows = m.stability == "unstable" || m.stability == "diverges", moves = m.imag > 0;
+    if (!grows && shown >= most) continue;
+    ++shown;
+    grid.add({fmt::format("{:.0f}", extra(m, "mode").value_or(static_cast<double>(k + 1))),
+              moves ? number(m.imag / (2 * std::numbers::pi)) : "-", moves ? number(m.log_decrement) : "-",
+              number(extra(m, "damping_ratio")), moves && !m.whirl.empty() ? m.whirl : "-",
+              m.stability == "stable" ? ""
+              : moves                 ? m.stability
+                                      : fmt::format("diverges, s = +{:.4g} 1/s", m.real)});
+  }
+  std::string out = grid.text();
+  if (shown < last.size()) out += fmt::format("    {} more stand in summary.json\n", last.size() - shown);
+  if (const auto count = v.get("overdamped"); count && *count > 0)
+    out += fmt::format(
+        "    {:.0f} motions that decay without vibrating (damping ratio above 0.9) stand in the table "
+        "'overdamped'\n",
+        *count);
+  return out;
+}
+
+// By API 684 a resonance whose amplification factor is below 2.5 is no critical speed.
+std::string damped_verdict(std::optional<double> factor, double bar) {
+  constexpr double least = 2.5;
+  const double error = std::isfinite(bar) ? bar : 0;
+  if (factor && *factor + error < least) return "damped, not critical";
+  return factor && *factor - error < least ? "undetermined" : "";
 }
 
 std::string of_modes(const io::StudySummary& s, const Values& v) {
   const auto criticals = Values::between(s, "critical.", ".speed");
-  if (criticals.empty()) return least_damped(s);
+  if (criticals.empty()) return last_modes(s, v);
   const std::string unit = v.unit("critical." + criticals.front() + ".speed");
-  Grid grid({"critical speed", "[" + unit + "]", "log decrement", "amplification", "margin [%]", "required [%]"});
+  Grid grid(
+      {"critical speed", "[" + unit + "]", "mode", "log decrement", "amplification", "margin [%]", "required [%]", ""});
+  std::vector<std::vector<std::string>> damped;
   for (const std::string& k : criticals) {
     const std::string head = "critical." + k + ".";
     const auto decrement = v.get(head + "log_decrement");
-    grid.add({k, v.cell(head + "speed"), decrement && *decrement == 0 ? "undamped" : v.cell(head + "log_decrement"),
-              v.cell(head + "amplification_factor"), v.cell(head + "separation_margin", 100),
-              v.cell(head + "required_margin", 100)});
+    std::string verdict = damped_verdict(v.get(head + "amplification_factor"), v.bar(head + "amplification_factor"));
+    if (decrement && *decrement < 0) verdict = "unstable there";
+    const bool apart = verdict.starts_with("damped");
+    std::vector<std::string> row{k,
+                                 v.cell(head + "speed"),
+                                 number(v.get(head + "mode")),
+                                 decrement && *decrement == 0 ? "undamped" : v.cell(head + "log_decrement"),
+                                 v.cell(head + "amplification_factor"),
+                                 apart ? "-" : v.cell(head + "separation_margin", 100),
+                                 apart ? "-" : v.cell(head + "required_margin", 100),
+                                 verdict};
+    if (const auto mode = v.get(head + "mode")) row[2] = fmt::format("{:.0f}", *mode);
+    if (apart)
+      damped.push_back(std::move(row));
+    else
+      grid.add(std::move(row));
   }
+  for (auto& row : damped) grid.add(std::move(row));
   return grid.text();
 }
 
@@ -164,14 +208,14 @@ std::string of_response(const io::StudySummary& s, const Values& v) {
       const auto bar_of = [&](const char* which) {
         return std::isfinite(v.bar(head + which)) ? v.bar(head + which) : 0.0;
       };
-      const double af_bar = bar_of("amplification_factor"),
-                   bars = bar_of("separation_margin") + bar_of("required_margin");
-      const bool damped = factor && *factor + af_bar < 2.5, may_be = factor && !damped && *factor - af_bar < 2.5;
+      const double bars = bar_of("separation_margin") + bar_of("required_margin");
       const double missing = margin && required ? *required - *margin : io::no_value;
-      const std::string verdict = damped                                                  ? "damped, not critical"
-                                  : may_be || (missing != 0 && std::abs(missing) <= bars) ? "undetermined"
-                                  : missing > 0                                           ? "TOO NEAR"
-                                                                                          : "";
+      std::string verdict = damped_verdict(factor, v.bar(head + "amplification_factor"));
+      const bool damped = verdict.starts_with("damped");
+      if (verdict.empty() && missing != 0 && std::abs(missing) <= bars)
+        verdict = "undetermined";
+      else if (verdict.empty() && missing > 0)
+        verdict = "TOO NEAR";
       grid.add({k, v.cell(head + "speed"), v.cell(head + "semi_major", 1e6), v.cell(head + "amplification_factor"),
                 v.cell(head + "separation_margin", 100), damped ? "-" : v.cell(head + "required_margin", 100),
                 verdict});

@@ -64,19 +64,30 @@ std::vector<Complex> in_si(const std::vector<Complex>& row, const std::vector<do
   return out;
 }
 
-// The scales of states and rows, whole.
-struct Scales {
-  std::vector<double> states, rows;
-};
+// Whether rounding may decide the sign of a real part, so that its size must be estimated.
+bool doubtful(const EigenSolver& eps, double infinite) {
+  PetscInt converged = 0;
+  check(EPSGetConverged(eps.get(), &converged));
+  double largest = 0, least = std::numeric_limits<double>::infinity();
+  for (PetscInt i = 0; i < converged; ++i) {
+    const Complex value = pair_of(eps.get(), i, nullptr, nullptr, false).value;
+    if (!(std::abs(value) < infinite)) continue;
+    largest = std::max(largest, std::abs(value));
+    least = std::min(least, std::abs(value.real()));
+  }
+  return least <= DensePencil::asked_below * largest;
+}
 
-// What a solver has found, at least `wanted` of them, below `infinite`; `scales` make the vectors SI.
-std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const Scales& scales, PetscInt wanted,
-                           const EigenOptions& options, DensePencil* pencil, LeftVectors* search, double infinite) {
+// What a solver has found, at least `wanted` of them, below `infinite`; `scales` make the vectors SI. `iterated`: what
+// a search leaves counts as rounding.
+std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const ScaledPencil& scales, PetscInt wanted,
+                           const EigenOptions& options, DensePencil* pencil, LeftVectors* search, double infinite,
+                           bool iterated) {
   const std::vector<double>& scale = scales.states;
   const bool vectors = options.shapes || options.left;
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));
-  if (converged < wanted)
+  if (converged == 0 || (converged < wanted && !iterated))
     throw core::NotConverged(fmt::format("only {} of {} eigenvalues converged", converged, options.count));
   core::Vector re, im;
   check(MatCreateVecs(a, re.put(), im.put()));
@@ -90,8 +101,7 @@ std::vector<Mode> modes_of(const EigenSolver& eps, Mat a, const Scales& scales, 
     if (p.value.imag() < 0 || !finite) continue;
     Mode m;
     m.lambda = p.value;
-    // What a search by iteration leaves.
-    if (options.rounding && !pencil) m.rounding = search_tolerance * std::abs(p.value);
+    if (options.rounding && iterated) m.rounding = search_tolerance * std::abs(p.value);
     sizes.emplace_back(1);
     if (vectors) {
       m.shape.resize(p.real.size());
@@ -147,17 +157,8 @@ Eigen::EigenSolver<Eigen::MatrixXd> solve_small(const Eigen::MatrixXd& matrix, b
 }  // namespace
 
 std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& options) {
-  core::Vector rest = core::duplicate(x), xs = core::duplicate(x), fs = core::duplicate(x);
-  check(VecSet(rest.get(), 0.0));
-  system.scales(xs.get(), fs.get());
-  const Scales scale{core::gather(xs.get()), core::gather(fs.get())};
-  check(VecReciprocal(fs.get()));
-  core::Matrix a = system.make_jacobian(), b = system.make_jacobian();
-  system.jacobian(0, x, rest.get(), 1, 0, a.get());
-  system.jacobian(0, x, rest.get(), 0, -1, b.get());  // dF/dx u = lambda (-dF/dxdot) u
-  check(MatDiagonalScale(a.get(), fs.get(), xs.get()));
-  check(MatDiagonalScale(b.get(), fs.get(), xs.get()));
-
+  ScaledPencil scale = scaled_pencil(system, x);
+  core::Matrix a = std::move(scale.a), b = std::move(scale.b);
   const bool dense = system.size() <= std::max(options.dense_below, 3);  // Krylov wants n - 2 > 0
   MPI_Comm comm = dense ? PETSC_COMM_SELF : system.comm();
   if (dense) {
@@ -187,7 +188,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     std::optional<LeftVectors> left;
     if (options.left && !shell) left.emplace(a.get(), b.get(), options);
     return modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options, nullptr,
-                    left ? &*left : nullptr, std::numeric_limits<double>::infinity());
+                    left ? &*left : nullptr, std::numeric_limits<double>::infinity(), true);
   }
   // One rank's answer for all: how many modes there are, and which of them are unstable, decides what comes next.
   core::agree(system.comm(), [&] {
@@ -198,8 +199,10 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     const double infinite = infinite_from(a.get(), b.get());
     const PetscInt at_least = zero_rows(entries(b.get()));
     solve_dense(eps, a.get(), b.get());
+    const double finite_below = least_infinite(eps, at_least, infinite);
+    if (!options.left && pencil && !doubtful(eps, finite_below)) pencil.reset();
     out = modes_of(eps, a.get(), scale, std::min<PetscInt>(options.count, system.size() - 2), options,
-                   pencil ? &*pencil : nullptr, nullptr, least_infinite(eps, at_least, infinite));
+                   pencil ? &*pencil : nullptr, nullptr, finite_below, false);
   });
   if (core::size_of(system.comm()) == 1) return out;
   std::vector<Complex> values;

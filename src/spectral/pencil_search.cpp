@@ -11,6 +11,19 @@ namespace whirl::spectral {
 
 using core::check;
 
+ScaledPencil scaled_pencil(problem::System& system, Vec x) {
+  core::Vector rest = core::duplicate(x), xs = core::duplicate(x), fs = core::duplicate(x);
+  check(VecSet(rest.get(), 0.0));
+  system.scales(xs.get(), fs.get());
+  ScaledPencil out{system.make_jacobian(), system.make_jacobian(), core::gather(xs.get()), core::gather(fs.get())};
+  check(VecReciprocal(fs.get()));
+  system.jacobian(0, x, rest.get(), 1, 0, out.a.get());
+  system.jacobian(0, x, rest.get(), 0, -1, out.b.get());
+  check(MatDiagonalScale(out.a.get(), fs.get(), xs.get()));
+  check(MatDiagonalScale(out.b.get(), fs.get(), xs.get()));
+  return out;
+}
+
 core::Matrix redundant_dense(Mat m) {
   core::Matrix whole, dense;
   const int size = core::size_of(PetscObjectComm(reinterpret_cast<PetscObject>(m)));

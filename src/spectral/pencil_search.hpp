@@ -16,6 +16,14 @@ using EigenSolver = core::Handle<EPS, EPSDestroy>;
 /// Residual over eigenvalue at which search_near() ends.
 inline constexpr double search_tolerance = 1e-10;
 
+/// dF/dx u = lambda (-dF/d(dx/dt)) u at an equilibrium, rows and columns in the scales of the system.
+struct ScaledPencil {
+  core::Matrix a, b;
+  std::vector<double> states, rows;  ///< the scales, whole on every rank
+};
+/// Collective.
+[[nodiscard]] ScaledPencil scaled_pencil(problem::System& system, Vec x);
+
 /// The whole of a small distributed matrix, dense on this rank. Collective on its communicator.
 [[nodiscard]] core::Matrix redundant_dense(Mat m);
 

@@ -35,7 +35,7 @@ std::vector<double> DensePencil::rounding() const {
   double largest = 0;
   for (const auto& v : values_)
     if (std::isfinite(std::abs(v))) largest = std::max(largest, std::abs(v));
-  const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= 1e-9 * largest; };
+  const auto asked = [&](std::complex<double> v) { return std::abs(v.real()) <= asked_below * largest; };
   if (std::none_of(values_.begin(), values_.end(), asked)) return out;
   const Eigen::MatrixXcd left = this->left();
   for (std::size_t k = 0; k < values_.size(); ++k) {

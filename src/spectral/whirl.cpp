@@ -75,6 +75,15 @@ Sense sense_by_nodes(const std::vector<double>& turning) {
   return forward ? Sense::forward : backward ? Sense::backward : Sense::planar;
 }
 
+bool vibrates(std::complex<double> lambda) {
+  return std::abs(lambda.imag()) > 1e-7 * std::abs(lambda);
+}
+
+double damping_ratio(std::complex<double> lambda) {
+  const double size = std::abs(lambda);
+  return size > 0 ? -lambda.real() / size + 0.0 : 0;
+}
+
 double log_decrement(std::complex<double> lambda) {
   if (lambda.imag() == 0)
     return lambda.real() < 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();

@@ -162,7 +162,7 @@ TEST(Coupling, PartsThatNothingHoldsAreRefused) {
   }
   o.reduction = {};
   EXPECT_THROW((void)rotor::rigid_static(MPI_COMM_WORLD, o, {{1, 0}, {2, 0}}, 9.81), core::InputError);
-  EXPECT_THROW((void)rotor::critical_speeds(o, {1, 2}, 1e7, rotor::Whirl::forward, 1), core::InputError);
+  EXPECT_THROW((void)rotor::critical_speeds(o, {{1}, {2}}, 1e7, rotor::Whirl::forward, 1), core::InputError);
   // The weight of what hangs on the hinge has a moment about it, which its support takes.
   const auto rest = rotor::rigid_static(MPI_COMM_WORLD, o, {{1, 0}, {2, 0}, {4, 0}}, 9.81);
   const double mass = 7850 * pi / 4 * diameter * diameter * bar, half = 7850 * pi / 4 * 0.12 * 0.12 * gap / 2,

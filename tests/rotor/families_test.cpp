@@ -315,7 +315,8 @@ TEST(TrialRotor, OtherElementsHaveTheThresholdsAndCriticalSpeedsOfTheReference) 
   }
   EXPECT_EQ(reference.critical_speeds.size(), 5u);
   for (const trial::OfElement& c : reference.critical_speeds)
-    EXPECT_NEAR(rotor::critical_speeds(shaft(c), {1, 11}, 1e7, rotor::Whirl::forward, 1).at(0), c.speed, 1e-8 * c.speed)
+    EXPECT_NEAR(rotor::critical_speeds(shaft(c), {{1}, {11}}, 1e7, rotor::Whirl::forward, 1).at(0), c.speed,
+                1e-8 * c.speed)
         << c.element << ' ' << c.disc;
 }
 

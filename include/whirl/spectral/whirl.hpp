@@ -40,8 +40,15 @@ struct WhirlEnergy {
 inline constexpr double straight = 1e-6;
 [[nodiscard]] Sense sense_by_nodes(const std::vector<double>& turning);
 
+/// Whether lambda is an oscillation. Two equal real eigenvalues part by rounding into a pair that is none: its
+/// imaginary part is below 1e-7 of the modulus.
+[[nodiscard]] bool vibrates(std::complex<double> lambda);
 /// delta = -2 pi Re(lambda)/|Im(lambda)|; infinite for a real eigenvalue.
 [[nodiscard]] double log_decrement(std::complex<double> lambda);
+/// zeta = -Re(lambda)/|lambda| in [-1, 1]: 1 and -1 for real eigenvalues that decay and grow, 0 for lambda = 0.
+[[nodiscard]] double damping_ratio(std::complex<double> lambda);
+/// Damping ratio above which a motion is overdamped here: it falls to 2e-6 of its size in one oscillation.
+inline constexpr double overdamped_above = 0.9;
 /// nu = 10^-delta; unstable above 1. Source: Gavalas (2022), Sec. 4.1, errata 12.
 [[nodiscard]] double stability_factor(std::complex<double> lambda);
 /// Modal assurance criterion |a* b|^2/(|a|^2 |b|^2) in [0, 1] of two shapes of the same length.

@@ -11,6 +11,8 @@
 #include "solve/newton/port_elimination.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/transfer_modes.hpp"
+#include "whirl/spectral/count.hpp"
+#include "whirl/spectral/whirl.hpp"
 
 namespace whirl::solve {
 
@@ -30,9 +32,10 @@ bool by_transfer(const problem::System& system) {
 }
 
 constexpr int most_searches = 6;
+constexpr int most_for_count = 4;  // times as many eigenvalues as at first, to find those that a count misses
 
 bool vibrates(const spectral::Mode& m) {
-  return m.lambda.imag() > 1e-7 * std::abs(m.lambda);
+  return m.lambda.imag() > 0 && spectral::vibrates(m.lambda);
 }
 
 bool enough(const std::vector<spectral::Mode>& modes, const Wanted& wanted) {
@@ -68,22 +71,84 @@ private:
   PortElimination ports_;
 };
 
-// Those nearest to the target; twice as many again until enough of them count.
+// Searches on the whole pencil of a large machine.
+class WholeSearch {
+public:
+  WholeSearch(problem::System& system, Vec x, spectral::EigenOptions options)
+      : system_(system), x_(x), options_(options), ports_(PortElimination::serves(system.fields())) {}
+
+  // The `count` nearest to zero. Those far out do not converge where the nearest are slower by many orders: a second
+  // search begins beside the farthest that did.
+  [[nodiscard]] std::vector<spectral::Mode> nearest(int count) {
+    std::vector<spectral::Mode> found = near(options_.target, count);
+    int values = 0;
+    for (const spectral::Mode& m : found) values += m.lambda.imag() > 0 ? 2 : 1;
+    if (values < std::min<int>(count, system_.size() - 2)) add(found, farthest(found), count);
+    return found;
+  }
+
+  // Those beyond all of `found` that are nearest to a real target.
+  void add(std::vector<spectral::Mode>& found, double target, int count) {
+    const double reach = farthest(found);
+    for (spectral::Mode& m : near(target, count))
+      if (std::abs(m.lambda) > reach * (1 + 1e-6)) found.push_back(std::move(m));
+    std::stable_sort(found.begin(), found.end(), [](const spectral::Mode& m, const spectral::Mode& n) {
+      return std::pair(m.lambda.imag(), m.lambda.real()) < std::pair(n.lambda.imag(), n.lambda.real());
+    });
+  }
+
+  // Farthest from the first target.
+  [[nodiscard]] double farthest(const std::vector<spectral::Mode>& found) const {
+    double out = 0;
+    for (const spectral::Mode& m : found) out = std::max(out, std::abs(m.lambda - options_.target));
+    return out;
+  }
+
+private:
+  [[nodiscard]] std::vector<spectral::Mode> near(double target, int count) {
+    spectral::EigenOptions options = options_;
+    options.target = target;
+    options.count = count;
+    std::optional<ByPorts> inverse;
+    if (ports_) options.inverse = &inverse.emplace(system_, x_, target);
+    return spectral::modes(system_, x_, options);
+  }
+
+  problem::System& system_;
+  Vec x_;
+  spectral::EigenOptions options_;
+  bool ports_;
+};
+
+// Those nearest to the target; twice as many again until enough of them count and none is known to be missing.
 MachineModes whole_modes(problem::System& system, Vec x, spectral::EigenOptions options, const Wanted& wanted) {
-  const bool all = system.size() <= options.dense_below;
-  std::optional<ByPorts> inverse;
-  if (!all && PortElimination::serves(system.fields())) options.inverse = &inverse.emplace(system, x, options.target);
   MachineModes out;
-  for (int k = 0;; ++k) {
+  if (system.size() <= options.dense_below) {
     out.modes = spectral::modes(system, x, options);
-    if (all || !wanted.counts || enough(out.modes, wanted)) return out;
-    double farthest = 0;
-    for (const spectral::Mode& m : out.modes) farthest = std::max(farthest, std::abs(m.lambda - options.target));
-    if (wanted.frequency > 0 && farthest > wanted.frequency) return out;
-    if (options.count >= system.size()) return out;
-    out.gave_up = k + 1 == most_searches;
-    if (out.gave_up) return out;
-    options.count = std::min<int>(2 * options.count, system.size());
+    return out;
+  }
+  WholeSearch search(system, x, options);
+  // Rows as long as a film fill the factors of a count; machines with such films are counted by their transfer
+  // functions.
+  const bool sparse = system.fields().size() == 1 && options.target == 0;
+  int count = options.count;
+  for (int k = 0;; ++k) {
+    out.modes = search.nearest(count);
+    const bool last = k + 1 == most_searches || count >= system.size();
+    const bool far = wanted.frequency > 0 && search.farthest(out.modes) > wanted.frequency;
+    const bool done = !wanted.counts || enough(out.modes, wanted) || far;
+    if (done || last) {
+      spectral::EigenCount counted;
+      if (sparse) counted = spectral::count_eigenvalues(system, x, out.modes);
+      if (counted.real > 0) search.add(out.modes, counted.real, 2);
+      out.frequency = out.decay = counted.radius;
+      out.counted = counted.counted;
+      out.missed = counted.missed;
+      if (!counted.sure) out.doubt = "the phase of the determinant could not be followed";
+      out.gave_up = !done && count < system.size();
+      if (last || (counted.missed == 0 && counted.sure) || count >= most_for_count * options.count) return out;
+    }
+    count = std::min<int>(2 * count, system.size());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/film_at_rest.hpp"
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/shaft.hpp"
@@ -195,6 +196,8 @@ StudyResult Static::run(Context& context) {
 
   FilmLimit(system.places()).warn(system.observe(at).film_thickness, "at rest", summary);
   put_values(context, system, at, summary);
+  warn_of(growth_at(system, at), fmt::format("at {:.6g} rad/s", options.speed.value),
+          "The machine does not stay where these results show it", summary);
   // Of all that the summary holds so far: what follows has no mesh.
   put_bars(context, system, options.speed.value, x);
   const auto& rotor = system.train().rotor;

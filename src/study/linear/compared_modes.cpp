@@ -12,6 +12,7 @@
 #include "whirl/problem/structure.hpp"
 #include "whirl/rotor/dense.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
+#include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 namespace {
@@ -25,6 +26,11 @@ using Sparse = Eigen::SparseMatrix<double>;
 // A = dF/dx with the films as `films` says.
 Sparse linearised(problem::Structure& machine, const MatrixXd& films) {
   return machine.l0() - Sparse(machine.b() * Sparse(films.sparseView()) * machine.c());
+}
+
+// Overdamped ones would stand among the lowest.
+bool compared(Complex s) {
+  return s.imag() > 0 && spectral::vibrates(s) && spectral::damping_ratio(s) <= spectral::overdamped_above;
 }
 
 }  // namespace
@@ -116,7 +122,7 @@ WholeModes::WholeModes(system::RotorSystem& system, Vec x, int count) {
     throw core::NotConverged("the stiffness of the machine is not positive definite: its modes have no energy norm");
 
   std::vector<spectral::Mode> modes = spectral::modes(system, x, {.count = 2 * count + 40});
-  std::erase_if(modes, [](const spectral::Mode& m) { return m.lambda.imag() <= 1e-7 * std::abs(m.lambda); });
+  std::erase_if(modes, [](const spectral::Mode& m) { return !compared(m.lambda); });
   if (static_cast<int>(modes.size()) < count)
     throw core::NotConverged(fmt::format("the machine has {} modes that vibrate, not {}", modes.size(), count));
   frequencies_.resize(count);
@@ -161,7 +167,7 @@ WholeModes::Errors WholeModes::errors(system::RotorSystem& reduced) const {
   std::vector<std::pair<double, Index>> order;
   for (Index k = 0; k < pairs.values.size(); ++k) {
     const Complex s = 1.0 / pairs.values(k);
-    if (s.imag() > 1e-7 * std::abs(s)) order.emplace_back(s.imag(), k);
+    if (compared(s)) order.emplace_back(s.imag(), k);
   }
   std::sort(order.begin(), order.end());
   const Index count = frequencies_.size();

@@ -37,8 +37,12 @@ double CriticalSpeedMap::memory(const system::Machine& machine, const LayoutOpti
 StudyResult CriticalSpeedMap::run(Context& context) {
   const system::Train train = system::train_of(context.machine);
   auto& results = context.results;
-  std::vector<int> nodes;
-  for (const system::Support& s : train.supports) nodes.push_back(s.node);
+  std::vector<rotor::SpringAt> springs;
+  std::vector<rotor::Stand> stands;
+  for (const system::Support& s : train.supports) {
+    springs.push_back({s.node, s.has_pedestal ? static_cast<int>(stands.size()) : -1});
+    if (s.has_pedestal) stands.push_back({s.mass, s.stiffness});
+  }
   const auto count = static_cast<std::size_t>(options.count), points = static_cast<std::size_t>(options.points);
   std::vector<double> stiffness, speeds[2];
   core::agree(context.comm, [&] {
@@ -46,7 +50,8 @@ StudyResult CriticalSpeedMap::run(Context& context) {
       const double part = static_cast<double>(i) / static_cast<double>(points - 1);
       stiffness.push_back(options.stiffness.from * std::pow(options.stiffness.to / options.stiffness.from, part));
       for (const auto whirl : {rotor::Whirl::forward, rotor::Whirl::backward}) {
-        std::vector<double> found = rotor::critical_speeds(train.rotor, nodes, stiffness.back(), whirl, options.count);
+        std::vector<double> found =
+            rotor::critical_speeds(train.rotor, springs, stiffness.back(), whirl, options.count, stands);
         found.resize(count, io::no_value);
         std::vector<double>& to = speeds[whirl == rotor::Whirl::forward ? 0 : 1];
         to.insert(to.end(), found.begin(), found.end());

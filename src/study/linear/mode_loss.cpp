@@ -148,8 +148,7 @@ void add_loss(const Pencil& p, const system::RotorSystem& system, double eta, st
 
 }  // namespace
 
-std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const std::vector<spectral::Mode>& modes,
-                                      int most) {
+std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, std::vector<spectral::Mode> modes) {
   constexpr PetscInt most_states = 20000;
   if (system.size() > most_states)
     core::agree(system.comm(), [] {
@@ -157,18 +156,15 @@ std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const 
     });
   const Pencil pencil = pencil_of(system, x);
   const double eta = system.train().rotor.loss_factor;
-  std::vector<spectral::Mode> out, vibrating;
-  for (const spectral::Mode& m : modes) (m.lambda.imag() > 1e-7 * std::abs(m.lambda) ? vibrating : out).push_back(m);
-  vibrating.resize(std::min(vibrating.size(), static_cast<std::size_t>(most)));
   std::vector<Vibration> moving;
-  for (const spectral::Mode& m : vibrating) {
+  for (const spectral::Mode& m : modes) {
     const auto n = static_cast<Eigen::Index>(m.shape.size());
     moving.push_back({m.lambda, Eigen::Map<const Eigen::VectorXcd>(m.shape.data(), n).cwiseQuotient(pencil.scale)});
     moving.back().shape.normalize();
   }
   core::agree(system.comm(), [&] { add_loss(pencil, system, eta, moving); });
   for (std::size_t k = 0; k < moving.size(); ++k) {
-    spectral::Mode& m = vibrating[k];
+    spectral::Mode& m = modes[k];
     m.lambda = moving[k].lambda;
     // Those were of the machine without loss.
     m.condition = std::numeric_limits<double>::quiet_NaN();
@@ -179,11 +175,10 @@ std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x, const 
     moving[k].shape.cwiseAbs().maxCoeff(&largest);
     const Eigen::VectorXcd shape = (moving[k].shape / moving[k].shape(largest)).cwiseProduct(pencil.scale);
     m.shape.assign(shape.begin(), shape.end());
-    out.push_back(m);
   }
-  std::stable_sort(out.begin(), out.end(),
+  std::stable_sort(modes.begin(), modes.end(),
                    [](const spectral::Mode& a, const spectral::Mode& b) { return a.lambda.imag() < b.lambda.imag(); });
-  return out;
+  return modes;
 }
 
 }  // namespace whirl::study

@@ -10,11 +10,10 @@ namespace whirl::study {
 
 /// Solves (dF/dx + lambda dF/d(dx/dt) + i eta H) u = 0, H the rotor's K with the sense of hysteresis at the frequency
 /// of the mode (RotorSystem::loss_at), for the eigenvalues that those of eta = 0 become. `modes` are these, at the
-/// equilibrium x, by rising frequency; those that do not vibrate stay as they are, and of those that do the `most`
-/// lowest are kept. Newton's method of each
-/// by itself, eta raised by steps of 0.05 at most; modes closer together than eta are parted first. The same on every
-/// rank. Collective; throws core::NotConverged, core::InputError above 20,000 states.
+/// equilibrium x, by rising frequency; all of them vibrate. Newton's method of each by itself, eta raised by steps of
+/// 0.05 at most; modes closer together than eta are parted first. The same on every rank. Collective; throws
+/// core::NotConverged, core::InputError above 20,000 states.
 [[nodiscard]] std::vector<spectral::Mode> with_loss(system::RotorSystem& system, Vec x,
-                                                    const std::vector<spectral::Mode>& modes, int most);
+                                                    std::vector<spectral::Mode> modes);
 
 }  // namespace whirl::study

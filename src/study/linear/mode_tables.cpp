@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "whirl/deck/units.hpp"
-#include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 
@@ -92,19 +91,22 @@ void ModeTables::warn(io::StudySummary& summary, const std::map<double, ModeSear
         "factorises the machine as one");
 }
 
+spectral::Sense ModeTables::sense_of(const ShaftMode& mode) const {
+  return spectral::sense_of_whirl(mode.x, mode.y, mass_);
+}
+
 void ModeTables::put_shapes(io::Group& shapes, const std::vector<double>& speeds,
-                            const std::vector<const std::vector<ShaftMode>*>& modes, std::size_t count) const {
+                            const std::vector<std::span<const ShaftMode>>& modes) const {
   std::vector<double> flat[8], at_frequency, at_speed, at_decrement, turning;
   std::vector<std::string> at_sense;
   std::vector<std::int64_t> at_mode;
   for (std::size_t i = 0; i < speeds.size(); ++i) {
-    for (std::size_t j = 0; j < std::min(count, modes[i]->size()); ++j) {
-      ShaftMode m = (*modes[i])[j];
+    for (ShaftMode m : modes[i]) {
       at_speed.push_back(speeds[i]);
       at_mode.push_back(m.id);
       at_frequency.push_back(m.lambda.imag());
       at_decrement.push_back(spectral::log_decrement(m.lambda));
-      at_sense.emplace_back(spectral::name_of(spectral::sense_of_whirl(m.x, m.y, mass_)));
+      at_sense.emplace_back(spectral::name_of(sense_of(m)));
       const std::vector<double> turns = spectral::turning(m.x, m.y);
       turning.insert(turning.end(), turns.begin(), turns.end());
       for (std::size_t k = 0; k < 8; ++k)

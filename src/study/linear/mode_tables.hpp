@@ -1,15 +1,16 @@
 #pragma once
 // Tables of modes: which way each turns, and how well its eigenvalue is conditioned.
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "study/linear/shaft_modes.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/io/table.hpp"
+#include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 
@@ -29,9 +30,11 @@ public:
   /// Says which eigenvalues have fewer vectors than their multiplicity, and where condition numbers are not known;
   /// `searches` by speed [rad/s].
   void warn(io::StudySummary& summary, const std::map<double, ModeSearch>& searches) const;
-  /// Shapes of the first `count` modes at some speeds [rad/s].
+  /// Shapes of modes at some speeds [rad/s].
   void put_shapes(io::Group& shapes, const std::vector<double>& speeds,
-                  const std::vector<const std::vector<ShaftMode>*>& modes, std::size_t count) const;
+                  const std::vector<std::span<const ShaftMode>>& modes) const;
+  /// The sense of whirl by the kinetic energy of the nodes.
+  [[nodiscard]] spectral::Sense sense_of(const ShaftMode& mode) const;
 
 private:
   std::vector<double> z_, mass_;

@@ -3,13 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
+#include <span>
 
 #include "study/bars/verdict.hpp"
 #include "study/common.hpp"
@@ -18,79 +17,22 @@
 #include "study/linear/mode_bars.hpp"
 #include "study/linear/mode_margins.hpp"
 #include "study/linear/mode_reduction.hpp"
+#include "study/linear/mode_stations.hpp"
 #include "study/linear/mode_tables.hpp"
+#include "study/linear/mode_values.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/deck/units.hpp"
 #include "whirl/io/table.hpp"
 #include "whirl/rotor/frequencies.hpp"
 #include "whirl/rotor/shaft.hpp"
-#include "whirl/spectral/follow.hpp"
 #include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 namespace {
 
-// The modes at one speed, those of lowest frequency first.
-struct Station {
-  double speed = 0;
-  bool reported = false;  // asked for; others only help to follow the modes
-  std::vector<ShaftMode> modes;
-};
-
 // Modes above those asked for: some come down between two speeds, and a coarse mesh may have one in another place.
 constexpr int beyond_over_speeds = 8, beyond_over_meshes = 2;
-constexpr int most_refinements = 4;  // of the way between two speeds asked for
-
-std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes) {
-  std::vector<spectral::ModePoint> points;
-  for (const ShaftMode& m : modes) points.push_back({m.lambda, m.both()});
-  return points;
-}
-
-// Puts stations between those whose modes cannot be told apart, and then gives each mode an identity. As many speeds
-// are added at most as were asked for.
-void follow(std::vector<Station>& stations, std::size_t count,
-            const std::function<std::vector<std::vector<ShaftMode>>(const std::vector<double>&)>& modes_at) {
-  const std::size_t most = 2 * stations.size();
-  std::vector<double> widths;
-  for (std::size_t i = 1; i < stations.size(); ++i) widths.push_back(stations[i].speed - stations[i - 1].speed);
-  const double least =
-      widths.empty() ? 0 : *std::max_element(widths.begin(), widths.end()) / std::pow(2.0, most_refinements + 0.5);
-  for (;;) {
-    std::vector<double> between;
-    for (std::size_t i = 1; i < stations.size(); ++i) {
-      const Station &left = stations[i - 1], &right = stations[i];
-      if (right.speed - left.speed > 2 * least && stations.size() + between.size() < most &&
-          !spectral::match_modes(points_of(left.modes), points_of(right.modes), count).sure)
-        between.push_back((left.speed + right.speed) / 2);
-    }
-    if (between.empty()) break;
-    auto found = modes_at(between);
-    for (std::size_t i = 0; i < between.size(); ++i) stations.push_back({between[i], false, std::move(found[i])});
-    std::sort(stations.begin(), stations.end(), [](const Station& a, const Station& b) { return a.speed < b.speed; });
-  }
-  int next = 0;
-  for (std::size_t i = 0; i < stations.size(); ++i) {
-    auto& now = stations[i].modes;
-    if (i > 0) {
-      const auto& last = stations[i - 1].modes;
-      const spectral::ModeMatching pairs = spectral::match_modes(points_of(last), points_of(now), count);
-      for (std::size_t k = 0; k < now.size(); ++k)
-        if (pairs.before[k] >= 0) now[k].id = last[static_cast<std::size_t>(pairs.before[k])].id;
-    }
-    for (ShaftMode& m : now)
-      if (m.id < 0) m.id = next++;
-  }
-  // Numbers from one in the order in which the results show the modes.
-  std::map<int, int> number;
-  for (Station& s : stations)
-    if (s.reported)
-      for (std::size_t k = 0; k < std::min(count, s.modes.size()); ++k)
-        number.emplace(s.modes[k].id, static_cast<int>(number.size()) + 1);
-  for (Station& s : stations)
-    for (ShaftMode& m : s.modes) m.id = number.contains(m.id) ? number.at(m.id) : 0;
-}
 
 // Supports without films: undamped frequencies of the shaft at rest, the same in both planes.
 StudyResult rigid_modes(Context& context, const ModesOptions& options) {
@@ -152,7 +94,7 @@ StudyResult Modes::run(Context& context) {
   const auto count = static_cast<std::size_t>(options.count);
   const bool one_speed = speeds.size() == 1 && std::all_of(shape_speeds.begin(), shape_speeds.end(),
                                                            [&](double s) { return s == speeds[0]; });
-  const int sought = options.count + (one_speed ? beyond_over_meshes : beyond_over_speeds);
+  const int more = one_speed ? beyond_over_meshes : beyond_over_speeds;
   const Layout layout = plan(context, Sharing::speeds);
   system::RotorSystem system(layout.space, system::train_of(context.machine), speeds.front());
   Walker walker(system);
@@ -169,7 +111,7 @@ StudyResult Modes::run(Context& context) {
     wanted += list.size();
     const auto compute = [&](std::size_t i) {
       ModeSearch here;
-      const auto found = shaft_modes(system, walker.at(list[i]), sought, limit, here, options.condition);
+      const auto found = shaft_modes(system, walker.at(list[i]), options.count, more, limit, here, options.condition);
       auto modes = pack(found, here);
       ready += static_cast<std::size_t>(layout.count);
       results.progress(fmt::format("{}: {} of {} speeds, {:.1f} {}, {:.1f} s", summary.name, std::min(ready, wanted),
@@ -179,12 +121,15 @@ StudyResult Modes::run(Context& context) {
     const auto packed = distribute(layout, list.size(), compute, pieces,
                                    rounds == 0 ? "speed" : fmt::format("between {}", rounds), walker.trail());
     ++rounds;
-    std::vector<std::vector<ShaftMode>> out;
+    std::vector<Station> out;
     for (std::size_t i = 0; i < packed.size(); ++i) {
       ModeSearch& search = searches[list[i]];
-      out.push_back(unpack(packed[i], search));
+      const bool asked = std::find(speeds.begin(), speeds.end(), list[i]) != speeds.end();
+      out.push_back({list[i], asked, unpack(packed[i], search)});
+      out.back().listed = static_cast<std::size_t>(search.listed);
+      out.back().overdamped = search.overdamped;
       missed.add(static_cast<int>(search.missed));
-      if (search.gave_up > 0 && out.back().size() < count) too_few = list[i];
+      if (search.gave_up > 0 && out.back().modes.size() < count) too_few = list[i];
     }
     return out;
   };
@@ -193,10 +138,7 @@ StudyResult Modes::run(Context& context) {
   all.insert(all.end(), shape_speeds.begin(), shape_speeds.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::vector<Station> stations;
-  auto first = modes_at(all);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    stations.push_back({all[i], std::find(speeds.begin(), speeds.end(), all[i]) != speeds.end(), std::move(first[i])});
+  std::vector<Station> stations = modes_at(all);
   // Modes are followed over a range; single speeds far apart have only their own.
   if (options.range) {
     follow(stations, count, modes_at);
@@ -215,27 +157,26 @@ StudyResult Modes::run(Context& context) {
   }
   const ModeBars bars(context, layout, pieces, sampled, [&](system::RotorSystem& on, Vec x) {
     ModeSearch of_other_mesh;
-    return points_of(shaft_modes(on, x, sought, limit, of_other_mesh));
+    return points_of(shaft_modes(on, x, options.count, more, limit, of_other_mesh));
   });
   ModeReduction reduction(system, walker, sampled);
   ModeTables tables(rotor::node_positions(system.train().rotor), rotor::node_masses(system.train().rotor),
                     options.condition);
-  std::vector<double> speed_column, frequency, real, decrement, factor;
+  std::vector<double> speed_column, frequency, real, decrement, ratio, factor;
   std::vector<std::int64_t> id_column;
   std::vector<std::string> stability_column;
   for (const double speed : speeds) {
-    const auto& modes = station_at(speed).modes;
-    for (std::size_t k = 0; k < std::min(count, modes.size()); ++k) {
-      const ShaftMode& m = modes[k];
+    const Station& station = station_at(speed);
+    for (std::size_t k = 0; k < station.listed; ++k) {
+      const ShaftMode& m = station.modes[k];
       speed_column.push_back(speed);
       id_column.push_back(m.id);
       frequency.push_back(m.lambda.imag());
       real.push_back(m.lambda.real());
       decrement.push_back(m.undamped ? 0 : spectral::log_decrement(m.lambda));
+      ratio.push_back(spectral::damping_ratio(m.lambda));
       factor.push_back(spectral::stability_factor(m.lambda));
-      const char* const stability = name_of(m.undamped            ? StabilityClass::undamped
-                                            : m.lambda.real() > 0 ? StabilityClass::unstable
-                                                                  : StabilityClass::stable);
+      const char* const stability = stability_of(m);
       stability_column.emplace_back(stability);
       summary.modes.push_back({deck::from_si(speed, unit),
                                m.lambda.real(),
@@ -245,45 +186,25 @@ StudyResult Modes::run(Context& context) {
                                unit,
                                bars.named(m.id, speed),
                                stability});
+      summary.modes.back().more["mode"] = m.id;
+      summary.modes.back().more["damping_ratio"] = ratio.back();
       tables.add(m, summary.modes.back());
       reduction.put(summary, speed, k);
     }
   }
-  // Damped frequency meets the speed of the shaft between two speeds.
-  struct Crossing {
-    double s0, s1, f0, f1;
-    ShaftMode guide;
-  };
+  // Damped frequency meets the speed of the shaft between two speeds, or a mode begins or ceases to grow.
   std::vector<Crossing> crossings;
-  for (std::size_t i = 1; options.range && i < stations.size(); ++i)
-    for (const ShaftMode& m : stations[i].modes)
-      for (const ShaftMode& b : stations[i - 1].modes) {
-        const double f0 = b.lambda.imag() - stations[i - 1].speed, f1 = m.lambda.imag() - stations[i].speed;
-        if (m.id == b.id && m.id > 0 && f0 * f1 < 0)
-          crossings.push_back({stations[i - 1].speed, stations[i].speed, f0, f1, m});
-      }
-  // Where the chords cross, refined by solving there and following the mode.
+  if (options.range) crossings = crossings_of(stations);
   const auto refine = [&](std::size_t i) {
-    Crossing c = crossings[i];
     std::vector<int> missed_on_the_way;
-    for (int k = 0; k < 6 && std::abs(c.s1 - c.s0) > 1e-6 * c.s1; ++k) {
-      const double s = c.s1 - c.f1 * (c.s1 - c.s0) / (c.f1 - c.f0);
+    const CrossingPoint at = locate(crossings[i], [&](double speed) {
       ModeSearch search;
-      const auto there = shaft_modes(system, walker.at(s), sought, limit, search);
+      auto there = shaft_modes(system, walker.at(speed), options.count, more, limit, search);
       missed_on_the_way.push_back(static_cast<int>(search.missed));
-      const auto pairs = spectral::match_modes({{c.guide.lambda, c.guide.both()}}, points_of(there), 0);
-      const auto found = std::find(pairs.before.begin(), pairs.before.end(), 0);
-      if (found == pairs.before.end()) break;
-      const ShaftMode& m = there[static_cast<std::size_t>(found - pairs.before.begin())];
-      const double f = m.lambda.imag() - s;
-      if (f * c.f1 < 0) c.s0 = c.s1, c.f0 = c.f1;
-      c.s1 = s;
-      c.f1 = f;
-      c.guide.lambda = m.lambda;
-      if (std::abs(f) < 1e-7 * s) break;
-    }
+      return there;
+    });
     // Other ranks and resumed runs see what is returned, and nothing else.
-    std::vector<double> out{c.s1, c.guide.lambda.real(), c.guide.lambda.imag()};
+    std::vector<double> out{at.speed, at.lambda.real(), at.lambda.imag()};
     out.insert(out.end(), missed_on_the_way.begin(), missed_on_the_way.end());
     return out;
   };
@@ -294,12 +215,17 @@ StudyResult Modes::run(Context& context) {
     double error, decrement_error;
   };
   std::vector<Critical> criticals;
+  std::vector<CrossingPoint> points;
+  std::vector<double> errors;  // of the speeds
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const Crossing& c = crossings[i];
     for (std::size_t k = 3; k < refined[i].size(); ++k) missed.add(static_cast<int>(refined[i][k]));
-    const auto bar = bars.at(c.guide.id, refined[i][0]);
-    criticals.push_back({refined[i][0], spectral::log_decrement({refined[i][1], refined[i][2]}), c.guide.id,
-                         bar[1] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)), bar[2]});
+    points.push_back({refined[i][0], {refined[i][1], refined[i][2]}});
+    const auto bar = bars.at(c.guide.id, points[i].speed);
+    const bool critical = c.border == Border::critical;
+    errors.push_back(bar[critical ? 1 : 0] * std::abs((c.s1 - c.s0) / (c.f1 - c.f0)));
+    if (critical)
+      criticals.push_back({points[i].speed, spectral::log_decrement(points[i].lambda), c.guide.id, errors[i], bar[2]});
   }
 
   auto& spectrum = group.child("spectrum");
@@ -308,11 +234,13 @@ StudyResult Modes::run(Context& context) {
   spectrum.put("frequency", frequency, "rad/s", "damped frequency, imaginary part of the eigenvalue");
   spectrum.put("damping_real", real, "1/s", "real part of the eigenvalue");
   spectrum.put("log_decrement", decrement, "1", "-2 pi Re/|Im|");
+  spectrum.put("damping_ratio", ratio, "1", "-Re/|lambda|, negative where the mode grows");
   bars.put(spectrum, id_column, speed_column);
   spectrum.put("stability_factor", factor, "1", "10^-log_decrement, unstable above 1");
   tables.put_spectrum(spectrum);
   spectrum.put("stability", stability_column,
-               "stable, unstable, or undamped: the real part is rounding, shown as zero");
+               "stable, unstable, diverges (it grows without oscillation), or undamped: the real part is rounding, "
+               "shown as zero");
   tables.put_map(group.child("whirl_map"));
   tables.warn(summary, searches);
   group.set("speed_unit", unit);
@@ -326,6 +254,7 @@ StudyResult Modes::run(Context& context) {
                 bars.as_bar(deck::from_si(criticals[k].error, unit)));
     summary.set(fmt::format("critical.{}.log_decrement", k + 1), criticals[k].decrement, "1",
                 bars.as_bar(criticals[k].decrement_error));
+    summary.set(fmt::format("critical.{}.mode", k + 1), criticals[k].id, "1");
     put_margins(summary, fmt::format("critical.{}.", k + 1), criticals[k].speed, criticals[k].error,
                 criticals[k].decrement, criticals[k].decrement_error, options.operating);
     critical_speed.push_back(criticals[k].speed);
@@ -337,9 +266,18 @@ StudyResult Modes::run(Context& context) {
   group.child("critical").put("mode", critical_mode, "mode followed by its shape");
 
   put_bearings(group, context.machine);
-  std::vector<const std::vector<ShaftMode>*> shaped;
-  for (const double speed : shape_speeds) shaped.push_back(&station_at(speed).modes);
-  tables.put_shapes(group.child("shapes"), shape_speeds, shaped, count);
+  std::vector<std::span<const ShaftMode>> shaped;
+  for (const double speed : shape_speeds) {
+    const Station& s = station_at(speed);
+    shaped.emplace_back(s.modes.data(), s.listed);
+  }
+  tables.put_shapes(group.child("shapes"), shape_speeds, shaped);
+  const ModeValues values(unit, tables, bars);
+  if (options.range)
+    values.put_ranges(group, summary, unstable_ranges(stations, crossings, points), errors);
+  else
+    for (const double speed : speeds) values.put_speed(summary, station_at(speed));
+  values.put_overdamped(group.child("overdamped"), summary, stations);
   missed.warn(summary);
   if (too_few)
     summary.warnings.push_back(fmt::format(

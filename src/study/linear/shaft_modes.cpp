@@ -5,12 +5,22 @@
 
 #include "study/linear/mode_loss.hpp"
 #include "whirl/solve/newton/machine_modes.hpp"
+#include "whirl/spectral/whirl.hpp"
 
 namespace whirl::study {
 
 using Complex = std::complex<double>;
 
 namespace {
+
+bool grows(const spectral::Mode& m) {
+  return !m.neutral() && m.lambda.real() > 0;
+}
+
+// What falls away before it vibrates. Rounding may make zero anything.
+bool overdamped(const spectral::Mode& m) {
+  return !m.neutral() && spectral::damping_ratio(m.lambda) > spectral::overdamped_above;
+}
 
 // The largest of the machine's scaled states; the largest of all is one.
 double participation(const std::vector<Complex>& shape, const std::vector<double>& scale, PetscInt machine) {
@@ -22,13 +32,13 @@ double participation(const std::vector<Complex>& shape, const std::vector<double
 
 }  // namespace
 
-std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, double max_frequency,
-                                   ModeSearch& search, bool condition) {
+std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, int beyond,
+                                   double max_frequency, ModeSearch& search, bool condition) {
+  const int sought = count + beyond;
   spectral::EigenOptions options;
   options.left = condition;
-  options.count = 2 * count + 40;
+  options.count = 2 * sought + 40;
   options.rounding = true;
-  std::vector<ShaftMode> out;
   std::vector<double> scale;
   {
     core::Vector states = core::duplicate(equilibrium), rows = core::duplicate(equilibrium);
@@ -38,10 +48,10 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
   const auto part_taken = [&](const spectral::Mode& mode) {
     return participation(mode.shape, scale, 2 * system.coordinates());
   };
-  solve::MachineModes found =
-      solve::machine_modes(system, equilibrium, options,
-                           {std::isfinite(max_frequency) ? max_frequency : 0, count,
-                            [&](const spectral::Mode& mode) { return part_taken(mode) >= least_participation; }});
+  solve::MachineModes found = solve::machine_modes(
+      system, equilibrium, options,
+      {std::isfinite(max_frequency) ? max_frequency : 0, sought,
+       [&](const spectral::Mode& mode) { return !overdamped(mode) && part_taken(mode) >= least_participation; }});
   search = {found.frequency, found.decay, static_cast<double>(found.counted),
             static_cast<double>(found.doubt.empty() ? found.missed : -1), found.gave_up ? 1.0 : 0.0};
   const auto slowest = std::min_element(found.modes.begin(), found.modes.end(), [](const auto& m, const auto& n) {
@@ -58,19 +68,39 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     rest = sizes[std::min(sizes.size(), static_cast<std::size_t>(slowest->multiplicity)) - 1];
   }
   if (system.train().rotor.loss_factor > 0) {
-    // Those that count, and a few more whose places among them may change.
-    int vibrating = 4, counted = 0;
-    for (auto m = found.modes.begin(); m != found.modes.end() && counted < count; ++m)
-      if (m->lambda.imag() > 1e-7 * std::abs(m->lambda)) ++vibrating, counted += part_taken(*m) >= least_participation;
-    found.modes = with_loss(system, equilibrium, found.modes, vibrating);
+    // Those that count, and a few more whose places among them may change. The overdamped stay as they are.
+    std::vector<spectral::Mode> vibrating, others;
+    int extra = 4, counted = 0;
+    for (spectral::Mode& m : found.modes) {
+      const bool moves = m.lambda.imag() > 0 && spectral::vibrates(m.lambda) && !overdamped(m);
+      const bool beyond_count = counted >= sought && !grows(m) && extra-- <= 0;
+      if (moves && beyond_count) continue;
+      if (moves && part_taken(m) >= least_participation) ++counted;
+      (moves ? vibrating : others).push_back(std::move(m));
+    }
+    found.modes = with_loss(system, equilibrium, vibrating);
+    found.modes.insert(found.modes.end(), others.begin(), others.end());
   }
+  // Real ones that grow have no frequency and stand first.
+  std::stable_sort(found.modes.begin(), found.modes.end(), [](const auto& m, const auto& n) {
+    return std::pair(m.lambda.imag(), -m.lambda.real()) < std::pair(n.lambda.imag(), -n.lambda.real());
+  });
+  std::vector<ShaftMode> listed, more;
+  int lowest = 0;
   for (const auto& mode : found.modes) {
-    // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
-    if (mode.lambda.imag() <= 1e-7 * std::abs(mode.lambda) || mode.lambda.imag() > max_frequency) continue;
     if (std::abs(mode.lambda) <= rest) continue;
-    if (static_cast<int>(out.size()) == count) break;
+    const bool growing = grows(mode), moves = spectral::vibrates(mode.lambda);
+    if (!growing && !moves && mode.neutral()) continue;  // zero, of a machine that nothing holds
     const double taken = part_taken(mode);
-    if (taken < least_participation) continue;
+    if (taken < least_participation && !growing) continue;
+    if (overdamped(mode)) {
+      search.overdamped.push_back(mode.lambda);
+      continue;
+    }
+    const bool low = moves && lowest < count && mode.lambda.imag() <= max_frequency;
+    if (!low && !growing && (static_cast<int>(more.size()) == beyond || !moves || mode.lambda.imag() > max_frequency))
+      continue;
+    lowest += low;
     std::vector<double> part[2];
     for (int k = 0; k < 2; ++k) {
       std::vector<double> state(mode.shape.size());
@@ -93,20 +123,26 @@ std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium,
     if (largest != 0.0)
       for (auto* column : m.columns())
         for (Complex& v : *column) v /= largest;
-    out.push_back(std::move(m));
+    (low || growing ? listed : more).push_back(std::move(m));
   }
-  return out;
+  search.listed = static_cast<double>(listed.size());
+  std::sort(search.overdamped.begin(), search.overdamped.end(),
+            [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
+  listed.insert(listed.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  return listed;
 }
 
 std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search) {
-  std::vector<double> flat{search.frequency,         search.decay,       search.counted, search.missed, search.gave_up,
-                           search.rest_multiplicity, search.rest_vectors};
+  std::vector<double> flat{search.frequency,         search.decay,        search.counted, search.missed, search.gave_up,
+                           search.rest_multiplicity, search.rest_vectors, search.listed};
   flat.push_back(static_cast<double>(modes.size()));
   flat.push_back(modes.empty() ? 0.0 : static_cast<double>(modes[0].x.size()));
+  flat.push_back(static_cast<double>(search.overdamped.size()));
   const auto put = [&](Complex v) {
     flat.push_back(v.real());
     flat.push_back(v.imag());
   };
+  for (const Complex& s : search.overdamped) put(s);
   for (ShaftMode& m : modes) {
     put(m.lambda);
     put({m.undamped ? 1.0 : 0.0, m.participation});
@@ -119,15 +155,17 @@ std::vector<double> pack(std::vector<ShaftMode> modes, const ModeSearch& search)
 }
 
 std::vector<ShaftMode> unpack(const std::vector<double>& flat, ModeSearch& search) {
-  search = {flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], flat[6]};
+  search = {flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], flat[6], flat[7]};
   const auto count = static_cast<std::size_t>(flat[ModeSearch::size]),
              nodes = static_cast<std::size_t>(flat[ModeSearch::size + 1]);
   std::vector<ShaftMode> modes(count);
-  std::size_t at = ModeSearch::size + 2;
+  std::size_t at = ModeSearch::size + 3;
   const auto take = [&] {
     at += 2;
     return Complex(flat[at - 2], flat[at - 1]);
   };
+  for (std::size_t k = 0; k < static_cast<std::size_t>(flat[ModeSearch::size + 2]); ++k)
+    search.overdamped.push_back(take());
   for (ShaftMode& m : modes) {
     m.lambda = take();
     const Complex facts = take();

@@ -19,6 +19,7 @@ struct ShaftMode {
   int multiplicity = 1, vectors = 1;
   int id = -1;  // the same for the same mode at other speeds
 
+  [[nodiscard]] bool grows() const { return !undamped && lambda.real() > 0; }
   [[nodiscard]] std::vector<std::complex<double>> both() const {
     std::vector<std::complex<double>> all = x;
     all.insert(all.end(), y.begin(), y.end());
@@ -27,24 +28,31 @@ struct ShaftMode {
   [[nodiscard]] std::array<std::vector<std::complex<double>>*, 4> columns() { return {&x, &y, &slope_x, &slope_y}; }
 };
 
-/// What a search by transfer functions looked at and found.
+/// What a search looked at and found beside the modes.
 struct ModeSearch {
-  double frequency = 0, decay = 0;  ///< its region [rad/s, 1/s]; zero: no such search
+  double frequency = 0, decay = 0;  ///< region of a count [rad/s, 1/s]; zero: nothing was counted
   double counted = 0;               ///< eigenvalues there, both of each pair
   double missed = 0;                ///< as solve::Stability::missed
   double gave_up = 0;               ///< 1: fewer modes than asked for, and it did not look on
   /// Of the eigenvalue nearest to zero, if it is multiple without as many vectors; else 0. Known with condition
   /// numbers.
   double rest_multiplicity = 0, rest_vectors = 0;
+  double listed = 0;                               ///< the first modes: those asked for, and all that grow
+  std::vector<std::complex<double>> overdamped{};  ///< imag >= 0, the slowest first
 
-  static constexpr std::size_t size = 7;  ///< as numbers
+  static constexpr std::size_t size = 8;  ///< numbers of a fixed place
 };
 
-/// The `count` vibrating modes of lowest frequency up to `max_frequency` [rad/s] in which the machine takes part, the
-/// largest displacement one. A motion of the films alone is none of these: states are measured in their scales, and
-/// where shaft and pedestals do less than `least_participation` of what the films do, eigenvalues of films that carry
-/// their content along are left to rounding. `condition`: with condition numbers. Collective.
-[[nodiscard]] std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count,
+/// The modes in which the machine takes part, the largest displacement one: first those that grow without oscillation
+/// (real eigenvalues above zero), then the `count` lowest ones that vibrate up to `max_frequency` [rad/s], by
+/// frequency, then all others that grow, whatever their frequency. These are `search.listed`. Up to `beyond` more that
+/// vibrate follow, to recognise modes by. A mode whose damping ratio exceeds spectral::overdamped_above does not count
+/// as one that vibrates: it stands in `search.overdamped`, with real eigenvalues below zero.
+///
+/// A motion of the films alone is none of these unless it grows: states are measured in their scales, and where shaft
+/// and pedestals do less than `least_participation` of what the films do, eigenvalues of films that carry their content
+/// along are left to rounding. `condition`: with condition numbers. Collective.
+[[nodiscard]] std::vector<ShaftMode> shaft_modes(system::RotorSystem& system, Vec equilibrium, int count, int beyond,
                                                  double max_frequency, ModeSearch& search, bool condition = false);
 inline constexpr double least_participation = 1e-3;
 

@@ -12,10 +12,11 @@ namespace whirl::solve {
 
 struct MachineModes {
   std::vector<spectral::Mode> modes;  ///< as of spectral::modes
-  int missed = 0;  ///< eigenvalues that are there but not among the modes: only the count of transfer functions tells
-  std::string doubt;  ///< why that count is not sure; empty if it is, or if nothing was counted
+  int missed = 0;                     ///< eigenvalues that are there but not among the modes, as far as a count tells
+  std::string doubt;                  ///< why that count is not sure; empty if it is, or if nothing was counted
   bool transfer = false;
-  // Of a search by transfer functions: the region [rad/s, 1/s] and how many eigenvalues it holds, both of each pair.
+  // Of a count: its region [rad/s, 1/s] and how many eigenvalues it holds, both of each pair. Zero: nothing was
+  // counted.
   double frequency = 0, decay = 0;
   int counted = 0;
   bool gave_up = false;  ///< fewer than Wanted::at_least were found, and a longer search might find more
@@ -30,7 +31,8 @@ struct Wanted {
 
 /// Modes at the equilibrium x. PETSc option -modes_by chooses:
 ///
-/// | whole | spectral::modes on the whole pencil: all of a small one, those nearest to zero of a large one |
+/// | whole | spectral::modes on the whole pencil: all of a small one, those nearest to zero of a large one, counted
+///           (spectral::count_eigenvalues) where no film has states |
 /// | transfer | transfer_modes() in a region |
 /// | automatic | the default: `whole` up to 100 000 states, `transfer` above |
 ///

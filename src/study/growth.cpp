@@ -1,0 +1,52 @@
+#include "study/growth.hpp"
+
+#include <fmt/core.h>
+
+#include <numbers>
+
+#include "study/common.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+namespace whirl::study {
+
+std::string Growth::words() const {
+  const auto several = [](std::size_t n, const char* what) {
+    return n > 1 ? fmt::format(", the fastest of {} {}", n, what) : std::string();
+  };
+  std::string out;
+  if (!real.empty())
+    out = fmt::format("it diverges (s = +{:.4g} 1/s{})", real.front(), several(real.size(), "real eigenvalues"));
+  if (!pairs.empty())
+    out += fmt::format("{}an oscillation grows ({:.4g} Hz, log decrement {:.3g}{})", out.empty() ? "" : ", and ",
+                       pairs.front().imag() / (2 * std::numbers::pi), spectral::log_decrement(pairs.front()),
+                       several(pairs.size(), "pairs"));
+  return out;
+}
+
+Growth growth_of(const solve::Stability& stability) {
+  Growth out;
+  out.undamped = stability.neutral;
+  out.missed = stability.missed;
+  // By falling distance from the border of stability, so the fastest come first.
+  for (std::size_t k = 0; k < stability.values.size() && stability.distance[k] > 0; ++k) {
+    const std::complex<double> s = stability.values[k];
+    // Two equal real eigenvalues part by rounding into a pair that does not vibrate.
+    if (!spectral::vibrates(s))
+      out.real.push_back(s.real());
+    else if (s.imag() > 0)
+      out.pairs.push_back(s);
+  }
+  return out;
+}
+
+Growth growth_at(system::Plant& system, Vec x) {
+  return growth_of(equilibrium_stability(system, x));
+}
+
+void warn_of(const Growth& growth, const std::string& where, const std::string& consequence,
+             io::StudySummary& summary) {
+  if (!growth.any()) return;
+  summary.warnings.push_back(fmt::format("{} the equilibrium is unstable: {}. {}", where, growth.words(), consequence));
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,70 @@
+#pragma once
+// Modes over the speed: which is which, and where one crosses a border.
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "study/linear/shaft_modes.hpp"
+#include "whirl/spectral/follow.hpp"
+
+namespace whirl::study {
+
+/// The modes at one speed [rad/s], as shaft_modes() orders them.
+struct Station {
+  double speed = 0;
+  bool reported = false;  ///< asked for; others only help to follow the modes
+  std::vector<ShaftMode> modes{};
+  std::size_t listed = 0;  ///< of them, the first
+  std::vector<std::complex<double>> overdamped{};
+};
+
+[[nodiscard]] std::vector<spectral::ModePoint> points_of(const std::vector<ShaftMode>& modes);
+
+/// Puts stations between those whose modes cannot be told apart, and then gives each mode an identity: numbers from one
+/// in the order in which the results show the modes, zero for modes that they do not show. As many speeds are added at
+/// most as were asked for. Of each station the first `count` modes must be told apart.
+void follow(std::vector<Station>& stations, std::size_t count,
+            const std::function<std::vector<Station>(const std::vector<double>&)>& modes_at);
+
+/// What a mode crosses: its frequency the speed, or its real part zero.
+enum class Border { critical, stability };
+
+/// How far lambda is from the border at a speed: positive above the speed, or where it grows.
+[[nodiscard]] double beyond(Border border, std::complex<double> lambda, double speed);
+
+/// A mode on both sides of a border, at the speeds s0 and s1 with its distances f0 and f1 from it. Stations are in the
+/// order of their speeds, and so are crossings.
+struct Crossing {
+  Border border = Border::critical;
+  double s0 = 0, s1 = 0, f0 = 0, f1 = 0;
+  ShaftMode guide{};        ///< the mode at s1
+  std::size_t station = 0;  ///< at s1
+};
+[[nodiscard]] std::vector<Crossing> crossings_of(const std::vector<Station>& stations);
+
+/// Where the crossing is, and the eigenvalue there.
+struct CrossingPoint {
+  double speed = 0;
+  std::complex<double> lambda = 0;
+};
+/// Secants on the distance from the border, each with the modes at that speed, of which the one like the guide is
+/// taken. Where none is, the last speed stands.
+[[nodiscard]] CrossingPoint locate(Crossing crossing, const std::function<std::vector<ShaftMode>(double)>& modes_at);
+
+/// Speeds over which one mode grows.
+struct UnstableRange {
+  int id = 0;
+  double from = 0, to = 0;            ///< [rad/s]
+  bool begins = false, ends = false;  ///< at a crossing; else where the mode is first or last seen
+  std::complex<double> lambda = 0;    ///< at the crossing, else where it grows fastest
+  std::optional<std::size_t> begin_crossing{}, end_crossing{};  ///< their places; none where it is undamped beside it
+  ShaftMode shape{};                                            ///< where it grows first
+};
+/// Of all modes with a number, by rising speed. `points` as many as `crossings`.
+[[nodiscard]] std::vector<UnstableRange> unstable_ranges(const std::vector<Station>& stations,
+                                                         const std::vector<Crossing>& crossings,
+                                                         const std::vector<CrossingPoint>& points);
+
+}  // namespace whirl::study

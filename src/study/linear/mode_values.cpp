@@ -1,0 +1,131 @@
+#include "study/linear/mode_values.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "study/bars/verdict.hpp"
+#include "study/common.hpp"
+#include "whirl/deck/units.hpp"
+#include "whirl/spectral/whirl.hpp"
+
+namespace whirl::study {
+namespace {
+
+constexpr std::size_t most_named = 5;  // in one warning
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (std::size_t k = 0; k < std::min(most_named, words.size()); ++k) out += (k > 0 ? "; " : "") + words[k];
+  if (words.size() > most_named) out += fmt::format("; and {} more", words.size() - most_named);
+  return out;
+}
+
+}  // namespace
+
+const char* stability_of(const ShaftMode& mode) {
+  if (mode.undamped) return name_of(StabilityClass::undamped);
+  if (!mode.grows()) return name_of(StabilityClass::stable);
+  return spectral::vibrates(mode.lambda) ? name_of(StabilityClass::unstable) : "diverges";
+}
+
+std::string ModeValues::words_of(const ShaftMode& mode, std::complex<double> lambda) const {
+  if (!spectral::vibrates(lambda)) return fmt::format("mode {} diverges (s = +{:.4g} 1/s)", mode.id, lambda.real());
+  return fmt::format("mode {}, {} whirl at {:.4g} Hz", mode.id, spectral::name_of(tables_.sense_of(mode)),
+                     lambda.imag() / (2 * std::numbers::pi));
+}
+
+void ModeValues::put_speed(io::StudySummary& summary, const Station& station) const {
+  const std::string head = "at." + number_text(station.speed, unit_) + ".";
+  const auto put = [&](const std::string& name, const ShaftMode* m) {
+    if (!m) return;
+    const auto bar = bars_.at(m->id, station.speed);
+    summary.set(head + name + ".frequency", m->lambda.imag(), "rad/s", bars_.as_bar(bar[1]));
+    summary.set(head + name + ".log_decrement", m->undamped ? 0 : spectral::log_decrement(m->lambda), "1",
+                bars_.as_bar(bar[2]));
+    summary.set(head + name + ".damping_ratio", spectral::damping_ratio(m->lambda), "1");
+  };
+  const ShaftMode *forward = nullptr, *least = nullptr;
+  std::vector<std::string> growing;
+  for (std::size_t k = 0; k < station.listed; ++k) {
+    const ShaftMode& m = station.modes[k];
+    const bool moves = spectral::vibrates(m.lambda);
+    if (!forward && moves && tables_.sense_of(m) == spectral::Sense::forward) forward = &m;
+    if (!least || spectral::damping_ratio(m.lambda) < spectral::damping_ratio(least->lambda)) least = &m;
+    if (!m.grows()) continue;
+    growing.push_back(words_of(m, m.lambda));
+    if (moves) growing.back() += fmt::format(" grows (log decrement {:.3g})", spectral::log_decrement(m.lambda));
+  }
+  put("first_forward", forward);
+  put("least_damped", least);
+  summary.set(head + "unstable", static_cast<double>(growing.size()), "1");
+  if (!growing.empty())
+    summary.warnings.push_back(
+        fmt::format("at {} {} the machine is unstable: {}", number_text(station.speed, unit_), unit_, joined(growing)));
+}
+
+void ModeValues::put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& ranges,
+                            const std::vector<double>& errors) const {
+  std::vector<double> from, to, frequency, real;
+  std::vector<std::int64_t> mode, begins, ends;
+  std::vector<std::string> whirl, words;
+  const auto error_of = [&](const std::optional<std::size_t>& crossing) {
+    return crossing ? bars_.as_bar(deck::from_si(errors[*crossing], unit_)) : std::map<std::string, double>{};
+  };
+  std::size_t shown = 0;
+  for (const UnstableRange& r : ranges) {
+    from.push_back(r.from);
+    to.push_back(r.to);
+    frequency.push_back(r.lambda.imag());
+    real.push_back(r.lambda.real());
+    mode.push_back(r.id);
+    begins.push_back(r.begins);
+    ends.push_back(r.ends);
+    whirl.emplace_back(spectral::vibrates(r.lambda) ? spectral::name_of(tables_.sense_of(r.shape)) : "none");
+    words.push_back(fmt::format("{}{} to {}{} {}: {}", r.begins ? "" : "from the start, ", number_text(r.from, unit_),
+                                number_text(r.to, unit_), r.ends ? "" : " (the end)", unit_,
+                                words_of(r.shape, r.lambda)));
+    if (++shown > most_named) continue;
+    const std::string head = fmt::format("unstable.{}.", shown);
+    summary.set(head + "from", deck::from_si(r.from, unit_), unit_, error_of(r.begin_crossing));
+    summary.set(head + "to", deck::from_si(r.to, unit_), unit_, error_of(r.end_crossing));
+    summary.set(head + "mode", r.id, "1");
+    summary.set(head + "frequency", r.lambda.imag(), "rad/s");
+  }
+  summary.set("unstable.count", static_cast<double>(ranges.size()), "1");
+  // By rising speed: what begins first begins where the machine is stable below, unless it is there from the start.
+  if (!ranges.empty() && ranges.front().begins)
+    summary.set("threshold", deck::from_si(ranges.front().from, unit_), unit_, error_of(ranges.front().begin_crossing));
+  auto& table = group.child("unstable");
+  table.put("from", from, "rad/s", "speed from which the mode grows");
+  table.put("to", to, "rad/s", "speed up to which it grows");
+  table.put("mode", mode, "mode followed by its shape");
+  table.put("whirl", whirl, "sense of whirl by the kinetic energy of the shaft's nodes; none: it diverges");
+  table.put("frequency", frequency, "rad/s", "where it begins or ends to grow, else where it grows fastest");
+  table.put("damping_real", real, "1/s", "likewise");
+  table.put("begins", begins, "1: it becomes unstable at `from`; 0: the mode or the range of speeds begins there");
+  table.put("ends", ends, "1: it becomes stable at `to`; 0: the mode or the range of speeds ends there");
+  if (!ranges.empty()) summary.warnings.push_back("the machine is unstable: " + joined(words));
+}
+
+void ModeValues::put_overdamped(io::Group& table, io::StudySummary& summary,
+                                const std::vector<Station>& stations) const {
+  std::vector<double> speed, frequency, real;
+  for (const Station& s : stations) {
+    if (!s.reported) continue;
+    for (const std::complex<double>& lambda : s.overdamped) {
+      speed.push_back(s.speed);
+      frequency.push_back(lambda.imag());
+      real.push_back(lambda.real());
+    }
+    summary.set("overdamped", static_cast<double>(s.overdamped.size()), "1");
+  }
+  if (speed.empty()) return;
+  table.put("speed", speed, "rad/s", "shaft speed");
+  table.put("frequency", frequency, "rad/s", "damped frequency; zero of real eigenvalues");
+  table.put("damping_real", real, "1/s", "real part of the eigenvalue");
+}
+
+}  // namespace whirl::study

@@ -1,0 +1,44 @@
+#pragma once
+// What modes say of the machine in numbers with names, and in warnings.
+
+#include <string>
+#include <vector>
+
+#include "study/linear/mode_bars.hpp"
+#include "study/linear/mode_stations.hpp"
+#include "study/linear/mode_tables.hpp"
+#include "whirl/io/summary.hpp"
+#include "whirl/io/table.hpp"
+
+namespace whirl::study {
+
+/// "stable", "undamped", "unstable", or "diverges" of a real eigenvalue above zero.
+[[nodiscard]] const char* stability_of(const ShaftMode& mode);
+
+class ModeValues {
+public:
+  /// `unit` of speeds. All arguments outlive this.
+  ModeValues(std::string unit, const ModeTables& tables, const ModeBars& bars)
+      : unit_(std::move(unit)), tables_(tables), bars_(bars) {}
+
+  /// Of a single speed, as "at.SPEED.": frequency [rad/s], log_decrement and damping_ratio of the first forward mode
+  /// (`first_forward.`, that of lowest frequency) and of the least damped one (`least_damped.`), and how many modes
+  /// grow (`unstable`). A warning names those that grow.
+  void put_speed(io::StudySummary& summary, const Station& station) const;
+  /// Of a range: "unstable.K." with from, to, mode and frequency, and a table; `errors` of the speeds of the crossings
+  /// [rad/s]. "threshold": the lowest speed at which the machine, stable below, becomes unstable. A warning names the
+  /// ranges.
+  void put_ranges(io::Group& group, io::StudySummary& summary, const std::vector<UnstableRange>& ranges,
+                  const std::vector<double>& errors) const;
+  /// Motions that fall away before they vibrate: a table, and how many there are at the last speed.
+  void put_overdamped(io::Group& table, io::StudySummary& summary, const std::vector<Station>& stations) const;
+
+private:
+  [[nodiscard]] std::string words_of(const ShaftMode& mode, std::complex<double> lambda) const;
+
+  std::string unit_;
+  const ModeTables& tables_;
+  const ModeBars& bars_;
+};
+
+}  // namespace whirl::study

@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""Modes of small machines: what is listed, what grows, and where.
+
+cases_modes.py PROGRAM SOURCE CASE [LAUNCHER WORDS...]
+"""
+import math
+import sys
+
+import h5py
+import numpy as np
+from harness import Harness, value
+
+GROWTH = (-100 + math.sqrt(1e4 + 4e7)) / 20  # of 10 kg on -1 MN/m with 100 N s/m [1/s]
+RPM = math.pi / 30
+
+
+def warned(study, *words):
+    return any(all(word in w for word in words) for w in study.get("warnings", []))
+
+
+def divergence(h):
+    """A negative stiffness: s = +311.3 1/s, on any number of ranks, in a rigid rotor and in a shaft before and after a reduction."""
+    deck = h.source / "tests/cases/negative_stiffness.yaml"
+    few = "studies=[{modes: {name: m, speeds: [100 rad/s]}}, {static: {name: s, speed: 100 rad/s}}]"
+    for ranks in (1, 2, 3):
+        s = h.run(deck, f"ranks {ranks}", [few], launcher=[] if ranks == 1 else [*h.launcher, "-n", str(ranks)])
+        first = s["m"]["modes"][0]
+        h.close(f"real eigenvalue [1/s], {ranks} ranks", first["real"], GROWTH, 1e-9 * GROWTH)
+        h.true("it is named", first["imag"] == 0 and first["stability"] == "diverges" and first["damping_ratio"] == -1)
+        h.true("modes and static warn", warned(s["m"], "diverges", "+311.3") and warned(s["s"], "diverges", "+311.3"))
+        h.close("modes that grow", value(s["m"], "at.100.unstable"), 1, 0)
+        h.true("the other plane is stable", [m["stability"] for m in s["m"]["modes"]] == ["diverges", "stable"])
+    # The same spring in the middle of a shaft, whole and reduced; another film speaks for seals.
+    shaft = h.source / "tests/cases/friswell_591.yaml"
+    seal = "bearings.seal={node: 4, film: {type: linear, stiffness: [-8e6 N/m, 0 N/m, 0 N/m, 1e5 N/m], damping: 500 N s/m}}"
+    found = []
+    for reduction in ("none", "{type: craig_bampton, masters: [1, 4, 7], modes: 4}", "{type: guyan, masters: [1, 3, 4, 5, 7]}"):
+        over = [] if reduction == "none" else [f"rotor.reduction={reduction}"]
+        s = h.run(shaft, f"seal {reduction[:10]}", [few, seal, *over], launcher=[])
+        found.append(s["m"]["modes"][0])
+        h.true(f"a shaft diverges, reduction {reduction[:20]}", found[-1]["stability"] == "diverges" and warned(s["s"], "diverges"))
+    h.close("after a reduction [1/s]", found[1]["real"], found[0]["real"], 0.02 * found[0]["real"])
+
+
+def missing(h):
+    """Overdamped motions stand apart; the machine's modes and all that grows are listed, whatever their frequencies."""
+    deck = h.source / "tests/cases/missing_modes.yaml"
+    for parts, name in ((20, "given"), (40, "forty")):
+        cut = [] if parts == 20 else ["rotor.segments=[" + ", ".join(["{length: 7.5 mm, diameter: 15 mm}"] * 40) + "]", "rotor.discs.1.node=17",
+                                      "bearings.right.node=41"]
+        s = h.run(deck, name, cut, launcher=[])["m"]
+        for k, wanted in ((1, 1133), (2, 1135)):
+            h.close(f"critical speed {k}, {parts} elements [rad/s]", value(s, f"critical.{k}.speed"), wanted, 1)
+        h.true("no mode is overdamped", all(m["damping_ratio"] <= 0.9 for m in s["modes"]))
+        h.true("they are counted", value(s, "overdamped") >= 14, str(value(s, "overdamped")))
+        h.true("by frequency", all(a["imag"] <= b["imag"] for a, b in zip(s["modes"], s["modes"][1:]) if a["speed"] == b["speed"]))
+    with h5py.File(h.work / "given" / "results.h5") as f:
+        real, imag = (f["studies/m/overdamped"][k][()] for k in ("damping_real", "frequency"))
+        h.true("and stand in a table", np.all(-real / np.hypot(real, imag) > 0.9))
+    # Internal damping: forward whirl grows beyond 1466.98 rad/s, as the branch of equilibria says.
+    deck = h.source / "tests/cases/missing_unstable.yaml"
+    more = ["studies=[{modes: {name: m, speeds: [3000 rad/s], count: 6}}, {modes: {name: over, range: {from: 500 rad/s, to: 3000 rad/s}, points: 6, count: 4}}]"]
+    s = h.run(deck, "internal", more, launcher=[])
+    growing = [m for m in s["m"]["modes"] if m["stability"] == "unstable"]
+    h.true("one mode grows", len(growing) == 1 and growing[0]["whirl"] == "forward")
+    h.close("    at [Hz]", growing[0]["imag"] / (2 * math.pi), 181, 0.5)
+    h.close("    log decrement", growing[0]["log_decrement"], -0.009, 0.0005)
+    h.close("    the least damped", value(s["m"], "at.3000.least_damped.log_decrement"), growing[0]["log_decrement"], 0)
+    h.close("    threshold over the speed [rad/s]", value(s["over"], "threshold"), 1466.98, 0.01)
+    h.close("    up to the end", value(s["over"], "unstable.1.to"), 3000, 1e-9)
+    h.close("    its number", value(s["over"], "unstable.1.mode"), next(m["mode"] for m in s["over"]["modes"] if m["stability"] == "unstable"), 0)
+    h.true("    both warn", warned(s["m"], "unstable", "forward") and warned(s["over"], "unstable", "forward", "to 3000"))
+
+
+def fine(h):
+    """A shaft beyond dense matrices finds the same modes, and a count says that none is missing."""
+    deck = h.source / "tests/cases/missing_unstable.yaml"
+    one = "studies=[{modes: {name: m, speeds: [3000 rad/s], count: 6}}]"
+    cut = lambda n: ["rotor.segments=[" + ", ".join(["{length: %.9g mm, diameter: 15 mm}" % (300 / n)] * n) + "]",  # noqa: E731
+                     f"rotor.discs.1.node={8 * n // 20 + 1}", f"bearings.right.node={n + 1}"]
+    coarse = h.run(deck, "coarse", [one, *cut(60)], launcher=[])["m"]
+    for ranks in (1, 2):
+        s = h.run(deck, f"fine {ranks}", [one, *cut(120)], launcher=[] if ranks == 1 else [*h.launcher, "-n", "2"])["m"]
+        h.close(f"as many modes, {ranks} ranks", len(s["modes"]), len(coarse["modes"]), 0)
+        for a, b in zip(s["modes"], coarse["modes"]):
+            h.close("    frequency [rad/s]", a["imag"], b["imag"], 1e-4 * b["imag"])
+        h.close("    none is missed", value(s, "search.missed"), 0, 0)
+        h.true("    they are counted", value(s, "search.counted") >= 2 * len(s["modes"]) and value(s, "search.frequency") > s["modes"][-1]["imag"])
+        h.true("    one grows", sum(m["stability"] == "unstable" for m in s["modes"]) == 1)
+
+
+def textbook(h):
+    """Printed values of Friswell's machines; an undamped pair at rest is two modes, neither of which grows."""
+    s = h.run(h.source / "tests/cases/friswell_591.yaml", "591", launcher=[])["campbell"]
+    rest, turning = ([m for m in s["modes"] if m["speed"] == speed] for speed in (0, 4000))
+    for m, wanted in zip(rest, (86.66, 86.66, 274.31, 274.31, 716.78, 716.78), strict=True):
+        h.close("5.9.1 at rest [rad/s]", m["imag"], wanted, 0.01)
+        h.true("    undamped", m["stability"] == "undamped", m["stability"])
+    for m, wanted in zip(turning, (85.39, 87.80, 251.78, 294.71, 600.18)):
+        h.close("5.9.1 at 4000 rpm [rad/s]", m["imag"], wanted, 0.01)
+    s = h.run(h.source / "tests/cases/friswell_594.yaml", "594", launcher=[])["campbell"]
+    rest = [m for m in s["modes"] if m["speed"] == 0]
+    for m, wanted in zip(rest, (11.66, 14.80, 33.97, 49.19, 97.97, 126.6), strict=True):
+        h.close("5.9.4 at rest [Hz]", m["imag"] / (2 * math.pi), wanted, 0.01 if wanted < 100 else 0.1)
+    h.true("it is unstable as soon as it turns", warned(s, "4000 rpm", "unstable"))
+    disc = h.source / "inputs/merot/disc_rotor.yaml"
+    rest = "studies=[{modes: {name: m, speeds: [0 rad/s], count: 6}}]"
+    for element in ("rayleigh", "timoshenko", "timoshenko_linear", "timoshenko_hermitian"):
+        s = h.run(disc, element, [rest, f"rotor.element={element}", "bearings.*.film.damping=0 N s/m"], launcher=[])["m"]
+        pairs = [m["imag"] for m in s["modes"]]
+        h.true(f"{element}: undamped pairs at rest", all(m["stability"] == "undamped" for m in s["modes"]) and
+               all(abs(a - b) < 1e-6 * a for a, b in zip(pairs[::2], pairs[1::2])), str([m["stability"] for m in s["modes"]]))
+
+
+def supports(h):
+    """Masses below the bearings: modes as published, and a map that meets the Campbell diagram."""
+    deck = h.source / "tests/cases/support_mass.yaml"
+    s = h.run(deck, "given", launcher=[])
+    for m, wanted in zip(s["modes"]["modes"], (12.73, 13.61, 27.00, 29.63, 47.64, 51.77)):
+        h.close("mode at 1800 rpm [Hz]", m["imag"] / (2 * math.pi), wanted, 0.005)
+    # Springs of 1 MN/m in both planes: with the pedestals as they are, and with equal ones.
+    springs = "bearings.*.film={type: linear, stiffness: 1 MN/m, damping: 0 N s/m}"
+    both = "studies=[{modes: {name: c, range: {from: 10 rad/s, to: 400 rad/s}, points: 14, count: 8}}, {critical_speed_map: {name: map, stiffness: {from: 1 MN/m, to: 2 MN/m}, points: 2, count: 3}}]"
+    for name, pedestal in (("equal", ["bearings.*.pedestal.stiffness=1 MN/m"]), ("given", [])):
+        s = h.run(deck, f"map {name}", [springs, both, *pedestal], launcher=[])
+        campbell = sorted(v["value"] for k, v in s["c"]["values"].items() if k.startswith("critical.") and k.endswith(".speed"))
+        mapped = sorted(v["value"] for k, v in s["map"]["values"].items() if k.startswith("softest."))
+        h.true(f"{name} pedestals: six critical speeds", len(mapped) == 6 and len(campbell) >= 5, f"{mapped}, {campbell}")
+        for a, b in zip(mapped, campbell):
+            h.close("    the map meets the Campbell diagram [rad/s]", a, b, 1e-5 * b)
+
+
+def level_1(h):
+    """A sweep of modes over a cross-coupling at mid-span: log decrements of the first forward mode (API level I)."""
+    deck = h.source / "tests/cases/steam_turbine.yaml"
+    cross = "bearings.Q={node: 12, film: {type: linear, stiffness: [0 N/m, 0 N/m, 0 N/m, 0 N/m], damping: 0 N s/m}}"
+    table = ", ".join("q%d: {bearings.Q.film.stiffness: [0 N/m, %g N/m, %g N/m, 0 N/m]}" % (k, q, -q) for k, q in enumerate((0, 1e6, 2e6)))
+    s = h.run(deck, "level 1", [cross, "studies=[{modes: {name: m, speeds: [7500 rpm], count: 3}}, {sweep: {name: Q, of: [m], as_given: false, variants: {%s}}}]" % table], launcher=[])
+    column = {c["name"]: c["values"] for c in s["Q"]["columns"]}
+    for found, wanted in zip(column["m.at.7500.first_forward.log_decrement"], (0.0438, 0.0052, -0.0334), strict=True):
+        h.close("log decrement of the first forward mode", found, wanted, 1e-4)
+    d = column["m.at.7500.first_forward.log_decrement"]
+    h.close("Q_0 [MN/m]", 1 + d[1] / (d[1] - d[2]), 1.14, 0.01)
+    h.true("frequencies beside them", all(f > 0 for f in column["m.at.7500.first_forward.frequency"]))
+    h.true("and how many grow", column["m.at.7500.unstable"] == [0, 0, 1], str(column["m.at.7500.unstable"]))
+
+
+if __name__ == "__main__":
+    harness = Harness(sys.argv[1], sys.argv[2], sys.argv[4:])
+    {f.__name__: f for f in (divergence, fine, level_1, missing, supports, textbook)}[sys.argv[3]](harness)
+    harness.finish()
