@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "planar.hpp"
+#include "whirl/core/from_options.hpp"
 
 namespace whirl::rotor {
 
@@ -42,7 +43,7 @@ std::vector<double> lowest_eigenvalues(Mat stiffness, Mat mass, double shift, Pe
   make_direct(ksp);
   std::vector<Vec> space(rigid);
   if (n_rigid > 0 && !dense) check(EPSSetDeflationSpace(eps.get(), n_rigid, space.data()));
-  check(EPSSetFromOptions(eps.get()));
+  core::set_from_options(eps.get());
   check(EPSSolve(eps.get()));
 
   const PetscInt skip = dense ? n_rigid : 0;  // zero is nearest to the shift

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "reduction.hpp"
+#include "whirl/core/from_options.hpp"
 #include "whirl/rotor/dense.hpp"
 
 namespace whirl::rotor {
@@ -84,7 +85,7 @@ std::vector<Mode> slowest(const MatrixXd& m, const MatrixXd& c, const MatrixXd& 
   else
     check(EPSSetDimensions(eps.get(), wanted, 2 * wanted + 20, PETSC_DEFAULT));
   check(EPSSetTolerances(eps.get(), 1e-13, 1000));
-  check(EPSSetFromOptions(eps.get()));
+  core::set_from_options(eps.get());
   check(EPSSolve(eps.get()));
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));

@@ -14,6 +14,7 @@
 #include "spectral/rounding.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/from_options.hpp"
 
 namespace whirl::spectral {
 namespace {
@@ -178,7 +179,7 @@ std::vector<Mode> modes(problem::System& system, Vec x, const EigenOptions& opti
     search_near(eps.get(), a.get(), options.target, std::min<PetscInt>(options.count, system.size() - 2),
                 shell ? &*shell : nullptr);
   }
-  check(EPSSetFromOptions(eps.get()));
+  core::set_from_options(eps.get());
   std::vector<Mode> out;
   if (!dense) {
     if (shell)
@@ -260,7 +261,7 @@ std::vector<Complex> eigenvalues(const Eigen::MatrixXd& matrix) {
   check(EPSSetOperators(eps.get(), m.get(), nullptr));
   check(EPSSetProblemType(eps.get(), EPS_NHEP));
   check(EPSSetType(eps.get(), EPSLAPACK));
-  check(EPSSetFromOptions(eps.get()));
+  core::set_from_options(eps.get());
   check(EPSSolve(eps.get()));
   PetscInt converged = 0;
   check(EPSGetConverged(eps.get(), &converged));

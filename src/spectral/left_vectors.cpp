@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "whirl/core/error.hpp"
+#include "whirl/core/from_options.hpp"
 
 namespace whirl::spectral {
 
@@ -66,7 +67,7 @@ LeftVectors::LeftVectors(Mat a, Mat b, const EigenOptions& options) : b_(b) {
   check(EPSSetOperators(left_.get(), a_turned_.get(), b_turned_.get()));
   check(EPSSetProblemType(left_.get(), EPS_GNHEP));
   search_near(left_.get(), a_turned_.get(), options.target, std::min<PetscInt>(options.count, n - 2), nullptr);
-  check(EPSSetFromOptions(left_.get()));
+  core::set_from_options(left_.get());
   check(EPSSolve(left_.get()));
   values_ = values_of(left_.get());
 }

@@ -7,6 +7,7 @@
 #include "spectral/pencil_search.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/from_options.hpp"
 
 namespace whirl::spectral {
 
@@ -73,7 +74,7 @@ std::vector<LocalMode> modes_within(Mat a, Mat b, double target, double radius) 
       make(eps, comm, a, minus.get());
       wanted = std::min({wanted, most, n - 2});
       search_near(eps.get(), a, target, wanted, nullptr);
-      check(EPSSetFromOptions(eps.get()));
+      core::set_from_options(eps.get());
       check(EPSSolve(eps.get()));
       PetscInt found = 0;
       check(EPSGetConverged(eps.get(), &found));

@@ -6,6 +6,7 @@
 #include "common.hpp"
 #include "first_guess.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 #include "whirl/system/rotor_system.hpp"
@@ -19,8 +20,9 @@ std::unique_ptr<system::Plant> make_plant(MPI_Comm comm, const system::Machine& 
   };
   const double magnitude = varied ? std::max(std::abs(varied->range.from), std::abs(varied->range.to)) : 1;
   if (!system::is_rotor(machine)) return system::make_other(comm, {machine_at, request.value, magnitude});
-  const auto train_at = [machine_at, unbalance = request.unbalance, cells = request.film_cells](double p) {
-    return with_film_mesh(system::train_of(machine_at(p), unbalance), cells);
+  const auto train_at = [machine_at, unbalance = request.unbalance, cells = request.film_cells,
+                         parts = request.shaft_parts](double p) {
+    return with_cut_shaft(with_film_mesh(system::train_of(machine_at(p), unbalance), cells), parts);
   };
   if (!varied) return std::make_unique<system::RotorSystem>(comm, train_at(0), request.value);
   return std::make_unique<system::RotorSystem>(comm, system::Varying{train_at, request.value, magnitude},

@@ -18,6 +18,7 @@ struct PlantRequest {
   double value = 0;                        ///< of the parameter, SI
   double speed = 0;                        ///< of a rotor, where the parameter is another one [rad/s]
   std::array<double, 2> film_cells{1, 1};  ///< cells of its films over those of the deck
+  int shaft_parts = 1;                     ///< into which each segment of its shaft is cut
 };
 
 /// The system that `machine` describes. It refers to `machine` and to the parameter, which outlive it. Collective.

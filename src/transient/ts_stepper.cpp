@@ -8,6 +8,7 @@
 
 #include "transient/stages.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/from_options.hpp"
 
 namespace whirl::transient {
 namespace {
@@ -151,7 +152,7 @@ TsStepper::TsStepper(Equations& equations, const IntegratorOptions& options, con
   KSP ksp = nullptr;
   check(SNESGetKSP(snes(), &ksp));
   equations.configure(ksp);
-  check(TSSetFromOptions(ts));
+  core::set_from_options(ts);
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts, &adapt));
   check(TSAdaptGetStepLimits(adapt, nullptr, &longest_));

@@ -31,6 +31,18 @@ TEST(MeshLimit, TrustsNoOrderThatIsNotShown) {
   const auto waver = study::mesh_limit({1.0, 1.3, 1.2});
   EXPECT_NEAR(waver.error, 0.1, 1e-12);
   EXPECT_TRUE(std::isnan(study::mesh_limit({}).limit));
+  // The last two meshes agree by chance: an order of 9.6. By theory they would differ by 0.075.
+  const auto chance = study::mesh_limit({1.0, 1.3, 1.3 + 0.3 * std::exp2(-9.6)});
+  EXPECT_NEAR(chance.order, 9.6, 1e-9);
+  EXPECT_NEAR(chance.error, 0.075 / 3, 1e-12);
+  // Of a scheme of first order a second one is not believed either, and kinks show none.
+  EXPECT_GE(study::mesh_limit({1.0, 1.4, 1.5}, 1).error, 0.2 * (1 - 1e-12));
+  EXPECT_NEAR(study::mesh_limit({1.0, 1.4, 1.5}, 2, true).error, 0.1, 1e-12);
+  // 1.0 + 0.9 (1 - 2^(-k/4)): the bar of an order below 1/2 reaches what is left.
+  std::vector<double> slow;
+  for (int k = 0; k < 3; ++k) slow.push_back(1.9 - 0.9 * std::exp2(-0.25 * k));
+  const auto low = study::mesh_limit(slow);
+  EXPECT_LT(std::abs(low.limit - 1.9), low.error);
 }
 
 // Folds and the Neimark-Sacker point of the rotor in a rubber-lined bearing.

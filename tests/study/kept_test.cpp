@@ -88,19 +88,42 @@ TEST(Kept, TheBarOfAContactHoldsItsMeshes) {
   slope.add(2.5, 0.5);
   slope.add(3, 0);
   EXPECT_EQ(slope.value(), -1);
-  std::vector<MarginThere> there;
-  for (const double s : {0.5, 2.0}) there.push_back({Axis::around, s, 0.1 * (s * s - 1)});
+  EXPECT_EQ(slope.step(), 0.5);
+  std::vector<ContactThere> there;
+  for (const double s : {0.5, 2.0}) {
+    const auto margin = [s](double p) { return 2 * (3 + 0.1 * (s * s - 1) - p); };
+    there.push_back({Axis::around, s, contact_there(3, slope, margin)});
+    EXPECT_NEAR(there.back().place, 3 + 0.1 * (s * s - 1), 1e-12);
+  }
   io::StudySummary summary;
-  put_contact(summary, 3, "rad/s", 1e-6, slope.value(), {}, there);
+  put_contact(summary, 3, "rad/s", 1e-6, {}, there);
   const auto& q = summary.values.at(0).second;
   EXPECT_EQ(q.value, 3);
   EXPECT_NEAR(q.more.at("uncertainty_film_mesh"), 0.1 * 1.25, 1e-12);
   EXPECT_EQ(q.more.at("uncertainty_location"), 1e-6);
   EXPECT_NEAR(q.more.at("uncertainty"), 0.125001, 1e-12);
   // No solution on any other mesh: nobody knows.
-  for (MarginThere& m : there) m.margin = io::no_value;
-  put_contact(summary, 3, "rad/s", 1e-6, slope.value(), {}, there);
+  for (ContactThere& m : there) m.place = io::no_value;
+  put_contact(summary, 3, "rad/s", 1e-6, {}, there);
   EXPECT_TRUE(std::isnan(summary.values.back().second.more.at("uncertainty")));
+}
+
+// A film that thins as 1/p: on another mesh to 400 N, where the last step's slope says 416 N.
+TEST(Kept, AContactOnAnotherMeshIsFoundAlongTheBranchThere) {
+  const auto thins = [](double least, double end) {
+    return [least, end](double p) { return p > 1.5 * end ? unknown : least * (end / p - 1); };
+  };
+  MarginSlope here;
+  const auto own = thins(1e-3, 300);
+  here.add(290, own(290));
+  here.add(300, own(300));
+  const auto other = thins(1.2e-3, 400);
+  EXPECT_NEAR(300 - other(300) / here.value(), 416, 1) << "what one step says";
+  EXPECT_NEAR(contact_there(300, here, other), 400, 1);
+  // It touches earlier, and has no solution beyond.
+  EXPECT_NEAR(contact_there(300, here, thins(1e-3, 190)), 190, 1);
+  // The margin turns before it vanishes.
+  EXPECT_TRUE(std::isnan(contact_there(300, here, [](double p) { return 1e-3 + 1e-8 * (p - 310) * (p - 310); })));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/core/from_options.hpp"
 #include "whirl/core/gate.hpp"
 #include "whirl/core/petsc.hpp"
 
@@ -82,7 +83,7 @@ DominantSubspace dominant_subspace(const std::function<void(Vec)>& multiply, Vec
     check(EPSSetStoppingTestFunction(eps.get(), stop, &context, nullptr));
     context.below = false;
     check(EPSSetInitialSpace(eps.get(), 1, &start));
-    check(EPSSetFromOptions(eps.get()));
+    core::set_from_options(eps.get());
     context.gate.rethrow(EPSSolve(eps.get()));
     PetscInt converged = 0;
     check(EPSGetConverged(eps.get(), &converged));

@@ -9,6 +9,7 @@
 
 #include "solve/newton/settle_step.hpp"
 #include "whirl/core/error.hpp"
+#include "whirl/core/from_options.hpp"
 #include "whirl/core/shell.hpp"
 
 namespace whirl::solve {
@@ -242,7 +243,7 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   check(SNESGetKSP(snes.get(), &inner));
   // Digits below Newton's own tolerance are of no use.
   configure(inner, context, context.problem.linear_tolerance(), 0.1 * options.tolerance * root_n);
-  check(SNESSetFromOptions(snes.get()));
+  core::set_from_options(snes.get());
   Mat matrix = preconditioned(inner, context, shell.get(), like);
   if (matrix != shell.get()) check(SNESSetJacobian(snes.get(), shell.get(), matrix, form_jacobian, &context));
 }
@@ -251,7 +252,7 @@ void Newton::Objects::make_linear(const std::string& prefix, Vec like) {
   check(KSPCreate(context.problem.comm(), ksp.put()));
   check(KSPSetOptionsPrefix(ksp.get(), prefix.c_str()));
   configure(ksp.get(), context, 1e-9, 1e-300);
-  check(KSPSetFromOptions(ksp.get()));
+  core::set_from_options(ksp.get());
   check(KSPSetOperators(ksp.get(), shell.get(), preconditioned(ksp.get(), context, shell.get(), like)));
 }
 

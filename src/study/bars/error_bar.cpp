@@ -140,7 +140,7 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
       if (std::isfinite(s.value) && s.spacing != 1) own.push_back(s);
     }
     if (!any) continue;
-    if (axis != Axis::time && law.kinks) {
+    if (of_film(axis) && law.kinks) {
       const Regression line = best_line(value, own, law.film_order);
       bar.film_mesh += std::abs(line.slope);
       bar.kinks += std::abs(line.left);
@@ -148,9 +148,12 @@ Bar error_bar(double value, const std::vector<Sample>& samples, const MeshLaw& l
       by_freedom += line.unknown * line.unknown / line.freedoms;
       continue;
     }
-    const Estimate e = estimate(value, own, axis == Axis::time ? law.time_order : law.film_order);
-    (axis == Axis::time ? bar.time_mesh : bar.film_mesh) += std::abs(e.error) + e.doubt;
-    if (axis == Axis::time || !law.feeds_move) continue;
+    const double order = of_film(axis) ? law.film_order : axis == Axis::time ? law.time_order : law.shaft_order;
+    const Estimate e = estimate(value, own, order);
+    (of_film(axis)         ? bar.film_mesh
+     : axis == Axis::time ? bar.time_mesh
+                          : bar.shaft_mesh) += std::abs(e.error) + e.doubt;
+    if (!of_film(axis) || !law.feeds_move) continue;
     double low = value, high = value;
     for (const Sample& s : own) low = std::min(low, s.value), high = std::max(high, s.value);
     bar.film_mesh += high - low;
@@ -166,6 +169,7 @@ std::map<std::string, double> Bar::parts(bool with_time) const {
   std::map<std::string, double> out{{"uncertainty_film_mesh", film_mesh}, {"uncertainty_location", location}};
   if (with_time) out["uncertainty_time_mesh"] = time_mesh;
   if (kinks > 0) out["uncertainty_kinks"] = kinks;
+  if (shaft_mesh != 0) out["uncertainty_shaft_mesh"] = shaft_mesh;
   return out;
 }
 

@@ -13,9 +13,11 @@ namespace whirl::study {
 /// What is not known, of numbers and bars.
 inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Directions in which a discretisation has a mesh: around and along a bearing, and in time.
-enum class Axis { around, along, time };
-inline constexpr std::array<Axis, 3> all_axes{Axis::around, Axis::along, Axis::time};
+/// Directions in which a discretisation has a mesh: around and along a bearing, in time, and along the shaft.
+enum class Axis { around, along, time, shaft };
+inline constexpr std::array<Axis, 4> all_axes{Axis::around, Axis::along, Axis::time, Axis::shaft};
+/// Of a film.
+[[nodiscard]] constexpr bool of_film(Axis axis) { return axis == Axis::around || axis == Axis::along; }
 
 /// The same number on a mesh that differs in one direction; `spacing` is its spacing over that of the mesh in use. NaN:
 /// it could not be had there.
@@ -29,6 +31,7 @@ struct Sample {
 struct MeshLaw {
   double film_order = 2;
   double time_order = 2;
+  double shaft_order = 4;
   /// The force of a film has kinks in the journal's place, of its own mesh: errors need not fall regularly.
   bool kinks = false;
   /// The force of a film is smooth between places where a derivative jumps: normal forms of it are those of its mesh.
@@ -42,10 +45,12 @@ struct MeshLaw {
 struct Bar {
   double film_mesh = 0;
   double time_mesh = 0;
+  double shaft_mesh = 0;
   double kinks = 0;     ///< of a film with kinks: what these scatter from mesh to mesh
   double location = 0;  ///< what an iteration left
-  [[nodiscard]] double total() const { return film_mesh + time_mesh + kinks + location; }
-  /// Its parts as a summary names them: uncertainty_film_mesh, ...; time only where there is such a mesh.
+  [[nodiscard]] double total() const { return film_mesh + time_mesh + shaft_mesh + kinks + location; }
+  /// Its parts as a summary names them: uncertainty_film_mesh, ...; time only where there is such a mesh, shaft and
+  /// kinks where they are not zero.
   [[nodiscard]] std::map<std::string, double> parts(bool with_time) const;
 };
 

@@ -55,18 +55,45 @@ void FilmLimit::warn(const std::vector<double>& thickness, const std::string& wh
 }
 
 void MarginSlope::add(double parameter, double margin) {
-  if (any_ && parameter != parameter_) slope_ = (margin - margin_) / (parameter - parameter_);
+  if (any_ && parameter != parameter_) {
+    slope_ = (margin - margin_) / (parameter - parameter_);
+    step_ = std::abs(parameter - parameter_);
+  }
   parameter_ = parameter;
   margin_ = margin;
   any_ = true;
 }
 
-void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, double slope,
-                 const MeshLaw& law, const std::vector<MarginThere>& there) {
+double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin) {
+  constexpr int most_back = 6, most_looks = 20, most_halvings = 5;
+  constexpr double close = 1e-2, exact = 1e-6;  // of what the places differ by; of the parameter
+  double p = place, m = margin(p), slope = here.value(), step = here.step();
+  if (!std::isfinite(slope) || slope == 0 || !(step > 0)) return unknown;
+  for (int k = 0; k < most_back && !std::isfinite(m); ++k, step *= 2) {
+    p += std::copysign(step, slope);  // where the film is thicker
+    m = margin(p);
+  }
+  for (int k = 0; k < most_looks && std::isfinite(m); ++k) {
+    if (std::abs(m / slope) <= std::max(close * std::abs(p - place), exact * std::abs(place))) return p - m / slope;
+    double q = p - std::clamp(m / slope, -step, step), there = margin(q);
+    for (int halvings = 0; halvings < most_halvings && !std::isfinite(there); ++halvings) {
+      q = (p + q) / 2;
+      there = margin(q);
+    }
+    const double next = (there - m) / (q - p);
+    if (!(next * slope > 0)) return unknown;
+    step = 2 * std::abs(q - p);
+    p = q, m = there, slope = next;
+  }
+  return unknown;
+}
+
+void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
+                 const std::vector<ContactThere>& there) {
   Bars bars({place}, law);
   bool with_time = false;
-  for (const MarginThere& m : there) {
-    bars.add(m.axis, m.spacing, {place - m.margin / slope});
+  for (const ContactThere& m : there) {
+    bars.add(m.axis, m.spacing, {m.place});
     with_time |= m.axis == Axis::time;
   }
   Bar bar = bars[0];

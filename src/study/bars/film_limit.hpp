@@ -1,6 +1,7 @@
 #pragma once
 // Film thicknesses against the least ones that journals and bearings bear.
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -12,10 +13,10 @@
 
 namespace whirl::study {
 
-/// Margin at the parameter of a contact on another mesh; not a number if there is no solution.
-struct MarginThere {
+/// Where a branch comes to its contact on another mesh; not a number if that cannot be had.
+struct ContactThere {
   Axis axis = Axis::around;
-  double spacing = 1, margin = 0;
+  double spacing = 1, place = 0;
 };
 
 /// The limits of the places of a plant. Thicknesses are those of Plant::film_thickness().
@@ -48,17 +49,24 @@ public:
   void add(double parameter, double margin);
   /// Not a number before the second point, or if the parameter did not move.
   [[nodiscard]] double value() const { return slope_; }
+  /// Between these two points; zero before the second one.
+  [[nodiscard]] double step() const { return step_; }
 
 private:
-  double parameter_ = 0, margin_ = 0, slope_ = std::numeric_limits<double>::quiet_NaN();
+  double slope_ = std::numeric_limits<double>::quiet_NaN(), step_ = 0, parameter_ = 0, margin_ = 0;
   bool any_ = false;
 };
 
-/// Puts where a branch met its limit as the value `contact` into the summary. On another mesh the limit lies where the
-/// `margin` there, at the same parameter, comes to zero by `slope`. The bar is unknown where there is no such solution:
-/// a coarser film touches earlier.
-void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, double slope,
-                 const MeshLaw& law, const std::vector<MarginThere>& there);
+/// Where the margin vanishes of a branch on another mesh, whose contact on the mesh in use is at `place`: by the secant
+/// method with steps that at most double, to a hundredth of what the places differ by. Close to a wall margins are no
+/// straight lines over the parameter. `margin` gives the margin of the solution at a parameter, found from the solution
+/// before, or not a number where there is none; it is asked at `place` first, then on the side that `here`, slope and
+/// last step of the branch, came from. Not a number if the margin turns or does not come to zero.
+[[nodiscard]] double contact_there(double place, const MarginSlope& here, const std::function<double(double)>& margin);
+
+/// Puts the place of contact into the summary, its bar from the places on other meshes.
+void put_contact(io::StudySummary& summary, double place, const std::string& unit, double location, const MeshLaw& law,
+                 const std::vector<ContactThere>& there);
 
 /// One number for each of `places` places: the thickness, or not a number where there is no film.
 [[nodiscard]] std::vector<double> film_column(std::vector<double> thickness, std::size_t places);

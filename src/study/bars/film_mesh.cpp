@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "study/bars/shaft_mesh.hpp"
 #include "study/state_rows.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/study/layout_options.hpp"
@@ -16,6 +17,7 @@ system::Train with_film_mesh(system::Train train, const std::array<double, 2>& f
 
 MeshLaw law_of(const system::Machine& machine) {
   MeshLaw law;
+  law.shaft_order = order_of_shaft;
   for (const auto& b : machine.bearings) {
     const film::Facts film = film::facts(b.film);
     if (film.cells[0] == 0) continue;

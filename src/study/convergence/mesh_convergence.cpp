@@ -56,18 +56,22 @@ io::Table convergence_table(const std::string& unit) {
                     {"seconds", "s", "wall time"}});
 }
 
-MeshLimit mesh_limit(const std::vector<double>& values) {
+MeshLimit mesh_limit(const std::vector<double>& values, double theory, bool kinks) {
+  constexpr double least_order = 0.5;
   MeshLimit out;
   const std::size_t n = values.size();
   if (n == 0) return out;
   out.limit = values.back();
   if (n == 1) return out;
-  const double last = values[n - 1] - values[n - 2];
-  if (n > 2) out.order = std::log2(std::abs((values[n - 2] - values[n - 3]) / last));
-  const bool shows = n > 2 && (values[n - 2] - values[n - 3]) * last > 0 && out.order >= 0.5 && out.order <= 3;
-  const double order = shows ? out.order : 2;
+  const double last = values[n - 1] - values[n - 2], before = n > 2 ? values[n - 2] - values[n - 3] : 0;
+  if (n > 2) out.order = std::log2(std::abs(before / last));
+  const bool regular = before * last > 0;
+  const double order = regular ? std::clamp(out.order, least_order, theory) : theory,
+               factor = regular && !kinks && out.order >= least_order ? 1.25 : 3.0;
+  // What the last difference would be by theory.
+  const double foretold = std::abs(before) * std::exp2(-order);
   out.limit += last / (std::exp2(order) - 1);
-  out.error = (shows ? 1.25 : 3.0) * std::abs(last) / (std::exp2(order) - 1);
+  out.error = std::max(factor * std::abs(last), foretold) / (std::exp2(order) - 1);
   return out;
 }
 
@@ -159,7 +163,8 @@ StudyResult MeshConvergence::run(Context& context) {
       state.set("trouble", trouble);
       pieces.save(std::move(state));
     }
-    const MeshLimit limit = mesh_limit(now.value);
+    const MeshLaw law = law_of(context.machine);
+    const MeshLimit limit = mesh_limit(now.value, law.film_order, law.kinks);
     io::Bifurcation b = bifurcation_at(type_of(now.last.event), limit.limit, branch.parameter.path, unit,
                                        context.machine, branch.unbalance, coarse->follower->system());
     b.period_s = now.last.cycle.period;

@@ -63,7 +63,9 @@ StudyResult converge(Context& context, const MeshConvergenceOptions& options, co
       frequency.push_back(there[1]);
       seconds.push_back(results.seconds() - begin);
     }
-    const MeshLimit limit = mesh_limit(value), whirl = mesh_limit(frequency);
+    const MeshLaw law = law_of(context.machine);
+    const MeshLimit limit = mesh_limit(value, law.film_order, law.kinks),
+                    whirl = mesh_limit(frequency, law.film_order, law.kinks);
     io::Bifurcation b =
         bifurcation_at(type_of(found.event), limit.limit, branch.parameter.path, unit, context.machine, {}, *system);
     // Newton's method, of the last mesh.

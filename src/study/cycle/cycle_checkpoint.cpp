@@ -81,6 +81,14 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   write_cycle(state.child("tangent"), direction, stored());
   // Cycles asked for begin there, on the mesh before its adaptation.
   if (last_ && !options_.at.empty()) write_cycle(state.child("last"), *last_, stored());
+  if (nearest_) {
+    io::Group& nearest = state.child("nearest");
+    write_cycle(nearest.child("cycle"), nearest_->cycle, stored());
+    nearest.set("index", nearest_->index);
+    nearest.set("parameter", nearest_->parameter);
+    nearest.set("modulus", nearest_->modulus);
+    nearest.set("leaves", leaves_ ? 1 : 0);
+  }
   state.set("period_scale", problem_->period_scale());
   solve::BranchPoint now = at.point;
   now.slope = solve::last_entry(problem_->comm(), tangent);
@@ -124,6 +132,12 @@ std::optional<solve::Restart> CycleFollower::restore() {
   seeds_ = read_seeds(state.group("flips"), stored());
   located_ = read(state.group("located"));
   last_ = state.has_group("last") ? read_cycle(state.group("last"), stored()) : cycle;
+  if (state.has_group("nearest")) {
+    const io::Group& nearest = state.group("nearest");
+    nearest_ = Watched{static_cast<int>(nearest.integer("index")), nearest.real("parameter"), nearest.real("modulus"),
+                       read_cycle(nearest.group("cycle"), stored())};
+    leaves_ = nearest.integer("leaves") != 0;
+  }
   largest_ = state.real("largest_difference");
   system_->set_parameter(cycle.parameter);
   const solve::Cycle orbit = problem_->orbit(restart.u.get());

@@ -41,6 +41,14 @@ double CycleFollower::normal_form(solve::CycleProblem& problem, system::Plant& s
   }
 }
 
+std::vector<double> CycleFollower::kept_numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+                                                   const solve::Cycle& cycle, bool with_coefficient) const {
+  return pieces_->numbers(piece(fmt::format("on mesh {} {:.3f}", static_cast<int>(mesh.axis), mesh.spacing)), [&] {
+    const auto numbers = numbers_on(mesh, found, cycle, with_coefficient);
+    return numbers ? numbers->list() : std::vector<double>{};
+  });
+}
+
 void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u) {
   CycleNumbers here{found.parameter, std::abs(std::arg(found.critical)), cycle.period, io::no_value};
   auto* cycles = dynamic_cast<solve::CycleProblem*>(problem_.get());
@@ -60,15 +68,11 @@ void CycleFollower::put_bars(io::Bifurcation& b, const solve::LocatedEvent& foun
   }
   Bars bars(here.list(), law()), of_coefficient({here.coefficient}, law());
   for (const CycleMesh& mesh : meshes()) {
-    // A verdict that is lost on one mesh needs no others.
-    const bool coarse = mesh.axis != Axis::time && mesh.spacing > 1,
-               also = (fold || coarse) && decided(here.coefficient, doubt);
+    // A verdict that is lost on one mesh needs no others. Of finer films the coarser ones tell.
+    const bool tells = fold || mesh.axis == Axis::time || mesh.spacing > 1,
+               also = tells && decided(here.coefficient, doubt);
     // Near contact the same cycle may leave the validity of the film on another mesh: no number there.
-    const auto there =
-        pieces_->numbers(piece(fmt::format("on mesh {} {:.3f}", static_cast<int>(mesh.axis), mesh.spacing)), [&] {
-          const auto numbers = numbers_on(mesh, found, cycle, also);
-          return numbers ? numbers->list() : std::vector<double>{};
-        });
+    const auto there = kept_numbers_on(mesh, found, cycle, also);
     bars.add(mesh.axis, mesh.spacing, there);
     if (!also) continue;
     const double c = there.empty() ? io::no_value : there.back();
@@ -153,8 +157,13 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   if (seed) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);
-    pieces_->complete(piece("criticality"), b,
-                      [&] { set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity); });
+    const auto elsewhere = [&](const CycleMesh& mesh) -> std::optional<Parabola> {
+      const std::vector<double> there = kept_numbers_on(mesh, found, cycle, false);
+      return there.empty() ? std::nullopt : born_on(mesh, cycle, there.front());
+    };
+    pieces_->complete(piece("criticality"), b, [&] {
+      set_criticality(b, *twice, leaving.u.get(), leaving.tangent.get(), found.sensitivity, elsewhere);
+    });
   }
   if (autonomous() && found.event == solve::Event::cyclic_fold) doubt_at_birth(b);
   ++events_;

@@ -66,11 +66,13 @@ SharedRows CycleFollower::stored() const {
   return {stored_.get(), stored_ ? layout().time : MPI_COMM_SELF};
 }
 
-std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells) const {
+std::unique_ptr<system::Plant> CycleFollower::make_system(const std::array<double, 2>& film_cells,
+                                                          int shaft_parts) const {
   PlantRequest wanted{options_.unbalance, &options_.parameter};
   wanted.value = options_.start ? options_.start->value : options_.parameter.range.from;
   wanted.speed = options_.speed ? options_.speed->value : 0;
   wanted.film_cells = film_cells;
+  wanted.shaft_parts = shaft_parts;
   return make_plant(layout(static_cast<std::size_t>(options_.intervals)).space, context_.machine, wanted);
 }
 
@@ -104,7 +106,9 @@ void CycleFollower::on_point(const solve::BranchPoint& point, Vec u) {
   nodes_.append(point.parameter, orbit, problem_->orbit_scheme(), *system_);
   add_margin(point.parameter, orbit);
   report_between(last_ ? *last_ : cycle, cycle);
-  if ((point.index + 1) % points_per_bar == 0) judge_multiplier(point, u);
+  watch(point, cycle);
+  if ((point.index + 1) % points_per_bar == 0 && !point.stability.values.empty())
+    judge_multiplier({point.index, point.parameter, std::abs(point.stability.values[0]), cycle});
   last_ = cycle;
   const double mu = point.stability.values.empty() ? 0 : std::abs(point.stability.values.front());
   context_.results.progress(
@@ -170,6 +174,7 @@ void CycleFollower::close_at_flip(double landed) {
 
 StudyResult CycleFollower::run() {
   std::optional<solve::Restart> restart = restore();
+  const bool restored = restart.has_value();
   core::Vector u;
   if (!restart) {
     problem_ = make_problem(*system_, options_.period, solve::uniform_mesh(options_.intervals), 1);
@@ -181,6 +186,7 @@ StudyResult CycleFollower::run() {
       u = start(*problem_);
     if (restart) record_.begin(problem_->orbit(restart->u.get()), problem_->orbit_scheme(), *system_, scale_);
   }
+  if (!restored) leaves_ = may_return();
   put_groups(context_.results.summary(), system_->groups());
   solve::BranchCallbacks callbacks;
   callbacks.cycles = true;
@@ -222,6 +228,7 @@ StudyResult CycleFollower::run() {
 
   auto& results = context_.results;
   auto& group = results.group();
+  judge_nearest();
   if (returned_) {
     // The step that showed the return landed on what the branch was born of, or beyond it on the branch already
     // followed.
@@ -248,7 +255,8 @@ StudyResult CycleFollower::run() {
   if (keeps_located_) write(group.child("located"), located_);
   if (returned_) results.summary().set("returned", end.parameter, unit_);
   if (end.limited && last_)
-    put_contact(results.summary(), end.parameter, unit_, end.bracket, margins_.value(), law(), margins_there(*last_));
+    put_contact(results.summary(), end.parameter, unit_, end.bracket, law(),
+                contacts_there(*last_, end.parameter));
   results.summary().stability = record_.verdict();
   if (options_.parameter.deflation)
     put_solutions(

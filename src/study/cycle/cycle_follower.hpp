@@ -48,6 +48,9 @@ struct CycleMesh {
   std::array<double, 2> film{1, 1};  ///< cells of the films over those in use
 };
 
+/// The time meshes beside the one in use: half and twice the spacing or, where that cannot be, half and a quarter. Two
+/// meshes alone may agree by chance.
+[[nodiscard]] std::vector<CycleMesh> time_meshes(bool halves);
 /// Every other point of a mesh of time; empty if fewer than eight intervals would be left.
 [[nodiscard]] std::vector<double> merged(const std::vector<double>& mesh);
 
@@ -96,16 +99,17 @@ public:
   [[nodiscard]] double time_error(const Located& at);
 
 private:
-  [[nodiscard]] std::unique_ptr<system::Plant> make_system(const std::array<double, 2>& film_cells) const;
+  [[nodiscard]] std::unique_ptr<system::Plant> make_system(const std::array<double, 2>& film_cells,
+                                                           int shaft_parts = 1) const;
   /// Who shares the states of a system, or the intervals of a mesh.
   [[nodiscard]] Layout layout(std::size_t intervals = 1) const;
-  /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with `finer` (1/2, 1, 2) times as
-  /// many steps in time.
+  /// The solver asked for, for cycles of `turns` revolutions of `system` on `mesh`, with `finer` (1/2, 1, 2, 4) times
+  /// as many steps in time.
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> make_problem(system::Plant& system, int turns,
                                                                      std::vector<double> mesh, double finer) const;
   /// A change of the root mean square state by half a clearance counts as one longest step.
   [[nodiscard]] double state_weight() const { return std::pow(continuation_.max_step / 0.5, 2); }
-  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed) const;
+  [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> twice_the_period(const FlipSeed& seed, double finer = 1) const;
   [[nodiscard]] solve::Restart leave_flip(const solve::PeriodicProblem& twice, const FlipSeed& seed) const;
   [[nodiscard]] core::Vector start(const solve::PeriodicProblem& problem) const;
   /// Forced cycles beside the first one, at its parameter.
@@ -117,14 +121,17 @@ private:
   /// the old one is unstable (supercritical) or where it is stable; `sensitivity` is the slope of the old one's
   /// distance from its border of stability over the scaled parameter. A verdict that `b` has already is only doubted.
   [[nodiscard]] std::optional<Parabola> parabola(solve::PeriodicProblem& problem, Vec u, Vec tangent) const;
-  void set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
-                       double sensitivity) const;
+  /// `elsewhere` is the parabola on another time mesh; without it the bar holds no time mesh.
+  void set_criticality(
+      io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent, double sensitivity,
+      const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere = {}) const;
   [[nodiscard]] io::Bifurcation bifurcation_here(io::BifurcationType type, double value) const;
   /// How far the cycle is from contact and from `max_eccentricity`, per clearance.
   [[nodiscard]] double margin(const solve::Cycle& orbit, system::Plant& system) const;
   /// Of a point of the branch, for the slope at which it meets its limit.
   void add_margin(double parameter, const solve::Cycle& orbit);
-  [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
+  /// Where the branch comes to its contact at `place` (scaled) on other meshes; `last` is its last cycle.
+  [[nodiscard]] std::vector<ContactThere> contacts_there(const solve::Cycle& last, double place) const;
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   /// Which rows of a state this rank stores.
@@ -145,8 +152,20 @@ private:
   /// Name of a piece of work about the event that comes next.
   [[nodiscard]] std::string piece(const std::string& what) const;
   void report_between(const solve::Cycle& a, const solve::Cycle& b);
+  /// A point of the branch and the modulus of its leading multiplier.
+  struct Watched {
+    int index = 0;
+    double parameter = 0, modulus = 0;  // scaled
+    solve::Cycle cycle;
+  };
+  /// Keeps the point whose leading multiplier is nearest to the unit circle. A branch that is born at a bifurcation
+  /// leaves the circle first: points up to the farthest one do not count.
+  void watch(const solve::BranchPoint& point, const solve::Cycle& cycle);
   /// The bar of the leading multiplier's modulus at a point of the branch.
-  void judge_multiplier(const solve::BranchPoint& point, Vec u);
+  void judge_multiplier(const Watched& at);
+  /// The same, of a branch whose points are all stable or all unstable, at the point nearest to the unit circle: unless
+  /// it is `decided` there, a bifurcation may have been missed on this mesh.
+  void judge_nearest();
   /// Values of a cycle asked for with their bars, under `at.<key>.` in the summary.
   void report(const std::string& key, Vec u);
   [[nodiscard]] solve::Stability stability_of(solve::PeriodicProblem& problem) const;
@@ -154,6 +173,8 @@ private:
   [[nodiscard]] MeshLaw law() const;
   [[nodiscard]] double order_of_scheme() const;
   [[nodiscard]] std::vector<CycleMesh> meshes() const;
+  /// Whether the mesh of time, and not a number of steps in each interval, says how long steps are.
+  [[nodiscard]] bool steps_are_intervals() const;
   /// The solver on another mesh; null where there is no such mesh.
   [[nodiscard]] std::unique_ptr<solve::PeriodicProblem> problem_on(const CycleMesh& mesh, system::Plant& system,
                                                                    const solve::Cycle& cycle) const;
@@ -172,6 +193,11 @@ private:
   /// The same bifurcation on another mesh; nothing if it cannot be had.
   [[nodiscard]] std::optional<CycleNumbers> numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
                                                        const solve::Cycle& cycle, bool with_coefficient) const;
+  /// Of the branch of twice the period that is born at `flip`, whose scaled place there is given.
+  [[nodiscard]] std::optional<Parabola> born_on(const CycleMesh& mesh, const solve::Cycle& flip, double place) const;
+  /// numbers_on() of the event that comes next, unless known; empty if it cannot be had.
+  [[nodiscard]] std::vector<double> kept_numbers_on(const CycleMesh& mesh, const solve::LocatedEvent& found,
+                                                    const solve::Cycle& cycle, bool with_coefficient) const;
   [[nodiscard]] double normal_form(solve::CycleProblem& problem, system::Plant& system, solve::Event event,
                                    std::complex<double> critical, Vec u, double step) const;
   void put_bars(io::Bifurcation& b, const solve::LocatedEvent& found, const solve::Cycle& cycle, Vec u);
@@ -205,6 +231,8 @@ private:
   NodeRecord nodes_;
   io::Table multiplier_bars_;
   std::optional<solve::Cycle> last_;
+  std::optional<Watched> nearest_;
+  bool leaves_ = false;  // the bifurcation that the branch is born at
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;

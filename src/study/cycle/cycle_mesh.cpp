@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -35,8 +36,17 @@ MeshLaw CycleFollower::law() const {
   return law;
 }
 
+bool CycleFollower::steps_are_intervals() const {
+  return options_.method == CycleBranchOptions::Method::collocation || steps_of(options_) == 1;
+}
+
+std::vector<CycleMesh> time_meshes(bool halves) {
+  return {{Axis::time, 0.5, {1, 1}}, {Axis::time, halves ? 2 : 0.25, {1, 1}}};
+}
+
 std::vector<CycleMesh> CycleFollower::meshes() const {
-  std::vector<CycleMesh> out{{Axis::time, 0.5, {1, 1}}, {Axis::time, 2, {1, 1}}};
+  std::vector<CycleMesh> out =
+      time_meshes(steps_are_intervals() ? !merged(problem_->mesh()).empty() : steps_of(options_) % 2 == 0);
   if (system_->has_film_mesh())
     for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
       out.push_back({m.axis, m.spacing, m.factor});
@@ -46,13 +56,12 @@ std::vector<CycleMesh> CycleFollower::meshes() const {
 std::unique_ptr<solve::PeriodicProblem> CycleFollower::problem_on(const CycleMesh& mesh, system::Plant& system,
                                                                   const solve::Cycle& cycle) const {
   if (mesh.axis != Axis::time) return make_problem(system, options_.period, cycle.mesh, 1);
-  if (mesh.spacing < 1) return make_problem(system, options_.period, cycle.mesh, 2);
-  const int steps = steps_of(options_);
-  if (options_.method == CycleBranchOptions::Method::collocation || steps == 1) {
+  if (mesh.spacing < 1) return make_problem(system, options_.period, cycle.mesh, 1 / mesh.spacing);
+  if (steps_are_intervals()) {
     const std::vector<double> times = merged(cycle.mesh);
     return times.empty() ? nullptr : make_problem(system, options_.period, times, 1);
   }
-  return steps % 2 != 0 ? nullptr : make_problem(system, options_.period, cycle.mesh, 0.5);
+  return steps_of(options_) % 2 != 0 ? nullptr : make_problem(system, options_.period, cycle.mesh, 0.5);
 }
 
 // The given cycle carried over to another mesh.
@@ -96,17 +105,35 @@ io::Table multiplier_table(const std::string& unit) {
                     {"decided", "1", "1 if the modulus is farther from one than its uncertainty"}});
 }
 
-void CycleFollower::judge_multiplier(const solve::BranchPoint& point, Vec u) {
+namespace {
+
+double leading(const solve::Stability& s) {
+  return s.values.empty() ? io::no_value : std::abs(s.values[0]);
+}
+
+}  // namespace
+
+void CycleFollower::watch(const solve::BranchPoint& point, const solve::Cycle& cycle) {
   if (point.stability.values.empty()) return;
-  const auto leading = [](const solve::Stability& s) {
-    return s.values.empty() ? io::no_value : std::abs(s.values[0]);
-  };
-  const double modulus = leading(point.stability);
-  const solve::Cycle cycle = problem_->gather(u);
+  const Watched now{point.index, point.parameter, leading(point.stability), cycle};
+  const bool farther = !nearest_ || std::abs(now.modulus - 1) >= std::abs(nearest_->modulus - 1);
+  leaves_ = leaves_ && farther;
+  if (leaves_ || !nearest_ || !farther) nearest_ = now;
+}
+
+void CycleFollower::judge_nearest() {
+  if (!nearest_ || returned_ || !record_.one_sided()) return;
+  const auto& judged = multiplier_bars_.column("point");
+  if (std::find(judged.begin(), judged.end(), nearest_->index) == judged.end()) judge_multiplier(*nearest_);
+}
+
+void CycleFollower::judge_multiplier(const Watched& at) {
+  const double modulus = at.modulus;
+  const solve::Cycle& cycle = at.cycle;
   Bars bars({modulus}, law());
   for (const CycleMesh& mesh : meshes()) {
     const auto there = pieces_->numbers(
-        fmt::format("multiplier {} on mesh {} {:.3f}", point.index, static_cast<int>(mesh.axis), mesh.spacing), [&] {
+        fmt::format("multiplier {} on mesh {} {:.3f}", at.index, static_cast<int>(mesh.axis), mesh.spacing), [&] {
           return answer_of([&] {
             const auto other = corrected_on(mesh, cycle);
             return other ? std::vector<double>{leading(stability_of(*other->problem))} : std::vector<double>{};
@@ -116,7 +143,7 @@ void CycleFollower::judge_multiplier(const solve::BranchPoint& point, Vec u) {
   }
   const Bar bar = bars[0];
   const double total = bar.total() + newton_.tolerance;
-  multiplier_bars_.append({static_cast<double>(point.index), point.parameter, modulus, total, bar.film_mesh + bar.kinks,
+  multiplier_bars_.append({static_cast<double>(at.index), at.parameter, modulus, total, bar.film_mesh + bar.kinks,
                            bar.time_mesh, decided(modulus, total, 1) ? 1.0 : 0.0});
 }
 
@@ -168,10 +195,11 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
     if (found.event == solve::Event::cyclic_fold) return fold_on(mesh, found, cycle);
     auto there = carried_to(mesh, cycle);
     if (!there) return {};
-    // On a coarser film the bifurcation is far and the film cheap: it is located there, from the cycle as it was
-    // carried over or, where that is too rough, as it is at the same parameter. Elsewhere the slope tells.
+    // On a coarser film the bifurcation is far and the film cheap, and a normal form is that of the bifurcation: it is
+    // located there, from the cycle as it was carried over or, where that is too rough, as it is at the same parameter.
+    // Elsewhere the slope tells.
     auto* cycles = dynamic_cast<solve::CycleProblem*>(there->problem.get());
-    const bool locate = cycles && mesh.axis != Axis::time && mesh.spacing > 1;
+    const bool locate = cycles && (with_coefficient || (mesh.axis != Axis::time && mesh.spacing > 1));
     const auto located = [&]() -> std::optional<CycleNumbers> {
       if (!locate) return {};
       const core::Vector tangent = solve::any_tangent(*cycles, there->u.get());
@@ -209,15 +237,40 @@ std::optional<CycleNumbers> CycleFollower::numbers_on(const CycleMesh& mesh, con
   });
 }
 
-// The cycle at the same parameter on other meshes, and how far it is from contact there.
-std::vector<MarginThere> CycleFollower::margins_there(const solve::Cycle& cycle) const {
-  std::vector<MarginThere> out;
+// The cycles of twice the period that are born at the flip, which lies at `place` there.
+std::optional<Parabola> CycleFollower::born_on(const CycleMesh& mesh, const solve::Cycle& flip, double place) const {
+  return answer_of([&]() -> std::optional<Parabola> {
+    solve::Cycle given = flip;
+    given.parameter = place * scale_;
+    auto there = carried_to(mesh, given);
+    if (!there || !correct_there(*there, given)) return {};
+    FlipSeed seed{there->problem->gather(there->u.get()), given};
+    seed.direction.x = there->problem->critical_motion(-1);
+    const auto twice = twice_the_period(seed, steps_are_intervals() ? 1 : 1 / mesh.spacing);
+    const solve::Restart leaving = leave_flip(*twice, seed);
+    return parabola(*twice, leaving.u.get(), leaving.tangent.get());
+  });
+}
+
+std::vector<ContactThere> CycleFollower::contacts_there(const solve::Cycle& last, double place) const {
+  std::vector<ContactThere> out;
   for (const CycleMesh& mesh : meshes()) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
-    // Stays unknown where there is none.
-    (void)has_answer([&] {
-      if (const auto there = corrected_on(mesh, cycle))
-        out.back().margin = margin(there->problem->orbit(there->u.get()), there->other ? *there->other : *system_);
+    auto there = answer_of([&] { return carried_to(mesh, last); });
+    if (!there) continue;
+    system::Plant& system = there->other ? *there->other : *system_;
+    core::Vector row = core::duplicate(there->u.get());
+    solve::parameter_row(*there->problem, row.get());
+    out.back().place = contact_there(place, margins_, [&](double parameter) {
+      double found = unknown;
+      (void)has_answer([&] {
+        core::Vector trial = core::duplicate(there->u.get());
+        check(VecCopy(there->u.get(), trial.get()));
+        if (!solve::newton(*there->problem, trial.get(), row.get(), parameter, newton_).converged) return;
+        found = margin(there->problem->orbit(trial.get()), system);
+        std::swap(there->u, trial);
+      });
+      return found;
     });
   }
   return out;

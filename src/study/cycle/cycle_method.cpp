@@ -65,7 +65,7 @@ std::unique_ptr<solve::PeriodicProblem> CycleFollower::make_problem(system::Plan
   }
   // Where an interval is one step, as in a finite-difference method, it is the mesh that makes steps shorter.
   if (finer > 1 && (options_.method == Method::collocation || steps == 1))
-    mesh = solve::doubled(mesh);
+    for (double left = finer; left > 1; left /= 2) mesh = solve::doubled(mesh);
   else
     steps = static_cast<int>(std::lround(steps * finer));
 

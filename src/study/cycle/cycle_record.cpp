@@ -181,6 +181,11 @@ std::string CycleRecord::verdict() const {
   return verdict.text();
 }
 
+bool CycleRecord::one_sided() const {
+  const auto& stable = table_.column("stable");
+  return std::all_of(stable.begin(), stable.end(), [&](double s) { return s == stable.front(); });
+}
+
 void CycleRecord::report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme,
                          system::Plant& system, const solve::Stability& stability, io::StudySummary& summary) {
   const Extremes e = extremes(sample(cycle, scheme, system, 4 * samples_per_orbit), places_.names.size());

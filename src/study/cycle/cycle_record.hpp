@@ -36,6 +36,8 @@ public:
                                     system::Plant& system) const;
   /// Verdict on the stability of the points so far.
   [[nodiscard]] std::string verdict() const;
+  /// Whether all points so far are stable, or all unstable.
+  [[nodiscard]] bool one_sided() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
   void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
               const solve::Stability& stability, io::StudySummary& summary);

@@ -194,8 +194,8 @@ solve::Cycle two(const solve::Cycle& one, double second) {
 
 }  // namespace
 
-std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed) const {
-  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), 1);
+std::unique_ptr<solve::PeriodicProblem> CycleFollower::twice_the_period(const FlipSeed& seed, double finer) const {
+  auto twice = make_problem(*system_, 2 * options_.period, two_laps(seed.cycle.mesh), finer);
   if (autonomous()) twice->set_phase_reference(two(seed.cycle, 1));
   return twice;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/bars/shaft_mesh.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/equilibrium/equilibrium_event.hpp"
 #include "whirl/core/error.hpp"
@@ -45,8 +46,9 @@ std::optional<Parabola> CycleFollower::parabola(solve::PeriodicProblem& problem,
 }
 
 // A branch is supercritical that lives where the old one is unstable.
-void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent,
-                                    double sensitivity) const {
+void CycleFollower::set_criticality(
+    io::Bifurcation& b, solve::PeriodicProblem& problem, Vec u, Vec tangent, double sensitivity,
+    const std::function<std::optional<Parabola>(const CycleMesh&)>& elsewhere) const {
   const auto born = sensitivity == 0 ? std::nullopt : parabola(problem, u, tangent);
   const bool asked = !b.criticality.empty();
   if (!born) {
@@ -59,9 +61,23 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& 
   const double kappa = born->curvature * (sensitivity > 0 ? -1 : 1);
   const char* verdict = kappa < 0 ? "supercritical" : "subcritical";
   b.more["branch_curvature"] = born->curvature;
-  b.more["branch_curvature_uncertainty"] = born->error;
+  double error = born->error;
+  if (!asked && elsewhere) {
+    Bars bars({born->curvature}, law());
+    double change = 0;
+    for (const CycleMesh& mesh : meshes()) {
+      if (mesh.axis != Axis::time || !decided(born->curvature, born->error + change)) continue;
+      const auto there = elsewhere(mesh);
+      const double c = there ? there->curvature : io::no_value;
+      bars.add(mesh.axis, mesh.spacing, {c});
+      // A sign that changes with the mesh is none.
+      if (!(c * born->curvature > 0)) change = std::max(change, std::abs(c - born->curvature));
+    }
+    error += std::max(bars[0].total(), change);
+  }
+  b.more["branch_curvature_uncertainty"] = error;
   if (!asked) {
-    put_criticality(b, kappa, born->error, "supercritical", "subcritical",
+    put_criticality(b, kappa, error, "supercritical", "subcritical",
                     "parameter at three small amplitudes of the branch born here, per clearance^2");
   } else if (b.criticality != "undetermined" && b.criticality != verdict) {
     b.criticality_by = fmt::format("{}, but the branch born here says {}", b.criticality_by, verdict);
@@ -73,11 +89,13 @@ void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium
   io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
+  std::function<std::unique_ptr<system::Plant>()> cut;
+  if (has_shaft_mesh(context_.machine)) cut = [this] { return make_system({1, 1}, 2); };
   pieces_->complete("hopf bars", b, [&] {
     study::describe(
         b, {*system_, equilibrium, hopf, scale_, state_weight(), newton, film_meshes(context_.machine, context_.layout),
             law_of(context_.machine), [this](const auto& cells) { return make_system(cells); },
-            [this](const auto& name, const auto& work) { return pieces_->numbers("hopf " + name, work); }});
+            [this](const auto& name, const auto& work) { return pieces_->numbers("hopf " + name, work); }, cut});
   });
   pieces_->complete("hopf criticality", b,
                     [&] { set_criticality(b, *problem_, leaving.u.get(), leaving.tangent.get(), hopf.sensitivity); });

@@ -7,6 +7,7 @@
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bars/verdict.hpp"
 #include "study/bifurcation.hpp"
@@ -31,8 +32,9 @@ namespace whirl::study {
 using core::check;
 
 std::unique_ptr<system::Plant> plant_of(const Context& context, const EquilibriumBranchOptions& o,
-                                        const std::array<double, 2>& film_cells) {
+                                        const std::array<double, 2>& film_cells, int shaft_parts) {
   PlantRequest wanted{{}, &o.parameter};
+  wanted.shaft_parts = shaft_parts;
   wanted.value = o.parameter.range.from;
   wanted.speed = o.speed ? o.speed->value : 0;
   wanted.film_cells = film_cells;
@@ -47,20 +49,27 @@ double state_weight_of(const EquilibriumBranchOptions& o) {
 
 namespace {
 
-// The margins of equilibria at the same parameter on other film meshes.
-std::vector<MarginThere> margins_there(const Context& context, const EquilibriumBranchOptions& options,
-                                       const system::Plant& system, const std::vector<double>& whole, double parameter,
-                                       const solve::NewtonOptions& newton) {
-  std::vector<MarginThere> out;
+// Where the branch comes to its contact at `place` on other film meshes; `whole` is its last equilibrium.
+std::vector<ContactThere> contacts_there(const Context& context, const EquilibriumBranchOptions& options,
+                                         const system::Plant& system, const std::vector<double>& whole, double place,
+                                         double scale, const MarginSlope& here, const solve::NewtonOptions& newton) {
+  std::vector<ContactThere> out;
   for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
     out.push_back({mesh.axis, mesh.spacing, io::no_value});
-    // Stays unknown where there is none.
-    (void)has_answer([&] {
-      const auto other = plant_of(context, options, mesh.factor);
-      other->set_parameter(parameter);
-      const core::Vector x = resampled(*other, system, whole);
-      if (solve::find_equilibrium(*other, x.get(), newton).converged)
-        out.back().margin = FilmLimit(other->places()).margin(other->observe(x.get()).film_thickness);
+    const auto other = plant_of(context, options, mesh.factor);
+    const FilmLimit films(other->places());
+    core::Vector x = resampled(*other, system, whole);
+    out.back().place = contact_there(place, here, [&](double parameter) {
+      double margin = unknown;
+      (void)has_answer([&] {
+        other->set_parameter(parameter * scale);
+        core::Vector trial = core::duplicate(x.get());
+        check(VecCopy(x.get(), trial.get()));
+        if (!solve::find_equilibrium(*other, trial.get(), newton).converged) return;
+        margin = films.margin(other->observe(trial.get()).film_thickness);
+        std::swap(x, trial);
+      });
+      return margin;
     });
   }
   return out;
@@ -171,6 +180,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
         results.summary().name, point.index + 1, options.parameter.path, point.parameter, unit, point.step,
         point.newton_iterations, leading.real(), leading.imag(), results.seconds()));
   };
+  std::function<std::unique_ptr<system::Plant>()> cut;
+  if (has_shaft_mesh(context.machine)) cut = [&] { return plant_of(context, options, {1, 1}, 2); };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
     if (!wanted(found.event, options.detect)) return;
     io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
@@ -182,7 +193,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                    film_meshes(context.machine, context.layout), law_of(context.machine),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
                    [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); },
-                   !plan(context, Sharing::machine).large});
+                   cut, !plan(context, Sharing::machine).large});
     });
     b.more["others_unstable"] = found.others_unstable;
     borders.push_back({found.others_unstable == 0 && found.located, found.loses});
@@ -248,8 +259,8 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                             {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
   }
   if (end.limited)
-    put_contact(results.summary(), end.parameter, unit, end.bracket, margins.value(), law_of(context.machine),
-                margins_there(context, options, *system, at_limit, end.parameter * scale, continuation.newton));
+    put_contact(results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
+                contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
   missed.warn(results.summary());
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);

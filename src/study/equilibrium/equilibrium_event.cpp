@@ -117,15 +117,23 @@ void decide_by_cycles(io::Bifurcation& b, const EquilibriumEvent& at, double ome
 
 }  // namespace
 
-std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
+namespace {
+
+std::vector<double> numbers_at(const EquilibriumEvent& at, const std::function<std::optional<Elsewhere>()>& locate) {
   return answer_of([&]() -> std::vector<double> {
-    const auto there = located_on(at, film_cells);
+    const auto there = locate();
     if (!there) return {};
     const bool hopf = at.found.event == solve::Event::hopf;
     if (!hopf) return {there->found->parameter, 0, there->found->quadratic};
     const double omega = there->found->critical.imag();
     return {there->found->parameter, omega, lyapunov(*there->system, there->x.get(), omega, steps_of(at.law).longer)};
   });
+}
+
+}  // namespace
+
+std::vector<double> numbers_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
+  return numbers_at(at, [&] { return located_on(at, film_cells); });
 }
 
 void put_criticality(io::Bifurcation& b, double value, double uncertainty, const char* negative, const char* positive,
@@ -169,6 +177,13 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at) {
         elsewhere.emplace_back(kept(at, fmt::format("on mesh {}", k), [&] { return numbers_on(at, mesh.factor); }));
     bars.add(mesh.axis, mesh.spacing, there);
     // A sign that changes with the mesh is none.
+    const double c = there.empty() ? unknown : there[coefficient];
+    if (!(c * here[coefficient] > 0)) doubt = std::max(doubt, std::abs(c - here[coefficient]));
+  }
+  if (hopf && at.cut) {
+    const auto there =
+        kept(at, "on cut shaft", [&] { return numbers_at(at, [&] { return located_on_cut_shaft(at); }); });
+    bars.add(Axis::shaft, 0.5, there);
     const double c = there.empty() ? unknown : there[coefficient];
     if (!(c * here[coefficient] > 0)) doubt = std::max(doubt, std::abs(c - here[coefficient]));
   }

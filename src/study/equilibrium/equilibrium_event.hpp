@@ -56,12 +56,14 @@ struct EquilibriumEvent {
   /// Gives the numbers of that name if they are known already, else those that `work` makes; nothing: always `work`.
   std::function<std::vector<double>(const std::string& name, const std::function<std::vector<double>()>& work)> keep =
       {};
+  /// The system with its shaft cut into elements half as long; nothing where it has no such mesh.
+  std::function<std::unique_ptr<system::Plant>()> cut = {};
   bool cycles = true;  ///< cycles may decide on the criticality: they need the whole machine on one rank
 };
 
 /// Puts the uncertainty of the place, the whirl frequency of a Hopf point and its uncertainty, and the criticality with
 /// its coefficient and uncertainty into `b`. On each other film mesh the same bifurcation is located by Newton's method
-/// from the resampled equilibrium. Criticality is that of the first Lyapunov coefficient, or where its bar contains
+/// from the resampled equilibrium, and on the shaft of shorter elements from the equilibrium there. Criticality is that of the first Lyapunov coefficient, or where its bar contains
 /// zero and forces are smooth by pieces only, that of cycles at three amplitudes; of a fold the side on which the
 /// equilibria exist by its second derivative; "undetermined" where the bar of that contains zero, too. Collective.
 void describe(io::Bifurcation& b, const EquilibriumEvent& at);
@@ -73,7 +75,8 @@ void describe(io::Bifurcation& b, const EquilibriumEvent& at);
 /// The system of a branch of equilibria, and the weight of its states in the arclength: a change of the root mean
 /// square state by half a clearance counts as one longest step. Collective.
 [[nodiscard]] std::unique_ptr<system::Plant> plant_of(const Context& context, const EquilibriumBranchOptions& options,
-                                                      const std::array<double, 2>& film_cells = {1, 1});
+                                                      const std::array<double, 2>& film_cells = {1, 1},
+                                                      int shaft_parts = 1);
 [[nodiscard]] double state_weight_of(const EquilibriumBranchOptions& options);
 
 /// Puts `coefficient` with the verdict on it into `b`: `negative` or `positive`, or "undetermined" where the bar

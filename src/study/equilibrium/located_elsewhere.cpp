@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "study/common.hpp"
+#include "study/make_plant.hpp"
 #include "whirl/solve/bifurcation/augmented_problem.hpp"
 #include "whirl/solve/newton/equilibrium.hpp"
 
@@ -113,13 +114,9 @@ std::optional<solve::Refined> enclose(system::Plant& system, solve::EquilibriumP
   return solve::Refined{std::move(u), p1, std::abs(p1 - p0), 0, {0, omega}};
 }
 
-}  // namespace
-
-std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
-  Elsewhere out{at.make(film_cells), {}, {}};
+// From the guess x.
+std::optional<Elsewhere> located_from(const EquilibriumEvent& at, Elsewhere out) {
   system::Plant& system = *out.system;
-  system.set_parameter(at.found.parameter * at.scale);
-  out.x = resampled(system, at.system, at.system.gather(at.x));
   const bool hopf = at.found.event == solve::Event::hopf;
   // On the far side of a fold there is no equilibrium at this parameter.
   if (hopf && !solve::find_equilibrium(system, out.x.get(), at.newton).converged) return {};
@@ -137,6 +134,22 @@ std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array
   problem.to_state(out.found->u.get(), out.x.get());
   system.set_parameter(out.found->parameter * at.scale);
   return out;
+}
+
+}  // namespace
+
+std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells) {
+  Elsewhere out{at.make(film_cells), {}, {}};
+  out.system->set_parameter(at.found.parameter * at.scale);
+  out.x = resampled(*out.system, at.system, at.system.gather(at.x));
+  return located_from(at, std::move(out));
+}
+
+std::optional<Elsewhere> located_on_cut_shaft(const EquilibriumEvent& at) {
+  Elsewhere out{at.cut(), {}, {}};
+  out.system->set_parameter(at.found.parameter * at.scale);
+  out.x = find_rest(*out.system);
+  return located_from(at, std::move(out));
 }
 
 }  // namespace whirl::study

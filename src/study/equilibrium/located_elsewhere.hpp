@@ -1,5 +1,5 @@
 #pragma once
-// The same bifurcation of equilibria on other film meshes.
+// The same bifurcation of equilibria on other meshes.
 
 #include <array>
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace whirl::study {
 
-/// A plant with other cells, at the parameter of the bifurcation there, its equilibrium x (SI) and what was found.
+/// A plant with other cells or elements, at the parameter of the bifurcation there, its equilibrium x (SI) and what was found.
 struct Elsewhere {
   std::unique_ptr<system::Plant> system;
   core::Vector x;
@@ -21,5 +21,7 @@ struct Elsewhere {
 /// of the parameter; `error` is the width that is left. Nothing if it cannot be had. Collective; throws
 /// core::NotConverged or core::DomainError.
 [[nodiscard]] std::optional<Elsewhere> located_on(const EquilibriumEvent& at, const std::array<double, 2>& film_cells);
+/// The same on the shaft of shorter elements, from the equilibrium there at the same parameter: of a Hopf point.
+[[nodiscard]] std::optional<Elsewhere> located_on_cut_shaft(const EquilibriumEvent& at);
 
 }  // namespace whirl::study

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 
+#include "study/bars/shaft_mesh.hpp"
 #include "study/common.hpp"
 #include "study/layout.hpp"
 #include "study/linear/shaft_modes.hpp"
 #include "study/pieces.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/rotor/describe.hpp"
-#include "whirl/rotor/divide.hpp"
 #include "whirl/rotor/shaft.hpp"
 #include "whirl/spectral/eigenvalues.hpp"
 #include "whirl/spectral/whirl.hpp"
@@ -25,12 +25,10 @@ namespace {
 using Complex = std::complex<double>;
 
 system::Train divided(system::Train train, int parts, rotor::Element element) {
-  train.rotor = rotor::divided(train.rotor, parts);
+  train = with_cut_shaft(std::move(train), parts);
   train.rotor.element = element;
   if (element == rotor::Element::timoshenko_hermitian)
-    for (const system::Support& s : train.supports) train.rotor.joints.push_back(rotor::node_after(s.node, parts));
-  for (system::Support& s : train.supports) s.node = rotor::node_after(s.node, parts);
-  for (system::UnbalanceMass& u : train.unbalance) u.node = rotor::node_after(u.node, parts);
+    for (const system::Support& s : train.supports) train.rotor.joints.push_back(s.node);
   return train;
 }
 

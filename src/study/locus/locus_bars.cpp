@@ -75,7 +75,7 @@ MeshLaw LocusFollower::law() const {
 
 std::vector<CycleMesh> LocusFollower::meshes() const {
   std::vector<CycleMesh> out;
-  if (cycles_) out = {{Axis::time, 0.5, {1, 1}}, {Axis::time, 2, {1, 1}}};
+  if (cycles_) out = time_meshes(!merged(cycles_->mesh()).empty());
   if (system_->has_film_mesh())
     for (const FilmMesh& m : film_meshes(context_.machine, context_.layout))
       out.push_back({m.axis, m.spacing, m.factor});
@@ -113,7 +113,8 @@ std::unique_ptr<LocusFollower::Elsewhere> LocusFollower::carried_to(const CycleM
   std::complex<double> critical = 1;
   if (cycles_) {
     std::vector<double> times = cycle.mesh;
-    if (mesh.axis == Axis::time && mesh.spacing < 1) times = solve::doubled(times);
+    if (mesh.axis == Axis::time)
+      for (double left = 1 / mesh.spacing; left > 1; left /= 2) times = solve::doubled(times);
     if (mesh.axis == Axis::time && mesh.spacing > 1) times = merged(times);
     if (times.empty()) return nullptr;
     out->cycles = std::make_unique<solve::CycleProblem>(time(times), system, cycles_->options(), times);

@@ -20,9 +20,12 @@ struct MeshLimit {
   double limit = std::numeric_limits<double>::quiet_NaN(), error = limit;
   double order = limit;  ///< shown by the last three values
 };
-/// Richardson's extrapolation with the observed order and a safety factor of 1.25 if the last three values show one
-/// between 0.5 and 3, else with the formal order two and a factor of 3. Source: Roache (1994).
-[[nodiscard]] MeshLimit mesh_limit(const std::vector<double>& values);
+/// Richardson's extrapolation with the order that the last three values show and a safety factor of 1.25 if it lies
+/// between 1/2 and `theory`, that of the scheme. A higher one is chance: the last two meshes agree too well. Then the
+/// order is that of theory and the error no less than the difference before foretells with it. Below 1/2, with two
+/// values, where they waver, or where forces have kinks, the factor is 3; below 1/2 the order is 1/2.
+/// Source: Roache (1994).
+[[nodiscard]] MeshLimit mesh_limit(const std::vector<double>& values, double theory = 2, bool kinks = false);
 
 class MeshConvergence final : public StudyWith<MeshConvergenceOptions> {
 public:

@@ -1,0 +1,20 @@
+#include "study/bars/shaft_mesh.hpp"
+
+#include "whirl/rotor/divide.hpp"
+
+namespace whirl::study {
+
+bool has_shaft_mesh(const system::Machine& machine) {
+  return system::is_rotor(machine) && machine.rotor.type == rotor::Options::Type::shaft &&
+         machine.rotor.couplings.empty();
+}
+
+system::Train with_cut_shaft(system::Train train, int parts) {
+  if (parts == 1) return train;
+  train.rotor = rotor::divided(train.rotor, parts);
+  for (system::Support& s : train.supports) s.node = rotor::node_after(s.node, parts);
+  for (system::UnbalanceMass& u : train.unbalance) u.node = rotor::node_after(u.node, parts);
+  return train;
+}
+
+}  // namespace whirl::study
