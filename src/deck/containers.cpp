@@ -10,6 +10,7 @@
 #include "schema.hpp"
 #include "whirl/deck/description.hpp"
 #include "whirl/deck/load.hpp"
+#include "whirl/deck/number_or_list.hpp"
 #include "whirl/deck/one_or_more.hpp"
 
 namespace whirl::deck {
@@ -280,6 +281,40 @@ private:
   NameOrAccess a_;
 };
 
+class NumberOrListCodec : public Codec, public Knows {
+public:
+  NumberOrListCodec(CodecPtr number, CodecPtr list, NumberOrListAccess a)
+      : number_(std::move(number)), list_(std::move(list)), a_(std::move(a)) {}
+  void read(const Node& node, void* value, Reading& r) const override {
+    if (node.kind == Node::Kind::list)
+      list_->read(node, a_.set_list(value), r);
+    else
+      number_->read(node, a_.set_number(value), r);
+  }
+  Node write(const void* value) const override {
+    if (const void* number = a_.number(mutable_part(value))) return number_->write(number);
+    return list_->write(a_.list(mutable_part(value)));
+  }
+  Node schema(bool whole) const override { return either_schema(number_->schema(whole), list_->schema(whole)); }
+  std::string type() const override { return number_->type() + ", or " + list_->type(); }
+  const Spec* spec() const override { return number_->spec(); }
+  Leaf leaf(const void* preset, std::span<const std::string> path, const Node* given) const override {
+    return leaf_of(*list_, preset ? a_.list(mutable_part(preset)) : nullptr, path, given);
+  }
+  Access find(void* value, std::span<const std::string> path) const override {
+    if (void* number = a_.number(value)) {
+      if (!path.empty()) throw InputError("the deck gives one number, not a list");
+      return number_->find(number, path);
+    }
+    if (path.empty()) throw InputError("the deck gives a list: name an item, 1 for the first");
+    return list_->find(a_.list(value), path);
+  }
+
+private:
+  CodecPtr number_, list_;
+  NumberOrListAccess a_;
+};
+
 }  // namespace
 
 CodecPtr list_codec(CodecPtr item, ListAccess access) {
@@ -303,6 +338,9 @@ CodecPtr map_codec(CodecPtr item, MapAccess access) {
 }
 CodecPtr optional_codec(CodecPtr item, OptionalAccess access) {
   return std::make_shared<OptionalCodec>(std::move(item), std::move(access));
+}
+CodecPtr number_or_list_codec(CodecPtr number, CodecPtr list, NumberOrListAccess access) {
+  return std::make_shared<NumberOrListCodec>(std::move(number), std::move(list), std::move(access));
 }
 CodecPtr name_or_codec(CodecPtr value, NameOrAccess access) {
   return std::make_shared<NameOrCodec>(std::move(value), std::move(access));

@@ -319,7 +319,8 @@ void describe_results(Group& root, const std::string& title, const std::string& 
   root.set("format", 1);
   root.set(
       "frames",
-      "x right, y up, z along the shaft, rotation from x to y; theta from +x counter-clockwise; gravity along -y. "
+      "x right, y up, z along the shaft, rotation from x to y; theta from +x counter-clockwise; gravity along -y "
+      "unless the deck gives its components. "
       "Journal positions are journal minus pedestal minus elevation, relative to the bearing centre. "
       "K = -dF_journal/dx, C = -dF_journal/d(dx/dt). Loads are journal on bearing, positive down. Nodes are 1-based.");
   root.set("amplitudes", "0-peak unless the name says peak_to_peak");

@@ -140,6 +140,7 @@ void Rotor::reduce_states(MPI_Comm comm, const Options& options) {
   states_->at_rest = filled(small.at_rest, 2 * pairs, comm);
   states_->turning = filled(small.turning, 2 * pairs, comm);
   states_->gravity = distributed(small.gravity, 2 * pairs, comm);
+  states_->across = distributed(small.across, 2 * pairs, comm);
   states_->displacement = distributed(basis.displacement, rows, 2 * pairs, comm);
   states_->velocity = distributed(basis.velocity, rows, 2 * pairs, comm);
   states_->forces = distributed(basis.left_velocity, rows, 2 * pairs, comm);
@@ -147,6 +148,26 @@ void Rotor::reduce_states(MPI_Comm comm, const Options& options) {
   double quality[] = {basis.quality.retained, basis.quality.neglected};
   core::share(comm, quality, 2);
   quality_ = {quality[0], quality[1]};
+}
+
+core::Vector turned(Vec pairs) {
+  core::Vector out = core::duplicate(pairs);
+  const std::vector<double> from = core::gather(pairs);  // a rank may own half a pair
+  PetscInt begin = 0;
+  check(VecGetOwnershipRange(out.get(), &begin, nullptr));
+  const core::WriteArray to(out.get());
+  for (PetscInt i = 0; i < to.size(); ++i) {
+    const auto at = static_cast<std::size_t>(begin + i);
+    to[i] = at % 2 == 0 ? -from[at + 1] : from[at - 1];
+  }
+  return out;
+}
+
+core::Vector across(const Rotor& rotor) {
+  if (!rotor.states()) return turned(rotor.matrices().gravity.get());
+  core::Vector out = core::duplicate(rotor.states()->across.get());
+  check(VecCopy(rotor.states()->across.get(), out.get()));
+  return out;
 }
 
 void Rotor::set_stiffness_damping(double value) {

@@ -268,6 +268,9 @@ StateProjection project(const Planar& planar, const Options& options, const Stat
   for (Index i = 0; i < q.rows() / 2; ++i) load(q.rows() / 2 + i) = -w[static_cast<PetscInt>(i)];
   load -= (a.stiffness + options.reduction.speed * a.circulatory) * apart(basis.offset);
   out.gravity = left_v.transpose() * load;
+  VectorXd turned(load.size());
+  turned << -load.tail(load.size() / 2), load.head(load.size() / 2);
+  out.across = left_v.transpose() * turned;
   return out;
 }
 

@@ -20,7 +20,7 @@ struct StateBasis {
 /// The matrices of u that R and L make of the whole ones, on one rank.
 struct StateProjection {
   Eigen::MatrixXd rates, at_rest, turning;
-  Eigen::VectorXd gravity;
+  Eigen::VectorXd gravity, across;  // along -y, along x
 };
 
 /// With y = (v, q), N = diag(M, M) and P = [[C + Omega G, K + Omega N_i], [-M, 0]] at Omega = `reduction.speed`:

@@ -104,7 +104,7 @@ std::vector<std::unique_ptr<FilmPart>> RotorSystem::parts_at(const Train& train,
 // Bearings are bored in line with the shaft as it lies on them at rest, unless the deck says how they stand.
 std::vector<std::array<double, 2>> RotorSystem::axes_of(const Train& train) const {
   std::vector<std::array<double, 2>> out(bearings_.size());
-  std::vector<double> line;
+  std::vector<double> line, across(static_cast<std::size_t>(rotor::n_nodes(train.rotor)), 0.0);
   for (std::size_t i = 0; i < bearings_.size(); ++i) {
     if (!bearings_[i].tilts()) continue;
     const Support& support = train.supports[i];
@@ -116,8 +116,11 @@ std::vector<std::array<double, 2>> RotorSystem::axes_of(const Train& train) cons
       std::vector<rotor::Support> supports;
       for (const Support& s : train.supports) supports.push_back({s.node, s.elevation});
       line = rotor::rigid_static(comm_, train.rotor, supports, train.gravity).slope;
+      for (rotor::Support& s : supports) s.elevation = 0;
+      if (train.gravity_x != 0) across = rotor::rigid_static(comm_, train.rotor, supports, -train.gravity_x).slope;
     }
-    out[i] = {0.0, line[static_cast<std::size_t>(support.node - 1)]};
+    const auto at = static_cast<std::size_t>(support.node - 1);
+    out[i] = {across[at], line[at]};
   }
   return out;
 }

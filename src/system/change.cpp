@@ -20,7 +20,7 @@ rotor::Options shaft_of(rotor::Options o) {
 Change change_between(const Train& from, const Train& to) {
   const rotor::Options &a = from.rotor, &b = to.rotor;
   core::require(a.type == b.type && a.segments.size() == b.segments.size() && a.reduction == b.reduction &&
-                    from.supports.size() == to.supports.size(),
+                    from.supports.size() == to.supports.size() && from.loads.size() == to.loads.size(),
                 "trains of the same shape");
   Change out;
   out.shaft = shaft_of(a) != shaft_of(b);
@@ -28,8 +28,9 @@ Change change_between(const Train& from, const Train& to) {
   if (a.reduction.type == rotor::Reduction::Type::craig_bampton_state)
     out.shaft = out.shaft || a.stiffness_damping != b.stiffness_damping;
   out.damping = !out.shaft && a.stiffness_damping != b.stiffness_damping;
-  out.load = out.shaft || from.gravity != to.gravity || a.load != b.load;
-  out.axes = out.shaft || from.gravity != to.gravity;
+  const bool gravity = from.gravity != to.gravity || from.gravity_x != to.gravity_x;
+  out.load = out.shaft || gravity || a.load != b.load || from.loads != to.loads;
+  out.axes = out.shaft || gravity;
   out.unbalance = out.shaft || from.unbalance != to.unbalance;
   for (std::size_t i = 0; i < from.supports.size(); ++i) {
     const Support &s = from.supports[i], &t = to.supports[i];

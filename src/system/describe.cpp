@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <unordered_map>
 
 #include "whirl/film/describe.hpp"
@@ -151,6 +152,14 @@ void describe(deck::Description<Bearing>& d) {
   });
 }
 
+void describe(deck::Description<StaticLoad>& d) {
+  d.add("node", &StaticLoad::node, positive, "node of the shaft on which it acts").required();
+  d.add("force", &StaticLoad::force, "N", deck::any, "along x and y").continuable();
+  d.add("moment", &StaticLoad::moment, "N m", deck::any,
+        "about x and y, by the right hand: a moment about y turns z towards x, and raises dx/dz")
+      .continuable();
+}
+
 void describe(deck::Description<Plane>& d) {
   d.add("node", &Plane::node, positive, "node of the plane").required();
   d.add("fraction", &Plane::fraction, "1", positive, "part of the unbalance of the grade that sits in this plane");
@@ -191,6 +200,23 @@ void describe(deck::Description<Unbalance>& d) {
 
 namespace {
 
+// Whether a reduction keeps a node, beside which nothing may act.
+bool kept(const rotor::Options& o, int node) {
+  const auto& masters = o.reduction.masters;
+  return o.type == rotor::Options::Type::rigid || o.reduction.type == rotor::Reduction::Type::none ||
+         std::find(masters.begin(), masters.end(), node) != masters.end();
+}
+
+// Nodes whose slopes films and moments turn: a reduction keeps them.
+std::set<int> slope_masters(const Machine& m) {
+  std::set<int> nodes;
+  for (const Bearing& b : m.bearings)
+    if (film::facts(b.film).tilts) nodes.insert(b.node);
+  for (const StaticLoad& l : m.loads)
+    if (l.moment) nodes.insert(l.node);
+  return nodes;
+}
+
 void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
   std::vector<std::string> lubricants;
   for (const auto& [name, l] : m.lubricants) lubricants.push_back(name);
@@ -205,8 +231,7 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
     const auto [first, fresh] = bearing_at.emplace(b.node, &b);
     if (!fresh && !rigid)
       r.fail(path + ".node", fmt::format("bearing {} stands at node {} already", first->second->name, b.node));
-    if (!rigid && reduction.type != rotor::Reduction::Type::none &&
-        std::find(reduction.masters.begin(), reduction.masters.end(), b.node) == reduction.masters.end())
+    if (!kept(m.rotor, b.node))
       r.fail("rotor.reduction.masters", fmt::format("node {} of bearing {} must be a master", b.node, b.name));
     const bool tilts = film::facts(b.film).tilts;
     if (tilts && rigid)
@@ -222,16 +247,28 @@ void check_bearings(const Machine& m, int n_nodes, const deck::Report& r) {
              fmt::format("there is no lubricant '{}'{}", *name, deck::did_you_mean_one_of(*name, lubricants)));
   }
   if (rigid && m.bearings.empty()) r.fail("bearings", "a rotor needs a bearing");
-  // Slopes of journals that tilt are masters beside the nodes.
-  const auto slopes =
-      std::count_if(m.bearings.begin(), m.bearings.end(), [](const Bearing& b) { return film::facts(b.film).tilts; });
+  // Slopes that films and moments turn are masters beside the nodes.
+  const auto slopes = static_cast<std::ptrdiff_t>(slope_masters(m).size());
   const auto inner = 2 * n_nodes - static_cast<std::ptrdiff_t>(reduction.masters.size()) - slopes;
   const bool fixed_interface = reduction.type == rotor::Reduction::Type::craig_bampton ||
                                reduction.type == rotor::Reduction::Type::craig_bampton_state;
   if (!rigid && slopes > 0 && fixed_interface && reduction.modes > inner)
     r.fail("rotor.reduction.modes",
-           fmt::format("the shaft with its masters and the slopes of {} journals held has {} modes per plane, not {}",
+           fmt::format("the shaft with its masters and the slopes of {} nodes held has {} modes per plane, not {}",
                        slopes, inner, reduction.modes));
+}
+
+void check_loads(const Machine& m, int n_nodes, const deck::Report& r) {
+  for (std::size_t i = 0; i < m.loads.size(); ++i) {
+    const StaticLoad& l = m.loads[i];
+    const std::string path = fmt::format("loads.{}", i + 1);
+    if (l.node > n_nodes)
+      r.fail(path + ".node", fmt::format("node {} does not exist: the shaft has nodes 1 to {}", l.node, n_nodes));
+    else if (!kept(m.rotor, l.node))
+      r.fail("rotor.reduction.masters", fmt::format("node {} of load {} must be a master", l.node, i + 1));
+    if (m.rotor.type == rotor::Options::Type::rigid && l.moment)
+      r.fail(path + ".moment", "a rigid rotor has no slope for a moment to turn: give its force alone");
+  }
 }
 
 void check_unbalance(const Machine& m, int n_nodes, const deck::Report& r) {
@@ -294,9 +331,12 @@ void describe(deck::Description<Machine>& d) {
   d.add("title", &Machine::title, "what the deck is about, for the report");
   d.add("system", &Machine::system, "what the equations are those of");
   d.add("rotor", &Machine::rotor, "the shaft, or a rigid mass").only(&Machine::system, rotor).required();
-  d.add("gravity", &Machine::gravity, "m/s^2", non_negative, "acceleration of gravity, along -y")
+  d.add("gravity", &Machine::gravity, "m/s^2", non_negative,
+        "acceleration of gravity: one number along -y, or [x, y, z]; along the shaft, z, it loads no bearing")
       .only(&Machine::system, rotor)
       .continuable();
+  d.add("loads", &Machine::loads, "static forces and moments on nodes: a belt, a radial thrust, a misaligned coupling")
+      .only(&Machine::system, rotor);
   d.add("lubricants", &Machine::lubricants, "lubricants by name").only(&Machine::system, rotor);
   d.named("bearings", &Machine::bearings, &Bearing::name, "bearings by name").only(&Machine::system, rotor).required();
   d.add("minimum_film", &Machine::minimum_film, "m", non_negative,
@@ -313,6 +353,7 @@ void describe(deck::Description<Machine>& d) {
     const int n_nodes = static_cast<int>(m.rotor.segments.size()) + 1;
     check_bearings(m, n_nodes, r);
     check_bored(m, r);
+    check_loads(m, n_nodes, r);
     check_unbalance(m, n_nodes, r);
   });
 }

@@ -5,6 +5,16 @@
 
 namespace whirl::system {
 
+double load_of_rigid(const Train& train) {
+  const auto& r = train.rotor;
+  double x = r.mass * train.gravity_x, y = r.mass * train.gravity + r.load;
+  for (const StaticLoad& l : train.loads) {
+    x += l.force[0];
+    y -= l.force[1];
+  }
+  return x == 0 ? y : std::hypot(x, y);
+}
+
 std::optional<Groups> groups_of(const Train& train) {
   const auto& r = train.rotor;
   if (r.type != rotor::Options::Type::rigid || train.supports.empty()) return std::nullopt;
@@ -15,7 +25,7 @@ std::optional<Groups> groups_of(const Train& train) {
         s.geometry.radius != g.radius || s.geometry.length != g.length || s.geometry.clearance != g.clearance ||
         s.lubricant.viscosity != first.lubricant.viscosity)
       return std::nullopt;
-  const double load = r.mass * train.gravity + r.load, ratio = g.clearance / g.radius;
+  const double load = load_of_rigid(train), ratio = g.clearance / g.radius;
   if (!(load > 0)) return std::nullopt;
   Groups out;
   out.speed_scale = std::sqrt(load / (r.mass * g.clearance));

@@ -24,6 +24,11 @@ std::vector<std::string> names_of(const std::vector<T>& all) {
 
 }  // namespace
 
+std::array<double, 2> lateral(const Gravity& gravity) {
+  if (const auto* g = std::get_if<std::array<double, 3>>(&gravity)) return {(*g)[0], (*g)[1]};
+  return {0, -std::get<double>(gravity)};
+}
+
 std::optional<std::size_t> find_bearing(const Machine& m, std::string_view name) {
   return position(m.bearings, name);
 }
@@ -98,7 +103,15 @@ std::vector<UnbalanceMass> unbalance_masses(const Machine& m, const Unbalance& u
 Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
   Train t;
   t.rotor = m.rotor;
-  t.gravity = m.gravity;
+  t.gravity_x = lateral(m.gravity)[0];
+  t.gravity = -lateral(m.gravity)[1];
+  t.loads = m.loads;
+  const auto keep_slopes = [&t](int node) {
+    std::vector<int>& slopes = t.rotor.reduction.slopes;
+    if (t.rotor.reduction.type != rotor::Reduction::Type::none &&
+        std::find(slopes.begin(), slopes.end(), node) == slopes.end())
+      slopes.push_back(node);
+  };
   for (const Bearing& b : m.bearings) {
     Support s;
     s.name = b.name;
@@ -106,8 +119,7 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     s.elevation = b.elevation;
     s.slope = b.slope;
     // A film that tilts couples to slopes, which no reduction may then take away.
-    if (film::facts(b.film).tilts && t.rotor.reduction.type != rotor::Reduction::Type::none)
-      t.rotor.reduction.slopes.push_back(b.node);
+    if (film::facts(b.film).tilts) keep_slopes(b.node);
     if (b.geometry) s.geometry = *b.geometry;
     s.film = b.film;
     if (const auto* own = std::get_if<film::Lubricant>(&b.lubricant))
@@ -127,8 +139,11 @@ Train train_of(const Machine& m, const std::vector<std::string>& unbalance) {
     }
     t.supports.push_back(s);
   }
+  for (const StaticLoad& l : m.loads)
+    if (l.moment) keep_slopes(l.node);
   if (m.rotor.element == rotor::Element::timoshenko_hermitian) {
     for (const Bearing& b : m.bearings) t.rotor.joints.push_back(b.node);
+    for (const StaticLoad& l : m.loads) t.rotor.joints.push_back(l.node);
     for (const Unbalance& u : m.unbalance)
       for (const UnbalanceMass& x : unbalance_masses(m, u)) t.rotor.joints.push_back(x.node);
   }

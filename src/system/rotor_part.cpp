@@ -153,8 +153,16 @@ void RotorPart::set_pedestals(Mat at_rest, Mat rates) const {
 }
 
 RotorPart::Weights RotorPart::weights_of(const Train& train) {
-  Weights w{train.gravity, train.rotor.type == rotor::Options::Type::rigid ? train.rotor.load : 0.0, {}};
-  for (const Support& s : train.supports) w.pedestals.push_back(s.has_pedestal ? train.gravity * s.mass[1] : 0.0);
+  Weights w{.gravity = train.gravity,
+            .gravity_x = train.gravity_x,
+            .rotor_load = train.rotor.type == rotor::Options::Type::rigid ? train.rotor.load : 0.0,
+            .pedestals_x = {},
+            .pedestals = {},
+            .loads = train.loads};
+  for (const Support& s : train.supports) {
+    w.pedestals_x.push_back(s.has_pedestal ? train.gravity_x * s.mass[0] : 0.0);
+    w.pedestals.push_back(s.has_pedestal ? -train.gravity * s.mass[1] : 0.0);
+  }
   return w;
 }
 
@@ -162,14 +170,32 @@ std::vector<double> RotorPart::load_of(const rotor::Rotor& rotor, const Weights&
   std::vector<double> load(static_cast<std::size_t>(rows()), 0.0);
   const auto& states = rotor.states();
   const std::vector<double> g = core::gather((states ? states->gravity : rotor.matrices().gravity).get());
+  const std::vector<double> g_x =
+      weights.gravity_x != 0 ? core::gather(rotor::across(rotor).get()) : std::vector<double>(g.size(), 0.0);
   const PetscInt each = states ? 1 : 2;  // rows for one entry of the weight
-  for (PetscInt row = 2 * begin_; row < 2 * std::min(end_, n_rotor_); row += each)
-    load[static_cast<std::size_t>(row - 2 * begin_)] = weights.gravity * g[static_cast<std::size_t>(row / each)];
-  const auto take = [&](PetscInt coordinate, double weight) {
-    if (weight != 0 && owns(coordinate)) load[static_cast<std::size_t>(2 * (coordinate - begin_))] -= weight;
+  for (PetscInt row = 2 * begin_; row < 2 * std::min(end_, n_rotor_); row += each) {
+    const auto at = static_cast<std::size_t>(row / each);
+    load[static_cast<std::size_t>(row - 2 * begin_)] = weights.gravity * g[at] + weights.gravity_x * g_x[at];
+  }
+  const auto push = [&](PetscInt coordinate, double force) {
+    if (force != 0 && owns(coordinate)) load[static_cast<std::size_t>(2 * (coordinate - begin_))] += force;
   };
-  take(rotor.coordinate(1, rotor::Freedom::y), weights.rotor_load);
-  for (std::size_t i = 0; i < pedestals_.size(); ++i) take(pedestals_[i][1], weights.pedestals[i]);
+  push(rotor.coordinate(1, rotor::Freedom::y), -weights.rotor_load);
+  for (std::size_t i = 0; i < pedestals_.size(); ++i) {
+    push(pedestals_[i][0], weights.pedestals_x[i]);
+    push(pedestals_[i][1], weights.pedestals[i]);
+  }
+  using enum rotor::Freedom;
+  for (const StaticLoad& l : weights.loads) {
+    const std::array<double, 2> moment = l.moment.value_or(std::array<double, 2>{});
+    for (const auto& [freedom, force] : {std::pair{x, l.force[0]}, std::pair{y, l.force[1]},
+                                         std::pair{slope_x, moment[1]}, std::pair{slope_y, -moment[0]}}) {
+      if (force == 0) continue;
+      const PetscInt coordinate = rotor.coordinate(l.node, freedom);
+      if (coordinate < 0) throw core::InputError("a load acts on what is no coordinate of the rotor");
+      push(coordinate, force);
+    }
+  }
   return load;
 }
 
@@ -226,7 +252,7 @@ void RotorPart::scales(double* s, double* r) const {
     }
   clearance = films > 0 ? clearance / films : 1e-4;
   const double mass = rotor::total_mass(train_.rotor),
-               force = std::max(mass * std::abs(train_.gravity) + std::abs(train_.rotor.load),
+               force = std::max(mass * std::hypot(train_.gravity, train_.gravity_x) + std::abs(train_.rotor.load),
                                 mass * clearance * film::typical_frequency * film::typical_frequency) /
                        std::max<double>(1.0, static_cast<double>(train_.supports.size()));
   for (PetscInt i = 0; i < end_ - begin_; ++i) {

@@ -99,10 +99,12 @@ public:
   void apply(const Rates& rates, const Moment& at, double* f) const;
 
 private:
-  /// What load is linear in: gravity [m/s^2], the load of a rigid rotor and the weights of the pedestals [N].
+  /// What load is linear in: gravity along -y and x [m/s^2], the load of a rigid rotor [N], the weights of the
+  /// pedestals along x and y [N], and forces and moments on nodes.
   struct Weights {
-    double gravity, rotor_load;
-    std::vector<double> pedestals;
+    double gravity, gravity_x, rotor_load;
+    std::vector<double> pedestals_x, pedestals;
+    std::vector<StaticLoad> loads;
   };
   [[nodiscard]] static Weights weights_of(const Train& train);
   /// j += at_rest times what set_loss() says.

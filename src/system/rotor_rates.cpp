@@ -23,6 +23,21 @@ std::vector<UnbalanceMass> rate_of(const std::vector<UnbalanceMass>& minus, cons
   return out;
 }
 
+std::vector<StaticLoad> rate_of(const std::vector<StaticLoad>& minus, const std::vector<StaticLoad>& plus,
+                                double step) {
+  core::require(minus.size() == plus.size(), "loads on the same nodes");
+  std::vector<StaticLoad> out = plus;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    core::require(minus[k].node == plus[k].node && minus[k].moment.has_value() == plus[k].moment.has_value(),
+                  "loads on the same nodes");
+    for (std::size_t d = 0; d < 2; ++d) {
+      out[k].force[d] = (plus[k].force[d] - minus[k].force[d]) / step;
+      if (out[k].moment) (*out[k].moment)[d] = ((*plus[k].moment)[d] - (*minus[k].moment)[d]) / step;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, const Train& plus, double step) {
@@ -49,8 +64,9 @@ RotorPart::Rates RotorPart::rates(const Change& change, const Train& minus, cons
   } else {
     if (change.load) {
       const Weights a = weights_of(minus), b = weights_of(plus);
-      out.load = load_of(
-          *rotor_, {rate(a.gravity, b.gravity), rate(a.rotor_load, b.rotor_load), rates_of(a.pedestals, b.pedestals)});
+      out.load = load_of(*rotor_, {rate(a.gravity, b.gravity), rate(a.gravity_x, b.gravity_x),
+                                   rate(a.rotor_load, b.rotor_load), rates_of(a.pedestals_x, b.pedestals_x),
+                                   rates_of(a.pedestals, b.pedestals), rate_of(a.loads, b.loads, step)});
     }
     if (change.unbalance) out.unbalance = unbalance_of(*rotor_, rate_of(minus.unbalance, plus.unbalance, step));
     // C = value K

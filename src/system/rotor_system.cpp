@@ -260,6 +260,7 @@ std::vector<double> RotorSystem::shaft(const double* x, int component, bool with
   }
   check(MatMult(basis, q.get(), full.get()));
   if (with_gravity) check(VecAXPY(full.get(), train_.gravity, offset));
+  if (with_gravity && train_.gravity_x != 0) check(VecAXPY(full.get(), train_.gravity_x, rotor::turned(offset).get()));
   std::vector<double> out = core::gather(full.get());
   out.resize(static_cast<std::size_t>(rotor::freedoms_per_node * rotor().n_nodes()));  // without inner freedoms
   return out;

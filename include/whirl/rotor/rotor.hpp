@@ -38,7 +38,7 @@ struct Matrices {
 /// in the mean over L only. Each rank owns the rows of whole coordinates.
 struct StateMatrices {
   core::Matrix rates, at_rest, turning;  // N, P, Q: what grows with Omega is gyroscopic and circulatory
-  core::Vector gravity;                  // kg, on the rows: multiply by g
+  core::Vector gravity, across;          // kg, on the rows: multiply by g along -y, along x
   core::Matrix displacement, velocity;   // R_q, R_v, rows of full coordinates
   core::Matrix forces;                   // L_v, likewise
   core::Vector offset;                   // s^2, as Matrices::offset
@@ -96,5 +96,11 @@ private:
   std::vector<int> masters_;  // freedoms of a plane, ascending
   ReductionQuality quality_;
 };
+
+/// What acts along -y, or moves there, turned to act along x: (a, b) of each pair (x, y) becomes (-b, a). A shaft of
+/// circular section answers turned likewise. Collective.
+[[nodiscard]] core::Vector turned(Vec pairs);
+/// Weights per unit acceleration along x, as `gravity` of its matrices or states those along -y. Collective.
+[[nodiscard]] core::Vector across(const Rotor& rotor);
 
 }  // namespace whirl::rotor

@@ -20,7 +20,11 @@ struct Groups {
   [[nodiscard]] double sommerfeld(double speed) const { return load * speed_scale / (bearings * speed); }
 };
 
-/// Empty unless the rotor is rigid, loaded downwards, and all its bearings have the same geometry, film and viscosity.
+/// The load of a rigid rotor, weight and static loads [N]: downwards, or its magnitude where it has a part along x.
+[[nodiscard]] double load_of_rigid(const Train& train);
+
+/// Empty unless the rotor is rigid, loaded but not upwards, and all its bearings have the same geometry, film and
+/// viscosity.
 [[nodiscard]] std::optional<Groups> groups_of(const Train& train);
 
 }  // namespace whirl::system

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "whirl/deck/description.hpp"
+#include "whirl/deck/number_or_list.hpp"
 #include "whirl/film/options.hpp"
 #include "whirl/rotor/options.hpp"
 #include "whirl/system/others.hpp"
@@ -70,12 +71,18 @@ struct Unbalance {
   std::vector<Plane> planes;
 };
 
+/// Acceleration of gravity [m/s^2]: along -y, or its components x, y, z. That along the shaft loads no bearing.
+using Gravity = std::variant<double, std::array<double, 3>>;
+/// Its components across the shaft, x and y [m/s^2].
+[[nodiscard]] std::array<double, 2> lateral(const Gravity& gravity);
+
 /// A rotor in its bearings, or the options of another system.
 struct Machine : Others {
   std::string title;
   SystemName system;
   rotor::Options rotor;
-  double gravity = 9.81;  ///< along -y [m/s^2]
+  Gravity gravity = 9.81;
+  std::vector<StaticLoad> loads;
   std::map<std::string, film::Lubricant> lubricants;
   std::vector<Bearing> bearings;       ///< in the order of the deck
   std::optional<double> minimum_film;  ///< of every bearing [m]; film::default_minimum_film() if absent
@@ -84,6 +91,7 @@ struct Machine : Others {
 
 void describe(deck::Description<Pedestal>& d);
 void describe(deck::Description<Bearing>& d);
+void describe(deck::Description<StaticLoad>& d);
 void describe(deck::Description<Plane>& d);
 void describe(deck::Description<Unbalance>& d);
 void describe(deck::Description<Machine>& d);

@@ -35,9 +35,21 @@ struct UnbalanceMass {
   friend bool operator==(const UnbalanceMass&, const UnbalanceMass&) = default;
 };
 
+/// A force and a moment that stand still: a belt, a radial thrust.
+struct StaticLoad {
+  int node = 0;                   ///< 1-based
+  std::array<double, 2> force{};  ///< along x and y [N]
+  /// About x and y [N m]: on the slopes dx/dz and dy/dz it is (M_y, -M_x). A reduction keeps the slopes where it is
+  /// given, be it zero.
+  std::optional<std::array<double, 2>> moment;
+  friend bool operator==(const StaticLoad&, const StaticLoad&) = default;
+};
+
 struct Train {
   rotor::Options rotor;
   double gravity = 9.81;  ///< along -y [m/s^2]
+  double gravity_x = 0;   ///< along x [m/s^2]
+  std::vector<StaticLoad> loads;
   std::vector<Support> supports;
   std::vector<UnbalanceMass> unbalance;
 };

@@ -26,10 +26,11 @@ StudyResult Alignment::run(Context& context) {
     rule.loads.push_back(load);
   }
   MPI_Comm space = plan(context, Sharing::machine).space;
-  const auto as_given = rotor::rigid_static(space, shaft, supports, context.machine.gravity);
-  const auto elevations = rotor::align(space, shaft, supports, rule, context.machine.gravity);
+  const double down = -system::lateral(context.machine.gravity)[1];  // loads come when the machine runs
+  const auto as_given = rotor::rigid_static(space, shaft, supports, down);
+  const auto elevations = rotor::align(space, shaft, supports, rule, down);
   for (std::size_t b = 0; b < supports.size(); ++b) supports[b].elevation = elevations[b];
-  const auto aligned = rotor::rigid_static(space, shaft, supports, context.machine.gravity);
+  const auto aligned = rotor::rigid_static(space, shaft, supports, down);
 
   auto& summary = context.results.summary();
   summary.set("mass.total", rotor::total_mass(shaft), "kg");

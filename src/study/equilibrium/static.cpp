@@ -164,8 +164,9 @@ void put_bars(const Context& context, const system::RotorSystem& system, double 
 [[noreturn]] void tell_capacity(const Context& context, const system::Train& train, double speed,
                                 const core::NotConverged& error) {
   const rotor::Options& r = train.rotor;
-  const double load = r.mass * train.gravity + r.load;
-  if (r.type != rotor::Options::Type::rigid || train.supports.size() != 1 || !(load > 0)) throw error;
+  const double load = system::load_of_rigid(train);
+  const bool downwards = train.gravity_x == 0 && train.loads.empty();
+  if (!downwards || r.type != rotor::Options::Type::rigid || train.supports.size() != 1 || !(load > 0)) throw error;
   Capacity most;
   core::agree(context.comm, [&] {
     if (!has_answer([&] { most = FilmAtRest(train.supports.front(), speed).capacity({0, -load}); })) most = {};
