@@ -121,13 +121,15 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
 }
 
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
-  if (!wanted(found.event, options_.detect)) return;
+  const bool asked = wanted(found.event, options_.detect);
   const solve::Cycle cycle = problem_->gather(u);
   system_->set_parameter(cycle.parameter);
   if (found.event == solve::Event::cyclic_fold && at_its_origin(problem_->orbit(u))) return;
+  changes_.push_back(change_at(found, asked ? static_cast<int>(context_.results.summary().bifurcations.size()) : -1));
+  if (!asked) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
-  b.more["others_unstable"] = found.others_unstable;
+  put_counts(b, changes_.back());
   if (found.event != solve::Event::cyclic_fold) {
     b.more["angle_rad"] = std::abs(std::arg(found.critical));
     b.more["multiplier_modulus"] = std::abs(found.critical);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/bars/verdict.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
@@ -34,8 +35,8 @@ public:
   /// Largest eccentricity per clearance of any journal on a cycle.
   [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
                                     system::Plant& system) const;
-  /// Verdict on the stability of the points so far.
-  [[nodiscard]] std::string verdict() const;
+  /// The points so far, by their stability.
+  [[nodiscard]] BranchVerdict verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
   void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
               const solve::Stability& stability, io::StudySummary& summary);

@@ -71,6 +71,7 @@ void CycleFollower::set_criticality(io::Bifurcation& b, solve::PeriodicProblem& 
 
 void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving) {
   io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
+  put_counts(b, change_at(hopf, -1));
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
   pieces_->complete("hopf bars", b, [&] {
