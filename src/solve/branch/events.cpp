@@ -238,8 +238,10 @@ void Follower::crossings(const State& a, const State& b, int depth) {
         const auto& values = here.point.stability.values;
         found.critical = values.empty() ? 0.0 : values[std::min(k, values.size() - 1)];
         // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits
-        // the double value into a pair of the size of its square root.
-        const double tolerance = questions_.cycles && found.critical.real() > 0 ? 5e-3 : 1e-7;
+        // the double value into a pair of the size of its square root. On a coarse mesh that is larger, but a pair
+        // would change the count by two: one of these was taken for the trivial multiplier.
+        const double split = std::abs(to - from) == 1 ? 0.1 : 5e-3;
+        const double tolerance = questions_.cycles && found.critical.real() > 0 ? split : 1e-7;
         real = std::abs(found.critical.imag()) <= tolerance * std::abs(found.critical);
         if (!real)
           found.event = questions_.cycles ? Event::neimark_sacker : Event::hopf;

@@ -120,6 +120,21 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
                   b.value, b.unit));
 }
 
+// Beside a fold two multipliers near +1 may seem to cross as a pair. Such a pair is no place that any mesh confirms.
+bool CycleFollower::doubtful_pair(const io::Bifurcation& b, const solve::LocatedEvent& found) {
+  constexpr double small_angle = 0.1;  // rad
+  if (found.event != solve::Event::neimark_sacker || std::isfinite(b.uncertainty)) return false;
+  if (std::abs(std::arg(found.critical)) > small_angle) return false;
+  changes_.back().bifurcation = -1;
+  ++events_;
+  context_.results.summary().suspected.push_back(
+      {b.value, b.value, unit_,
+       fmt::format("two multipliers near +1 ({:.3g} rad apart from it) seem to cross the unit circle, as they do by "
+                   "rounding beside a fold",
+                   std::abs(std::arg(found.critical)))});
+  return true;
+}
+
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
   const bool asked = wanted(found.event, options_.detect);
   const solve::Cycle cycle = problem_->gather(u);
@@ -152,6 +167,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.criticality_by = "not located: lies within the bracket";
     b.uncertainty = found.bracket;
   }
+  if (doubtful_pair(b, found)) return;
   if (seed) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);

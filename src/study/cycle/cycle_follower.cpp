@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/cycle/coexisting.hpp"
@@ -273,6 +274,11 @@ StudyResult CycleFollower::run() {
   for (const BranchChange& c : changes_) verdict.add(c);
   doubt(verdict);
   conclude(results.summary(), verdict, kind(), unit_);
+  if (OpenBores bores(context_.machine); !bores.empty()) {
+    record_.for_samples(
+        [&](std::size_t place, double x, double y, double parameter) { bores.see(place, x, y, parameter); });
+    bores.warn(results.summary(), unit_);
+  }
   if (options_.parameter.deflation)
     put_solutions(
         group, results.summary(), [this] { return coexisting(); }, stored());

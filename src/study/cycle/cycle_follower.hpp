@@ -127,6 +127,8 @@ private:
   void add_margin(double parameter, const solve::Cycle& orbit);
   [[nodiscard]] std::vector<MarginThere> margins_there(const solve::Cycle& cycle) const;
   void doubt(BranchVerdict& verdict);
+  /// Puts a pair that no mesh confirms among the suspicions instead.
+  [[nodiscard]] bool doubtful_pair(const io::Bifurcation& b, const solve::LocatedEvent& found);
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   /// Which rows of a state this rank stores.

@@ -46,6 +46,14 @@ public:
   [[nodiscard]] double last_parameter() const { return table_.column("parameter").back(); }
   [[nodiscard]] std::size_t points() const { return table_.rows(); }
 
+  /// Calls back with place, x and y of every sample of every point, and its parameter.
+  template <class See>
+  void for_samples(const See& see) const {
+    const std::size_t n = places_.names.size();
+    for (std::size_t i = 0; i < orbits_.size(); ++i)
+      for (std::size_t k = 0; k < orbits_[i].size(); k += 2)
+        see(k / 2 % n, orbits_[i][k], orbits_[i][k + 1], table_.column("parameter")[i]);
+  }
   /// Tables `branch` and, if it left from a bifurcation or ran into one, `birth` and `closing` into `group`; with
   /// `everything`, also what a restart needs.
   void write(io::Group& group, bool everything) const;

@@ -8,6 +8,7 @@
 #include "study/bars/beyond.hpp"
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
@@ -151,6 +152,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   std::vector<BranchChange> changes;
   BranchVerdict verdict;
   const FilmLimit films(places);
+  OpenBores bores(context.machine);
   MarginSlope margins;
   MissedModes missed;
   auto& results = context.results;
@@ -172,6 +174,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     std::vector<double> px, py;
     const system::Observed seen = system->observe(x.get());
     for (const auto& j : seen.shown) {
+      bores.see(px.size(), j.position[0], j.position[1], point.parameter);
       px.push_back(j.position[0]);
       py.push_back(j.position[1]);
     }
@@ -273,6 +276,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     put_contact(results.summary(), end.parameter, unit, end.bracket, margins.value(), law_of(context.machine),
                 margins_there(context, options, *system, at_limit, end.parameter * scale, continuation.newton));
   missed.warn(results.summary());
+  bores.warn(results.summary(), unit);
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);
 }
