@@ -44,7 +44,25 @@ class Followed:
             self.curve = Branch(self.parameter, step, unstable)
         kinds = study.get("bifurcations/type")
         values = [] if kinds is None or not len(kinds) else np.atleast_1d(study.get("bifurcations/parameter"))
-        self.events = [(kind, value, self._place(kind, value)) for kind, value in zip(kinds if len(values) else [], values)]
+        self.changes, known = self._changes()
+        self.events = [(kind, value, known.get(k) or self._place(kind, value)) for k, (kind, value) in enumerate(zip(kinds if len(values) else [], values))]
+
+    def _changes(self):
+        """Where on the branch its stability changes, {segment: [(t, stable behind it)]}, and the places of bifurcations by number."""
+        changes, places = {}, {}
+        if not self.study.has("changes/after"):
+            return changes, places
+        columns = [np.atleast_1d(self.study.get(f"changes/{k}")) for k in ("after", "parameter", "unstable_before", "unstable_after", "fold", "bifurcation")]
+        for after, value, before, behind, fold, number in zip(*columns):
+            segment = int(after) + int(self.born)
+            if not 0 <= segment < len(self.parameter) - 1:
+                continue
+            place = self.curve.place_in(segment, value, fold > 0)
+            if number >= 0:
+                places[int(number)] = place
+            if (before > 0) != (behind > 0):
+                changes.setdefault(segment, []).append((place[1], bool(behind == 0)))
+        return {segment: sorted(found) for segment, found in changes.items()}, places
 
     def _place(self, kind, value):
         # Self-excited cycles begin at their Hopf point, which the branch may pass again.
@@ -95,7 +113,8 @@ class Followed:
         """One curve over the parameter (times `across`), solid where stable."""
         values = np.asarray(values, float) * scale
         curve = self.curve_of(values)
-        for x, y, solid in curve.stretches(values, self.along(values)[1], [p for _, _, p in self.places_on(curve)]):
+        changes = self.changes if curve is self.curve else {i - int(self.born): c for i, c in self.changes.items()}
+        for x, y, solid in curve.stretches(values, self.along(values)[1], [p for _, _, p in self.places_on(curve)], changes):
             axis.plot(x * across, y, color=colour, linestyle="-" if solid else DASHED, linewidth=linewidth if solid else 0.8 * linewidth)
         if len(values) == 1:
             axis.plot(curve.parameter * across, values, ".", color=colour)

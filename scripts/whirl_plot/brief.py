@@ -85,7 +85,10 @@ def branch(study):
     followed, out = Followed(study), []
     unit = study.attribute("parameter_unit", "")
     unit = "" if unit == "1" else unit
-    losing = [b for b in study.bifurcations if b.get("type") in ("hopf", "flip", "neimark_sacker", "cyclic_fold", "fold") and not b.get("others_unstable")]
+    ranges = study.summary.get("ranges", [])
+    losing = [b for b in study.bifurcations if b.get("type") in NAMES and not b.get("others_unstable")]
+    if ranges and losing:  # the one at which the first stretch ends
+        losing.sort(key=lambda b: abs((b.get("value") or 0) - ranges[0]["to"]))
     verdict = study.summary.get("stability", "")
     if verdict.endswith(" throughout") and followed.ends:
         verdict = verdict.removesuffix("throughout") + "as far as followed"
@@ -94,6 +97,10 @@ def branch(study):
         kind = f", {b['criticality']}" if b.get("criticality") in ("supercritical", "subcritical") else ""
         verdict += f" at the {NAMES.get(b['type'], b['type'])} at {at(b)}{kind}"
     out.append(verdict)
+    later = [r for r in ranges[1:] if r["stability"] == "stable"]
+    if later and len(later) <= 4:
+        parts = ", ".join(f"{digits(r['from'], 5)} to {digits(r['to'], 5)}" for r in later)
+        out.append(f"stable {'again ' if ranges[0]['stability'] == 'stable' else ''}from {parts} {unit}".strip())
     counts = {}
     for b in study.bifurcations:
         counts[b.get("type")] = counts.get(b.get("type"), 0) + 1

@@ -144,17 +144,27 @@ class Branch:
         changes = [f for f in found if self.unstable[f[0]] != self.unstable[f[0] + 1]]
         return (changes or found)[0]
 
-    def stretches(self, values, stable, places):
+    def place_in(self, segment, value, fold):
+        """Where in a segment the parameter turns (`fold`), or comes nearest to `value`: (segment, t)."""
+        t = np.linspace(0, 1, 8 * DENSE + 1)
+        dense = self._cubic(self._own, self.s, segment, t)
+        if fold:
+            low = dense.min() < min(dense[0], dense[-1])
+            return (segment, float(t[np.argmin(dense) if low else np.argmax(dense)]))
+        return (segment, float(t[np.argmin(np.abs(dense - value))]))
+
+    def stretches(self, values, stable, places, changes=None):
         """Pieces (parameter, curve, stable) of one style each. The style changes at the bifurcation between two points where
-        one is known, else the whole segment goes with its less stable end."""
+        one is known, else the whole segment goes with its less stable end. `changes` {segment: [(t, stable behind it)]} says more
+        than `places`: several of them may lie between two points."""
         if len(self.parameter) < 2:
             return []
         stable = np.asarray(stable, bool)
         prepared = self._prepare(values)
-        cuts = {}
+        cuts = dict(changes or {})
         for place in places:
             if place is not None and stable[place[0]] != stable[place[0] + 1]:
-                cuts.setdefault(place[0], place[1])
+                cuts.setdefault(place[0], [(place[1], bool(stable[place[0] + 1]))])
         pieces = []
 
         def add(i, a, b, solid):
@@ -168,8 +178,9 @@ class Branch:
 
         for i in range(len(self.parameter) - 1):
             if i in cuts:
-                add(i, 0, cuts[i], bool(stable[i]))
-                add(i, cuts[i], 1, bool(stable[i + 1]))
+                ends = [0.0, *(t for t, _ in cuts[i]), 1.0]
+                for a, b, solid in zip(ends[:-1], ends[1:], [bool(stable[i]), *(behind for _, behind in cuts[i])]):
+                    add(i, a, b, solid)
             else:
                 add(i, 0, 1, bool(stable[i] and stable[i + 1]))
         return [(np.concatenate(x), np.concatenate(y), solid) for x, y, solid in pieces]

@@ -1,6 +1,7 @@
 """Curves of bifurcations in two parameters, with their points of codimension two."""
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.lines import Line2D
 
 from .curves import hermite
 from .style import GREY, INK, save
@@ -88,6 +89,103 @@ def smooth(x, y):
     return tuple(hermite(s, v, np.gradient(v, s, edge_order=2), 8)[1] for v in (x, y))
 
 
+def borders(study):
+    """Pieces of the curve between neighbouring points, each with whether it is a border of stability: (x, y, border)."""
+    x, y = study.get("locus/parameter"), study.get("locus/second")
+    others = study.get("locus/others_unstable")
+    border = np.ones(max(len(x) - 1, 0), bool) if others is None else (others[:-1] == 0) & (others[1:] == 0)
+    return x, y, border
+
+
+def draw_curve(axis, study):
+    """The curve: a line where it is a border of stability, thin dots where another motion has become unstable before."""
+    x, y, border = borders(study)
+    smoothed = smooth(x, y)
+    parts = (len(smoothed[0]) - 1) // max(len(x) - 1, 1)
+    first = True
+    for k in np.flatnonzero(np.diff(border, prepend=not border[0]) != 0) if len(border) else []:
+        end = next((m for m in range(k, len(border)) if border[m] != border[k]), len(border))
+        piece = slice(k * parts, end * parts + 1)
+        style = {"linestyle": "-"} if border[k] else {"linestyle": ":", "linewidth": 1.0}
+        axis.plot(smoothed[0][piece], smoothed[1][piece], color=study.colour, label=described(study) if border[k] and first else "_", **style)
+        first = first and not border[k]
+    return bool(len(border)) and not border.all()
+
+
+def crossings(study, level):
+    """Where the borders of a curve cross a line of constant second parameter: (first parameter, unstable above it)."""
+    x, y, border = borders(study)
+    side, start = study.attribute("stable_side", ""), int(study.attribute("start", 0) or 0)
+    if side not in ("above", "below") or len(x) < 2:
+        return []
+    steps = np.sign(np.diff(y))
+    # The unstable side stays left or right of the curve as one goes along it.
+    way = steps[min(start, len(steps) - 1)] or steps[max(start - 1, 0)]
+    found = []
+    for k in np.flatnonzero(border & (steps != 0) & (np.minimum(y[:-1], y[1:]) <= level) & (level < np.maximum(y[:-1], y[1:]))):
+        where = x[k] + (x[k + 1] - x[k]) * (level - y[k]) / (y[k + 1] - y[k])
+        found.append((where, (side == "below") == (steps[k] == way)))
+    return found
+
+
+def regions(axis, studies):
+    """Shades where each motion is unstable, row by row between its borders, and names what is born there."""
+    groups = {}
+    for study in studies:
+        groups.setdefault(study.attribute("of", ""), []).append(study)
+    (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
+    x, y = np.linspace(left, right, 400), np.linspace(low, high, 300)
+    free, known = np.ones((len(y), len(x)), bool), np.zeros((len(y), len(x)), bool)
+    names = []
+    for of, curves in groups.items():
+        mask = np.zeros((len(y), len(x)), bool)
+        for row, level in enumerate(y):
+            found = sorted(c for s in curves for c in crossings(s, level))
+            if not found:
+                continue
+            known[row] = True
+            begin = None if found[0][1] else left
+            for where, above in found:
+                if above and begin is None:
+                    begin = where
+                elif not above and begin is not None:
+                    mask[row] |= (x >= begin) & (x <= where)
+                    begin = None
+            if begin is not None:
+                mask[row] |= x >= begin
+        if not mask.any():
+            continue
+        free &= ~mask
+        colour = curves[0].colour
+        axis.contourf(x, y, mask.astype(float), levels=[0.5, 1.5], colors=[colour], alpha=0.10, zorder=0)
+        names.append((mask, f"{of}: {curves[0].attribute('born', '') or 'unstable'}", colour))
+    if (free & known).any() and names:
+        names.append((free & known, "stable", INK))
+    for k, (mask, words, colour) in enumerate(names):
+        others = np.zeros_like(mask) if words == "stable" else np.any([m for j, (m, _, _) in enumerate(names) if j != k], axis=0)
+        row, column = widest(mask & ~others if (mask & ~others).any() else mask)
+        axis.text(x[column], y[row], words, color=colour, fontsize=9, ha="center", va="center", style="italic", zorder=1)
+
+
+def widest(mask):
+    """The place in a region (row, column) that lies farthest from its edge, with more room across than upward."""
+    depth = np.zeros(mask.shape)
+    rest = mask.copy()
+    rest[[0, -1]] = rest[:, [0, -1]] = False
+    while rest.any():
+        depth += rest
+        smaller = rest.copy()
+        for shift in ((1, 0), (-1, 0), (0, 3), (0, -3)):
+            moved = np.roll(rest, shift, (0, 1))
+            if shift[1] > 0:
+                moved[:, :shift[1]] = False
+            elif shift[1] < 0:
+                moved[:, shift[1]:] = False
+            smaller &= moved
+        rest = smaller
+    return np.unravel_index(np.argmax(depth), depth.shape)
+
+
 def draw_bars(axis, study):
     """Bars at the points where they were computed, in the parameter in which they are shorter: a curve has none along itself."""
     names = ("parameter", "second", "parameter_uncertainty", "second_uncertainty", "uncertainty_computed")
@@ -112,18 +210,21 @@ def draw_together(results):
     studies = [s for s in studies if (s.attribute("parameter"), last(s.attribute("second", ""))) == pair]
     figure, axis = plt.subplots(figsize=(8, 5.5))
     points = []
+    dotted = False
     for study in studies:
-        axis.plot(*smooth(study.get("locus/parameter"), study.get("locus/second")), color=study.colour, label=described(study))
+        dotted = draw_curve(axis, study) or dotted
         draw_bars(axis, study)
         kinds = study.get("codimension_two/type")
         if kinds is not None and len(kinds):
             points += zip(kinds, np.atleast_1d(study.get("codimension_two/parameter")),
                           np.atleast_1d(study.get("codimension_two/second")))
     axis.margins(x=0.04, y=0.08)
+    regions(axis, studies)
     label(axis, points)
     for put, key in ((axis.set_xlabel, "parameter"), (axis.set_ylabel, "second")):
         unit = studies[0].attribute(f"{key}_unit")
         unit = WORDS_OF_UNITS.get(unit, unit)
         put(last(studies[0].attribute(key)) + (f" [{unit}]" if unit else ""))
     return save(figure, results.whole("curves of bifurcations"), "loci", "where motions lose stability, over two parameters",
-                [line for line in axis.get_lines() if not line.get_label().startswith("_")])
+                [line for line in axis.get_lines() if not line.get_label().startswith("_")]
+                + [Line2D([], [], color=GREY, linestyle=":", linewidth=1.0, label="no border: something else is unstable there already")] * dotted)

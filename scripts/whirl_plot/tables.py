@@ -171,23 +171,14 @@ def unbalance_response(study):
 
 KINDS = {"hopf": "Hopf point: whirl sets in", "fold": "limit point", "cyclic_fold": "limit point of cycles: the motion jumps",
          "flip": "flip: the period doubles", "neimark_sacker": "Neimark-Sacker point: a second frequency sets in", "branch_point": "branch point"}
-BEYOND = {
-    ("hopf", "supercritical"): "beyond it a whirl of small amplitude that grows with the distance; back the same way",
-    ("hopf", "subcritical"): "beyond it no small whirl: the rotor jumps to a large one and keeps it below the threshold (hysteresis)",
-    ("flip", "supercritical"): "beyond it a small motion of half the frequency that grows",
-    ("flip", "subcritical"): "beyond it no small motion of half the frequency: a jump, and hysteresis",
-    ("neimark_sacker", "supercritical"): "beyond it a small beat that grows",
-    ("neimark_sacker", "subcritical"): "beyond it no small beat: a jump, and hysteresis",
-}
 
 
 def beyond(b):
-    words = BEYOND.get((b.get("type"), b.get("criticality")), "")
-    if b.get("type") in ("fold", "cyclic_fold") and b.get("criticality") in ("above", "below"):
-        words = f"the solutions of this branch lie {b['criticality']} it"
-    elif not words and b.get("type") in ("hopf", "flip", "neimark_sacker"):
-        words = "what is beyond is undetermined" + (f": {b['criticality_by'].removeprefix('undetermined: ')}" if b.get("criticality_by") else "")
-    return words
+    """What a bifurcation means, as summary.json says it."""
+    words = b.get("sentence", "")
+    if b.get("criticality") == "undetermined" and b.get("criticality_by"):
+        words += f" ({b['criticality_by'].removeprefix('undetermined: ')})"
+    return words.strip()
 
 
 def frequency(b):
@@ -205,7 +196,7 @@ def bifurcations(study):
     name = str(found[0].get("parameter", "parameter")).rsplit(".", 1)[-1].replace("_", " ")
     rows = [[KINDS.get(b.get("type"), b.get("type")), with_bar(b.get("value"), b.get("uncertainty")), frequency(b), b.get("criticality") or "\u2013", beyond(b)]
             for b in found]
-    return Table("Bifurcations", ["what", f"{name} [{unit}]" if unit not in ("", "1") else name, "frequency [Hz]", "criticality", "beyond"], rows,
+    return Table("Bifurcations", ["what", f"{name} [{unit}]" if unit not in ("", "1") else name, "frequency [Hz]", "criticality", "what it means"], rows,
                  "the bar estimates the error from film mesh, time mesh and location; the frequency is that of the motion born there")
 
 
@@ -216,10 +207,13 @@ SOLID = {"undamped throughout": "undamped", "undamped, then unstable": "undamped
 def stability(study, branch):
     """Where the branch is stable, in words: stretches of the parameter between its changes."""
     unit = study.attribute("parameter_unit", "")
-    places = [place for _, _, place in branch.events]
-    pieces = branch.curve.stretches(branch.parameter, branch.stable, places)
-    solid_words = SOLID.get(study.summary.get("stability"), "stable")
-    rows = [[f"{digits(float(x[0]), 6)} to {digits(float(x[-1]), 6)}", solid_words if solid else "unstable"] for x, _, solid in pieces]
+    known = study.summary.get("ranges")
+    if known:
+        rows = [[f"{digits(r['from'], 6)} to {digits(r['to'], 6)}", r["stability"]] for r in known]
+    else:
+        pieces = branch.curve.stretches(branch.parameter, branch.stable, [place for _, _, place in branch.events])
+        solid_words = SOLID.get(study.summary.get("stability"), "stable")
+        rows = [[f"{digits(float(x[0]), 6)} to {digits(float(x[-1]), 6)}", solid_words if solid else "unstable"] for x, _, solid in pieces]
     if not 0 < len(rows) <= 12:
         return None
     name = study.attribute("parameter", "parameter").rsplit(".", 1)[-1].replace("_", " ")

@@ -421,23 +421,6 @@ std::string with_uncertainty(double value, double uncertainty, const std::string
   return fmt::format("{:.{}f} +- {:.{}f}{}", value, decimals, uncertainty, decimals, tail);
 }
 
-std::string meaning(const io::Bifurcation& b) {
-  const bool super = b.criticality == "supercritical", sub = b.criticality == "subcritical";
-  if (!super && !sub) return {};
-  switch (b.type) {
-    case io::BifurcationType::hopf:
-      return super ? "beyond it whirl grows from nothing" : "beyond it whirl jumps up; short of it a push can start it";
-    case io::BifurcationType::flip:
-      return super ? "beyond it half-frequency whirl grows from nothing"
-                   : "beyond it half-frequency whirl jumps up; short of it a push can start it";
-    case io::BifurcationType::neimark_sacker:
-      return super ? "beyond it whirl beside the vibration grows from nothing"
-                   : "beyond it whirl beside the vibration jumps up; short of it a push can start it";
-    default:
-      return {};
-  }
-}
-
 std::string highlights(const io::StudySummary& s) {
   const Values v(s);
   if (s.kind == "static") return of_static(s, v);

@@ -16,7 +16,4 @@ namespace whirl::app {
 /// "5021.4 +- 6.9 rpm": two digits of the uncertainty, seven of the value at most; the unit 1 is not written.
 [[nodiscard]] std::string with_uncertainty(double value, double uncertainty, const std::string& unit);
 
-/// What a bifurcation means for the one who runs the machine; empty if it cannot be told.
-[[nodiscard]] std::string meaning(const io::Bifurcation& b);
-
 }  // namespace whirl::app

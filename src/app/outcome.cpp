@@ -9,19 +9,30 @@
 namespace whirl::app {
 namespace {
 
+// ": stable 600 to 4471 rpm, unstable to 5200 rpm"; nothing of a single stretch.
+std::string in_words(const std::vector<io::StabilityRange>& ranges) {
+  constexpr std::size_t most = 9;
+  std::string text;
+  for (std::size_t k = 0; ranges.size() > 1 && k < ranges.size(); ++k) {
+    const auto& r = ranges[k];
+    if (k == most) return text + fmt::format(", and {} more stretches in summary.json", ranges.size() - most);
+    const bool joined = k > 0 && ranges[k - 1].to == r.from;
+    text += fmt::format("{}{} {}{:.6g}", k == 0 ? ": " : ", ", r.stability,
+                        joined ? "to " : fmt::format("{:.6g} to ", r.from), r.to);
+  }
+  return ranges.size() > 1 && ranges[0].unit != "1" ? text + " " + ranges[0].unit : text;
+}
+
 std::string text_of(const io::StudySummary& s) {
   std::string text = fmt::format("{}: {} ({}, {} {}, {:.3g} s)\n", s.name, s.status, s.kind, s.points,
                                  s.points == 1 ? "point" : "points", s.wall_seconds);
   if (!s.layout.empty()) text += fmt::format("  {}\n", s.layout);
-  if (!s.stability.empty()) text += fmt::format("  {}\n", s.stability);
+  if (!s.stability.empty()) text += fmt::format("  {}{}\n", s.stability, in_words(s.ranges));
   for (const std::string& w : s.warnings) text += fmt::format("  note: {}\n", w);
   for (const io::Bifurcation& b : s.bifurcations) {
-    const auto others = b.more.find("others_unstable");
-    const bool beyond = others != b.more.end() && others->second > 0;
-    text += fmt::format("  {} at {} {}{}{}{}{}\n", io::name_of(b.type), b.parameter,
+    text += fmt::format("  {} at {} {}{}{}{}\n", io::name_of(b.type), b.parameter,
                         with_uncertainty(b.value, b.uncertainty, b.unit), b.criticality.empty() ? "" : ", ",
-                        b.criticality, beyond ? fmt::format(", {:.0f} others unstable", others->second) : "",
-                        meaning(b).empty() ? "" : ": " + meaning(b));
+                        b.criticality, b.sentence.empty() ? "" : ": " + b.sentence);
     if (const auto error = b.more.find("reduction_error"); error != b.more.end() && std::isfinite(error->second))
       text += fmt::format("    estimated error of the shaft's reduction: {:+.2g} {}\n", error->second, b.unit);
   }

@@ -48,6 +48,9 @@ Json to_json(const Bifurcation& b) {
             {"uncertainty", number(b.uncertainty)},
             {"criticality", text_or_null(b.criticality)}};
   if (!b.criticality_by.empty()) j["criticality_by"] = b.criticality_by;
+  if (!b.stable_side.empty()) j["stable_side"] = b.stable_side;
+  if (!b.born.empty()) j["born"] = b.born;
+  if (!b.sentence.empty()) j["sentence"] = b.sentence;
   for (const auto& [name, value] : b.more) j[name] = number(value);
   return j;
 }
@@ -73,6 +76,12 @@ Bifurcation bifurcation(const Json& j) {
       b.criticality = v.is_null() ? "" : v.get<std::string>();
     } else if (key == "criticality_by") {
       v.get_to(b.criticality_by);
+    } else if (key == "stable_side") {
+      v.get_to(b.stable_side);
+    } else if (key == "born") {
+      v.get_to(b.born);
+    } else if (key == "sentence") {
+      v.get_to(b.sentence);
     } else {
       b.more[key] = number(v);
     }
@@ -192,6 +201,9 @@ Json to_json(const StudySummary& s) {
             {"points", s.points}};
   if (!s.layout.empty()) j["layout"] = s.layout;
   if (!s.stability.empty()) j["stability"] = s.stability;
+  for (const StabilityRange& r : s.ranges)
+    j["ranges"].push_back(
+        {{"from", number(r.from)}, {"to", number(r.to)}, {"unit", r.unit}, {"stability", r.stability}});
   if (!s.warnings.empty()) j["warnings"] = s.warnings;
   for (const Column& c : s.curve) {
     Json column = Json::array();
@@ -225,6 +237,8 @@ StudySummary study(const Json& j) {
          m.value("stability", std::string()), m.value("whirl_rule", std::string())});
   s.layout = j.value("layout", std::string());
   s.stability = j.value("stability", std::string());
+  for (const Json& r : j.value("ranges", Json::array()))
+    s.ranges.push_back({number(r.at("from")), number(r.at("to")), r.at("unit"), r.at("stability")});
   s.warnings = j.value("warnings", std::vector<std::string>());
   const Json curve = j.value("curve", Json::object());
   for (const auto& [name, c] : curve.items()) {

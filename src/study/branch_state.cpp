@@ -9,14 +9,15 @@ namespace whirl::study {
 namespace {
 
 // Events as rows of numbers.
-constexpr std::size_t numbers_of_event = 11;
+constexpr std::size_t numbers_of_event = 13;
 
 void put_events(io::Group& group, const std::string& name, const std::vector<solve::LocatedEvent>& events) {
   std::vector<double> flat;
   for (const auto& e : events)
     flat.insert(flat.end(), {static_cast<double>(e.event), e.parameter, e.bracket, e.sensitivity, e.critical.real(),
                              e.critical.imag(), e.located ? 1.0 : 0.0, e.refined ? 1.0 : 0.0, e.quadratic,
-                             static_cast<double>(e.others_unstable), e.loses ? 1.0 : 0.0});
+                             static_cast<double>(e.unstable_before), static_cast<double>(e.unstable_after), e.slope,
+                             static_cast<double>(e.after)});
   group.put(name, std::move(flat), "1", "events of the last step");
 }
 
@@ -34,7 +35,9 @@ std::vector<solve::LocatedEvent> events_of(const io::Group& group, const std::st
                       v[7] != 0,
                       v[8],
                       static_cast<int>(v[9]),
-                      v[10] != 0});
+                      static_cast<int>(v[10]),
+                      v[11],
+                      static_cast<int>(v[12])});
   }
   return events;
 }

@@ -168,6 +168,9 @@ Verdict classify(const Evidence& e) {
   if (e.size < e.rest) {
     if (!e.exponents.empty() && sign_of(e, 0) == Sign::positive)
       return {Kind::unsettled, 0, "unsettled", "at rest although deviations grow: " + largest(e)};
+    if (!e.grows.empty())
+      return {Kind::unsettled, 0, "unsettled",
+              fmt::format("at rest at an unstable equilibrium, where a disturbance grows: {}", e.grows)};
     return {Kind::fixed_point, 0, "fixed_point",
             fmt::format("moves by {:.1e}{}", e.size, e.exponents.empty() ? "" : ", " + largest(e))};
   }

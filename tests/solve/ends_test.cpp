@@ -52,8 +52,8 @@ TEST(NaturalContinuation, FindsTheSameBifurcations) {
   EXPECT_TRUE(r.end.completed);
   ASSERT_EQ(r.of(Event::hopf).size(), 1U);
   EXPECT_NEAR(r.events[0].parameter, 0.3, 1e-9);
-  EXPECT_EQ(r.events[0].others_unstable, 0);
-  EXPECT_TRUE(r.events[0].loses);
+  EXPECT_EQ(r.events[0].others_unstable(), 0);
+  EXPECT_TRUE(r.events[0].unstable_after > 0);
 }
 
 TEST(Limit, IsLocatedAndEndsTheBranch) {

@@ -32,7 +32,17 @@ struct Bifurcation {
   double uncertainty = no_value;            ///< estimated absolute error of `value`
   std::string criticality = {};             ///< "supercritical", "subcritical", or empty if not computed
   std::string criticality_by = {};          ///< how it was obtained, or why it was not
+  std::string stable_side = {};             ///< "above", "below", "neither"; empty where it is not known
+  std::string born = {};                    ///< what begins here: "whirl", "half-frequency whirl", ...; or empty
+  std::string sentence = {};                ///< what that means for the machine, in words; or empty
   std::map<std::string, double> more = {};  ///< further numbers, e.g. "whirl_frequency_rad_s", "angle_rad"
+};
+
+/// A stretch of a branch with one kind of stability, in the order of the branch: `from` may be above `to`.
+struct StabilityRange {
+  double from = no_value, to = no_value;
+  std::string unit = {};
+  std::string stability = {};  ///< stable, undamped, unstable, undetermined
 };
 
 /// A point of codimension two on a curve of bifurcations, in both parameters.
@@ -103,6 +113,7 @@ struct StudySummary {
   std::vector<CodimensionTwo> codimension_two = {};  ///< in the file only if there are any
   std::vector<Suspicion> suspected = {};             ///< likewise
   std::string stability = {};                        ///< verdict on the whole branch; likewise
+  std::vector<StabilityRange> ranges = {};           ///< of a branch, in its order; likewise
   std::vector<std::string> warnings = {};            ///< what its numbers must not be taken for; likewise
   std::vector<Column> curve = {};                    ///< a curve, column by column of equal length; likewise
   std::vector<ModeEntry> modes = {};

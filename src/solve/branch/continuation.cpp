@@ -24,6 +24,12 @@ State copy(const State& s) {
   return {copy(s.u.get()), copy(s.tangent.get()), s.point};
 }
 
+namespace {
+
+const std::string turns_sharply = "the branch turns too sharply (a larger beta_1 admits it)";
+
+}  // namespace
+
 double arclength(const ExtendedProblem& problem, const State& a, Vec b) {
   core::Vector chord = copy(b);
   check(VecAXPY(chord.get(), -1, a.u.get()));
@@ -52,8 +58,8 @@ bool Follower::on_course(const State& from, const State& to) const {
   const double product = forward * inner(problem_, from.tangent.get(), chord.get()),
                length = inner(problem_, chord.get(), chord.get());
   // Steps of the parameter come to a fold with tangents that have turned away from the chord, and look behind it.
-  const double behind = options_.kind == Continuation::natural ? std::numbers::pi : 1.5 * options_.beta_1;
-  return within(product, 1, length, options_.beta_1) &&
+  const double behind = options_.kind == Continuation::natural ? std::numbers::pi : 1.5 * beta_1();
+  return within(product, 1, length, beta_1()) &&
          within(forward * inner(problem_, to.tangent.get(), chord.get()), 1, length, behind) &&
          within(product - forward * weight * tp * dp, 1 - weight * tp * tp, length - weight * dp * dp, options_.beta_2);
 }
@@ -78,9 +84,9 @@ bool Follower::advance(const State& from, double ds, State& to, NewtonResult& re
     return false;
   }
   const double turned = inner(problem_, from.tangent.get(), to.tangent.get());
-  if (rounded(turned) >= rounded(std::cos(std::min(2 * options_.beta_1, std::numbers::pi))) && on_course(from, to))
+  if (rounded(turned) >= rounded(std::cos(std::min(2 * beta_1(), std::numbers::pi))) && on_course(from, to))
     return true;
-  result.reason = "the branch turns too sharply";
+  result.reason = turns_sharply;
   return false;
 }
 
@@ -218,6 +224,12 @@ void Follower::step() {
     }
     if (ok) break;
     ds_ = rounded(ds_ / 2);
+    if (ds_ < options_.min_step && here_.point.index < 0 && !leaves_askew_ && result.reason == turns_sharply) {
+      leaves_askew_ = true;
+      ds_ = options_.initial_step;
+      next = {};
+      continue;
+    }
     if (ds_ < options_.min_step)
       return finish(turns_back(here_) ? "the branch turns back at a fold, which natural continuation does not pass"
                                       : "the step fell below its minimum: " + result.reason,
@@ -235,6 +247,7 @@ void Follower::step() {
   memory_.before = std::move(here_);
   if (!comparable) forget_points();
   here_ = std::move(next);
+  leaves_askew_ = false;
   const int k = result.effort;
   ds_ = rounded(std::min(options_.max_step, ds_ * (k <= 2 ? 2.0 : k == 3 ? 1.5 : k == 4 ? 1.1 : k == 5 ? 0.8 : 0.5)));
   ds_ = std::max(ds_, options_.min_step);

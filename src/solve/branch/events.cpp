@@ -131,6 +131,7 @@ bool Follower::search(const State& a, const State& b, const Test& test, double t
 // The event roughly, then to rounding by the callback; by false position alone where that leads elsewhere.
 void Follower::pin_down(const State& a, const State& b, const Test& test, const std::function<void(const State&)>& name,
                         LocatedEvent& found, State& at) {
+  found.after = a.point.index;
   if (questions_.refine) {
     const double rough = 1e-2 * std::abs(b.point.parameter - a.point.parameter);
     found.located = locate(a, b, test, std::max(options_.location_tolerance, rough), found, at);
@@ -169,12 +170,12 @@ void Follower::folds(const State& a, const State& b, int depth) {
     LocatedEvent found{};
     State at;
     found.event = questions_.cycles ? Event::cyclic_fold : Event::fold;
-    const int before = a.point.stability.unstable(), after = b.point.stability.unstable();
-    found.others_unstable = std::min(before, after);
-    found.loses = after > before;
+    found.unstable_before = a.point.stability.unstable();
+    found.unstable_after = b.point.stability.unstable();
     pin_down(
         a, b, [](const State& s) { return s.point.slope; }, [](const State&) {}, found, at);
     found.sensitivity = 0;
+    found.slope = at.point.slope;
     if (found.located)
       memory_.folds.emplace_back(found.parameter, std::max(std::abs(a.point.parameter - found.parameter),
                                                            std::abs(b.point.parameter - found.parameter)));
@@ -227,8 +228,8 @@ void Follower::crossings(const State& a, const State& b, int depth) {
     return d.empty() ? -1.0 : d[std::min(k, d.size() - 1)];
   };
   LocatedEvent found{};
-  found.others_unstable = std::min(from, to);
-  found.loses = to > from;
+  found.unstable_before = from;
+  found.unstable_after = to;
   State at;
   bool real = false;
   pin_down(
@@ -237,8 +238,10 @@ void Follower::crossings(const State& a, const State& b, int depth) {
         const auto& values = here.point.stability.values;
         found.critical = values.empty() ? 0.0 : values[std::min(k, values.size() - 1)];
         // At a fold of a self-excited cycle the critical multiplier meets the trivial one at +1, and round-off splits
-        // the double value into a pair of the size of its square root.
-        const double tolerance = questions_.cycles && found.critical.real() > 0 ? 5e-3 : 1e-7;
+        // the double value into a pair of the size of its square root. On a coarse mesh that is larger, but a pair
+        // would change the count by two: one of these was taken for the trivial multiplier.
+        const double split = std::abs(to - from) == 1 ? 0.1 : 5e-3;
+        const double tolerance = questions_.cycles && found.critical.real() > 0 ? split : 1e-7;
         real = std::abs(found.critical.imag()) <= tolerance * std::abs(found.critical);
         if (!real)
           found.event = questions_.cycles ? Event::neimark_sacker : Event::hopf;
@@ -248,6 +251,7 @@ void Follower::crossings(const State& a, const State& b, int depth) {
           found.event = Event::branch_point;
       },
       found, at);
+  found.slope = at.point.slope;
   // A real value changes the count by one, a pair by two: else another one crosses in this step.
   if (std::abs(to - from) == (real ? 2 : 1) && separate()) return;
   // A real value crossing at +1 (or 0) where the branch turns is the fold that is located as such. After a split the
@@ -367,6 +371,7 @@ void Follower::around(const State& a, State& middle, const State& b) {
   State rest = copy(b);
   rest.point.step = distance(middle, b.u.get());
   middle.point.step = distance(a, middle.u.get());
+  middle.point.index = a.point.index;
   crossings(a, middle, 0);
   crossings(middle, rest, 0);
 }

@@ -1,8 +1,10 @@
 #pragma once
 // One branch on its way: steps here, events between two points beside it.
 
+#include <algorithm>
 #include <deque>
 #include <functional>
+#include <numbers>
 #include <optional>
 
 #include "whirl/solve/branch/continuation.hpp"
@@ -47,6 +49,11 @@ private:
   }
   NewtonResult correct_at(core::Vector& u, double parameter);
   [[nodiscard]] bool on_course(const State& from, const State& to) const;
+  // Where a force has kinks a branch leaves its bifurcation askew, at an angle that no shorter step makes smaller: its
+  // first step may deviate by a right angle if no other way leads on.
+  [[nodiscard]] double beta_1() const {
+    return leaves_askew_ ? std::max(options_.beta_1, std::numbers::pi / 2) : options_.beta_1;
+  }
   // The point at arclength ds from `from`; of natural continuation, at the parameter ds further on.
   bool advance(const State& from, double ds, State& to, NewtonResult& result);
   // A branch that leaves a bifurcation at right angles to the parameter begins with a step of arclength.
@@ -101,6 +108,7 @@ private:
   std::vector<LocatedEvent> last_met_;
   Stage stage_ = Stage::start;
   State here_;
+  bool leaves_askew_ = false;
   bool at_start_ = false;  // of the branch, whose first point was just taken
   double ds_;
   std::deque<Found> found_;

@@ -1,5 +1,10 @@
 #include "study/bars/verdict.hpp"
 
+#include <algorithm>
+#include <array>
+
+#include "whirl/io/table.hpp"
+
 namespace whirl::study {
 
 const char* name_of(StabilityClass c) {
@@ -12,33 +17,142 @@ StabilityClass class_of(const solve::Stability& s) {
   return s.neutral > 0 ? StabilityClass::undamped : StabilityClass::stable;
 }
 
-void BranchVerdict::add(StabilityClass c) {
-  if (empty_) first_ = c;
-  empty_ = false;
-  met_[static_cast<std::size_t>(c)] = true;
+BranchChange change_at(const solve::LocatedEvent& found, int bifurcation) {
+  return {found.after,
+          found.parameter,
+          found.unstable_before,
+          found.unstable_after,
+          found.slope,
+          found.event == solve::Event::fold || found.event == solve::Event::cyclic_fold,
+          bifurcation};
+}
+
+void put_changes(io::Group& group, const std::vector<BranchChange>& changes, const std::string& unit) {
+  io::Table table({{"after", "1", "row of the last point before it in the table of the branch, from 0"},
+                   {"parameter", unit, "where"},
+                   {"unstable_before", "1", "unstable eigenvalues or multipliers before it along the branch"},
+                   {"unstable_after", "1", "and behind it"},
+                   {"slope", "1", "its sign is that of the parameter's change along the branch"},
+                   {"fold", "1", "1 where the parameter turns"},
+                   {"bifurcation", "1", "row in the table of bifurcations, from 0; -1: not asked for"}});
+  for (const BranchChange& c : changes)
+    table.append({static_cast<double>(c.after), c.parameter, static_cast<double>(c.before),
+                  static_cast<double>(c.behind), c.slope, c.fold ? 1.0 : 0.0, static_cast<double>(c.bifurcation)});
+  table.write(group);
+}
+
+std::vector<BranchChange> changes_in(const io::Group& group) {
+  std::vector<BranchChange> out;
+  const auto whole = [&](const char* name, std::size_t k) { return static_cast<int>(group.reals(name)[k]); };
+  for (std::size_t k = 0; k < group.reals("after").size(); ++k)
+    out.push_back({whole("after", k), group.reals("parameter")[k], whole("unstable_before", k),
+                   whole("unstable_after", k), group.reals("slope")[k], whole("fold", k) != 0,
+                   whole("bifurcation", k)});
+  return out;
+}
+
+void BranchVerdict::add(double parameter, StabilityClass c, int unstable) {
+  points_.push_back({parameter, c, unstable});
+}
+
+// In the order of the branch. A closer look may find a change later than another one behind it, and a fold comes before
+// what lies in its step: each change begins with the count that the one before it left.
+std::vector<BranchChange> BranchVerdict::between(std::size_t point) const {
+  std::vector<BranchChange> open, out;
+  for (const BranchChange& c : changes_)
+    if (c.after == static_cast<int>(point)) open.push_back(c);
+  const bool turns = std::any_of(open.begin(), open.end(), [](const auto& c) { return c.fold; });
+  if (!turns && point + 1 < points_.size()) {
+    const bool rising = points_[point + 1].parameter > points_[point].parameter;
+    std::stable_sort(open.begin(), open.end(), [rising](const auto& a, const auto& b) {
+      return rising ? a.parameter < b.parameter : a.parameter > b.parameter;
+    });
+  }
+  for (int count = points_[point].unstable; !open.empty();) {
+    auto next = std::find_if(open.begin(), open.end(), [count](const auto& c) { return c.before == count; });
+    if (next == open.end()) next = open.begin();
+    count = next->behind;
+    out.push_back(*next);
+    open.erase(next);
+  }
+  return out;
+}
+
+std::vector<BranchVerdict::Stretch> BranchVerdict::stretches() const {
+  std::vector<Stretch> out;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& here = points_[i];
+    if (out.empty() || out.back().stability != here.stability)
+      out.push_back({here.parameter, here.parameter, here.stability, false});
+    out.back().to = here.parameter;
+    out.back().doubtful =
+        out.back().doubtful || std::find(doubts_.begin(), doubts_.end(), static_cast<int>(i)) != doubts_.end();
+    const std::vector<BranchChange> inside = between(i);
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      const BranchChange& c = inside[k];
+      const bool last = i + 1 == points_.size();
+      // Nobody went on behind a fold there. Others belong to a new mesh of the last point.
+      if (last && c.fold) continue;
+      out.back().to = c.parameter;
+      // Undamped solutions are so up to the next change.
+      const bool reaches = k + 1 == inside.size() && i + 1 < points_.size() && points_[i + 1].unstable == 0;
+      const StabilityClass next = c.behind > 0 ? StabilityClass::unstable
+                                  : reaches    ? points_[i + 1].stability
+                                               : StabilityClass::stable;
+      const double end = last ? here.parameter : c.parameter;
+      if (c.fold || next != out.back().stability) out.push_back({c.parameter, end, next, false});
+    }
+  }
+  const bool one = std::all_of(out.begin(), out.end(), [&](const auto& s) { return s.stability == out[0].stability; });
+  for (Stretch& s : out) s.doubtful = s.doubtful && one;
+  return out;
+}
+
+std::vector<io::StabilityRange> BranchVerdict::ranges(const std::string& unit) const {
+  std::vector<io::StabilityRange> out;
+  for (const Stretch& s : stretches())
+    out.push_back({s.from, s.to, unit, s.doubtful ? "undetermined" : name_of(s.stability)});
+  return out;
 }
 
 std::string BranchVerdict::text() const {
-  if (empty_) return {};
-  if (met_[0] + met_[1] + met_[2] == 1) return std::string(name_of(first_)) + " throughout";
-  if (first_ == StabilityClass::unstable) return "unstable from its start";
-  if (!met_[static_cast<std::size_t>(StabilityClass::unstable)]) return "stable or undamped";
-  return first_ == StabilityClass::stable ? "loses stability" : "undamped, then unstable";
+  const std::vector<Stretch> all = stretches();
+  if (all.empty()) return {};
+  std::array<bool, 3> met{};
+  bool doubtful = false;
+  for (const Stretch& s : all) {
+    met[static_cast<std::size_t>(s.stability)] = true;
+    doubtful = doubtful || s.doubtful;
+  }
+  const StabilityClass first = all.front().stability;
+  if (met[0] + met[1] + met[2] == 1) return doubtful ? "undetermined" : std::string(name_of(first)) + " throughout";
+  if (first == StabilityClass::unstable) return "unstable from its start";
+  if (!met[static_cast<std::size_t>(StabilityClass::unstable)]) return "stable or undamped";
+  return first == StabilityClass::stable ? "loses stability" : "undamped, then unstable";
 }
 
-int threshold_among(const std::vector<BorderEvent>& events, bool rising) {
-  int found = -1;
-  for (std::size_t k = 0; k < events.size(); ++k) {
-    if (!events[k].is_border) continue;
-    // On the way down the last one at which stability is regained is the first at which it is lost on the way up.
-    if (events[k].loses == rising) {
-      found = static_cast<int>(k);
-      if (rising) return found;
-    }
+// The branch lies on the side from which it comes to its fold.
+bool BranchVerdict::turns_below(const BranchChange& fold) const {
+  const auto at = static_cast<std::size_t>(std::max(fold.after, 0));
+  return at < points_.size() && points_[at].parameter < fold.parameter;
+}
+
+std::vector<StabilityLimit> BranchVerdict::limits() const {
+  std::vector<StabilityLimit> out;
+  for (std::size_t k = 0; k < changes_.size(); ++k) {
+    const BranchChange& c = changes_[k];
+    if (std::min(c.before, c.behind) > 0 || c.before == c.behind) continue;
+    out.push_back({k, c.fold ? turns_below(c) : c.below() == 0});
   }
-  for (std::size_t k = 0; found < 0 && !rising && k < events.size(); ++k)
-    if (events[k].is_border) found = static_cast<int>(k);
-  return found;
+  std::stable_sort(out.begin(), out.end(), [&](const auto& a, const auto& b) {
+    return changes_[a.change].parameter < changes_[b.change].parameter;
+  });
+  return out;
+}
+
+int threshold_among(const std::vector<StabilityLimit>& limits) {
+  const auto first = std::find_if(limits.begin(), limits.end(), [](const auto& l) { return l.stable_below; });
+  return first == limits.end() ? -1 : static_cast<int>(first->change);
 }
 
 }  // namespace whirl::study

@@ -44,7 +44,8 @@ public:
   void follow() {
     BearingEquilibrium last = bearing_.centred();
     for (int i = 1; i <= options_.points; ++i) {
-      const auto e = bearing_.carrying(options_.max_eccentricity * i / options_.points, last);
+      const double wanted = options_.max_eccentricity * i / options_.points;
+      const auto e = bearing_.rigid() ? bearing_.carrying(wanted, last) : walk(last, wanted);
       if (!e && !bearing_.rigid()) break;
       if (!e) continue;
       locus.push_back(complete(*e));
@@ -113,6 +114,20 @@ public:
   [[nodiscard]] bool touches() const { return locus.back().at.eccentricity < options_.max_eccentricity * (1 - 1e-12); }
 
 private:
+  // In as few steps as lead there: from a far one the film of a soft bearing may not be found although it exists.
+  std::optional<BearingEquilibrium> walk(BearingEquilibrium last, double wanted) {
+    const double shortest = (wanted - last.eccentricity) / 64;
+    for (double step = wanted - last.eccentricity; step >= shortest;) {
+      const double next = std::min(last.eccentricity + step, wanted);
+      if (auto e = bearing_.carrying(next, last)) {
+        if (next == wanted) return e;
+        last = std::move(*e);
+      } else {
+        step /= 2;
+      }
+    }
+    return {};
+  }
   void refuse(double s) {
     if (locus.empty()) return;
     const auto [low, high] = std::minmax_element(

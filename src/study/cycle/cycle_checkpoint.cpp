@@ -77,6 +77,7 @@ void CycleFollower::save(const solve::Settled& at, Vec u, Vec tangent) {
   record_.write(state.child("record"), true);
   nodes_.write(state);
   multiplier_bars_.write(state.child("multiplier_bars"));
+  put_changes(state.child("changes"), changes_, unit_);
   write_cycle(state.child("cycle"), cycle, stored());
   write_cycle(state.child("tangent"), direction, stored());
   // Cycles asked for begin there, on the mesh before its adaptation.
@@ -112,6 +113,7 @@ std::optional<solve::Restart> CycleFollower::restore() {
   record_.read(state.group("record"));
   nodes_.read(state);
   multiplier_bars_.read(state.group("multiplier_bars"));
+  changes_ = changes_in(state.group("changes"));
   const solve::Cycle cycle = read_cycle(state.group("cycle"), stored()),
                      direction = read_cycle(state.group("tangent"), stored());
   problem_ = make_problem(*system_, options_.period, cycle.mesh, 1);

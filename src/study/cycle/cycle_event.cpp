@@ -124,14 +124,31 @@ void CycleFollower::doubt_at_birth(io::Bifurcation& b) const {
                   b.value, b.unit));
 }
 
+// Beside a fold two multipliers near +1 may seem to cross as a pair. Such a pair is no place that any mesh confirms.
+bool CycleFollower::doubtful_pair(const io::Bifurcation& b, const solve::LocatedEvent& found) {
+  constexpr double small_angle = 0.1;  // rad
+  if (found.event != solve::Event::neimark_sacker || std::isfinite(b.uncertainty)) return false;
+  if (std::abs(std::arg(found.critical)) > small_angle) return false;
+  changes_.back().bifurcation = -1;
+  ++events_;
+  context_.results.summary().suspected.push_back(
+      {b.value, b.value, unit_,
+       fmt::format("two multipliers near +1 ({:.3g} rad apart from it) seem to cross the unit circle, as they do by "
+                   "rounding beside a fold",
+                   std::abs(std::arg(found.critical)))});
+  return true;
+}
+
 void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
-  if (!wanted(found.event, options_.detect)) return;
+  const bool asked = wanted(found.event, options_.detect);
   const solve::Cycle cycle = problem_->gather(u);
   system_->set_parameter(cycle.parameter);
   if (found.event == solve::Event::cyclic_fold && at_its_origin(problem_->orbit(u))) return;
+  changes_.push_back(change_at(found, asked ? static_cast<int>(context_.results.summary().bifurcations.size()) : -1));
+  if (!asked) return;
   io::Bifurcation b = bifurcation_here(type_of(found.event), found.parameter);
   b.period_s = cycle.period;
-  b.more["others_unstable"] = found.others_unstable;
+  put_counts(b, changes_.back());
   if (found.event != solve::Event::cyclic_fold) {
     b.more["angle_rad"] = std::abs(std::arg(found.critical));
     b.more["multiplier_modulus"] = std::abs(found.critical);
@@ -154,6 +171,7 @@ void CycleFollower::on_event(const solve::LocatedEvent& found, Vec u) {
     b.criticality_by = "not located: lies within the bracket";
     b.uncertainty = found.bracket;
   }
+  if (doubtful_pair(b, found)) return;
   if (seed) {
     const auto twice = twice_the_period(*seed);
     const solve::Restart leaving = leave_flip(*twice, *seed);

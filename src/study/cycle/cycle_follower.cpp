@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/bars/open_bore.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bifurcation.hpp"
 #include "study/cycle/coexisting.hpp"
@@ -154,6 +155,24 @@ void CycleFollower::report(const std::string& key, Vec u) {
   for (const auto& [name, q] : own.values) context_.results.summary().set(name, q.value, q.unit, q.more);
 }
 
+// Where the mesh leaves open on which side of the unit circle the leading multiplier is.
+void CycleFollower::doubt(BranchVerdict& verdict) {
+  const auto column = [this](const char* name) { return multiplier_bars_.column(name); };
+  std::optional<std::size_t> worst;
+  for (std::size_t k = 0; k < multiplier_bars_.rows(); ++k) {
+    if (column("decided")[k] > 0) continue;
+    verdict.doubt(static_cast<int>(column("point")[k]));
+    const auto apart = [&](std::size_t row) { return std::abs(column("modulus")[row] - 1); };
+    if (!worst || apart(k) < apart(*worst)) worst = k;
+  }
+  if (!worst || verdict.text() != "undetermined") return;
+  context_.results.summary().warnings.push_back(
+      fmt::format("at {:.6g} {} the largest multiplier has the modulus {:.4g} +- {:.2g}: this mesh does not tell "
+                  "whether the motion "
+                  "is stable there. Use more intervals, a higher degree or a finer film mesh",
+                  column("parameter")[*worst], unit_, column("modulus")[*worst], column("uncertainty")[*worst]));
+}
+
 // The flip that a branch of twice the period ran back into lies between its last cycle and where the next step landed.
 void CycleFollower::close_at_flip(double landed) {
   // Other methods keep their unknowns, not the orbit.
@@ -234,6 +253,7 @@ StudyResult CycleFollower::run() {
     // followed.
     record_.drop_last();
     nodes_.drop_last();
+    std::erase_if(changes_, [this](const auto& c) { return c.after + 1 >= static_cast<int>(record_.points()); });
     if (seed_) close_at_flip(end.parameter);
     results.summary().suspected.resize(suspicions);
     group.set("end", seed_ ? "the cycle of half the period, at a flip" : "an equilibrium, at a Hopf point");
@@ -246,6 +266,7 @@ StudyResult CycleFollower::run() {
   record_.write_orbits(group.child("orbits"), options_.orbits);
   put_places(group, context_.machine, *system_);
   put_bifurcations(group, results.summary().bifurcations);
+  put_changes(group.child("changes"), changes_, unit_);
   group.set("parameter", options_.parameter.path);
   group.set("parameter_unit", unit_);
   group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
@@ -257,7 +278,15 @@ StudyResult CycleFollower::run() {
   if (end.limited && last_)
     put_contact(results.summary(), end.parameter, unit_, end.bracket, law(),
                 contacts_there(*last_, end.parameter));
-  results.summary().stability = record_.verdict();
+  BranchVerdict verdict = record_.verdict();
+  for (const BranchChange& c : changes_) verdict.add(c);
+  doubt(verdict);
+  conclude(results.summary(), verdict, kind(), unit_);
+  if (OpenBores bores(context_.machine); !bores.empty()) {
+    record_.for_samples(
+        [&](std::size_t place, double x, double y, double parameter) { bores.see(place, x, y, parameter); });
+    bores.warn(results.summary(), unit_);
+  }
   if (options_.parameter.deflation)
     put_solutions(
         group, results.summary(), [this] { return coexisting(); }, stored());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "study/bars/beyond.hpp"
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/common.hpp"
@@ -132,6 +133,9 @@ private:
   void add_margin(double parameter, const solve::Cycle& orbit);
   /// Where the branch comes to its contact at `place` (scaled) on other meshes; `last` is its last cycle.
   [[nodiscard]] std::vector<ContactThere> contacts_there(const solve::Cycle& last, double place) const;
+  void doubt(BranchVerdict& verdict);
+  /// Puts a pair that no mesh confirms among the suspicions instead.
+  [[nodiscard]] bool doubtful_pair(const io::Bifurcation& b, const solve::LocatedEvent& found);
   void doubt_at_birth(io::Bifurcation& b) const;
   void record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving);
   /// Which rows of a state this rank stores.
@@ -144,6 +148,9 @@ private:
   /// Little is left of that, or its sign has just changed.
   [[nodiscard]] bool at_its_origin(const solve::Cycle& orbit) const;
   [[nodiscard]] bool returned(const solve::Cycle& orbit);
+  [[nodiscard]] BranchKind kind() const {
+    return {true, autonomous(), options_.period, system::is_rotor(context_.machine)};
+  }
   [[nodiscard]] bool autonomous() const { return options_.origin == CycleBranchOptions::Origin::hopf; }
   /// How far the cycle is from the eccentricity at which the branch is to end, per clearance.
   [[nodiscard]] double room(const solve::Cycle& orbit, system::Plant& system) const;
@@ -236,6 +243,7 @@ private:
   std::unique_ptr<Pieces> pieces_;  // of the study that runs
   int events_ = 0;                  // seen so far
   std::vector<FlipSeed> seeds_;
+  std::vector<BranchChange> changes_;
   bool keeps_located_;            // a locus of the deck starts from one of them
   std::vector<Located> located_;  // one for each bifurcation of the summary
   Eigen::MatrixXd vanishing_;     // of the last point of a branch that may return

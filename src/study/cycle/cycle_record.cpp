@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "study/bars/film_limit.hpp"
-#include "study/bars/verdict.hpp"
 #include "study/state_rows.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/core/error.hpp"
@@ -174,11 +173,14 @@ double CycleRecord::eccentricity(const solve::Cycle& cycle, const solve::Scheme&
   return largest;
 }
 
-std::string CycleRecord::verdict() const {
+BranchVerdict CycleRecord::verdict() const {
   BranchVerdict verdict;
-  for (const double stable : table_.column("stable"))
-    verdict.add(stable > 0 ? StabilityClass::stable : StabilityClass::unstable);
-  return verdict.text();
+  for (std::size_t k = 0; k < table_.rows(); ++k) {
+    const int unstable = static_cast<int>(table_.column("unstable_count")[k]);
+    verdict.add(table_.column("parameter")[k], unstable > 0 ? StabilityClass::unstable : StabilityClass::stable,
+                unstable);
+  }
+  return verdict;
 }
 
 bool CycleRecord::one_sided() const {

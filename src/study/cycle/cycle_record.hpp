@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study/bars/verdict.hpp"
 #include "study/stored_vector.hpp"
 #include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
@@ -34,10 +35,10 @@ public:
   /// Largest eccentricity per clearance of any journal on a cycle.
   [[nodiscard]] double eccentricity(const solve::Cycle& cycle, const solve::Scheme& scheme,
                                     system::Plant& system) const;
-  /// Verdict on the stability of the points so far.
-  [[nodiscard]] std::string verdict() const;
   /// Whether all points so far are stable, or all unstable.
   [[nodiscard]] bool one_sided() const;
+  /// The points so far, by their stability.
+  [[nodiscard]] BranchVerdict verdict() const;
   /// Puts peak to peak, extremes and the largest multiplier of a cycle asked for into the summary under `at.<key>.`.
   void report(const std::string& key, const solve::Cycle& cycle, const solve::Scheme& scheme, system::Plant& system,
               const solve::Stability& stability, io::StudySummary& summary);
@@ -47,6 +48,14 @@ public:
   [[nodiscard]] double last_parameter() const { return table_.column("parameter").back(); }
   [[nodiscard]] std::size_t points() const { return table_.rows(); }
 
+  /// Calls back with place, x and y of every sample of every point, and its parameter.
+  template <class See>
+  void for_samples(const See& see) const {
+    const std::size_t n = places_.names.size();
+    for (std::size_t i = 0; i < orbits_.size(); ++i)
+      for (std::size_t k = 0; k < orbits_[i].size(); k += 2)
+        see(k / 2 % n, orbits_[i][k], orbits_[i][k + 1], table_.column("parameter")[i]);
+  }
   /// Tables `branch` and, if it left from a bifurcation or ran into one, `birth` and `closing` into `group`; with
   /// `everything`, also what a restart needs.
   void write(io::Group& group, bool everything) const;

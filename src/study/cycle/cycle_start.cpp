@@ -82,7 +82,10 @@ solve::Restart CycleFollower::start_at_hopf() {
   };
   const io::Group& piece = pieces_->get("hopf", [&](io::Group& found) {
     search();
-    found.put("values", {parameter, hopf.parameter, hopf.bracket, hopf.sensitivity}, "1", "where");
+    found.put("values",
+              {parameter, hopf.parameter, hopf.bracket, hopf.sensitivity, static_cast<double>(hopf.unstable_before),
+               static_cast<double>(hopf.unstable_after), hopf.slope},
+              "1", "where, with what changes there");
     put_columns(found, "state", rows_of(at_hopf.get()), stored(), "SI", "equilibrium, in natural order");
   });
   const std::vector<double>& known = piece.reals("values");
@@ -90,6 +93,9 @@ solve::Restart CycleFollower::start_at_hopf() {
   hopf.parameter = known[1];
   hopf.bracket = known[2];
   hopf.sensitivity = known[3];
+  hopf.unstable_before = static_cast<int>(known[4]);
+  hopf.unstable_after = static_cast<int>(known[5]);
+  hopf.slope = known[6];
   at_hopf = core::duplicate(x.get());
   {
     const Eigen::MatrixXd state = take_columns(piece, "state", stored());

@@ -87,6 +87,7 @@ void CycleFollower::set_criticality(
 
 void CycleFollower::record_hopf(const solve::LocatedEvent& hopf, Vec equilibrium, const solve::Restart& leaving) {
   io::Bifurcation b = bifurcation_here(io::BifurcationType::hopf, hopf.parameter);
+  put_counts(b, change_at(hopf, -1));
   solve::NewtonOptions newton = newton_;
   newton.max_iterations = 20;
   std::function<std::unique_ptr<system::Plant>()> cut;

@@ -5,11 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "study/bars/beyond.hpp"
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/open_bore.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bars/verdict.hpp"
 #include "study/bifurcation.hpp"
 #include "study/common.hpp"
 #include "study/cycle/coexisting.hpp"
@@ -75,6 +76,31 @@ std::vector<ContactThere> contacts_there(const Context& context, const Equilibri
   return out;
 }
 
+// The threshold of a speed; of another parameter every limit, by the side that is stable.
+void put_limits(io::StudySummary& summary, const BranchVerdict& verdict, const std::vector<BranchChange>& changes,
+                double scale, const std::string& unit, bool of_speed) {
+  const auto put = [&](const std::string& name, const BranchChange& c, const std::string& frequency) {
+    if (c.bifurcation < 0) return;
+    const auto& b = summary.bifurcations[static_cast<std::size_t>(c.bifurcation)];
+    summary.set(name, b.value * scale, unit, {{"uncertainty", b.uncertainty * scale}});
+    if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
+      summary.set(frequency, omega->second, "rad/s",
+                  {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
+  };
+  const std::vector<StabilityLimit> limits = verdict.limits();
+  if (of_speed) {
+    if (const int k = threshold_among(limits); k >= 0)
+      put("threshold", changes[static_cast<std::size_t>(k)], "whirl_frequency");
+    return;
+  }
+  std::array<int, 2> count{};
+  for (const StabilityLimit& l : limits) {
+    const std::string name =
+        fmt::format("stable_{}.{}", l.stable_below ? "below" : "above", ++count[l.stable_below ? 0 : 1]);
+    put(name, changes[l.change], name + ".whirl_frequency");
+  }
+}
+
 // Follows the branch from `first`, or from the equilibrium that is easiest to find.
 StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& options, const solve::Cycle* first) {
   const auto& range = options.parameter.range;
@@ -131,10 +157,11 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
        io::Table::wide("film", places.unit,
                        "smallest film thickness, at mid-plane of films that do not tilt, not a number without a film",
                        places.names)});
-  std::vector<Located> located;      // one for each bifurcation of the summary
-  std::vector<BorderEvent> borders;  // likewise
+  std::vector<Located> located;  // one for each bifurcation of the summary
+  std::vector<BranchChange> changes;
   BranchVerdict verdict;
   const FilmLimit films(places);
+  OpenBores bores(context.machine);
   MarginSlope margins;
   MissedModes missed;
   auto& results = context.results;
@@ -156,12 +183,13 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     std::vector<double> px, py;
     const system::Observed seen = system->observe(x.get());
     for (const auto& j : seen.shown) {
+      bores.see(px.size(), j.position[0], j.position[1], point.parameter);
       px.push_back(j.position[0]);
       py.push_back(j.position[1]);
     }
     const auto& s = point.stability;
     margins.add(point.parameter, films.margin(seen.film_thickness));
-    verdict.add(class_of(s));
+    verdict.add(point.parameter, class_of(s), s.unstable());
     missed.add(s.missed);
     std::complex<double> leading = s.values.empty() ? 0.0 : s.values.front();
     if (class_of(s) == StabilityClass::undamped) leading.real(0);  // the rest is rounding
@@ -183,7 +211,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   std::function<std::unique_ptr<system::Plant>()> cut;
   if (has_shaft_mesh(context.machine)) cut = [&] { return plant_of(context, options, {1, 1}, 2); };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
-    if (!wanted(found.event, options.detect)) return;
+    const bool asked = wanted(found.event, options.detect);
+    changes.push_back(change_at(found, asked ? static_cast<int>(results.summary().bifurcations.size()) : -1));
+    if (!asked) return;
     io::Bifurcation b = bifurcation_at(type_of(found.event), found.parameter, options.parameter.path, unit,
                                        context.machine, {}, *system);
     problem.to_state(v, x.get());
@@ -195,8 +225,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                    [&](const auto& name, const auto& work) { return pieces.numbers(event + " " + name, work); },
                    cut, !plan(context, Sharing::machine).large});
     });
-    b.more["others_unstable"] = found.others_unstable;
-    borders.push_back({found.others_unstable == 0 && found.located, found.loses});
+    put_counts(b, changes.back());
     results.summary().bifurcations.push_back(b);
     if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
@@ -250,18 +279,15 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   group.set("parameter_unit", unit);
   const std::string si_unit =
       deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path);
-  results.summary().stability = verdict.text();
-  if (const int k = threshold_among(borders, range.to >= range.from); k >= 0) {
-    const auto& b = results.summary().bifurcations[static_cast<std::size_t>(k)];
-    results.summary().set("threshold", b.value * scale, si_unit, {{"uncertainty", b.uncertainty * scale}});
-    if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
-      results.summary().set("whirl_frequency", omega->second, "rad/s",
-                            {{"uncertainty", more_of(b, "uncertainty_whirl_frequency_rad_s")}});
-  }
+  put_changes(group.child("changes"), changes, unit);
+  for (const BranchChange& c : changes) verdict.add(c);
+  conclude(results.summary(), verdict, {false, false, 1, system::is_rotor(context.machine)}, unit);
+  put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
     put_contact(results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
                 contacts_there(context, options, *system, at_limit, end.parameter, scale, margins, continuation.newton));
   missed.warn(results.summary());
+  bores.warn(results.summary(), unit);
   results.summary().points = end.points;
   return results.finish(branch_status(end, unit), end.points > 0);
 }

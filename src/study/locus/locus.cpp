@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "study/bars/beyond.hpp"
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
 #include "study/bifurcation.hpp"
@@ -356,6 +357,13 @@ StudyResult LocusFollower::run() {
   group.set("parameter_unit", first_range_.unit);
   group.set("second", options_.second.path);
   group.set("second_unit", range.unit);
+  group.set("start", static_cast<int>(back.size()));
+  const BranchKind kind{of_cycles_.has_value(), of_cycles_ && of_cycles_->origin == CycleBranchOptions::Origin::hopf,
+                        of_cycles_ ? of_cycles_->period : 1, true};
+  group.set("born", born_at(type_of(seed_.event), kind));
+  // Of a fold both sides depend on the motion.
+  if (seed_.event != solve::Event::fold && seed_.event != solve::Event::cyclic_fold && seed_.sensitivity != 0)
+    group.set("stable_side", seed_.sensitivity > 0 ? "below" : "above");
   results.summary().points = static_cast<long>(all.size());
   const auto status = [&](const solve::BranchEnd& end) {
     return fmt::format("ended at {:.6g} {} of {}: {}", deck::from_si(end.parameter * second_scale_, range.unit),

@@ -9,7 +9,9 @@
 #include <optional>
 
 #include "study/bars/film_limit.hpp"
+#include "study/bars/open_bore.hpp"
 #include "study/common.hpp"
+#include "study/growth.hpp"
 #include "study/layout.hpp"
 #include "study/make_plant.hpp"
 #include "study/motion/motion_record.hpp"
@@ -183,11 +185,19 @@ private:
       summary.set(fmt::format("cycle.multiplier.{}.angle", k + 1), std::abs(std::arg(start_.multipliers[k])), "rad");
       summary.set(fmt::format("cycle.exponent.{}", k + 1), std::log(modulus) / period(), "1/s");
     }
+    if (record_.verdict().kind == transient::Kind::fixed_point) {
+      integrator_.state(start_.x.get());
+      if (const Growth growth = growth_at(system_, start_.x.get()); growth.any()) record_.set_growth(growth.words());
+    }
     auto& group = results.group();
     group.set("speed", options_.speed.value);
     group.set("unbalance", fmt::format("{}", fmt::join(options_.unbalance, ", ")));
     put_places(group, context_.machine, system_);
     record_.write(group, summary);
+    if (OpenBores bores(context_.machine); !bores.empty()) {
+      record_.for_samples([&](std::size_t place, double x, double y) { bores.see(place, x, y, 0); });
+      bores.warn(summary, "");
+    }
     summary.points = record_.revolutions();
     return results.finish(status, true);
   }

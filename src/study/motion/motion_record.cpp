@@ -67,6 +67,7 @@ transient::Evidence MotionRecord::evidence() const {
   MPI_Allreduce(MPI_IN_PLACE, of_all, 2, MPI_DOUBLE, MPI_SUM, comm);
   e.size = std::sqrt(std::max(0.0, of_all[1] / count - of_all[0]));
   e.return_tolerance = options_.return_tolerance;
+  e.grows = grows_;
   // A motion that nothing forces has no angle to return at, but a section.
   const auto& returning = forced_ ? points_ : section_.states();
   if (e.size >= e.rest) e.returns = transient::return_distances(returning, options_.max_period, e.size, comm);

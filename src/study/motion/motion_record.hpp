@@ -32,6 +32,14 @@ public:
   void cross(double time, const std::vector<system::PlaceState>& shown, Vec scaled);
   /// What the section is, in words.
   void set_section(std::string text) { section_text_ = std::move(text); }
+  /// What grows about the place where the motion rests, in words; empty: nothing.
+  void set_growth(std::string words) { grows_ = std::move(words); }
+  /// Calls back with place, x and y of every sample.
+  template <class See>
+  void for_samples(const See& see) const {
+    for (std::size_t k = 0; k < samples_.size(); k += 2)
+      see(k / 2 % places_.names.size(), samples_[k], samples_[k + 1]);
+  }
   [[nodiscard]] int revolutions() const { return static_cast<int>(points_.size()); }
 
   /// The verdict so far. Collective.
@@ -77,6 +85,7 @@ private:
   transient::Exponents exponents_;
   SectionRecord section_;
   std::string section_text_;  // empty: there is none
+  std::string grows_;
 };
 
 }  // namespace whirl::study

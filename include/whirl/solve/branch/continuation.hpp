@@ -1,6 +1,7 @@
 #pragma once
 // Pseudo-arclength continuation with step control, events and their location.
 
+#include <algorithm>
 #include <complex>
 #include <functional>
 #include <map>
@@ -80,8 +81,13 @@ struct LocatedEvent {
   bool located = true;            ///< false: seen between two points, but the location did not converge
   bool refined = false;           ///< by the minimally augmented system; `bracket` is then the Newton step left
   double quadratic = 0;           ///< d^2 parameter/d arclength^2 of a refined fold: the branch lies above if positive
-  int others_unstable = 0;        ///< unstable values beside the critical one or pair
-  bool loses = false;             ///< along the branch a value or pair becomes unstable here
+  int unstable_before = 0;        ///< unstable values just before it along the branch
+  int unstable_after = 0;         ///< and just behind it
+  double slope = 0;               ///< scaled parameter per arclength there: its sign tells on which side "behind" is
+  int after = 0;                  ///< index of the last point before it
+
+  /// Unstable values beside the critical one or pair.
+  [[nodiscard]] int others_unstable() const { return std::min(unstable_before, unstable_after); }
 };
 
 /// A zero of one of a branch's monitors.

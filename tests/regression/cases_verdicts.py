@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""What branches conclude of small machines: ranges, thresholds, limits and sentences by points and bifurcations together.
+
+cases_verdicts.py PROGRAM SOURCE [LAUNCHER WORDS...]
+"""
+import sys
+
+from harness import Harness, value
+
+
+def stretches(study):
+    return [r["stability"] for r in study["ranges"]]
+
+
+def pair(h, s):
+    h.true("a pair inside one step: loses stability", s["stability"] == "loses stability", s["stability"])
+    h.true("stable, unstable, stable", stretches(s) == ["stable", "unstable", "stable"], str(s["ranges"]))
+    found = sorted(b["value"] for b in s["bifurcations"])
+    h.true("two Hopf points", len(found) == 2, str(found))
+    h.close("the lower one [mPa s]", found[0], 0.1561, 1e-4)
+    h.close("the upper one [mPa s]", found[1], 0.1683, 1e-4)
+    h.close("stable below [Pa s]", value(s, "stable_below.1"), found[0] * 1e-3, 1e-9)
+    h.close("stable above [Pa s]", value(s, "stable_above.1"), found[1] * 1e-3, 1e-9)
+    h.true("a viscosity has no threshold", "threshold" not in s["values"])
+
+
+def load(h, s):
+    b = s["bifurcations"][0]
+    h.true("stable above a load", b["stable_side"] == "above" and b["unstable_below"] == 2 and b["unstable_above"] == 0, str(b))
+    h.true("its sentence", b["sentence"].startswith("stable above ") and "jumps to" not in b["sentence"], b["sentence"])
+    h.close("the limit [N]", value(s, "stable_above.1"), b["value"], 1e-9)
+
+
+def falling(h, s):
+    h.close("threshold of a falling range [rad/s]", value(s, "threshold"), 437.6421, 1e-3)
+    b = s["bifurcations"][0]
+    h.true("is stable below", b["stable_side"] == "below" and b["born"] == "whirl", str(b))
+    h.true("its sentence", b["sentence"] == "above this speed the rotor jumps to large whirl; just below it a disturbance can trigger the same whirl", b["sentence"])
+
+
+def coarse(h, s):
+    h.true(f"{s['name']}: undetermined, not stable throughout", s["stability"] == "undetermined", s["stability"])
+    h.true("with the number", any("largest multiplier" in w for w in s.get("warnings", [])), str(s.get("warnings")))
+
+
+def flips(h, s):
+    first, second = s["bifurcations"][:2]
+    h.true("half-frequency whirl is born", first["born"] == second["born"] == "half-frequency whirl")
+    h.true("stable below the first flip, above the second", (first["stable_side"], second["stable_side"]) == ("below", "above"), str((first, second)))
+    h.true("stable again", second["sentence"].startswith("stable again above "), second["sentence"])
+
+
+if __name__ == "__main__":
+    program, source, *launcher = sys.argv[1:]
+    harness = Harness(program, source, launcher)
+    studies = harness.run(harness.source / "tests/cases/verdicts.yaml", "verdicts")
+    pair(harness, studies["pair"])
+    load(harness, studies["load"])
+    falling(harness, studies["falling"])
+    coarse(harness, studies["coarse"])
+    coarse(harness, studies["sixty"])
+    flips(harness, studies["flips"])
+    harness.finish()
