@@ -227,10 +227,17 @@ class Results:
         path = self.directory / "resolved.yaml"
         try:
             import yaml
-            return yaml.load(path.read_text(encoding="utf-8"), getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            if path.exists() and not path.is_file():
+                raise Error(f"{path} is no file")
+            deck = path.read_text(encoding="utf-8")
+            loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+            # The program writes none; aliases of aliases make a small file a tree without end.
+            if any(isinstance(token, yaml.AliasToken) for token in yaml.scan(deck, loader)):
+                raise Error(f"{path} is no deck that whirl wrote: it holds aliases")
+            return yaml.load(deck, loader)
         except (ImportError, OSError):
             return None
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
+        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
             raise Error(f"{path} is damaged: {' '.join(str(error).split())}") from None
 
     def __enter__(self):

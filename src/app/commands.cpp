@@ -12,6 +12,7 @@
 #include "whirl/core/printable.hpp"
 #include "whirl/core/session.hpp"
 #include "whirl/deck/output.hpp"
+#include "whirl/io/record.hpp"
 #include "whirl/io/summary.hpp"
 #include "whirl/study/deck.hpp"
 #include "whirl/study/sweep/sweep.hpp"
@@ -56,7 +57,10 @@ core::Exit run(MPI_Comm comm, const RunRequest& request, std::string& text) {
   const std::string directory =
       request.directory.empty() ? "results/" + fs::path(request.deck.path).stem().string() : request.directory;
   const Earlier earlier = request.resume ? Earlier::resume : request.force ? Earlier::replace : Earlier::refuse;
-  Directory held(comm, directory, study::resolved_text(deck), earlier);
+  std::vector<std::string> files;
+  for (const auto& s : deck.studies)
+    for (const char* kind : {".checkpoint.h5", ".xdmf"}) files.push_back(io::safe_name(s->name()) + kind);
+  Directory held(comm, directory, study::resolved_text(deck), earlier, files);
   study::RunOptions options{directory, WHIRL_VERSION, {}, request.resume};
   if (request.progress)
     options.say = [](const std::string& line, bool /*transient*/) { fmt::print(stderr, "\r\033[K{}", line); };

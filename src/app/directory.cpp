@@ -85,14 +85,22 @@ void Directory::lock() {
                                path_.string()));
 }
 
-void Directory::prepare(const std::string& resolved, Earlier earlier) {
+void Directory::prepare(const std::string& resolved, Earlier earlier, const std::vector<std::string>& files) {
   if (fs::exists(path_) && !fs::is_directory(path_))
     throw InputError(fmt::format("'{}' is a file; -o names a directory", path_.string()));
   made_ = fs::create_directories(path_);
   lock();
-  io::Manifest manifest(path_);
   const fs::path deck = path_ / deck_name, unfinished = unfinished_name(deck), replacing = path_ / replacing_name,
                  removing = path_ / removing_name;
+  for (const fs::path& one : {path_ / io::Manifest::file_name, deck, unfinished, replacing, removing})
+    io::require_file(one);
+  for (const char* name : always) io::require_file(path_ / name);
+  for (const std::string& name : files) io::require_file(path_ / name);
+  if (const fs::path tables = path_ / "csv"; fs::exists(tables) && !fs::is_directory(tables))
+    throw InputError(fmt::format(
+        "'{}' is no folder, and tables go there: remove it or choose another directory with -o", tables.string()));
+  io::Manifest manifest(path_);
+  manifest.require_files();
   const bool ours = fs::exists(deck) || manifest.exists();
   // A run killed while it wrote its deck leaves only that.
   const bool empty =
@@ -135,12 +143,13 @@ void Directory::prepare(const std::string& resolved, Earlier earlier) {
   fs::rename(removing, deck);
 }
 
-Directory::Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier)
+Directory::Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier,
+                     const std::vector<std::string>& files)
     : path_(directory) {
   core::agree(comm, [&] {
     if (core::rank_of(comm) != 0) return;
     try {
-      prepare(resolved, earlier);
+      prepare(resolved, earlier, files);
     } catch (const fs::filesystem_error& e) {
       throw InputError(fmt::format("cannot use '{}' for results: {}", directory, e.code().message()));
     }

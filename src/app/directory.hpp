@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace whirl::app {
 
@@ -21,8 +22,10 @@ public:
   /// Makes `directory` ready for a run and writes `resolved.yaml` into it under a temporary name, then renames it.
   /// Collective. Throws core::InputError (agreed) if another run holds it, if there are earlier results and `earlier`
   /// does not say what to do with them, if they belong to another deck, or if the directory is not one of ours.
-  /// `Earlier::replace` removes what the manifest names and nothing else.
-  Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier);
+  /// `Earlier::replace` removes what the manifest names and nothing else. A folder or a pipe under one of the names of
+  /// results, or of `files` that are to come, is refused.
+  Directory(MPI_Comm comm, const std::string& directory, const std::string& resolved, Earlier earlier,
+            const std::vector<std::string>& files = {});
   /// Takes back what the constructor made, if no study has left a result since: a deck that turned out to be wrong must
   /// not stand in the way of the right one. Rank 0 acts; throws nothing.
   void abandon() noexcept;
@@ -47,7 +50,7 @@ private:
     int descriptor_ = -1;
   };
   void lock();
-  void prepare(const std::string& resolved, Earlier earlier);
+  void prepare(const std::string& resolved, Earlier earlier, const std::vector<std::string>& files);
 
   std::filesystem::path path_;
   Lock lock_;

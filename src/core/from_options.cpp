@@ -1,10 +1,13 @@
 #include "whirl/core/from_options.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petscts.h>
 #include <slepceps.h>
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "whirl/core/error.hpp"
 
@@ -69,7 +72,15 @@ void check_nonlinear(SNES solver, const NonlinearTolerances& own) {
 
 }  // namespace
 
-void set_from_options(SNES solver) {
+void set_from_options(SNES solver, std::initializer_list<const char*> types) {
+  // The option is read before PETSc makes a solver of that type.
+  const std::string prefix = prefix_of(solver);
+  char type[64] = "";
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsGetString(nullptr, prefix.c_str(), "-snes_type", type, sizeof type, &given));
+  if (given &&
+      std::none_of(types.begin(), types.end(), [&](const char* one) { return std::string_view(type) == one; }))
+    refuse(fmt::format("PETSc option -{}snes_type {}: this solver can be {}", prefix, type, fmt::join(types, ", ")));
   const NonlinearTolerances own(solver);
   check(SNESSetFromOptions(solver));
   check_nonlinear(solver, own);

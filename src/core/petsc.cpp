@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
 #include "whirl/core/session.hpp"
 
@@ -16,6 +17,12 @@ void check(PetscErrorCode code) {
   const char* text = nullptr;
   (void)PetscErrorMessage(code, &text, nullptr);
   std::string trace = Session::take_trace();
+  if (code == PETSC_ERR_MEM) throw Error(out_of_memory);
+  if (const std::string wish = Session::impossible_option(code, trace); !wish.empty()) {
+    InputError wrong(wish);
+    wrong.mark_agreed();  // all ranks have the same options
+    throw wrong;
+  }
   throw LibraryError(code, fmt::format("PETSc error {}: {}{}{}", static_cast<int>(code), text ? text : "unknown",
                                        trace.empty() ? "" : "\n", trace));
 }

@@ -4,6 +4,9 @@
 #include <fmt/core.h>
 #include <petscsys.h>
 #include <slepcsys.h>
+#include <sys/mman.h>
+
+#include <petscblaslapack.h>  // after petscsys.h
 
 #include <algorithm>
 #include <array>
@@ -74,6 +77,17 @@ std::vector<OptionInForce> options_of(const std::function<void(PetscOptions)>& f
   return all;
 }
 
+constexpr const char* no_files = "-skip_petscrc";
+
+// ~/.petscrc, empty if there is none. A pipe of that name would be waited for.
+std::string own_file() {
+  const char* home = std::getenv("HOME");
+  if (!home) return {};
+  std::string path = std::string(home) + "/.petscrc";
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) ? path : std::string();
+}
+
 // Options for the end of a process, which PETSc asks for when it is there.
 constexpr std::array at_end = {"-log_", "-malloc_", "-memory_", "-objects_", "-options_"};
 
@@ -100,11 +114,35 @@ void Session::yield_to_other_ranks() {
   if (size && std::atoi(size) > 1) (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
 }
 
+namespace {
+
+// Where its working memory cannot be had, OpenBLAS asks for it again and again, for ever. It asks once: here, where it
+// is known whether there is that much, and keeps what it has got. Its buffer has 128 MB of addresses, of which little
+// is touched.
+void claim_blas_buffer() {
+  constexpr std::size_t enough = std::size_t{192} << 20;
+  void* there = ::mmap(nullptr, enough, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (there == MAP_FAILED) throw Error("out of memory: the process may not have the 192 MB that it starts with");
+  (void)::munmap(there, enough);
+  std::array<PetscScalar, 4> matrix = {1, 0, 0, 1};
+  std::array<PetscBLASInt, 2> pivots{};
+  PetscBLASInt n = 2, info = 0;
+  LAPACKgetrf_(&n, &n, matrix.data(), &n, pivots.data(), &info);
+}
+
+}  // namespace
+
 Session::Session(int argc, char** argv) {
   one_blas_thread();
   yield_to_other_ranks();
-  int one = argc > 0 ? 1 : 0;
-  check(SlepcInitialize(&one, &argv, nullptr, nullptr));
+  claim_blas_buffer();
+  // PETSc would read `.petscrc` and `petscrc` of the working folder, too.
+  std::string program = argc > 0 ? argv[0] : "whirl", skip = no_files;
+  std::array<char*, 3> words = {program.data(), skip.data(), nullptr};
+  char** first = words.data();
+  int count = 2;
+  const std::string own = own_file();
+  check(SlepcInitialize(&count, &first, own.empty() ? nullptr : own.c_str(), nullptr));
   check(PetscPushErrorHandler(keep_text, nullptr));
   // A reader who has seen enough (`whirl describe | head`) is no error to report.
   (void)std::signal(SIGPIPE, SIG_DFL);
@@ -132,7 +170,7 @@ void Session::set_options(const std::vector<std::string>& words) {
   }
 }
 
-// Later sources win: ~/.petscrc, the two files of the working directory, the environment, the command line.
+// Later sources win: ~/.petscrc, the environment, the command line.
 std::vector<OptionInForce> Session::options_in_force() {
   std::vector<OptionInForce> all = options_of(nullptr);
   const auto say = [&](const std::vector<OptionInForce>& some, const std::string& source) {
@@ -140,15 +178,11 @@ std::vector<OptionInForce> Session::options_in_force() {
       for (auto& known : all)
         if (known.name == o.name) known.source = source;
   };
-  const auto of_file = [&](const std::string& path, const std::string& shown) {
-    if (!std::filesystem::exists(path)) return;
+  std::erase_if(all, [](const OptionInForce& o) { return o.name == no_files; });
+  if (const std::string path = own_file(); !path.empty())
     say(options_of(
             [&](PetscOptions o) { check(PetscOptionsInsertFile(PETSC_COMM_SELF, o, path.c_str(), PETSC_FALSE)); }),
-        shown);
-  };
-  if (const char* home = std::getenv("HOME")) of_file(std::string(home) + "/.petscrc", "~/.petscrc");
-  of_file(".petscrc", ".petscrc");
-  of_file("petscrc", "petscrc");
+        "~/.petscrc");
   if (const char* text = std::getenv("PETSC_OPTIONS"))
     say(options_of([&](PetscOptions o) { check(PetscOptionsInsertString(o, text)); }), "PETSC_OPTIONS");
   for (auto& known : all)
@@ -173,6 +207,20 @@ std::vector<std::string> Session::unused_options() {
   }
   check(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
   return unused;
+}
+
+std::string Session::impossible_option(int code, const std::string& trace) {
+  const bool wish = code == PETSC_ERR_ARG_UNKNOWN_TYPE || code == PETSC_ERR_MISSING_FACTOR ||
+                    trace.find("SetFromOptions") != std::string::npos;
+  if (!wish) return {};
+  std::string given;
+  for (const OptionInForce& o : options_in_force())
+    given += fmt::format("{}{}{}{}", given.empty() ? "" : " ", o.name, o.value.empty() ? "" : " ", o.value);
+  if (given.empty()) return {};
+  // The innermost line: `  function (file:line): message`.
+  std::string what = trace.substr(0, trace.find('\n'));
+  if (const std::size_t at = what.find("): "); at != std::string::npos) what = what.substr(at + 3);
+  return fmt::format("PETSc cannot do what its options ask ({}): {}", given, what);
 }
 
 std::string Session::take_trace() {

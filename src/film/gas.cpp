@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
 
 #include "film/gas_feed.hpp"
@@ -144,6 +146,23 @@ Misplaced too_deep(const OrificeRow& r, const std::string& path, double clearanc
   return {};
 }
 
+// The row up to `row` with an orifice in the cells about one of that row.
+std::optional<std::size_t> crowded(const Gas& o, std::size_t row, const Geometry& g) {
+  const double around = 2 * std::numbers::pi / o.cells[0], along = g.length / o.cells[1];
+  const OrificeRow& r = o.orifices[row];
+  for (std::size_t k = 0; k <= row; ++k) {
+    const OrificeRow& other = o.orifices[k];
+    if (!in_one_cell(r.z - other.z, along)) continue;
+    for (int m = 0; m < r.count; ++m)
+      for (int n = 0; n < (k == row ? m : other.count); ++n) {
+        const double apart =
+            r.angle + 2 * std::numbers::pi * m / r.count - (other.angle + 2 * std::numbers::pi * n / other.count);
+        if (in_one_cell(std::remainder(apart, 2 * std::numbers::pi), around)) return k;
+      }
+  }
+  return std::nullopt;
+}
+
 // What coarser meshes move to the next line of nodes, those of error bars too, the mesh of a deck does not.
 Misplaced misplaced(const Gas& o, const Geometry& geometry) {
   if (Misplaced m = misplaced_orifice(o, geometry); !m.option.empty()) return m;
@@ -152,6 +171,11 @@ Misplaced misplaced(const Gas& o, const Geometry& geometry) {
     const OrificeRow& r = o.orifices[k];
     const std::string path = "orifices." + std::to_string(k + 1);
     if (Misplaced m = too_deep(r, path, geometry.clearance); !m.option.empty()) return m;
+    if (const auto other = crowded(o, k, geometry))
+      return {path + (r.count > 1 && *other == k ? ".count" : ".z"),
+              fmt::format("two orifices, of rows {} and {}, lie in one cell of a mesh of {} x {} 'cells': give it more "
+                          "cells around or along the film",
+                          *other + 1, k + 1, o.cells[0], o.cells[1])};
     const double rim = r.pocket ? 0.5 * r.pocket->diameter : 0.0;
     if (std::abs(r.z) + rim > 0.5 * geometry.length - cell * (1 - 1e-9))
       return {path + ".z", fmt::format("the {} lie less than a cell from an end, where there are no nodes to feed: "

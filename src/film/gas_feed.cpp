@@ -131,8 +131,8 @@ void GasFeed::spread(const GasMesh& mesh, bool ring) {
 }
 
 bool GasFeed::crowds(const GasFeed& other, const GasMesh& mesh) const {
-  const double around = std::abs(std::remainder(angle_ - other.angle_, 2.0 * pi)) / mesh.dtheta;
-  return around < 1.0 - 1e-9 && std::abs(z_ - other.z_) / mesh.dz < 1.0 - 1e-9;
+  return in_one_cell(std::remainder(angle_ - other.angle_, 2.0 * pi), mesh.dtheta) &&
+         in_one_cell(z_ - other.z_, mesh.dz);
 }
 
 double GasFeed::scale() const {

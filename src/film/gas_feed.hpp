@@ -2,6 +2,7 @@
 // What an orifice gives to a film of gas, with or without a pocket, and where.
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "whirl/film/bore.hpp"
@@ -20,6 +21,12 @@ struct GasMesh {
   double dtheta, start, length;
   [[nodiscard]] int at(int line, int place) const { return line * inner + place; }
 };
+
+/// Whether two places so far apart in one direction lie within a cell of that size: as close in both, orifices feed the
+/// same nodes.
+[[nodiscard]] inline bool in_one_cell(double apart, double cell) {
+  return std::abs(apart) / cell < 1.0 - 1e-9;
+}
 
 /// kg/s, and its derivatives in two unknowns of a feed and in the thickness of the film there.
 struct GasFlow {

@@ -50,6 +50,7 @@ void replace_file(const std::filesystem::path& path, const std::function<void(co
   try {
     named(path, [&] {
       std::filesystem::create_directories(folder_of(path));
+      std::filesystem::remove(part);  // a pipe of that name would be waited for
       write(part);
       sync_path(part, O_RDONLY);
       put_in_place(part, path);
@@ -68,7 +69,10 @@ void replace_file(const std::filesystem::path& path, MPI_Comm comm,
   const bool first = core::rank_of(comm) == 0;
   try {
     core::agree(comm, [&] {
-      if (first) named(path, [&] { std::filesystem::create_directories(folder_of(path)), begin(part); });
+      if (first)
+        named(path, [&] {
+          std::filesystem::create_directories(folder_of(path)), std::filesystem::remove(part), begin(part);
+        });
     });
     together(part);
     // Each rank's own pages: another computer may hold them.

@@ -27,12 +27,31 @@ bool passes_a_link(const fs::path& folder, const fs::path& name) {
   return false;
 }
 
+// What stands beside a file while it is written, and what a kill leaves of it.
+std::vector<std::string> leftovers(const std::string& name) {
+  std::vector<std::string> out{name + ".part"};
+  if (name.ends_with(".checkpoint.h5"))
+    for (const char* suffix : {".prev", ".next", ".next.part"}) out.push_back(name + suffix);
+  return out;
+}
+
 std::string contents(const fs::path& path) {
+  require_file(path);
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
+
+void require_file(const fs::path& path) {
+  const fs::file_status there = fs::status(path);
+  if (!fs::exists(there) || fs::is_regular_file(there)) return;
+  throw core::InputError("'" + path.string() + "' is " +
+                         (fs::is_directory(there) ? "a folder"
+                          : fs::is_fifo(there)    ? "a pipe"
+                                                  : "no file") +
+                         ", and results go there: remove it or choose another directory with -o");
+}
 
 Manifest::Manifest(fs::path folder) : folder_(std::move(folder)) {
   const std::string text = contents(folder_ / file_name);
@@ -65,15 +84,20 @@ void Manifest::add(const std::string& name) {
   names_.push_back(name);
 }
 
+void Manifest::require_files() const {
+  for (const std::string& name : names_) {
+    require_file(folder_ / name);
+    for (const std::string& left : leftovers(name)) require_file(folder_ / left);
+  }
+}
+
 void Manifest::remove_files(const std::string& keep) {
   for (const std::string& name : names_) {
     if (name == keep || passes_a_link(folder_, name)) continue;
     const fs::path path = folder_ / name;
     if (fs::is_directory(fs::symlink_status(path))) continue;
     fs::remove(path);
-    fs::remove(path.string() + ".part");
-    if (name.ends_with(".checkpoint.h5"))
-      for (const char* suffix : {".prev", ".next", ".next.part"}) fs::remove(path.string() + suffix);
+    for (const std::string& left : leftovers(name)) fs::remove(folder_ / left);
     // Folders that are not empty refuse, and stay.
     std::error_code ignored;
     for (fs::path inner = fs::path(name).parent_path(); !inner.empty(); inner = inner.parent_path())

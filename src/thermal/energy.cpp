@@ -5,6 +5,7 @@
 
 #include "thermal/energy_lines.hpp"
 #include "thermal/energy_terms.hpp"
+#include "whirl/core/from_options.hpp"
 #include "whirl/core/index.hpp"
 #include "whirl/core/shell.hpp"
 
@@ -66,7 +67,7 @@ void Energy::make_solver() {
     const WriteArray out(x);
     lines_->apply(in.data(), out.data());
   });
-  check(SNESSetFromOptions(snes));
+  core::set_from_options(snes, core::newton_types);
   PCType type = nullptr;
   check(PCGetType(pc, &type));
   if (std::strcmp(type, PCSHELL) == 0) return;

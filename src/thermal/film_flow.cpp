@@ -8,6 +8,7 @@
 #include "thermal/profile.hpp"
 #include "thermal/row_halo.hpp"
 #include "whirl/core/agree.hpp"
+#include "whirl/core/from_options.hpp"
 
 namespace whirl::thermal {
 
@@ -111,7 +112,7 @@ void FilmFlow::Work::place() {
       if (o.i < 0 || o.i >= n || o.j <= 0 || o.j >= m) throw core::Error("an orifice lies outside the film");
       for (std::size_t q = 0; q < k; ++q)
         if (options.orifices[q].i == o.i && options.orifices[q].j == o.j)
-          throw core::Error("two orifices lie at one node: the mesh is too coarse for them");
+          throw core::InputError("two orifices lie at one node: the mesh is too coarse for them");
       if (o.j >= rows.begin() && o.j < rows.end()) here.push_back(k);
     }
   });
@@ -303,7 +304,11 @@ PetscErrorCode FilmFlow::Work::form_residual(SNES snes, Vec x, Vec out, void* co
   const PetscErrorCode code = w.gate.run([&] {
     PetscReal least = 0;
     check(VecMin(x, nullptr, &least));
-    if (w.options.fluid.gas && !(least > 0)) throw core::DomainError("the pressure of the gas is not positive");
+    if (w.options.fluid.gas && !(least > 0)) {
+      core::DomainError error("the pressure of the gas is not positive");
+      error.mark_agreed();  // all ranks have the least pressure of all
+      throw error;
+    }
     w.residual(x, out);
   });
   return w.gate.domain_error() ? SNESSetFunctionDomainError(snes) : code;
@@ -333,7 +338,8 @@ void FilmFlow::Work::prepare_solver() {
     check(VecSet(high.get(), PETSC_INFINITY));
     check(SNESVISetVariableBounds(snes.get(), low.get(), high.get()));
   }
-  check(SNESSetFromOptions(snes.get()));
+  core::set_from_options(snes.get(), ruptures ? std::initializer_list<const char*>{SNESVINEWTONRSLS, SNESVINEWTONSSLS}
+                                              : core::newton_types);
   // What flows where nothing is in balance measures what is left.
   load(std::vector<double>(pressure.size(), options.ambient));
   residual(u.get(), f.get());

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "whirl/core/agree.hpp"
+#include "whirl/core/from_options.hpp"
 #include "whirl/core/gate.hpp"
 #include "whirl/thermal/bush.hpp"
 #include "whirl/thermal/journal.hpp"
@@ -31,6 +32,10 @@ double solid_answers(double conductivity, const Mesh& mesh) {
 // changes it again, and no further than `finest` of what it is at the ambient's temperature and pressure.
 constexpr double reduction = 0.01, finest = 1e-11;
 constexpr double most_exact = 50000;  // cells
+// Rounds converge while the second half of those allowed leaves less than this of what the rounds before have reached,
+// and end after so many times the number allowed.
+constexpr double least_fall = 0.5;
+constexpr int most_times = 20;
 
 Surface convection(double coefficient, double temperature) {
   return {Surface::Kind::convection, coefficient, temperature};
@@ -280,8 +285,11 @@ struct Thd::Work {
       std::copy(temperature.begin(), temperature.end(), t.data());
     }
     solved = energy->solve(film_temperature.get(), finest, left);
-    if (solved.stuck())
-      throw core::NotConverged("the temperatures of the film were not found: its energy equation did not converge");
+    if (solved.stuck()) {
+      core::NotConverged error("the temperatures of the film were not found: its energy equation did not converge");
+      error.mark_agreed();  // the solver's word is that of all ranks
+      throw error;
+    }
     cost.energy_newton += solved.newton;
     cost.energy_krylov += solved.krylov;
     {
@@ -305,6 +313,22 @@ struct Thd::Work {
     });
     MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, rows.comm());
     cost.largest.push_back(largest);
+  }
+
+  // Rounds that still converge go on beyond the number that is allowed to rounds that do not.
+  static PetscErrorCode settled(SNES snes, PetscInt round, PetscReal x, PetscReal step, PetscReal change,
+                                SNESConvergedReason* reason, void* self) {
+    auto& w = *static_cast<Work*>(self);
+    PetscCall(SNESConvergedDefault(snes, round, x, step, change, reason, nullptr));
+    w.changes.resize(static_cast<std::size_t>(round));
+    w.changes.push_back(change);
+    const int allowed = w.setup.most_iterations;
+    if (*reason != SNES_CONVERGED_ITERATING || round < allowed) return 0;
+    const auto recent = w.changes.end() - std::max(1, allowed / 2);
+    const double before = *std::min_element(w.changes.begin(), recent),
+                 now = *std::min_element(recent, w.changes.end());
+    if (!(now < least_fall * before)) *reason = SNES_DIVERGED_MAX_IT;
+    return 0;
   }
 
   static PetscErrorCode form(SNES snes, Vec at, Vec out, void* self) {
@@ -332,7 +356,8 @@ struct Thd::Work {
   core::NonlinearSolver snes;
   core::Gate gate;
   ThdSolve cost;
-  EnergySolve solved;  // of the last round
+  std::vector<double> changes;  // norm of what each round changes
+  EnergySolve solved;           // of the last round
 };
 
 namespace {
@@ -375,12 +400,13 @@ ThdSolve Thd::solve() {
     check(SNESSetType(w.snes.get(), SNESANDERSON));
     check(SNESSetFunction(w.snes.get(), w.f.get(), Work::form, &w));
     if (large) few_vectors(w.snes.get());
-    check(SNESSetFromOptions(w.snes.get()));
+    core::set_from_options(w.snes.get(), {SNESANDERSON, SNESNGMRES, SNESNRICHARDSON, SNESQN, SNESNCG});
   }
   PetscInt n = 0;
   check(VecGetSize(w.x.get(), &n));
   check(SNESSetTolerances(w.snes.get(), w.setup.tolerance * w.setup.ambient * std::sqrt(static_cast<double>(n)), 1e-30,
-                          0, w.setup.most_iterations, 100000));
+                          0, most_times * w.setup.most_iterations, 100000));
+  check(SNESSetConvergenceTest(w.snes.get(), Work::settled, &w, nullptr));
   w.cost = {};
   w.join(true);
   w.left = large ? reduction : 0;

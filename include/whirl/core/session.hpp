@@ -10,13 +10,15 @@ namespace whirl::core {
 struct OptionInForce {
   std::string name;    ///< with its dash
   std::string value;   ///< empty for a flag
-  std::string source;  ///< `command line`, `PETSC_OPTIONS`, a file such as `.petscrc`; empty if that cannot be told
+  std::string source;  ///< `command line`, `PETSC_OPTIONS`, `~/.petscrc`; empty if that cannot be told
 };
 
 /// Owns the life of MPI, PETSc and SLEPc; make exactly one, first thing in main.
 ///
 /// PETSc's printing error handler is replaced by one that keeps the text for LibraryError, so that a failure is
-/// reported once and by us. BLAS gets one thread unless the environment says how many.
+/// reported once and by us. BLAS gets one thread unless the environment says how many. Of the files that PETSc reads
+/// options from only the user's own counts, ~/.petscrc: a deck from elsewhere brings a folder, and an option of a file
+/// there could load a library.
 class Session {
 public:
   Session(int argc, char** argv);
@@ -40,6 +42,10 @@ public:
 
   /// Options of PETSc that were given and that no solver on this rank has asked for.
   [[nodiscard]] static std::vector<std::string> unused_options();
+
+  /// What the user wants with an option of PETSc that PETSc cannot do (a type that there is not, no number), where an
+  /// error with this code and this trace says so and options were given; else empty.
+  [[nodiscard]] static std::string impossible_option(int code, const std::string& trace);
 
   /// Text of the PETSc error in flight (innermost first), and forgets it.
   static std::string take_trace();

@@ -26,6 +26,8 @@ public:
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// True if the folder has a manifest.
   [[nodiscard]] bool exists() const;
+  /// core::InputError if what stands under one of the names, or under a name that a kill leaves of it, is no file.
+  void require_files() const;
   /// Removes the files named, except `keep`, and what a kill left of them (`NAME.part`, `.prev`, `.next`,
   /// `.next.part`); folders below this one that are empty then; and the manifest, which goes last.
   void remove_files(const std::string& keep = {});
@@ -34,5 +36,9 @@ private:
   std::filesystem::path folder_;
   std::vector<std::string> names_;
 };
+
+/// core::InputError if there is something at `path` that is no file but a folder, a pipe or a device: to read it would
+/// wait for ever, to replace it would fail after the work.
+void require_file(const std::filesystem::path& path);
 
 }  // namespace whirl::io

@@ -65,8 +65,8 @@ struct EnergySolve {
   double before = 0;    // W, of the temperatures given
   double scale = 0;     // W, of the ambient's temperature everywhere: what heats the film
   bool converged = false;
-  /// Neither converged nor nearer, and not for rounding.
-  [[nodiscard]] bool stuck() const { return !converged && residual > 1e-6 * scale && residual > 0.9 * before; }
+  /// Neither converged nor nearer, and not for rounding; also where the residual is not a number.
+  [[nodiscard]] bool stuck() const { return !converged && !(residual <= 1e-6 * scale) && !(residual <= 0.9 * before); }
 };
 
 class EnergyTerms;

@@ -20,8 +20,8 @@ struct ThdSetup {
   std::vector<double> supply;    // K [r, n], of what comes from orifices and grooves
   std::vector<int> mixed{};      // [r, n], the groove of a node that is mixed, from 1, 0 of none; empty: there is none
   double tolerance = 1e-9;       // of temperatures, relative to the ambient's
-  int most_iterations = 60;
-  int coarse_start = 50000;  // cells, above which a first solution starts from that of a coarser mesh; 0: never
+  int most_iterations = 60;      // rounds of a solution, unless they still converge
+  int coarse_start = 50000;      // cells, above which a first solution starts from that of a coarser mesh; 0: never
 };
 
 /// What a solution cost: largest is the greatest change of a temperature in each iteration, K.

@@ -49,7 +49,8 @@ PetscErrorCode form_jacobian(SNES snes, Vec u, Mat, Mat, void* raw) {
     if (c.journal && iteration > 0)
       c.journal->note([&] {
         std::vector<double> norms = c.earlier;
-        norms.insert(norms.end(), c.residuals.begin(), c.residuals.begin() + iteration);
+        const auto kept = std::min<std::ptrdiff_t>(iteration, std::ssize(c.residuals));
+        norms.insert(norms.end(), c.residuals.begin(), c.residuals.begin() + kept);
         return Journal::Answer{std::move(norms), {}, {Journal::keep(c.journal, u)}};
       });
     c.problem.linearise(u, c.row);
@@ -64,7 +65,8 @@ PetscErrorCode arrived(SNES snes, PetscInt iteration, PetscReal x_norm, PetscRea
   constexpr double least_fall = 0.9;
   PetscCall(SNESConvergedDefault(snes, iteration, x_norm, step_norm, norm, reason, nullptr));
   if (*reason != SNES_CONVERGED_ITERATING || c.patience == 0) return 0;
-  const bool small = iteration > 0 && norm > least_fall * c.residuals[static_cast<std::size_t>(iteration) - 1];
+  const bool small = iteration > 0 && static_cast<std::size_t>(iteration) <= c.residuals.size() &&
+                     norm > least_fall * c.residuals[static_cast<std::size_t>(iteration) - 1];
   c.small_falls = small ? c.small_falls + 1 : 0;
   if (c.small_falls >= c.patience) *reason = SNES_DIVERGED_LINE_SEARCH;
   return 0;
@@ -223,8 +225,6 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   check(SNESSetMaxLinearSolveFailures(snes.get(), 1));
   check(SNESSetCheckJacobianDomainError(snes.get(), PETSC_TRUE));  // PETSc looks in debug builds only
   auto& norms = context.residuals;
-  norms.resize(static_cast<std::size_t>(options.max_iterations) + 2);
-  check(SNESSetConvergenceHistory(snes.get(), norms.data(), nullptr, static_cast<PetscInt>(norms.size()), PETSC_TRUE));
   context.patience = options.patience;
   check(SNESSetConvergenceTest(snes.get(), arrived, &context, nullptr));
   SNESLineSearch search = nullptr;
@@ -235,15 +235,21 @@ void Newton::Objects::make_nonlinear(const NewtonOptions& options, Vec like) {
   if (context.problem.settles()) {
     check(SNESLineSearchSetPreCheck(search, settle_before_search, &context));
     // It has asked for a fall of the residual already. The slope along a step that settles is none of a smooth
-    // function.
+    // function. A search of another type has no such number: PETSc would write it into memory that is not there.
     constexpr double any_fall = 1e-12;
-    check(SNESLineSearchBTSetAlpha(search, any_fall));
+    if (options.searches) check(SNESLineSearchBTSetAlpha(search, any_fall));
   }
   KSP inner = nullptr;
   check(SNESGetKSP(snes.get(), &inner));
   // Digits below Newton's own tolerance are of no use.
   configure(inner, context, context.problem.linear_tolerance(), 0.1 * options.tolerance * root_n);
-  core::set_from_options(snes.get());
+  core::set_from_options(snes.get(), core::newton_types);
+  // An option may allow more iterations; beyond some the history is not kept.
+  constexpr PetscInt most_kept = 10000;
+  PetscInt most = 0;
+  check(SNESGetTolerances(snes.get(), nullptr, nullptr, nullptr, &most, nullptr));
+  norms.resize(static_cast<std::size_t>(std::clamp<PetscInt>(most, 0, most_kept)) + 2);
+  check(SNESSetConvergenceHistory(snes.get(), norms.data(), nullptr, static_cast<PetscInt>(norms.size()), PETSC_TRUE));
   Mat matrix = preconditioned(inner, context, shell.get(), like);
   if (matrix != shell.get()) check(SNESSetJacobian(snes.get(), shell.get(), matrix, form_jacobian, &context));
 }

@@ -2,15 +2,20 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/coefficient_names.hpp"
+#include "study/bearing/coefficients_at.hpp"
 #include "study/bearing/enforced_motion.hpp"
 #include "study/bearing/held_film.hpp"
+#include "study/bearing/lost_points.hpp"
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -19,46 +24,24 @@
 namespace whirl::study {
 namespace {
 
-/// A journal at rest at one speed, and its coefficients at all frequencies.
-struct AtSpeed {
-  JournalPlace place;
-  double thickness = 0;
-  std::vector<film::PortCoefficients> coefficients;
-  std::vector<std::vector<EnforcedAt>> enforced;  // [frequency][amplitude]; none without amplitudes
-};
-
-// What one rank computes; all do it alike. Every speed starts from the one before.
-std::vector<AtSpeed> computed(const DynamicCoefficientsOptions& options, system::Support support) {
-  if (options.tilt) support.film = film::tilting(support.film).value();
-  const auto film = film::make_film(support.geometry, support.film, support.lubricant);
-  const double c = support.geometry.clearance;
+// Speed by speed, each from the last one with an answer; pieces begin with `head`. All ranks compute alike. Collective.
+std::vector<AtSpeed> computed(MPI_Comm comm, Pieces& pieces, const std::string& head,
+                              const DynamicCoefficientsOptions& options, system::Support support) {
+  std::unique_ptr<film::Film> film;
+  core::agree(comm, [&] {
+    if (options.tilt) support.film = film::tilting(support.film).value();
+    film = film::make_film(support.geometry, support.film, support.lubricant);
+  });
   std::vector<AtSpeed> out;
-  film::JournalMotion motion;
-  const double e = options.eccentricity.value_or(0.0) * c, angle = options.attitude.value_or(0.0);
-  if (options.load.values.empty()) motion.position = {e * std::cos(angle), e * std::sin(angle), 0, 0};
-  std::vector<double> states;
-  for (const deck::Quantity& speed : options.speeds) {
-    motion.speed = speed.value;
-    if (!options.load.values.empty()) {
-      FilmAtRest carrier(support, speed.value);
-      // Where the film does not come to rest at the last place, the search begins by itself.
-      if (!out.empty()) (void)has_answer([&] { carrier.hold({motion.position[0], motion.position[1]}); });
-      carrier.carry(load_along(options.load));
-      motion = carrier.motion();
-    }
-    AtSpeed now;
-    now.place = rest_at(*film, motion, states);
-    states = now.place.states;
-    now.thickness = film->least_thickness(motion, states);
-    film::FrequencyCoefficients by_frequency(*film, motion, states);
-    for (const double ratio : options.all_frequencies()) {
-      const double omega = ratio * speed.value;
-      now.coefficients.push_back(by_frequency.at(omega));
-      if (!options.amplitudes.empty())
-        now.enforced.push_back(
-            enforced_at(*film, support.geometry, now.place, omega, options.amplitudes, now.coefficients.back()));
-    }
-    out.push_back(std::move(now));
+  std::optional<std::size_t> last;
+  for (std::size_t k = 0; k < options.speeds.size(); ++k) {
+    out.push_back(at_speed(comm, pieces, fmt::format("{} speed {}", head, k + 1), options.speeds[k].value, [&] {
+      return coefficients_at(*film, options, support, options.speeds[k].value, last ? &out[*last].place : nullptr);
+    }));
+    if (out.back().found())
+      last = k;
+    else
+      out.back().fill(film->ports().size(), options.all_frequencies().size(), options.amplitudes.size());
   }
   return out;
 }
@@ -90,6 +73,7 @@ void put_summary(io::StudySummary& summary, const DynamicCoefficientsOptions& op
                  const std::vector<AtSpeed>& found) {
   for (std::size_t s = 0; s < found.size(); ++s) {
     const AtSpeed& a = found[s];
+    if (!a.found()) continue;
     const std::string head = fmt::format("speed.{}.", number_text(options.speeds[s].value, options.speeds[s].unit));
     const auto& at = a.place.motion.position;
     summary.set(head + "speed", deck::from_si(options.speeds[s].value, options.speeds[s].unit), options.speeds[s].unit);
@@ -117,9 +101,11 @@ void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, dou
                 const std::vector<AtSpeed>& found, const Bars* bars) {
   const std::vector<double> ratios = options.all_frequencies();
   std::vector<double> speeds, x, y, e, thickness, force_x, force_y;
+  std::vector<std::string> reasons;
   for (const AtSpeed& a : found) {
     const auto& at = a.place.motion.position;
     speeds.push_back(a.place.motion.speed);
+    reasons.push_back(a.reason);
     x.push_back(at[0]);
     y.push_back(at[1]);
     e.push_back(std::hypot(at[0], at[1]) / clearance);
@@ -135,6 +121,8 @@ void put_tables(io::Group& group, const DynamicCoefficientsOptions& options, dou
   places.put("min_thickness", thickness, "m", "least thickness of the film");
   places.put("force_x", force_x, "N", "of the film on the journal");
   places.put("force_y", force_y, "N", "of the film on the journal");
+  if (std::ranges::any_of(reasons, [](const std::string& why) { return !why.empty(); }))
+    places.put("reason", std::move(reasons), "why a speed has no coefficients; empty: it has");
   auto& table = group.child("coefficients");
   table.put("speed", speeds, "rad/s", "shaft speed");
   table.put("ratio", ratios, "1", "frequency over speed, omega/Omega");
@@ -175,15 +163,22 @@ StudyResult DynamicCoefficients::run(Context& context) {
   auto& summary = context.results.summary();
   auto& group = context.results.group();
 
-  std::vector<AtSpeed> found;
-  if (const auto none = agreed_place(context.comm, [&] { found = computed(options, train.supports[which]); })) {
-    summary.set("capacity.load", none->most.load, "N");
-    summary.set("capacity.eccentricity", none->most.eccentricity, "1");
-    return context.results.finish(none->what(), false);
-  }
-  put_summary(summary, options, clearance, found);
-  std::vector<std::string> speeds;
+  Pieces pieces(context.results, context.resume);
+  const std::vector<AtSpeed> found = computed(context.comm, pieces, "", options, train.supports[which]);
+  std::vector<std::string> speeds, reasons;
   for (const deck::Quantity& q : options.speeds) speeds.push_back(number_text(q.value, q.unit) + " " + q.unit);
+  for (const AtSpeed& a : found) reasons.push_back(a.reason);
+  const auto none = std::ranges::find_if(found, [](const AtSpeed& a) { return a.most.has_value(); });
+  if (none != found.end()) {
+    summary.set("capacity.load", none->most->load, "N");
+    summary.set("capacity.eccentricity", none->most->eccentricity, "1");
+  }
+  if (std::ranges::none_of(found, &AtSpeed::found)) return context.results.finish(reasons.front(), false);
+  put_summary(summary, options, clearance, found);
+  for (std::string& line : lost_points("no coefficients at", reasons, [&](std::size_t k) { return speeds[k]; }))
+    summary.warnings.push_back(std::move(line));
+  for (std::size_t k = 0; k < found.size(); ++k)
+    if (found[k].centre) summary.warnings.push_back(fmt::format("{}: {}", speeds[k], of_the_centre(found[k])));
   for (std::string& line : lost_motions(enforced_of(found), speeds, options.all_frequencies(), options.amplitudes))
     summary.warnings.push_back(std::move(line));
 
@@ -191,24 +186,35 @@ StudyResult DynamicCoefficients::run(Context& context) {
   Bars bars(numbers_of(found), law);
   SummaryBars of_summary(summary, law);
   const std::vector<FilmMesh> meshes = film_meshes(context.machine, context.layout);
-  for (const FilmMesh& mesh : meshes) {
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
     std::vector<AtSpeed> other;
-    core::agree(context.comm, [&] {
-      const bool answered =
-          has_answer([&] { other = computed(options, with_film_mesh(train, mesh.factor).supports[which]); });
-      if (!answered) other.clear();
-    });
-    io::StudySummary there;
-    put_summary(there, options, clearance, other);
-    bars.add(mesh.axis, mesh.spacing, numbers_of(other));
-    of_summary.add(mesh.axis, mesh.spacing, there);
+    std::string reason;
+    // A coarse mesh may not hold what the deck asks for.
+    if (has_answer(
+            [&] {
+              system::Train there;
+              core::agree(context.comm, [&] { there = with_film_mesh(train, meshes[m].factor); });
+              other = computed(context.comm, pieces, fmt::format("mesh {}", m + 1), options, there.supports[which]);
+            },
+            &reason)) {
+      io::StudySummary there;
+      put_summary(there, options, clearance, other);
+      of_summary.add(meshes[m].axis, meshes[m].spacing, there);
+    } else {
+      other.clear();
+      of_summary.add(meshes[m].axis, meshes[m].spacing, io::StudySummary());
+    }
+    bars.add(meshes[m].axis, meshes[m].spacing, numbers_of(other));
   }
   of_summary.write(place_tolerance);
 
   group.set("bearing", context.machine.bearings[which].name);
   put_tables(group, options, clearance, found, meshes.empty() ? nullptr : &bars);
-  summary.points = static_cast<long>(found.size());
-  return context.results.finish("completed", true);
+  const auto lost = static_cast<std::size_t>(std::ranges::count_if(reasons, [](const auto& r) { return !r.empty(); }));
+  summary.points = static_cast<long>(found.size() - lost);
+  if (lost > 0) return context.results.finish(status_of(lost, found.size(), "speeds", "coefficients"), true);
+  const auto [without, all] = motions_without_values(enforced_of(found));
+  return context.results.finish(status_of(without, all, "enforced motions", "values"), true);
 }
 
 }  // namespace whirl::study

@@ -93,14 +93,16 @@ void put_enforced(io::StudySummary& summary, const std::string& head, std::span<
     const film::PortCoefficients& c = found[a].coefficients;
     for (std::size_t i = 0; i < c.ports; ++i)
       for (std::size_t j = 0; j < c.ports; ++j) {
+        if (!found[a].lost[j].empty()) continue;
         summary.set(at + "K." + pair_name(i, j, "."), c.stiffness[i][j], stiffness_units[slopes_in(i, j)]);
         summary.set(at + "C." + pair_name(i, j, "."), c.damping[i][j], damping_units[slopes_in(i, j)]);
       }
     for (std::size_t j = 0; j < c.ports; ++j) {
+      if (!found[a].lost[j].empty()) continue;
       summary.set(at + "distortion." + port_words[j], found[a].distortion[j], "1");
       summary.set(at + "tail." + port_words[j], found[a].tail[j], "1");
     }
-    summary.set(at + "from_perturbation", found[a].apart, "1");
+    if (std::isfinite(found[a].apart)) summary.set(at + "from_perturbation", found[a].apart, "1");
   }
 }
 
@@ -128,6 +130,17 @@ std::vector<std::string> lost_motions(const All& found, const std::vector<std::s
   for (const auto& [why, line] : known)
     out[line.first] = fmt::format("{}{}: {}", first[line.first],
                                   line.second > 0 ? fmt::format(", nor of {} more", line.second) : "", why);
+  return out;
+}
+
+std::array<std::size_t, 2> motions_without_values(const All& found) {
+  std::array<std::size_t, 2> out{};
+  each(found, [&](const EnforcedAt& a) {
+    for (std::size_t port = 0; port < a.coefficients.ports; ++port) {
+      out[0] += a.lost[port].empty() ? 0 : 1;
+      ++out[1];
+    }
+  });
   return out;
 }
 
@@ -170,10 +183,16 @@ void put_enforced_tables(io::Group& group, const std::vector<double>& speeds, co
     }
   for (std::size_t j = 0; j < n; ++j) {
     std::vector<double> left, tail;
+    std::vector<std::string> reasons;
     each(found, [&](const EnforcedAt& a) {
+      reasons.push_back(a.lost[j]);
       left.push_back(a.distortion[j]);
       tail.push_back(a.tail[j]);
     });
+    if (std::ranges::any_of(reasons, [](const std::string& why) { return !why.empty(); }))
+      table.put(std::string("reason_") + port_words[j],
+                io::Dataset{shape, std::move(reasons), "",
+                            "why the motion along it has no values; empty: it has [speed][frequency][amplitude]"});
     table.put(std::string("tail_") + port_words[j], shape, tail, "1",
               "highest harmonics of the force over the first one [speed][frequency][amplitude]");
     table.put(

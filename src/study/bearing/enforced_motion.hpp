@@ -39,6 +39,10 @@ void put_enforced(io::StudySummary& summary, const std::string& head, std::span<
                                                     const std::vector<double>& ratios,
                                                     const std::vector<double>& amplitudes);
 
+/// How many motions have no values, of how many.
+[[nodiscard]] std::array<std::size_t, 2> motions_without_values(
+    const std::vector<std::vector<std::vector<EnforcedAt>>>& found);
+
 /// Their numbers that may have bars, in the order in which put_enforced_tables() takes these: K and B by entry.
 void add_numbers(const std::vector<std::vector<std::vector<EnforcedAt>>>& found, std::vector<double>& numbers);
 /// Tables [speed][frequency][amplitude]; bars from number `next` on, null: none.

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <optional>
 
 #include "study/bars/film_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
-#include "study/bearing/gas_point.hpp"
+#include "study/bearing/gas_rows.hpp"
 #include "study/bearing/held_film.hpp"
+#include "study/bearing/lost_points.hpp"
 #include "study/common.hpp"
 #include "whirl/core/agree.hpp"
 #include "whirl/core/error.hpp"
@@ -19,33 +19,6 @@
 namespace whirl::study {
 namespace {
 
-struct GasQuantity {
-  const char *name, *unit, *text;
-  std::function<double(const GasPoint&)> of;
-};
-
-const std::vector<GasQuantity>& gas_quantities() {
-  static const std::vector<GasQuantity> all{
-      {"load", "N", "that the film carries", [](const GasPoint& p) { return p.load; }},
-      {"attitude", "rad", "from the load to the journal, with the rotation",
-       [](const GasPoint& p) { return p.attitude; }},
-      {"min_thickness", "m", "of the film", [](const GasPoint& p) { return p.report.min_thickness; }},
-      {"max_pressure", "Pa", "in the film and behind orifices",
-       [](const GasPoint& p) { return p.report.max_pressure; }},
-      {"mass_flow", "kg/s", "through all orifices", [](const GasPoint& p) { return p.report.mass_flow; }},
-      {"normal_flow", "l/min", "the same as gas at 0 degC and 101325 Pa",
-       [](const GasPoint& p) { return p.normal_flow; }},
-      {"drag_torque", "N m", "of the film on the journal", [](const GasPoint& p) { return p.report.drag_torque; }},
-      {"power_loss", "W", "drag times speed", [](const GasPoint& p) { return p.report.power_loss; }},
-      {"knudsen", "1", "mean free path at the pressure of the ends over the least thickness",
-       [](const GasPoint& p) { return p.knudsen; }},
-      {"reynolds", "1", "rho Omega R c/mu, rho at the highest pressure", [](const GasPoint& p) { return p.reynolds; }},
-      {"squeeze_reynolds", "1", "rho Omega c^2/mu", [](const GasPoint& p) { return p.squeeze_reynolds; }},
-      {"taylor", "1", "rho Omega R c/mu sqrt(c/R); vortices above 41", [](const GasPoint& p) { return p.taylor; }},
-      {"factorisations", "1", "of Newton's method from the film between parallel plates",
-       [](const GasPoint& p) { return static_cast<double>(p.factorisations); }}};
-  return all;
-}
 constexpr std::array<const char*, 5> told = {"load", "attitude", "mass_flow", "normal_flow", "power_loss"};
 
 std::array<double, 2> gas_place(double eccentricity, double direction, double clearance) {
@@ -53,33 +26,50 @@ std::array<double, 2> gas_place(double eccentricity, double direction, double cl
   return {e * std::cos(direction), e * std::sin(direction)};
 }
 
-// [speed][eccentricity].
-std::vector<GasPoint> gas_curves(const GasBearingOptions& o, const system::Support& s) {
-  std::vector<GasPoint> out;
-  for (const deck::Quantity& speed : o.speeds)
-    for (const double e : o.eccentricities)
-      out.push_back(gas_at(s, speed.value, gas_place(e, o.direction, s.geometry.clearance)));
-  return out;
-}
+// The film of one rank; all compute alike.
+struct GasJob {
+  const GasBearingOptions& options;
+  MPI_Comm comm;
+  Pieces& pieces;
 
-// Under the load, speed by speed.
-std::vector<GasPoint> gas_equilibria(const GasBearingOptions& o, const system::Support& s) {
-  std::vector<GasPoint> out;
-  for (const deck::Quantity& speed : o.speeds) {
-    FilmAtRest film(s, speed.value);
-    film.carry(load_along(o.load));
-    out.push_back(gas_at(s, speed.value, film.place()));
+  // [speed][eccentricity], with the fields of the last eccentricity; pieces begin with `head`.
+  [[nodiscard]] std::vector<GasRow> curves(const std::string& head, const system::Support& s, bool fields) const {
+    std::vector<GasRow> out;
+    for (const deck::Quantity& speed : options.speeds)
+      for (std::size_t k = 0; k < options.eccentricities.size(); ++k) {
+        const double e = options.eccentricities[k];
+        out.push_back(gas_row(comm, pieces, fmt::format("{} {:.17g} {:.17g}", head, speed.value, e), speed.value,
+                              fields && k + 1 == options.eccentricities.size(), [&] {
+                                return gas_at(s, speed.value, gas_place(e, options.direction, s.geometry.clearance));
+                              }));
+        out.back().eccentricity = e;
+      }
+    return out;
   }
-  return out;
-}
 
-void put_gas_summary(io::StudySummary& summary, const std::vector<GasPoint>& points, const std::string& head) {
-  for (const GasPoint& p : points) {
+  // Under the load, speed by speed; none without a load.
+  [[nodiscard]] std::vector<GasRow> equilibria(const std::string& head, const system::Support& s) const {
+    std::vector<GasRow> out;
+    if (options.load.values.empty()) return out;
+    for (const deck::Quantity& speed : options.speeds)
+      out.push_back(gas_row(comm, pieces, fmt::format("{} load {:.17g}", head, speed.value), speed.value, false, [&] {
+        FilmAtRest film(s, speed.value);
+        film.carry(load_along(options.load));
+        return gas_at(s, speed.value, film.place());
+      }));
+    return out;
+  }
+};
+
+void put_gas_summary(io::StudySummary& summary, const std::vector<GasRow>& points, const std::string& head) {
+  for (const GasRow& p : points) {
+    if (!p.found()) continue;
     const std::string which = head.empty() ? fmt::format("speed.{:.6g}.eccentricity.{:.6g}.", p.speed, p.eccentricity)
                                            : fmt::format("{}.speed.{:.6g}.", head, p.speed);
     for (const char* name : told) {
-      const auto q = std::ranges::find(gas_quantities(), std::string_view(name), &GasQuantity::name);
-      summary.set(which + name, q->of(p), q->unit);
+      const auto all = gas_quantities();
+      const auto q = std::ranges::find(all, std::string_view(name), &GasQuantity::name);
+      summary.set(which + name, p.values[static_cast<std::size_t>(q - all.begin())], q->unit);
     }
     if (head.empty()) continue;
     summary.set(which + "x", p.place[0], "m");
@@ -88,12 +78,20 @@ void put_gas_summary(io::StudySummary& summary, const std::vector<GasPoint>& poi
   }
 }
 
-void put_gas_table(io::Group& table, const io::Shape& shape, const std::vector<GasPoint>& points) {
-  for (const GasQuantity& q : gas_quantities()) {
+// Why rows have no film, if any has none.
+void put_reasons(io::Group& table, const io::Shape& shape, const std::vector<GasRow>& rows) {
+  if (std::ranges::all_of(rows, &GasRow::found)) return;
+  table.put("reason", io::Dataset{shape, reasons_of(rows), "", "why there is no film; empty: there is one"});
+}
+
+void put_gas_table(io::Group& table, const io::Shape& shape, const std::vector<GasRow>& rows) {
+  for (std::size_t k = 0; k < gas_quantities().size(); ++k) {
+    const GasQuantity& q = gas_quantities()[k];
     std::vector<double> column;
-    for (const GasPoint& p : points) column.push_back(q.of(p));
+    for (const GasRow& p : rows) column.push_back(p.values[k]);
     table.put(q.name, shape, column, q.unit, std::string(q.text) + (shape.size() > 1 ? " [speed][eccentricity]" : ""));
   }
+  put_reasons(table, shape, rows);
 }
 
 std::vector<double> values_of(const std::vector<deck::Quantity>& list) {
@@ -102,20 +100,27 @@ std::vector<double> values_of(const std::vector<deck::Quantity>& list) {
   return out;
 }
 
-// Of the last eccentricity, speed by speed.
-void put_gas_fields(io::Group& group, const GasBearingOptions& o, const std::vector<GasPoint>& points) {
-  std::map<std::string, std::vector<double>> all;
-  auto& table = group.child("fields");
+// Of the last eccentricity, speed by speed; not numbers at a speed without a film there.
+void put_gas_fields(io::Group& group, const GasBearingOptions& o, const std::vector<GasRow>& rows) {
   const std::size_t each = o.eccentricities.size();
-  for (std::size_t s = 0; s < o.speeds.size(); ++s)
-    for (const film::NodalField& f : points[(s + 1) * each - 1].fields) {
-      if (f.shape.size() == 1 && s == 0) table.put(f.name, f.values, f.unit, "of the nodes");
-      if (f.shape.size() == 2) all[f.name].insert(all[f.name].end(), f.values.begin(), f.values.end());
-    }
-  for (const film::NodalField& f : points.back().fields)
-    if (f.shape.size() == 2)
-      table.put(f.name, {o.speeds.size(), f.shape[0], f.shape[1]}, all[f.name], f.unit,
-                f.name + " at the last eccentricity [speed][theta][z]");
+  const auto of = [&](std::size_t speed) -> const GasRow& { return rows[(speed + 1) * each - 1]; };
+  std::size_t known = 0;
+  while (known < o.speeds.size() && !of(known).found()) ++known;
+  if (known == o.speeds.size()) return;
+  auto& table = group.child("fields");
+  const std::vector<film::NodalField>& like = of(known).fields;
+  for (std::size_t f = 0; f < like.size(); ++f) {
+    if (like[f].shape.size() == 1) table.put(like[f].name, like[f].values, like[f].unit, "of the nodes");
+    if (like[f].shape.size() != 2) continue;
+    std::vector<double> all;
+    for (std::size_t s = 0; s < o.speeds.size(); ++s)
+      if (of(s).found())
+        all.insert(all.end(), of(s).fields[f].values.begin(), of(s).fields[f].values.end());
+      else
+        all.insert(all.end(), like[f].values.size(), io::no_value);
+    table.put(like[f].name, {o.speeds.size(), like[f].shape[0], like[f].shape[1]}, std::move(all), like[f].unit,
+              like[f].name + " at the last eccentricity [speed][theta][z]");
+  }
 }
 
 // Orders by three meshes in turn: of the last two differences.
@@ -124,9 +129,11 @@ double observed_order(const std::vector<double>& v) {
   return n < 3 ? io::no_value : std::log2(std::abs((v[n - 2] - v[n - 3]) / (v[n - 1] - v[n - 2])));
 }
 
-void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasBearingOptions& o, const system::Support& s) {
+void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasJob& job, const system::Support& s) {
+  const GasBearingOptions& o = job.options;
   std::vector<double> around, along;
   std::array<std::vector<double>, 2> load;
+  std::vector<std::string> reasons;
   for (int k = o.meshes - 1; k >= 0; --k) {
     system::Support there = s;
     film::Gas& gas = film::as<film::Gas>(there.film);
@@ -135,15 +142,14 @@ void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasBearin
     along.push_back(gas.cells[1]);
     for (const auto source : {film::Gas::Source::rim, film::Gas::Source::node}) {
       gas.source = source;
+      const bool rim = source == film::Gas::Source::rim;
       const auto at = gas_place(o.eccentricities.back(), o.direction, s.geometry.clearance);
-      double found = io::no_value;
-      const auto compute = [&] { found = gas_at(there, o.speeds.front().value, at).load; };
+      const double speed = o.speeds.front().value;
+      const GasRow row = gas_row(job.comm, job.pieces, fmt::format("meshes {} {}", k, rim ? "rim" : "node"), speed,
+                                 false, [&] { return gas_at(there, speed, at); });
+      load[rim ? 0 : 1].push_back(row.values[0]);
       // Pockets have no source in a node.
-      if (source == film::Gas::Source::rim)
-        compute();
-      else
-        (void)has_answer(compute);
-      load[source == film::Gas::Source::rim ? 0 : 1].push_back(found);
+      if (rim) reasons.push_back(row.reason);
     }
   }
   auto& table = group.child("meshes");
@@ -152,36 +158,42 @@ void put_gas_meshes(io::Group& group, io::StudySummary& summary, const GasBearin
   table.put("load", load[0], "N", "with the pressure at the rims of the orifices");
   table.put("load_of_node_source", load[1], "N",
             "with the pressure of their nodes: a source has none there, so that it drifts");
+  if (std::ranges::any_of(reasons, [](const std::string& why) { return !why.empty(); }))
+    table.put("reason", std::move(reasons), "why there is no film on a mesh; empty: there is one");
   if (o.meshes < 3) return;
-  summary.set("meshes.order", observed_order(load[0]), "1");
-  summary.set("meshes.order_of_node_source", observed_order(load[1]), "1");
+  for (const auto& [name, of] : {std::pair{"meshes.order", 0U}, {"meshes.order_of_node_source", 1U}})
+    if (const double order = observed_order(load[of]); std::isfinite(order)) summary.set(name, order, "1");
 }
 
-void put_gas_map(io::Group& group, const GasBearingOptions& o, const system::Support& s) {
+// Rows [clearance][diameter].
+std::vector<GasRow> put_gas_map(io::Group& group, const GasJob& job, const system::Support& s) {
+  const GasBearingOptions& o = job.options;
   const GasMapOptions& map = *o.map;
-  std::vector<double> load, flow, power;
+  const double speed = o.speeds.front().value;
+  std::vector<GasRow> rows;
   for (const deck::Quantity& c : map.clearances)
     for (const deck::Quantity& d : map.diameters) {
       system::Support there = s;
       there.geometry.clearance = c.value;
       for (film::OrificeRow& row : film::as<film::Gas>(there.film).orifices) row.diameter = d.value;
-      GasPoint p;
-      p.load = p.report.mass_flow = p.report.power_loss = io::no_value;
-      (void)has_answer(
-          [&] { p = gas_at(there, o.speeds.front().value, gas_place(map.eccentricity, o.direction, c.value)); });
-      load.push_back(p.load);
-      flow.push_back(p.report.mass_flow);
-      power.push_back(p.report.power_loss);
+      rows.push_back(gas_row(job.comm, job.pieces, fmt::format("map {:.17g} {:.17g}", c.value, d.value), speed, false,
+                             [&] { return gas_at(there, speed, gas_place(map.eccentricity, o.direction, c.value)); }));
     }
   auto& table = group.child("map");
   const io::Shape shape{map.clearances.size(), map.diameters.size()};
   table.put("clearance", values_of(map.clearances), "m", "of the bearing");
   table.put("diameter", values_of(map.diameters), "m", "of all orifices");
-  table.put("load", shape, load, "N", "at the eccentricity of the map [clearance][diameter]");
-  table.put("mass_flow", shape, flow, "kg/s", "the same");
-  table.put("power_loss", shape, power, "W", "the same");
+  for (const char* name : {"load", "mass_flow", "power_loss"}) {
+    const auto all = gas_quantities();
+    const auto q = std::ranges::find(all, std::string_view(name), &GasQuantity::name);
+    std::vector<double> column;
+    for (const GasRow& row : rows) column.push_back(row.values[static_cast<std::size_t>(q - all.begin())]);
+    table.put(name, shape, std::move(column), q->unit, "at the eccentricity of the map [clearance][diameter]");
+  }
+  put_reasons(table, shape, rows);
   table.label_each({io::labels_of(values_of(map.diameters))});
   table.set("eccentricity", map.eccentricity);
+  return rows;
 }
 
 // Thickness of a film at Knudsen numbers where slip begins to show, where it has to be counted, and of free molecules.
@@ -209,40 +221,46 @@ StudyResult GasBearing::run(Context& context) {
   auto& results = context.results;
   auto& summary = results.summary();
   auto& group = results.group();
-  std::vector<GasPoint> curves, equilibria;
-  core::agree(context.comm, [&] {
-    curves = gas_curves(options, support);
-    if (options.meshes > 0) put_gas_meshes(group, summary, options, support);
-    if (options.map) put_gas_map(group, options, support);
-  });
-  std::optional<NoPlace> none;
-  if (!options.load.values.empty())
-    none = agreed_place(context.comm, [&] { equilibria = gas_equilibria(options, support); });
-  if (none) equilibria.clear();
+  Pieces pieces(results, context.resume);
+  const GasJob job{options, context.comm, pieces};
+  const std::vector<GasRow> curves = job.curves("curve", support, true), equilibria = job.equilibria("", support);
+  if (options.meshes > 0) put_gas_meshes(group, summary, job, support);
+  std::vector<GasRow> map;
+  if (options.map) map = put_gas_map(group, job, support);
   put_gas_summary(summary, curves, "");
   put_gas_summary(summary, equilibria, "equilibrium");
-  if (none) {
-    summary.set("capacity.load", none->most.load, "N");
-    summary.set("capacity.eccentricity", none->most.eccentricity, "1");
+  // The first speed at which the film does not carry the load.
+  const auto none = std::ranges::find_if(equilibria, [](const GasRow& r) { return std::isfinite(r.capacity); });
+  if (none != equilibria.end()) {
+    summary.set("capacity.load", none->capacity, "N");
+    summary.set("capacity.eccentricity", none->at_capacity, "1");
   }
 
   SummaryBars bars(summary, law_of(context.machine));
+  int mesh_number = 0;
   for (const FilmMesh& mesh : film_meshes(context.machine, context.layout)) {
+    const std::string head = fmt::format("mesh {}", ++mesh_number);
     io::StudySummary there;
-    core::agree(context.comm, [&] {
-      const system::Train other = with_film_mesh(train, mesh.factor);
-      (void)has_answer([&] { put_gas_summary(there, gas_curves(options, other.supports[which]), ""); });
-      if (!none && !options.load.values.empty())
-        (void)has_answer(
-            [&] { put_gas_summary(there, gas_equilibria(options, other.supports[which]), "equilibrium"); });
-      if (none) {
-        (void)has_answer([&] {
-          const Capacity c = FilmAtRest(other.supports[which], none->speed).capacity(load_along(options.load));
-          there.set("capacity.load", c.load, "N");
-          there.set("capacity.eccentricity", c.eccentricity, "1");
+    system::Support other;
+    core::agree(context.comm, [&] { other = with_film_mesh(train, mesh.factor).supports[which]; });
+    put_gas_summary(there, job.curves(head, other, false), "");
+    put_gas_summary(there, job.equilibria(head, other), "equilibrium");
+    if (none != equilibria.end()) {
+      const std::vector<double> most = pieces.numbers(head + " capacity", [&] {
+        std::vector<double> out;
+        core::agree(context.comm, [&] {
+          (void)has_answer([&] {
+            const Capacity c = FilmAtRest(other, none->speed).capacity(load_along(options.load));
+            out = {c.load, c.eccentricity};
+          });
         });
+        return out;
+      });
+      if (!most.empty()) {
+        there.set("capacity.load", most[0], "N");
+        there.set("capacity.eccentricity", most[1], "1");
       }
-    });
+    }
     bars.add(mesh.axis, mesh.spacing, there);
   }
   constexpr double location = 1e-9;
@@ -254,11 +272,12 @@ StudyResult GasBearing::run(Context& context) {
   table.put("speed", values_of(options.speeds), "rad/s", "of the shaft");
   table.put("eccentricity", options.eccentricities, "1", "of the journal, in clearances");
   put_gas_table(table, {options.speeds.size(), options.eccentricities.size()}, curves);
-  if (!equilibria.empty()) {
+  const auto found = [](const std::vector<GasRow>& rows) { return std::ranges::count_if(rows, &GasRow::found); };
+  if (found(equilibria) > 0) {
     auto& at = group.child("equilibria");
     at.put("speed", values_of(options.speeds), "rad/s", "of the shaft");
     std::vector<double> x, y;
-    for (const GasPoint& p : equilibria) {
+    for (const GasRow& p : equilibria) {
       x.push_back(p.place[0]);
       y.push_back(p.place[1]);
     }
@@ -268,8 +287,26 @@ StudyResult GasBearing::run(Context& context) {
   }
   put_gas_fields(group, options, curves);
   put_knudsen(group, *film::find<film::Gas>(support.film), support.lubricant.viscosity);
-  summary.points = static_cast<long>(curves.size() + equilibria.size());
-  return none ? results.finish(none->what(), false) : results.finish("completed", true);
+  summary.points = static_cast<long>(found(curves) + found(equilibria));
+  const auto warn = [&](const std::vector<GasRow>& rows, const std::function<std::string(std::size_t)>& words) {
+    for (std::string& line : lost_points("no film at", reasons_of(rows), words))
+      summary.warnings.push_back(std::move(line));
+  };
+  warn(curves, [&](std::size_t k) {
+    return fmt::format("{:.6g} rad/s, eccentricity {:.6g}", curves[k].speed, curves[k].eccentricity);
+  });
+  warn(map, [&](std::size_t k) {
+    const std::size_t each = options.map->diameters.size();
+    return fmt::format("clearance {:.6g} um with orifices of {:.6g} mm", 1e6 * options.map->clearances[k / each].value,
+                       1e3 * options.map->diameters[k % each].value);
+  });
+  // A load that is not carried at any speed is what was asked for, and is not there.
+  if (!equilibria.empty() && found(equilibria) == 0) return results.finish(equilibria.front().reason, false);
+  warn(equilibria, [&](std::size_t k) { return fmt::format("{:.6g} rad/s under the load", equilibria[k].speed); });
+  if (found(curves) == 0) return results.finish(summary.warnings.front(), false);
+  const std::size_t asked = curves.size() + equilibria.size() + map.size();
+  const auto there = static_cast<std::size_t>(found(curves) + found(equilibria) + found(map));
+  return results.finish(status_of(asked - there, asked, "points", "film"), true);
 }
 
 }  // namespace whirl::study

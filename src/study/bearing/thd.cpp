@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string_view>
 
 #include "study/bearing/thd_effective.hpp"
@@ -19,16 +21,28 @@
 namespace whirl::study {
 namespace {
 
-// What a sweep has done: rows of its table, and the last state to go on from, in rows shared by the ranks.
+// What a sweep has done: rows of its table, the reasons of those without a film (empty: there is one), and the last
+// state to go on from, in rows shared by the ranks.
 struct Sweep {
   std::vector<std::vector<double>> rows;
+  std::vector<std::string> reasons;
   std::vector<std::string> unsettled;
+
+  [[nodiscard]] bool any() const {
+    return std::ranges::any_of(reasons, [](const std::string& why) { return why.empty(); });
+  }
+  void lose(double speed, const std::string& reason) {
+    rows.emplace_back(thd_columns().size(), io::no_value);
+    rows.back().front() = speed;
+    reasons.push_back(reason);
+  }
 
   [[nodiscard]] io::Group kept(const ThdFilm& film, std::vector<double> state) const {
     io::Group out;
     std::vector<double> flat;
     for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
     out.put("rows", io::Shape{rows.size(), thd_columns().size()}, std::move(flat), "1", "of the table over the speed");
+    out.put("reasons", reasons, "why there is no film at a speed");
     out.put("unsettled", unsettled, "speeds at which the temperatures did not settle");
     const thermal::Rows& r = film.rows();
     const auto here = static_cast<std::size_t>(r.count());
@@ -39,11 +53,13 @@ struct Sweep {
     return out;
   }
 
-  // Of the journal at the last speed, in clearances.
+  // Of the journal at the last speed with a film, in clearances.
   [[nodiscard]] std::array<double, 2> place() const {
+    std::size_t last = rows.size() - 1;
+    while (!reasons[last].empty()) --last;
     const auto column = [&](std::string_view name) {
       for (std::size_t c = 0; c < thd_columns().size(); ++c)
-        if (thd_columns()[c].name == name) return rows.back()[c];
+        if (thd_columns()[c].name == name) return rows[last][c];
       throw core::Bug("a column of the table is missing");
     };
     const double e = column("eccentricity"), angle = column("attitude");
@@ -54,9 +70,25 @@ struct Sweep {
     const std::vector<double>& flat = from.reals("rows");
     const auto width = static_cast<std::ptrdiff_t>(thd_columns().size());
     for (auto at = flat.begin(); at != flat.end(); at += width) rows.emplace_back(at, at + width);
+    reasons = from.strings("reasons");
     unsettled = from.strings("unsettled");
   }
 };
+
+// Whether there is a film; `reason` says why not. An error that only some ranks have is no answer.
+bool found(MPI_Comm comm, const std::function<void()>& solve, std::string& reason) {
+  try {
+    solve();
+    return true;
+  } catch (const core::NotConverged& error) {
+    if (core::size_of(comm) > 1 && !error.agreed()) throw;
+    reason = error.what();
+  } catch (const core::DomainError& error) {
+    if (core::size_of(comm) > 1 && !error.agreed()) throw;
+    reason = error.what();
+  }
+  return false;
+}
 
 // The state of a checkpoint, on whatever ranks it was written.
 std::vector<double> last_state(const io::Group& from, const thermal::Rows& rows) {
@@ -88,30 +120,29 @@ StudyResult Thd::run(Context& context) {
   Pieces pieces(results, context.resume, true, core::size_of(context.comm));
   Sweep sweep;
   std::vector<double> last;
-  std::string lost;  // why the speeds end before the last
   if (pieces.state().has_dataset("rows")) sweep.read(pieces.state());
   for (std::size_t k = sweep.rows.size(); k < options.speeds.size(); ++k) {
     const double speed = options.speeds[k].value;
     results.progress(fmt::format("speed {:.6g} rad/s", speed));
     FilmStart start;
-    if (k > 0 && last.empty())
+    if (sweep.any() && last.empty())
       last = last_state(pieces.state(), ThdFilm(context.comm, options, geometry, speed).rows());
-    if (k > 0) start = {sweep.place(), last};
+    if (sweep.any()) start = {sweep.place(), last};
     SolvedFilm solved;
-    try {
-      solved = solve_film(context.comm, options, geometry, speed, start);
-    } catch (const core::NotConverged& error) {
-      if (!core::is_agreed(std::current_exception()) || sweep.rows.empty()) throw;
-      lost = fmt::format("no film at {:.6g} rad/s: {}", speed, error.what());
-      break;
-    } catch (const core::DomainError& error) {
-      if (!core::is_agreed(std::current_exception()) || sweep.rows.empty()) throw;
-      lost = fmt::format("no film at {:.6g} rad/s: {}", speed, error.what());
-      break;
+    if (std::string reason; !found(
+            context.comm,
+            [&] {
+              solved = solve_film(context.comm, options, geometry, speed, start);
+              sweep.rows.push_back(thd_row(*solved.film, speed));
+            },
+            reason)) {
+      sweep.lose(speed, reason);
+      continue;
     }
+    sweep.reasons.emplace_back();
     ThdFilm& film = *solved.film;
-    if (!solved.settled) sweep.unsettled.push_back(fmt::format("{:.6g} rad/s", speed));
-    sweep.rows.push_back(thd_row(film, speed));
+    if (!solved.settled)
+      sweep.unsettled.push_back(fmt::format("{:.6g} rad/s ({} rounds)", speed, film.cost().iterations));
     if (k + 1 < options.speeds.size()) {
       last = film.thd().state();
       if (pieces.state_due()) pieces.save(sweep.kept(film, last));
@@ -119,7 +150,7 @@ StudyResult Thd::run(Context& context) {
     }
     put_thd_values(summary, film, options);
     const double residual = film.thd().budget().residual();
-    put_thd_bars(context, options, geometry, speed, {sweep.place(), {}}, residual, pieces);
+    put_thd_bars(context, film, options, geometry, speed, {sweep.place(), {}}, residual, pieces);
     put_lumped(summary, film, options, geometry);
     put_effective(group, summary, film, options.ambient.temperature);
     put_properties(group, options, film.fluid(), geometry);
@@ -142,12 +173,21 @@ StudyResult Thd::run(Context& context) {
     for (const auto& row : sweep.rows) column.push_back(row[c]);
     table.put(thd_columns()[c].name, column, thd_columns()[c].unit, thd_columns()[c].description);
   }
-  summary.points = static_cast<long>(sweep.rows.size());
-  if (!lost.empty()) return results.finish(lost, true);
+  if (std::ranges::any_of(sweep.reasons, [](const std::string& why) { return !why.empty(); }))
+    table.put("reason", sweep.reasons, "why there is no film at the speed; empty: there is one");
+  summary.points = static_cast<long>(std::ranges::count(sweep.reasons, ""));
+  // A speed without its film was asked for in vain: what there is of the others is kept, and the run says so.
+  std::vector<std::string> lost;
+  for (std::size_t k = 0; k < sweep.rows.size(); ++k)
+    if (!sweep.reasons[k].empty())
+      lost.push_back(fmt::format("no film at {:.6g} rad/s: {}", options.speeds[k].value, sweep.reasons[k]));
+  if (!lost.empty()) return results.finish(fmt::format("{}", fmt::join(lost, "; ")), false);
   if (!sweep.unsettled.empty())
-    return results.finish(fmt::format("temperatures did not settle within {} iterations at {}", options.most_iterations,
-                                      fmt::join(sweep.unsettled, ", ")),
-                          true);
+    return results.finish(
+        fmt::format("temperatures did not settle at {}: their changes fall no more; values and bars there are those of "
+                    "the last round",
+                    fmt::join(sweep.unsettled, ", ")),
+        false);
   return results.finish("completed", true);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "study/bars/summary_bars.hpp"
 #include "study/bearing/thd_record.hpp"
@@ -52,24 +53,43 @@ bool grooves_move(const ThdOptions& o, const std::vector<std::array<int, 3>>& me
   });
 }
 
-// Values on another mesh with the residual of the energy behind them; not a number where there is no answer.
+// Values on another mesh with the residual of the energy behind them; not a number where there is no answer, with the
+// reason.
 std::vector<double> values_on(MPI_Comm comm, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                              const FilmStart& start, std::size_t count) {
+                              const FilmStart& start, std::size_t count, std::string& reason) {
   std::vector<double> out(count + 1, io::no_value);
   // A mesh of few rows is solved by each rank for itself.
   const bool shared = options.cells[1] + 1 >= 2 * core::size_of(comm);
-  const bool answered = has_answer([&] {
-    const SolvedFilm solved = solve_film(shared ? comm : MPI_COMM_SELF, options, geometry, speed, start);
-    ThdFilm& film = *solved.film;
-    if (!solved.settled) throw core::NotConverged("temperatures did not settle");
-    io::StudySummary there;
-    put_thd_values(there, film, options);
-    core::require(there.values.size() == count, "the same values on all meshes");
-    for (std::size_t k = 0; k < count; ++k) out[k] = there.values[k].second.value;
-    out[count] = film.thd().budget().residual();
-  });
+  const bool answered = has_answer(
+      [&] {
+        const SolvedFilm solved = solve_film(shared ? comm : MPI_COMM_SELF, options, geometry, speed, start);
+        ThdFilm& film = *solved.film;
+        if (!solved.settled) {
+          core::NotConverged error(fmt::format("temperatures did not settle in {} rounds", film.cost().iterations));
+          error.mark_agreed();
+          throw error;
+        }
+        io::StudySummary there;
+        put_thd_values(there, film, options);
+        core::require(there.values.size() == count, "the same values on all meshes");
+        for (std::size_t k = 0; k < count; ++k) out[k] = there.values[k].second.value;
+        out[count] = film.thd().budget().residual();
+      },
+      &reason);
   if (!answered) out.assign(count + 1, io::no_value);
   core::share(comm, out.data(), out.size());
+  return out;
+}
+
+// Names of values that have no limit on ever finer meshes. Near an orifice the gas flows with 1/r, r the distance: its
+// dissipation and work grow with ln(r), and so does what they change of the temperature and of the pressure there.
+std::set<std::string> without_limit(ThdFilm& film, const ThdOptions& options, const io::StudySummary& summary) {
+  if (options.orifices.empty()) return {};
+  std::set<std::string> out{"heat.dissipation", "heat.expansion"};
+  for (const std::string& name : extremes_at_orifices(film)) out.insert(name);
+  std::erase_if(out, [&](const std::string& name) {
+    return std::ranges::none_of(summary.values, [&](const auto& entry) { return entry.first == name; });
+  });
   return out;
 }
 
@@ -89,8 +109,8 @@ std::vector<std::array<int, 3>> thd_meshes(const ThdOptions& options, double len
   return out;
 }
 
-void put_thd_bars(Context& context, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                  const FilmStart& start, double energy_residual, Pieces& pieces) {
+void put_thd_bars(Context& context, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry,
+                  double speed, const FilmStart& start, double energy_residual, Pieces& pieces) {
   const std::vector<std::array<int, 3>> meshes = thd_meshes(options, geometry.length);
   io::StudySummary& summary = context.results.summary();
   const auto total = [](const std::array<int, 3>& c) { return static_cast<double>(c[0]) * c[1] * c[2]; };
@@ -103,13 +123,19 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
   for (const auto& [name, q] : summary.values) found[0].push_back(q.value);
   found[0].push_back(energy_residual);
   for (std::size_t m = 1; m < meshes.size(); ++m) {
-    found.push_back(pieces.numbers(fmt::format("mesh {}", m), [&] {
-      context.results.progress(fmt::format("{} cells for the error bars", fmt::join(meshes[m], " x ")));
+    const std::string cells = fmt::format("{}", fmt::join(meshes[m], " x "));
+    const io::Group& kept = pieces.get(fmt::format("mesh {}", m), [&](io::Group& g) {
+      context.results.progress(cells + " cells for the error bars");
       ThdOptions there = options;
       there.cells = meshes[m];
       for (thermal::WallOptions* wall : {&there.bush, &there.journal}) wall->layers = std::max(2, wall->layers >> m);
-      return values_on(context.comm, there, geometry, speed, start, count);
-    }));
+      std::string reason;
+      g.put("values", values_on(context.comm, there, geometry, speed, start, count, reason), "1", "on that mesh");
+      g.set("reason", reason);
+    });
+    found.push_back(kept.reals("values"));
+    if (const std::string& reason = kept.text("reason"); !reason.empty())
+      summary.warnings.push_back(fmt::format("the error bars lack the mesh of {} cells: {}", cells, reason));
     io::StudySummary there;
     for (std::size_t k = 0; k < count; ++k)
       if (std::isfinite(found[m][k])) there.set(summary.values[k].first, found[m][k], summary.values[k].second.unit);
@@ -135,6 +161,7 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
     group.put("energy_residual", column([&](std::size_t m) { return found[m][count]; }), "W",
               "what the balance of the whole film leaves");
   }
+  const std::set<std::string> limitless = without_limit(film, options, summary);
   // Differences that fall more slowly than with the root of the spacing are no measure of what is left: beside point
   // sources some grow with its logarithm.
   std::map<std::string, double> size;  // of a vector or of all heats, of which one may vanish
@@ -145,6 +172,7 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
   for (std::size_t k = 0; k < count; ++k) size[kin(k)] = std::max(size[kin(k)], std::abs(found[0][k]));
   std::vector<std::string> steady;
   for (std::size_t k = 0; k < count && meshes.size() > 2; ++k) {
+    if (limitless.contains(summary.values[k].first)) continue;
     const double fine = std::abs(found[0][k] - found[1][k]), coarse = std::abs(found[1][k] - found[2][k]);
     if (fine * std::numbers::sqrt2 >= coarse && fine > 1e-6 * size[kin(k)]) steady.push_back(summary.values[k].first);
   }
@@ -159,6 +187,13 @@ void put_thd_bars(Context& context, const ThdOptions& options, const film::Geome
     const auto [x, y] = load_of(options);
     return load_tolerance * (name == "load.x" || name == "load.y" ? std::hypot(x, y) : std::abs(value));
   });
+  if (limitless.empty()) return;
+  for (auto& [name, q] : summary.values)
+    if (limitless.contains(name)) q.more.clear();
+  summary.warnings.push_back(fmt::format(
+      "no limit on ever finer meshes, and so no bar, has {}: beside orifices, which are points, they change "
+      "with the logarithm of the spacing. heat.film, temperature.mean and the percentiles have a limit",
+      fmt::join(limitless, ", ")));
 }
 
 }  // namespace whirl::study

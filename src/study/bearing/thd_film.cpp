@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 namespace whirl::study {
 namespace {
@@ -33,12 +34,11 @@ thermal::FilmFlowOptions flow_of(const ThdOptions& o, const thermal::Mesh& mesh,
   const double step = 2 * std::numbers::pi / mesh.around;
   const auto node_around = [&](double angle) { return static_cast<int>(std::lround(angle / step)); };
   const auto node_along = [&](double z) { return static_cast<int>(std::lround((z / mesh.length + 0.5) * mesh.along)); };
+  const std::vector<std::array<int, 2>> nodes = orifice_nodes(o, mesh.length);
+  auto node = nodes.begin();
   for (const thermal::OrificeRing& ring : o.orifices)
-    for (int k = 0; k < ring.count; ++k) {
-      const int i = node_around(ring.angle + 2 * std::numbers::pi * k / ring.count);
-      out.orifices.push_back({((i % mesh.around) + mesh.around) % mesh.around, node_along(ring.z), ring.diameter,
-                              ring.pressure, ring.temperature});
-    }
+    for (int k = 0; k < ring.count; ++k, ++node)
+      out.orifices.push_back({(*node)[0], (*node)[1], ring.diameter, ring.pressure, ring.temperature});
   for (const thermal::SupplyGroove& groove : o.grooves) {
     const double half = groove.length.value_or(mesh.length) / 2;
     out.feeds.push_back({node_around(groove.angle - groove.width / 2), node_around(groove.angle + groove.width / 2),
@@ -82,6 +82,29 @@ std::vector<int> grooves_of(const thermal::Rows& rows, const thermal::FilmFlowOp
 }
 
 }  // namespace
+
+std::vector<std::array<int, 2>> orifice_nodes(const ThdOptions& o, double length) {
+  std::vector<std::array<int, 2>> out;
+  const int around = o.cells[0];
+  const double step = 2 * std::numbers::pi / around;
+  for (const thermal::OrificeRing& ring : o.orifices)
+    for (int k = 0; k < ring.count; ++k) {
+      const auto i = static_cast<int>(std::lround((ring.angle + 2 * std::numbers::pi * k / ring.count) / step));
+      const auto j = static_cast<int>(std::lround((ring.z / length + 0.5) * o.cells[1]));
+      out.push_back({((i % around) + around) % around, j});
+    }
+  return out;
+}
+
+std::optional<std::size_t> orifices_at_one_node(const ThdOptions& o, double length) {
+  const std::vector<std::array<int, 2>> nodes = orifice_nodes(o, length);
+  std::set<std::array<int, 2>> taken;
+  auto node = nodes.begin();
+  for (std::size_t ring = 0; ring < o.orifices.size(); ++ring)
+    for (int k = 0; k < o.orifices[ring].count; ++k, ++node)
+      if (!taken.insert(*node).second) return ring;
+  return std::nullopt;
+}
 
 ThdFilm::ThdFilm(MPI_Comm comm, const ThdOptions& o, const film::Geometry& g, double speed)
     : rows_(mesh_of(o, g), comm),

@@ -4,12 +4,18 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "whirl/study/bearing/thd.hpp"
 #include "whirl/thermal/thd.hpp"
 
 namespace whirl::study {
+
+/// Node [around, along] of each orifice, ring by ring, on the mesh of `cells` of a film that is `length` long [m].
+[[nodiscard]] std::vector<std::array<int, 2>> orifice_nodes(const ThdOptions& options, double length);
+/// The first ring with an orifice at the node of another one, of it or of a ring before it; from 0.
+[[nodiscard]] std::optional<std::size_t> orifices_at_one_node(const ThdOptions& options, double length);
 
 /// A film at one speed.
 class ThdFilm {

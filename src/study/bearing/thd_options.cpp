@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/bearing/thd_film.hpp"
 #include "whirl/study/bearing/thd.hpp"
 #include "whirl/thermal/describe.hpp"
 
@@ -46,9 +47,10 @@ void describe(deck::Description<ThdOptions>& d) {
   d.add("journal", &O::journal, "wall of the film on the side of the shaft");
   d.add("tolerance", &O::tolerance, deck::between(0, 1e-2),
         "change of temperatures in an iteration, relative to the ambient's, below which it ends");
-  d.add("most_iterations", &O::most_iterations, deck::in(1, 10000),
-        "iterations between flow and heat after which it "
-        "gives up");
+  d.add(
+      "most_iterations", &O::most_iterations, deck::in(1, 10000),
+      "iterations between flow and heat after which it gives up unless they still converge: unless the second half of "
+      "them has halved the change of the temperatures; at most 20 times as many");
   d.add("meshes", &O::meshes, deck::in(1, 10),
         "meshes of the film that the error bars stand on, that of 'cells' and coarser ones, each with half of the "
         "cells of the one before in every direction; 1: no bars");
@@ -97,6 +99,12 @@ void Thd::validate(const system::Machine& machine, const deck::Report& report) c
   if (options.cavitation == ThdOptions::Cavitation::mass_conserving &&
       std::ranges::any_of(options.speeds, [](const deck::Quantity& speed) { return speed.value == 0; }))
     report.fail("speeds", "at rest nothing moves what the cavity of a film that conserves its mass holds");
+  if (const auto both = orifices_at_one_node(options, g.length))
+    report.fail(
+        fmt::format("orifices.{}", *both + 1),
+        fmt::format("two orifices lie at one node of a mesh of {} x {} 'cells': give it more cells around or along "
+                    "the film",
+                    options.cells[0], options.cells[1]));
   for (const thermal::OrificeRing& ring : options.orifices) {
     if (std::abs(ring.z) >= g.length / 2 * (1 - 1.0 / options.cells[1]))
       report.fail("orifices", "an orifice lies beyond the ends of the film, or within half a cell of one");

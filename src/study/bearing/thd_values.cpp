@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "study/bearing/thd_record.hpp"
 #include "study/findings.hpp"
@@ -127,6 +128,38 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
   }
   if (options.bush.growth || options.journal.growth)
     summary.set("clearance", surface_numbers(film, film.thickness()).mean, "m");
+}
+
+std::vector<std::string> extremes_at_orifices(ThdFilm& film) {
+  const thermal::Rows& rows = film.rows();
+  const int n = rows.mesh().nodes_around();
+  std::vector<bool> beside(static_cast<std::size_t>(rows.count() * n), false);
+  for (const thermal::Orifice& o : film.orifices())
+    for (int j = std::max(o.j - 1, rows.begin()); j <= std::min(o.j + 1, rows.end() - 1); ++j)
+      for (int i = o.i - 1; i <= o.i + 1; ++i) beside[static_cast<std::size_t>(rows.node(((i % n) + n) % n, j))] = true;
+  std::vector<std::string> out;
+  // `values` has as many numbers of each node as of any other; `sign` is -1 for a minimum.
+  const auto add = [&](const char* name, const std::vector<double>& values, double sign) {
+    double most[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      double& at = most[beside[k / (values.size() / beside.size())] ? 0 : 1];
+      at = std::max(at, sign * values[k]);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, rows.comm());
+    if (most[0] >= most[1]) out.emplace_back(name);
+  };
+  thermal::Thd& thd = film.thd();
+  add("max_pressure", thd.flow().pressure(), 1);
+  add("temperature.minimum", thd.temperature(), -1);
+  add("temperature.maximum", thd.temperature(), 1);
+  add("temperature.bush.maximum", thd.bush_surface(), 1);
+  add("temperature.journal.maximum", thd.journal_surface(), 1);
+  const std::vector<double> isothermal = film.isothermal().pressure;
+  std::vector<double> change = thd.flow().pressure();
+  for (std::size_t k = 0; k < change.size(); ++k)
+    change[k] = std::abs(change[k] - isothermal[k]) / (film.is_gas() ? isothermal[k] : 1);
+  add("pressure_change", change, 1);
+  return out;
 }
 
 }  // namespace whirl::study

@@ -29,7 +29,11 @@ void put_thd_values(io::StudySummary& summary, ThdFilm& film, const ThdOptions& 
 
 /// Solves the film on the coarser meshes at one speed, puts the error bars beside the values that `context` has in its
 /// summary, and all values over the mesh into its results. Collective.
-void put_thd_bars(Context& context, const ThdOptions& options, const film::Geometry& geometry, double speed,
-                  const FilmStart& start, double energy_residual, Pieces& pieces);
+/// Values without a limit get none, and a warning that names them; meshes without an answer, too.
+void put_thd_bars(Context& context, ThdFilm& film, const ThdOptions& options, const film::Geometry& geometry,
+                  double speed, const FilmStart& start, double energy_residual, Pieces& pieces);
+
+/// Names of those extremes of put_thd_values() that stand at an orifice or at a node beside one. Collective.
+[[nodiscard]] std::vector<std::string> extremes_at_orifices(ThdFilm& film);
 
 }  // namespace whirl::study

@@ -1,0 +1,48 @@
+#pragma once
+// Stiffness and damping of one film at one speed, as a checkpoint keeps them.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/bearing/enforced_motion.hpp"
+#include "study/bearing/film_at_rest.hpp"
+#include "study/pieces.hpp"
+#include "whirl/film/coefficients.hpp"
+#include "whirl/study/bearing/dynamic_coefficients.hpp"
+
+namespace whirl::study {
+
+/// A journal at rest at one speed, and its coefficients at all frequencies; or why there are none.
+struct AtSpeed {
+  JournalPlace place;
+  double thickness = io::no_value;
+  std::vector<film::PortCoefficients> coefficients;
+  std::vector<std::vector<EnforcedAt>> enforced;  ///< [frequency][amplitude]; none without amplitudes
+  /// Of the film at the centre itself, at the first frequency, where it is another one than beside the centre.
+  std::optional<film::PortCoefficients> centre;
+  std::string reason;            ///< empty: there are coefficients
+  std::optional<Capacity> most;  ///< of a film that does not carry the load
+  [[nodiscard]] bool found() const { return reason.empty(); }
+  /// As many coefficients that are not numbers.
+  void fill(std::size_t ports, std::size_t frequencies, std::size_t amplitudes);
+};
+
+/// At `speed` rad/s, sought from `last`, if there is one. Throws as rest_at() and FilmAtRest::carry() do.
+///
+/// At the centre, eccentricity 0, a film that ruptures carries nothing and is whole; beside it, however near, half of
+/// it is ruptured, and so K_xy and B_xx are half as large. What a small load finds is the limit from beside: where both
+/// differ, the coefficients are those at an eccentricity of 1e-6 along the attitude, and `centre` has the other ones.
+[[nodiscard]] AtSpeed coefficients_at(film::Film& film, const DynamicCoefficientsOptions& options,
+                                      const system::Support& support, double speed, const JournalPlace* last);
+
+/// What is to be said where a film has `centre`.
+[[nodiscard]] std::string of_the_centre(const AtSpeed& at);
+
+/// The piece of that name: what `compute` returns, which must not communicate, or why it does not. All ranks compute
+/// alike, and get the same. Collective.
+[[nodiscard]] AtSpeed at_speed(MPI_Comm comm, Pieces& pieces, const std::string& name, double speed,
+                               const std::function<AtSpeed()>& compute);
+
+}  // namespace whirl::study
