@@ -135,15 +135,15 @@ def regions(axis, studies):
         groups.setdefault(study.attribute("of", ""), []).append(study)
     (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
     x, y = np.linspace(left, right, 400), np.linspace(low, high, 300)
-    free, known = np.ones((len(y), len(x)), bool), np.zeros((len(y), len(x)), bool)
+    free = np.ones((len(y), len(x)), bool)  # every motion is known to be stable there
     names = []
     for of, curves in groups.items():
         mask = np.zeros((len(y), len(x)), bool)
         for row, level in enumerate(y):
             found = sorted(c for s in curves for c in crossings(s, level))
             if not found:
+                free[row] = False
                 continue
-            known[row] = True
             begin = None if found[0][1] else left
             for where, above in found:
                 if above and begin is None:
@@ -159,8 +159,8 @@ def regions(axis, studies):
         colour = curves[0].colour
         axis.contourf(x, y, mask.astype(float), levels=[0.5, 1.5], colors=[colour], alpha=0.10, zorder=0)
         names.append((mask, f"{of}: {curves[0].attribute('born', '') or 'unstable'}", colour))
-    if (free & known).any() and names:
-        names.append((free & known, "stable", INK))
+    if free.any() and names:
+        names.append((free, "stable", INK))
     for k, (mask, words, colour) in enumerate(names):
         others = np.zeros_like(mask) if words == "stable" else np.any([m for j, (m, _, _) in enumerate(names) if j != k], axis=0)
         row, column = widest(mask & ~others if (mask & ~others).any() else mask)

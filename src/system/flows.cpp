@@ -110,6 +110,7 @@ public:
         along_(std::move(along)),
         parameter_(along_.value),
         o_(along_.at(parameter_)),
+        by_speed_(follows_speed(parameter_) && follows_speed(parameter_ + 1e-5 * along_.magnitude)),
         local_(core::rank_of(comm) == 0 ? F::n : 0),
         layout_(core::make_vector(comm, local_, F::n)) {}
 
@@ -123,7 +124,7 @@ public:
     parameter_ = p;
   }
   [[nodiscard]] double speed() const override { return F::speed(o_); }
-  [[nodiscard]] bool parameter_is_speed() const override { return false; }
+  [[nodiscard]] bool parameter_is_speed() const override { return by_speed_; }
   void set_forcing(bool on) override { forced_ = on; }
   [[nodiscard]] bool forced() const override { return std::is_same_v<Options, Duffing>; }
 
@@ -177,6 +178,7 @@ public:
   [[nodiscard]] bool constant_rates() const override { return true; }
 
 private:
+  [[nodiscard]] bool follows_speed(double p) const { return F::speed(along_.at(p)) == p; }
   template <class Array>
   [[nodiscard]] static State state(const Array& z) {
     State s;
@@ -195,6 +197,7 @@ private:
   Along<Options> along_;
   double parameter_;
   Options o_;
+  bool by_speed_;  // the parameter is the frequency of the force
   PetscInt local_;
   core::Vector layout_;
   bool forced_ = true;

@@ -13,7 +13,7 @@ sys.path[:0] = [str(pathlib.Path(__file__).parent), str(ROOT / "scripts")]
 import synthetic  # noqa: E402
 
 import whirl  # noqa: E402
-from whirl_plot import bore, curves, multipliers, response, style, tables, units  # noqa: E402
+from whirl_plot import bore, curves, locus, multipliers, response, style, tables, units  # noqa: E402
 
 
 def refuses(what, *words):
@@ -117,12 +117,39 @@ def smooth_curves():
     assert abs(branch.at(s, branch.place("hopf", value)) - 0.05) < 0.1
     pieces = branch.stretches(s, s <= 0, [place])
     assert [solid for *_, solid in pieces] == [True, False] and abs(pieces[0][1][-1]) < 0.07, "the style changes at the mark"
+    # Two changes between two stable points: the pieces between them are unstable.
+    flat = curves.Branch(np.arange(4.0), np.ones(4))
+    changes = {1: [(flat.place_in(1, v, False)[1], behind) for v, behind in ((1.25, False), (1.75, True))]}
+    pieces = flat.stretches(np.arange(4.0), np.ones(4), [], changes)
+    assert [solid for *_, solid in pieces] == [True, False, True] and abs(pieces[1][0][0] - 1.25) < 0.01 and abs(pieces[1][0][-1] - 1.75) < 0.01
     # No overshoot at a kink, no value outside a flat stretch.
     kink = np.array([0, 0, 0, 1, 2, 3.0])
     line = curves.Branch(np.arange(6.0), np.ones(6))
     y = np.concatenate([y for _, y, _ in line.stretches(kink, np.ones(6), [])])
     assert y.min() >= -1e-12 and y.max() <= 3 + 1e-12
     assert line.place("hopf", 9.0) is None, "a mark far from the branch is none"
+
+
+class Curve:
+    """A curve of bifurcations: speed = 1 + load, stable below it; no border above a load of 1.5."""
+
+    def __init__(self, side):
+        load = np.linspace(0.5, 2, 16)
+        self.data = {"locus/parameter": 1 + load, "locus/second": load, "locus/others_unstable": np.where(load > 1.5, 2, 0)}
+        self.side = side
+
+    def get(self, name, default=None):
+        return self.data.get(name, default)
+
+    def attribute(self, name, default=""):
+        return {"stable_side": self.side, "start": 15}.get(name, default)
+
+
+def borders_of_curves():
+    for side in ("below", "above"):
+        (where, above), = locus.crossings(Curve(side), 1.03)
+        assert abs(where - 2.03) < 1e-9 and above == (side == "below"), (side, where, above)
+        assert locus.crossings(Curve(side), 1.8) == [], "where something else is unstable already there is no border"
 
 
 class Bearings:
@@ -181,6 +208,6 @@ def facts():
     assert units.quantity("3600 rpm") == "3600 rpm" and units.quantity("none") == "none"
 
 
-for check in (module, frames, command_lines, labels, smooth_curves, clearances, facts):
+for check in (module, frames, command_lines, labels, smooth_curves, borders_of_curves, clearances, facts):
     check()
 print("the module and the numbers behind the pictures are right")

@@ -56,6 +56,20 @@ def verdicts(folder):
         assert "5025" in brief.of(results["balanced"]), "a Hopf point of a branch that is unstable already is no threshold"
 
 
+def sentences(folder):
+    """What a bifurcation means and where a branch is stable is what summary.json says, word for word."""
+    def change(studies, _):
+        studies["balanced"].update({"stability": "loses stability", "ranges": [
+            {"from": 500, "to": 5025, "unit": "rpm", "stability": "stable"}, {"from": 5025, "to": 6000, "unit": "rpm", "stability": "unstable"},
+            {"from": 6000, "to": 8000, "unit": "rpm", "stability": "stable"}]})
+        studies["balanced"]["bifurcations"][0].update({"sentence": "above this speed whirl grows from nothing", "others_unstable": 0})
+    with results_with(folder, change) as results:
+        study = results["balanced"]
+        assert table_of(study, "Bifurcations").rows[0][-1].startswith("above this speed whirl grows from nothing")
+        assert [r[1] for r in table_of(study, "Along the branch").rows] == ["stable", "unstable", "stable"]
+        assert "stable again from 6000 to 8000 rpm" in brief.of(study), brief.of(study)
+
+
 def modes(folder):
     """A computed speed is no threshold; margins are those of summary.json."""
     with results_with(folder, lambda *_: None) as results:
@@ -217,7 +231,7 @@ def page(folder):
         assert words in text, words
 
 
-for check in (verdicts, modes, sweep, others_in_brief, options, warnings, foreign, page):
+for check in (verdicts, sentences, modes, sweep, others_in_brief, options, warnings, foreign, page):
     with tempfile.TemporaryDirectory() as name:
         check(pathlib.Path(name) / "x")
 print("the report says what the results say")

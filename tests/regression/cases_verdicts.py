@@ -50,6 +50,23 @@ def flips(h, s):
     h.true("stable again", second["sentence"].startswith("stable again above "), second["sentence"])
 
 
+def duffing(h):
+    """A softening oscillator that forces itself: folds and the largest first harmonic by harmonic balance with 15 harmonics."""
+    s = h.run(h.source / "tests/cases/forced_duffing.yaml", "duffing")["resonance"]
+    folds = sorted(b["value"] for b in s["bifurcations"] if b["type"] == "cyclic_fold")
+    h.true("two folds", len(folds) == 2, str(folds))
+    h.close("lower fold [rad/s]", folds[0], 0.86271, 1e-5)
+    h.close("upper fold [rad/s]", folds[1], 0.89277, 1e-5)
+    h.true("nothing turns there: the system jumps", all("the system jumps" in b["sentence"] for b in s["bifurcations"]), str(s["bifurcations"]))
+
+
+def bearing_map(h):
+    """From 0.3 the film at 0.6 is not found at once, but it exists."""
+    s = h.run(h.source / "inputs/compliant_rotor/short.yaml", "map",
+              ["bearings.half.film.compliance=0.05", "studies=[{bearing_map: {name: map, speed: 160 rad/s, points: 2, max_eccentricity: 0.6}}]"])["map"]
+    h.true("the map of a soft bearing is complete with two points", s["status"] == "completed" and s["points"] == 2, s["status"])
+
+
 if __name__ == "__main__":
     program, source, *launcher = sys.argv[1:]
     harness = Harness(program, source, launcher)
@@ -60,4 +77,6 @@ if __name__ == "__main__":
     coarse(harness, studies["coarse"])
     coarse(harness, studies["sixty"])
     flips(harness, studies["flips"])
+    duffing(harness)
+    bearing_map(harness)
     harness.finish()

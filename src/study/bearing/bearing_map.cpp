@@ -45,7 +45,7 @@ public:
     BearingEquilibrium last = bearing_.centred();
     for (int i = 1; i <= options_.points; ++i) {
       const double wanted = options_.max_eccentricity * i / options_.points;
-      const auto e = bearing_.rigid() ? bearing_.carrying(wanted, last) : walk(last, wanted);
+      const auto e = reach(last, wanted);
       if (!e && !bearing_.rigid()) break;
       if (!e) continue;
       locus.push_back(complete(*e));
@@ -59,7 +59,7 @@ public:
       if (margin(locus[i].at) * margin(locus[i + 1].at) > 0) continue;
       BearingEquilibrium low = locus[i].at, high = locus[i + 1].at;
       for (int k = 0; k < 60; ++k) {
-        const auto middle = bearing_.carrying(0.5 * (low.eccentricity + high.eccentricity), low);
+        const auto middle = reach(low, 0.5 * (low.eccentricity + high.eccentricity));
         if (!middle) return std::nullopt;
         (margin(*middle) * margin(low) > 0 ? low : high) = *middle;
       }
@@ -115,7 +115,8 @@ public:
 
 private:
   // In as few steps as lead there: from a far one the film of a soft bearing may not be found although it exists.
-  std::optional<BearingEquilibrium> walk(BearingEquilibrium last, double wanted) {
+  std::optional<BearingEquilibrium> reach(BearingEquilibrium last, double wanted) {
+    if (bearing_.rigid() || wanted <= last.eccentricity) return bearing_.carrying(wanted, last);
     const double shortest = (wanted - last.eccentricity) / 64;
     for (double step = wanted - last.eccentricity; step >= shortest;) {
       const double next = std::min(last.eccentricity + step, wanted);

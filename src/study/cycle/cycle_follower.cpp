@@ -166,11 +166,12 @@ void CycleFollower::doubt(BranchVerdict& verdict) {
     if (!worst || apart(k) < apart(*worst)) worst = k;
   }
   if (!worst || verdict.text() != "undetermined") return;
-  context_.results.summary().warnings.push_back(
-      fmt::format("at {:.6g} {} the largest multiplier has the modulus {:.4g} +- {:.2g}: this mesh does not tell "
-                  "whether the motion "
-                  "is stable there. Use more intervals, a higher degree or a finer film mesh",
-                  column("parameter")[*worst], unit_, column("modulus")[*worst], column("uncertainty")[*worst]));
+  const double bar = column("uncertainty")[*worst];
+  context_.results.summary().warnings.push_back(fmt::format(
+      "at {:.6g} {} the largest multiplier has the modulus {:.4g}{}: this mesh does not tell whether the motion is "
+      "stable there. Use more intervals, a higher degree or a finer film mesh",
+      column("parameter")[*worst], unit_, column("modulus")[*worst],
+      std::isfinite(bar) ? fmt::format(" +- {:.2g}", bar) : ", and other meshes have no such motion"));
 }
 
 // The flip that a branch of twice the period ran back into lies between its last cycle and where the next step landed.
