@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/mesh_wave.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
 #include "study/bars/verdict.hpp"
@@ -189,6 +191,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     problem.to_state(v, x.get());
     const std::string event = fmt::format("event {}", results.summary().bifurcations.size() + 1);
     pieces.complete(event, b, [&] {
+      const auto wave = found.event == solve::Event::hopf
+                            ? mesh_wave_at(*system, x.get(), std::abs(found.critical.imag()))
+                            : std::nullopt;
+      if (wave) return put_mesh_wave(b, *wave);
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
                    film_meshes(context.machine, context.layout), law_of(context.machine),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
@@ -196,8 +202,9 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
                    cut, !plan(context, Sharing::machine).large});
     });
     b.more["others_unstable"] = found.others_unstable;
-    borders.push_back({found.others_unstable == 0 && found.located, found.loses});
+    borders.push_back({found.others_unstable == 0 && found.located && !is_mesh_wave(b), found.loses});
     results.summary().bifurcations.push_back(b);
+    if (is_mesh_wave(b)) warn_of_mesh_wave(b, results.summary());
     if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
       const std::vector<double> whole = system->gather(x.get());
@@ -250,7 +257,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   group.set("parameter_unit", unit);
   const std::string si_unit =
       deck::same_kind(unit, "rad/s") ? "rad/s" : parameter_unit(context.machine, options.parameter.path);
-  results.summary().stability = verdict.text();
+  // What a wave of the mesh makes unstable says nothing about the machine.
+  const auto& events = results.summary().bifurcations;
+  results.summary().stability =
+      std::any_of(events.begin(), events.end(), is_mesh_wave) ? "undetermined" : verdict.text();
   if (const int k = threshold_among(borders, range.to >= range.from); k >= 0) {
     const auto& b = results.summary().bifurcations[static_cast<std::size_t>(k)];
     results.summary().set("threshold", b.value * scale, si_unit, {{"uncertainty", b.uncertainty * scale}});
