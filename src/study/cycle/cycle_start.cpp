@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/bars/mesh_wave.hpp"
 #include "study/cycle/coexisting.hpp"
 #include "study/cycle/cycle_follower.hpp"
 #include "study/first_guess.hpp"
@@ -65,8 +66,10 @@ solve::Restart CycleFollower::start_at_hopf() {
   };
   callbacks.on_event = [&](const solve::LocatedEvent& found, Vec v) {
     if (at_hopf || found.event != solve::Event::hopf || !found.located) return;
-    at_hopf = core::duplicate(x.get());
-    equilibria.to_state(v, at_hopf.get());
+    core::Vector here = core::duplicate(x.get());
+    equilibria.to_state(v, here.get());
+    if (mesh_wave_at(*system_, here.get(), std::abs(found.critical.imag()))) return;
+    at_hopf = std::move(here);
     parameter = found.parameter * scale_;
     hopf = found;
   };

@@ -2,12 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "study/bars/beyond.hpp"
 #include "study/bars/film_limit.hpp"
 #include "study/bars/film_mesh.hpp"
+#include "study/bars/mesh_wave.hpp"
 #include "study/bars/open_bore.hpp"
 #include "study/bars/shaft_mesh.hpp"
 #include "study/bars/summary_bars.hpp"
@@ -82,6 +84,7 @@ void put_limits(io::StudySummary& summary, const BranchVerdict& verdict, const s
   const auto put = [&](const std::string& name, const BranchChange& c, const std::string& frequency) {
     if (c.bifurcation < 0) return;
     const auto& b = summary.bifurcations[static_cast<std::size_t>(c.bifurcation)];
+    if (is_mesh_wave(b)) return;
     summary.set(name, b.value * scale, unit, {{"uncertainty", b.uncertainty * scale}});
     if (const auto omega = b.more.find("whirl_frequency_rad_s"); omega != b.more.end())
       summary.set(frequency, omega->second, "rad/s",
@@ -219,6 +222,10 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     problem.to_state(v, x.get());
     const std::string event = fmt::format("event {}", results.summary().bifurcations.size() + 1);
     pieces.complete(event, b, [&] {
+      const auto wave = found.event == solve::Event::hopf
+                            ? mesh_wave_at(*system, x.get(), std::abs(found.critical.imag()))
+                            : std::nullopt;
+      if (wave) return put_mesh_wave(b, *wave);
       describe(b, {*system, x.get(), found, scale, state_weight, continuation.newton,
                    film_meshes(context.machine, context.layout), law_of(context.machine),
                    [&](const auto& cells) { return plant_of(context, options, cells); },
@@ -227,6 +234,7 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
     });
     put_counts(b, changes.back());
     results.summary().bifurcations.push_back(b);
+    if (is_mesh_wave(b)) warn_of_mesh_wave(b, results.summary());
     if (is_followed(context, results.summary().name)) {
       problem.to_state(v, x.get());
       const std::vector<double> whole = system->gather(x.get());
@@ -282,6 +290,13 @@ StudyResult follow_equilibria(Context& context, const EquilibriumBranchOptions& 
   put_changes(group.child("changes"), changes, unit);
   for (const BranchChange& c : changes) verdict.add(c);
   conclude(results.summary(), verdict, {false, false, 1, system::is_rotor(context.machine)}, unit);
+  // A wave of the mesh that grows says nothing about the machine.
+  if (auto& events = results.summary().bifurcations; std::any_of(events.begin(), events.end(), is_mesh_wave)) {
+    results.summary().stability = "undetermined";
+    results.summary().ranges.clear();
+    for (io::Bifurcation& b : events)
+      if (is_mesh_wave(b)) b.sentence.clear();
+  }
   put_limits(results.summary(), verdict, changes, scale, si_unit, system->parameter_is_speed());
   if (end.limited)
     put_contact(results.summary(), end.parameter, unit, end.bracket, law_of(context.machine),
